@@ -1,0 +1,128 @@
+//! Derivatives of the shared graph.
+//!
+//! A [`Derivation`] is a linear map `D` on expressions with `D(uv) = D(u)v + uD(v)`, given by its values on the
+//! symbols: a partial derivative (`D(x) = 1`), or the Lie derivative along a field (`D(x_i) = f_i`). What it has
+//! computed it keeps, and since equal expressions are one node, repeated application stays small: after `k` steps a
+//! product of `u` and `v` has left the `k + 1` products `D^i(u) D^(k-i)(v)` and sums of neighbours among them, so the
+//! graph of the `k`-th Lie derivative has O(k^3) nodes for each node of the function and the field.
+
+use super::graph::{Graph, Node, NodeId, Symbol};
+use crate::number::Function;
+use std::collections::HashMap;
+
+/// A derivation and what it has computed so far.
+#[derive(Clone, Debug)]
+pub struct Derivation {
+    slopes: HashMap<Symbol, NodeId>,
+    known: HashMap<NodeId, NodeId>,
+}
+
+impl Derivation {
+    /// The derivation that takes each of these symbols to its expression and all others to zero.
+    pub fn new(slopes: HashMap<Symbol, NodeId>) -> Self {
+        Derivation { slopes, known: HashMap::new() }
+    }
+
+    /// The partial derivative by one symbol.
+    pub fn partial(graph: &mut Graph, symbol: Symbol) -> Self {
+        let one = graph.integer(1);
+        Derivation::new(HashMap::from([(symbol, one)]))
+    }
+
+    /// `D(root)`.
+    pub fn apply(&mut self, graph: &mut Graph, root: NodeId) -> NodeId {
+        if let Some(known) = self.known.get(&root) {
+            return *known;
+        }
+        for id in self.unknown(graph, root) {
+            let slope = self.rule(graph, id);
+            self.known.insert(id, slope);
+        }
+        self.known[&root]
+    }
+
+    /// What the root needs and is not yet differentiated, operands first.
+    fn unknown(&self, graph: &Graph, root: NodeId) -> Vec<NodeId> {
+        let mut found = std::collections::BTreeSet::new();
+        let mut stack = vec![root];
+        while let Some(id) = stack.pop() {
+            if !self.known.contains_key(&id) && found.insert(id) {
+                stack.extend(graph.node(id).operands());
+            }
+        }
+        found.into_iter().collect()
+    }
+
+    fn rule(&self, graph: &mut Graph, id: NodeId) -> NodeId {
+        let slope = |operand: NodeId| self.known[&operand];
+        match graph.node(id) {
+            Node::Constant(_) | Node::Pi => graph.integer(0),
+            Node::Symbol(symbol) => match self.slopes.get(&symbol) {
+                Some(value) => *value,
+                None => graph.integer(0),
+            },
+            Node::Add(a, b) => graph.add(slope(a), slope(b)),
+            Node::Sub(a, b) => graph.sub(slope(a), slope(b)),
+            Node::Neg(a) => graph.neg(slope(a)),
+            Node::Mul(a, b) => {
+                let left = graph.mul(slope(a), b);
+                let right = graph.mul(a, slope(b));
+                graph.add(left, right)
+            }
+            // q = a/b, so a = q b and D(q) = (D(a) - q D(b)) / b
+            Node::Div(a, b) => {
+                let moved = graph.mul(id, slope(b));
+                let top = graph.sub(slope(a), moved);
+                graph.div(top, b)
+            }
+            Node::Power(a, n) => {
+                let lower = graph.power(a, n - 1);
+                let factor = graph.integer(i64::from(n));
+                let outer = graph.mul(factor, lower);
+                graph.mul(outer, slope(a))
+            }
+            Node::Apply(function, a) => {
+                let inner = slope(a);
+                if graph.constant_value(inner).is_some_and(|c| c.is_zero()) {
+                    return inner;
+                }
+                self.chain(graph, function, id, a, inner)
+            }
+        }
+    }
+
+    /// `D(f(a)) = f'(a) D(a)`; `value` is the node `f(a)`.
+    fn chain(&self, graph: &mut Graph, function: Function, value: NodeId, a: NodeId, inner: NodeId) -> NodeId {
+        let one = graph.integer(1);
+        match function {
+            Function::Sin => {
+                let outer = graph.apply(Function::Cos, a);
+                graph.mul(outer, inner)
+            }
+            Function::Cos => {
+                let outer = graph.apply(Function::Sin, a);
+                let product = graph.mul(outer, inner);
+                graph.neg(product)
+            }
+            Function::Exp => graph.mul(value, inner),
+            Function::Log => graph.div(inner, a),
+            Function::Sqrt => {
+                let two = graph.integer(2);
+                let twice = graph.mul(two, value);
+                graph.div(inner, twice)
+            }
+            Function::Atan => {
+                let square = graph.power(a, 2);
+                let bottom = graph.add(one, square);
+                graph.div(inner, bottom)
+            }
+            Function::Asin | Function::Acos => {
+                let square = graph.power(a, 2);
+                let rest = graph.sub(one, square);
+                let bottom = graph.apply(Function::Sqrt, rest);
+                let quotient = graph.div(inner, bottom);
+                if function == Function::Asin { quotient } else { graph.neg(quotient) }
+            }
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Floor 1: from text to a shared graph of expressions, its derivative, and its value over any number.
+//!
+//! [`parse_expression`] reads text into a [`syntax::Expr`]; an elaborator on a higher floor, which knows what names mean, builds
+//! nodes of a [`Graph`] from it; a [`Derivation`] differentiates nodes; a [`Program`] is what is evaluated.
+//!
+//! This floor knows nothing of states, outputs or claims.
+
+mod angle;
+mod derivative;
+mod graph;
+mod print;
+mod program;
+pub mod syntax;
+
+pub(crate) mod parse;
+
+pub use angle::expand_angles;
+pub use derivative::Derivation;
+pub use graph::{Graph, Node, NodeId, Symbol};
+pub use parse::{Expected, parse_expression};
+pub use program::{Failure, Input, Loaded, Program};

@@ -1,0 +1,338 @@
+//! Reading expressions. The parser combinators are winnow's; the error is ours, because it has to say what was
+//! expected, and where.
+
+use super::syntax::{Equation, Expr, ExprKind, Name, Span};
+use crate::number::parse_decimal;
+use std::cell::Cell;
+use winnow::combinator::{alt, cut_err, opt, preceded, separated};
+use winnow::error::{AddContext, ErrMode, ModalResult, ParserError};
+use winnow::prelude::*;
+use winnow::stream::{LocatingSlice, Location, Stateful, Stream};
+use winnow::token::{literal, one_of, take_till, take_while};
+
+/// Text with the place in it, and how deep in brackets we are.
+pub(crate) type Text<'a> = Stateful<LocatingSlice<&'a str>, &'a Depth>;
+
+/// How many brackets are open, and how many may be.
+#[derive(Debug, Default)]
+pub(crate) struct Depth(Cell<usize>);
+
+/// More brackets within brackets than this are refused: nobody means them.
+const DEEPEST: usize = 120;
+
+/// The greatest exponent that may be written after `^`.
+const LARGEST_EXPONENT: i32 = 1000;
+
+/// What was expected at a place in the text.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected {what}")]
+pub struct Expected {
+    /// In words.
+    pub what: String,
+    /// The byte at which it was expected.
+    pub at: usize,
+    /// What may help.
+    pub help: Option<String>,
+}
+
+impl<'a> ParserError<Text<'a>> for Expected {
+    type Inner = Self;
+
+    fn from_input(input: &Text<'a>) -> Self {
+        Expected { what: "something else".to_owned(), at: input.current_token_start(), help: None }
+    }
+    fn or(self, other: Self) -> Self {
+        // the branch that came further knows better
+        if self.at > other.at { self } else { other }
+    }
+    fn into_inner(self) -> Result<Self, Self> {
+        Ok(self)
+    }
+}
+
+impl<'a> AddContext<Text<'a>, &'static str> for Expected {
+    fn add_context(mut self, input: &Text<'a>, start: &<Text<'a> as Stream>::Checkpoint, what: &'static str) -> Self {
+        // name the whole only where nothing inside it was recognised
+        let mut begin = *input;
+        begin.reset(start);
+        if self.at == begin.current_token_start() || self.what == "something else" {
+            self.what = what.to_owned();
+        }
+        self
+    }
+}
+
+pub(crate) type Read<T> = ModalResult<T, Expected>;
+
+/// Stops the reading with a message of our own.
+pub(crate) fn stop<T>(at: usize, what: impl Into<String>, help: Option<String>) -> Read<T> {
+    Err(ErrMode::Cut(Expected { what: what.into(), at, help }))
+}
+
+/// White space and comments, which run from `#` to the end of the line.
+pub(crate) fn blank(input: &mut Text<'_>) -> Read<()> {
+    loop {
+        take_while(0.., char::is_whitespace).void().parse_next(input)?;
+        if opt(literal("#")).parse_next(input)?.is_none() {
+            return Ok(());
+        }
+        take_till(0.., '\n').void().parse_next(input)?;
+    }
+}
+
+/// A sign or bracket, and the blank after it.
+pub(crate) fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<Expected>> {
+    (literal(text), blank).void()
+}
+
+/// Words that begin something and so cannot be names.
+pub(crate) const RESERVED: [&str; 20] = [
+    "system", "cite", "use", "state", "param", "angle", "let", "field", "output", "sample", "avoid", "in", "claim",
+    "erratum", "printed", "corrected", "where", "at", "within", "expect",
+];
+
+/// Letters, digits and underscores, beginning with a letter.
+fn word<'a>(input: &mut Text<'a>) -> Read<(&'a str, Span)> {
+    (one_of(|c: char| c.is_ascii_alphabetic() || c == '_'), take_while(0.., |c: char| c.is_ascii_alphanumeric() || c == '_'))
+        .take()
+        .with_span()
+        .parse_next(input)
+}
+
+/// One of the reserved words, and the blank after it.
+pub(crate) fn keyword<'a>(text: &'static str) -> impl Parser<Text<'a>, Span, ErrMode<Expected>> {
+    move |input: &mut Text<'a>| {
+        let start = input.checkpoint();
+        match word.parse_next(input) {
+            Ok((found, span)) if found == text => {
+                blank(input)?;
+                Ok(span)
+            }
+            Ok((_, span)) => {
+                input.reset(&start);
+                Err(ErrMode::Backtrack(Expected { what: format!("'{text}'"), at: span.start, help: None }))
+            }
+            Err(error) => {
+                input.reset(&start);
+                Err(error)
+            }
+        }
+    }
+}
+
+/// A name that is not reserved, with parts joined by dots (`general.f`), and the blank after it.
+pub(crate) fn name(input: &mut Text<'_>) -> Read<Name> {
+    let start = input.checkpoint();
+    let ((first, _), span) = (word, winnow::combinator::repeat::<_, _, (), _, _>(0.., (literal("."), word)))
+        .map(|((text, span), ())| (text, span))
+        .with_span()
+        .parse_next(input)?;
+    if RESERVED.contains(&first) {
+        input.reset(&start);
+        let what = format!("a name; '{first}' is a word of the language");
+        return Err(ErrMode::Backtrack(Expected { what, at: span.start, help: None }));
+    }
+    let mut whole = *input;
+    whole.reset(&start);
+    let text = whole.input.as_ref()[..span.len()].to_owned();
+    blank(input)?;
+    Ok(Name { text, span })
+}
+
+/// An unsigned number as it is written in a file.
+fn number(input: &mut Text<'_>) -> Read<Expr> {
+    let digits = |c: char| c.is_ascii_digit();
+    let mantissa = alt((
+        (take_while(1.., digits), opt((literal("."), take_while(0.., digits)))).void(),
+        (literal("."), take_while(1.., digits)).void(),
+    ));
+    let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), take_while(1.., digits)).void();
+    let (text, span) = (mantissa, opt(exponent)).take().with_span().parse_next(input)?;
+    let Some(value) = parse_decimal(text) else {
+        return stop(span.start, "a number of at most 4096 digits, with an exponent of at most 4096", None);
+    };
+    blank(input)?;
+    Ok(Expr { kind: ExprKind::Number(value), span })
+}
+
+/// Something in brackets, counted.
+fn within<'a, T>(input: &mut Text<'a>, inner: impl Parser<Text<'a>, T, ErrMode<Expected>>) -> Read<T> {
+    let depth = input.state;
+    if depth.0.get() >= DEEPEST {
+        let at = input.current_token_start();
+        return stop(at, format!("at most {DEEPEST} brackets within brackets"), Some("name the inner part with 'let'".into()));
+    }
+    depth.0.set(depth.0.get() + 1);
+    let mut inner = inner;
+    let result = inner.parse_next(input);
+    depth.0.set(depth.0.get() - 1);
+    result
+}
+
+fn bracketed(input: &mut Text<'_>) -> Read<Expr> {
+    sign("(").parse_next(input)?;
+    let inner = within(input, cut_err(sum))?;
+    cut_err(sign(")")).context("')' or an operator").parse_next(input)?;
+    Ok(inner)
+}
+
+fn matrix(input: &mut Text<'_>) -> Read<Expr> {
+    let begin = input.current_token_start();
+    sign("[").parse_next(input)?;
+    let row = |input: &mut Text<'_>| -> Read<Vec<Expr>> { separated(1.., sum, sign(",")).parse_next(input) };
+    let rows: Vec<Vec<Expr>> = within(input, cut_err(separated(1.., row, sign(";"))))?;
+    let end = input.current_token_start() + 1;
+    cut_err(sign("]")).context("']', ',' between the entries of a row, or ';' between rows").parse_next(input)?;
+    Ok(Expr { kind: ExprKind::Matrix(rows), span: begin..end })
+}
+
+/// A name, or a call where a bracket follows at once.
+fn name_or_call(input: &mut Text<'_>) -> Read<Expr> {
+    let name = name(input)?;
+    if opt(sign("(")).parse_next(input)?.is_none() {
+        return Ok(Expr { kind: ExprKind::Name(name.text), span: name.span });
+    }
+    let arguments: Vec<Expr> = within(input, cut_err(separated(1.., sum, sign(","))))?;
+    let end = input.current_token_start() + 1;
+    cut_err(sign(")")).context("')' or ',' in the list of arguments").parse_next(input)?;
+    Ok(Expr { kind: ExprKind::Call(name.text, arguments), span: name.span.start..end })
+}
+
+/// `name = value, ...` in braces
+fn assignments(input: &mut Text<'_>) -> Read<Vec<(Name, Expr)>> {
+    let one = |input: &mut Text<'_>| -> Read<(Name, Expr)> {
+        let name = name.context("a name to give a value to").parse_next(input)?;
+        cut_err(sign("=")).context("'=' and a value").parse_next(input)?;
+        Ok((name, cut_err(sum).parse_next(input)?))
+    };
+    cut_err(sign("{")).context("'{' and a list of name = value").parse_next(input)?;
+    let list = within(input, cut_err(separated(1.., one, sign(","))))?;
+    cut_err(sign("}")).context("'}' or ','").parse_next(input)?;
+    Ok(list)
+}
+
+fn primary(input: &mut Text<'_>) -> Read<Expr> {
+    let mut value = alt((number, bracketed, matrix, name_or_call))
+        .context("a number, a name, '(' or '['")
+        .parse_next(input)?;
+    while opt(keyword("at")).parse_next(input)?.is_some() {
+        let list = assignments(input)?;
+        let span = value.span.start..input.current_token_start();
+        value = Expr { kind: ExprKind::At(Box::new(value), list), span };
+        if input.state.0.get() + at_depth(&value) > DEEPEST {
+            return stop(input.current_token_start(), "fewer 'at' after one another", None);
+        }
+    }
+    Ok(value)
+}
+
+fn at_depth(value: &Expr) -> usize {
+    let (mut depth, mut inner) = (0, value);
+    while let ExprKind::At(next, _) = &inner.kind {
+        (depth, inner) = (depth + 1, next);
+    }
+    depth
+}
+
+/// `base^n`, `n` an integer, in brackets or not.
+fn power(input: &mut Text<'_>) -> Read<Expr> {
+    let base = primary(input)?;
+    if opt(sign("^")).parse_next(input)?.is_none() {
+        return Ok(base);
+    }
+    let at = input.current_token_start();
+    let bare = |input: &mut Text<'_>| -> Read<Option<i32>> {
+        let minus = opt(sign("-")).parse_next(input)?.is_some();
+        let digits = take_while(1.., |c: char| c.is_ascii_digit()).parse_next(input)?;
+        blank(input)?;
+        let value = digits.parse::<i32>().ok().filter(|n| *n <= LARGEST_EXPONENT);
+        Ok(value.map(|n| if minus { -n } else { n }))
+    };
+    let in_brackets = (sign("("), bare, sign(")")).map(|((), n, ())| n);
+    match opt(alt((in_brackets, bare))).parse_next(input)? {
+        Some(Some(n)) => {
+            if opt(sign("^")).parse_next(input)?.is_some() {
+                return stop(at, "one exponent; write (a^b)^c with its brackets", None);
+            }
+            let span = base.span.start..input.current_token_start();
+            Ok(Expr { kind: ExprKind::Power(Box::new(base), n), span })
+        }
+        Some(None) => stop(at, format!("an exponent of at most {LARGEST_EXPONENT}"), None),
+        None => stop(at, "an integer as exponent, as in x^2 or x^(-1)", Some("write sqrt(x) for a square root".into())),
+    }
+}
+
+/// Factors. A minus before the first binds weaker than the power: `-x^2` is `-(x^2)`.
+fn product(input: &mut Text<'_>) -> Read<(bool, Expr)> {
+    let mut negative = false;
+    while let Some(minus) = opt(alt((sign("-").value(true), sign("+").value(false)))).parse_next(input)? {
+        negative ^= minus;
+    }
+    let first = power(input)?;
+    let begin = first.span.start;
+    let mut factors = vec![(false, first)];
+    while let Some(divides) = opt(alt((sign("*").value(false), sign("/").value(true)))).parse_next(input)? {
+        // a sign is allowed before a factor too: a * -b
+        while let Some(minus) = opt(alt((sign("-").value(true), sign("+").value(false)))).parse_next(input)? {
+            negative ^= minus;
+        }
+        factors.push((divides, cut_err(power).parse_next(input)?));
+    }
+    let value = if factors.len() == 1 {
+        factors.remove(0).1
+    } else {
+        let end = factors.last().map_or(begin, |(_, f)| f.span.end);
+        Expr { kind: ExprKind::Product(factors), span: begin..end }
+    };
+    Ok((negative, value))
+}
+
+/// An expression.
+pub(crate) fn sum(input: &mut Text<'_>) -> Read<Expr> {
+    let first = product(input)?;
+    let begin = first.1.span.start;
+    let mut terms = vec![first];
+    while let Some(minus) = opt(alt((sign("+").value(false), sign("-").value(true)))).parse_next(input)? {
+        let (negative, value) = cut_err(product).parse_next(input)?;
+        terms.push((negative ^ minus, value));
+    }
+    if terms.len() == 1 && !terms[0].0 {
+        return Ok(terms.remove(0).1);
+    }
+    let end = terms.last().map_or(begin, |(_, t)| t.span.end);
+    Ok(Expr { kind: ExprKind::Sum(terms), span: begin..end })
+}
+
+/// `left = right`, perhaps `within tolerance`.
+pub(crate) fn equation(input: &mut Text<'_>) -> Read<Equation> {
+    let left = sum(input)?;
+    cut_err(sign("=")).context("'=' or an operator").parse_next(input)?;
+    let right = cut_err(sum).parse_next(input)?;
+    let within = opt(preceded(keyword("within"), cut_err(sum))).parse_next(input)?;
+    Ok(Equation { left, right, within })
+}
+
+/// Runs a parser over a whole text.
+pub(crate) fn read_all<'a, T>(
+    text: &'a str,
+    depth: &'a Depth,
+    what: &'static str,
+    parser: impl Parser<Text<'a>, T, ErrMode<Expected>>,
+) -> Result<T, Expected> {
+    let mut input = Stateful { input: LocatingSlice::new(text), state: depth };
+    let mut parser = preceded(blank, parser);
+    let value = parser.parse_next(&mut input).map_err(|error| match error {
+        ErrMode::Backtrack(inner) | ErrMode::Cut(inner) => inner,
+        ErrMode::Incomplete(_) => Expected { what: what.to_owned(), at: text.len(), help: None },
+    })?;
+    let at = input.current_token_start();
+    if at < text.len() { Err(Expected { what: what.to_owned(), at, help: None }) } else { Ok(value) }
+}
+
+/// Reads one expression that is the whole text.
+///
+/// # Errors
+/// What was expected instead, and where.
+pub fn parse_expression(text: &str) -> Result<Expr, Expected> {
+    read_all(text, &Depth::default(), "an operator, or the end", sum)
+}

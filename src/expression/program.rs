@@ -1,0 +1,197 @@
+//! A straight-line program: the nodes that some expressions need, in an order in which they can be computed, to be run
+//! over any [`Arithmetic`].
+
+use super::graph::{Graph, Node, NodeId, Symbol};
+use crate::number::{Arithmetic, Function, Refusal};
+use dashu::rational::RBig;
+use std::collections::HashMap;
+
+/// What a program has to be given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Input {
+    /// The value of a symbol.
+    Plain(Symbol),
+    /// The sine of a symbol that is an angle.
+    Sine(Symbol),
+    /// The cosine of a symbol that is an angle.
+    Cosine(Symbol),
+    /// The value of a function that is treated as an unknown of its own (the node is the function's value).
+    Opaque(NodeId),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Operation {
+    Constant(u32),
+    Pi,
+    Input(u32),
+    Add(u32, u32),
+    Sub(u32, u32),
+    Mul(u32, u32),
+    Div(u32, u32),
+    Neg(u32),
+    Power(u32, i32),
+    Apply(Function, u32),
+}
+
+/// A straight-line program for some expressions.
+#[derive(Clone, Debug)]
+pub struct Program {
+    operations: Vec<Operation>,
+    origins: Vec<NodeId>,
+    constants: Vec<RBig>,
+    inputs: Vec<Input>,
+    outputs: Vec<u32>,
+}
+
+/// Where and why a program stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// Why.
+    pub refusal: Refusal,
+    /// The node whose value could not be computed.
+    pub node: NodeId,
+}
+
+impl Failure {
+    /// The divisor that was zero, where that is what went wrong.
+    pub fn divisor(&self, graph: &Graph) -> Option<NodeId> {
+        match (self.refusal, graph.node(self.node)) {
+            (Refusal::DivisionByZero | Refusal::DivisorNotSeparated, Node::Div(_, b)) => Some(b),
+            (Refusal::DivisionByZero | Refusal::DivisorNotSeparated, Node::Power(a, _)) => Some(a),
+            _ => None,
+        }
+    }
+}
+
+impl Program {
+    /// The program for `roots`. Sines and cosines of a bare angle become inputs; where `opaque`, so does every other
+    /// function.
+    pub fn new(graph: &Graph, roots: &[NodeId], is_angle: impl Fn(Symbol) -> bool, opaque: bool) -> Self {
+        let mut program = Program {
+            operations: Vec::new(),
+            origins: Vec::new(),
+            constants: Vec::new(),
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+        };
+        let input_of = |id: NodeId| -> Option<Input> {
+            match graph.node(id) {
+                Node::Symbol(symbol) => Some(Input::Plain(symbol)),
+                Node::Apply(function, argument) => match (function, graph.as_symbol(argument)) {
+                    (Function::Sin, Some(symbol)) if is_angle(symbol) => Some(Input::Sine(symbol)),
+                    (Function::Cos, Some(symbol)) if is_angle(symbol) => Some(Input::Cosine(symbol)),
+                    _ => opaque.then_some(Input::Opaque(id)),
+                },
+                _ => None,
+            }
+        };
+        let mut place: HashMap<NodeId, u32> = HashMap::new();
+        for id in needed(graph, roots, &input_of) {
+            let at = |operand: NodeId| place[&operand];
+            let operation = match (input_of(id), graph.node(id)) {
+                (Some(input), _) => {
+                    program.inputs.push(input);
+                    Operation::Input(program.inputs.len() as u32 - 1)
+                }
+                (None, node) => match node {
+                    Node::Constant(index) => {
+                        program.constants.push(graph.constant_at(index).clone());
+                        Operation::Constant(program.constants.len() as u32 - 1)
+                    }
+                    Node::Pi => Operation::Pi,
+                    Node::Add(a, b) => Operation::Add(at(a), at(b)),
+                    Node::Sub(a, b) => Operation::Sub(at(a), at(b)),
+                    Node::Mul(a, b) => Operation::Mul(at(a), at(b)),
+                    Node::Div(a, b) => Operation::Div(at(a), at(b)),
+                    Node::Neg(a) => Operation::Neg(at(a)),
+                    Node::Power(a, n) => Operation::Power(at(a), n),
+                    Node::Apply(function, a) => Operation::Apply(function, at(a)),
+                    Node::Symbol(symbol) => unreachable!("symbol {symbol:?} is an input"),
+                },
+            };
+            place.insert(id, program.operations.len() as u32);
+            program.operations.push(operation);
+            program.origins.push(id);
+        }
+        program.outputs = roots.iter().map(|root| place[root]).collect();
+        program
+    }
+
+    /// The number of operations, inputs and constants included.
+    pub fn len(&self) -> usize {
+        self.operations.len()
+    }
+
+    /// Whether there is nothing to compute.
+    pub fn is_empty(&self) -> bool {
+        self.operations.is_empty()
+    }
+
+    /// What has to be given, in this order.
+    pub fn inputs(&self) -> &[Input] {
+        &self.inputs
+    }
+
+    /// The program with its constants in the numbers of an arithmetic.
+    ///
+    /// # Errors
+    /// Where a constant has no image (a denominator that vanishes modulo the prime).
+    pub fn load<A: Arithmetic>(&self, arithmetic: A) -> Result<Loaded<'_, A>, Refusal> {
+        let constants = self.constants.iter().map(|c| arithmetic.rational(c)).collect::<Result<_, _>>()?;
+        Ok(Loaded { program: self, arithmetic, constants })
+    }
+}
+
+/// The nodes to compute, operands first; below an input nothing is needed.
+fn needed(graph: &Graph, roots: &[NodeId], input_of: &impl Fn(NodeId) -> Option<Input>) -> Vec<NodeId> {
+    let mut found = std::collections::BTreeSet::new();
+    let mut stack = roots.to_vec();
+    while let Some(id) = stack.pop() {
+        if found.insert(id) && input_of(id).is_none() {
+            stack.extend(graph.node(id).operands());
+        }
+    }
+    found.into_iter().collect()
+}
+
+/// A program over one arithmetic.
+#[derive(Clone, Debug)]
+pub struct Loaded<'p, A: Arithmetic> {
+    program: &'p Program,
+    arithmetic: A,
+    constants: Vec<A::Number>,
+}
+
+impl<A: Arithmetic> Loaded<'_, A> {
+    /// The arithmetic it runs over.
+    pub fn arithmetic(&self) -> &A {
+        &self.arithmetic
+    }
+
+    /// The values of the program's expressions; `inputs` are in the order of [`Program::inputs`]. `registers` is room
+    /// that is used again from call to call.
+    ///
+    /// # Errors
+    /// The first operation that was refused.
+    pub fn run(&self, inputs: &[A::Number], registers: &mut Vec<A::Number>) -> Result<Vec<A::Number>, Failure> {
+        let arithmetic = &self.arithmetic;
+        registers.clear();
+        for (operation, &node) in self.program.operations.iter().zip(&self.program.origins) {
+            let at = |index: u32| &registers[index as usize];
+            let value = match *operation {
+                Operation::Constant(index) => Ok(self.constants[index as usize].clone()),
+                Operation::Pi => arithmetic.pi(),
+                Operation::Input(index) => Ok(inputs[index as usize].clone()),
+                Operation::Add(a, b) => arithmetic.add(at(a), at(b)),
+                Operation::Sub(a, b) => arithmetic.sub(at(a), at(b)),
+                Operation::Mul(a, b) => arithmetic.mul(at(a), at(b)),
+                Operation::Div(a, b) => arithmetic.div(at(a), at(b)),
+                Operation::Neg(a) => arithmetic.neg(at(a)),
+                Operation::Power(a, n) => arithmetic.power(at(a), n),
+                Operation::Apply(function, a) => arithmetic.apply(function, at(a)),
+            };
+            registers.push(value.map_err(|refusal| Failure { refusal, node })?);
+        }
+        Ok(self.program.outputs.iter().map(|index| registers[*index as usize].clone()).collect())
+    }
+}

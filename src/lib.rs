@@ -1,0 +1,3 @@
+pub mod number;
+pub mod expression;
+pub mod system;

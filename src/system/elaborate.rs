@@ -1,0 +1,371 @@
+//! From syntax to meaning: expressions of the language as values in a system's graph.
+
+use super::determinant::{LARGEST, determinant};
+use super::error::{Problem, nearest};
+use super::model::{Assignment, Matrix, System, Value};
+use crate::expression::NodeId;
+use crate::expression::syntax::{Expr, ExprKind, Name, Span};
+use crate::number::Function;
+use dashu::rational::RBig;
+
+/// A graph with more nodes than this is no longer something a person wrote down.
+const LARGEST_GRAPH: usize = 4_000_000;
+/// The greatest number of entries of a matrix.
+const LARGEST_MATRIX: usize = 1 << 16;
+
+/// The functions of the language beside [`Function::ALL`].
+const OTHER_FUNCTIONS: [&str; 8] = ["tan", "cot", "sec", "csc", "L", "d", "det", "rank"];
+
+impl System {
+    /// The value of an expression.
+    pub(crate) fn elaborate(&mut self, expr: &Expr) -> Result<Value, Problem> {
+        if self.graph.len() > LARGEST_GRAPH {
+            let message = format!("this grows beyond {LARGEST_GRAPH} operations");
+            return Err(Problem::new(&expr.span, message, "here").help("use fewer or shorter Lie derivatives"));
+        }
+        match &expr.kind {
+            ExprKind::Number(value) => Ok(Value::Scalar(self.graph.rational(value.clone()))),
+            ExprKind::Name(name) => self.named(name, &expr.span),
+            ExprKind::Call(name, arguments) => self.call(name, arguments, &expr.span),
+            ExprKind::Sum(terms) => {
+                let mut total: Option<Value> = None;
+                for (negative, term) in terms {
+                    let mut value = self.elaborate(term)?;
+                    if *negative {
+                        value = self.map(value, &term.span, |system, id| system.graph.neg(id))?;
+                    }
+                    total = Some(match total {
+                        None => value,
+                        Some(sum) => self.entrywise(sum, value, &term.span)?,
+                    });
+                }
+                total.ok_or_else(|| Problem::new(&expr.span, "an empty sum", "here"))
+            }
+            ExprKind::Product(factors) => {
+                let mut total: Option<Value> = None;
+                for (divides, factor) in factors {
+                    let value = self.elaborate(factor)?;
+                    total = Some(match total {
+                        None => value,
+                        Some(product) => self.multiply(product, value, *divides, &factor.span)?,
+                    });
+                }
+                total.ok_or_else(|| Problem::new(&expr.span, "an empty product", "here"))
+            }
+            ExprKind::Power(base, exponent) => {
+                let value = self.scalar(base)?;
+                Ok(Value::Scalar(self.graph.power(value, *exponent)))
+            }
+            ExprKind::Matrix(rows) => self.blocks(rows, &expr.span),
+            ExprKind::At(inner, list) => {
+                let value = self.elaborate(inner)?;
+                let assignment = self.assignment(list)?;
+                Ok(self.substitute(value, &assignment))
+            }
+        }
+    }
+
+    /// The value of an expression that has to be a number.
+    pub(crate) fn scalar(&mut self, expr: &Expr) -> Result<NodeId, Problem> {
+        match self.elaborate(expr)? {
+            Value::Scalar(id) => Ok(id),
+            other => Err(Problem::new(&expr.span, format!("expected a number, found {}", other.describe()), "this")),
+        }
+    }
+
+    /// The value of an expression that has to be an exact rational number.
+    pub(crate) fn rational(&mut self, expr: &Expr) -> Result<RBig, Problem> {
+        let id = self.scalar(expr)?;
+        self.graph.constant_value(id).cloned().ok_or_else(|| {
+            Problem::new(&expr.span, "expected a rational number", "this is none").help("such as 2, 0.5 or 1/3")
+        })
+    }
+
+    /// The meaning of `name = value, ...`.
+    pub(crate) fn assignment(&mut self, list: &[(Name, Expr)]) -> Result<Assignment, Problem> {
+        let mut assignment = Assignment::new();
+        for (name, value) in list {
+            let Some(symbol) = self.find_symbol(&name.text) else {
+                return Err(self.unknown(&name.text, &name.span, "state or parameter"));
+            };
+            let value = self.scalar(value)?;
+            if assignment.insert(symbol, value).is_some() {
+                return Err(Problem::new(&name.span, format!("'{}' is given twice", name.text), "the second time"));
+            }
+        }
+        Ok(assignment)
+    }
+
+    /// A value with symbols replaced.
+    pub(crate) fn substitute(&mut self, value: Value, assignment: &Assignment) -> Value {
+        let graph = &mut self.graph;
+        let mut matrix = |m: Matrix| Matrix { entries: graph.substitute(&m.entries, assignment), ..m };
+        match value {
+            Value::Matrix(m) => Value::Matrix(matrix(m)),
+            Value::Rank(m) => Value::Rank(matrix(m)),
+            Value::Scalar(id) => Value::Scalar(graph.substitute(&[id], assignment)[0]),
+            Value::Pole { expression, factor } => {
+                let both = graph.substitute(&[expression, factor], assignment);
+                Value::Pole { expression: both[0], factor: both[1] }
+            }
+            Value::CodistributionRank => value,
+        }
+    }
+
+    fn named(&mut self, name: &str, span: &Span) -> Result<Value, Problem> {
+        if let Some(value) = self.definitions.get(name) {
+            return Ok(value.clone());
+        }
+        if let Some(symbol) = self.find_symbol(name) {
+            return Ok(Value::Scalar(self.graph.symbol(symbol)));
+        }
+        match name {
+            "pi" => Ok(Value::Scalar(self.graph.pi())),
+            "rank" => Ok(Value::CodistributionRank),
+            _ => Err(self.unknown(name, span, "name")),
+        }
+    }
+
+    /// The error for a name that nobody has declared.
+    pub(crate) fn unknown(&self, name: &str, span: &Span, what: &str) -> Problem {
+        let problem = Problem::new(span, format!("unknown {what} '{name}'"), "not declared above");
+        let symbols = self.symbols.keys().map(|symbol| self.symbol_name(*symbol));
+        let fields = self.fields.iter().chain(&self.imported_fields).map(|f| f.name.as_str());
+        let known = symbols.chain(self.definitions.keys().map(String::as_str)).chain(fields).chain(["pi", "rank"]);
+        match nearest(name, known) {
+            Some(near) => problem.help(format!("perhaps you meant '{near}'")),
+            None => problem,
+        }
+    }
+
+    fn call(&mut self, name: &str, arguments: &[Expr], span: &Span) -> Result<Value, Problem> {
+        let one = |system: &mut Self| -> Result<NodeId, Problem> {
+            match arguments {
+                [argument] => system.scalar(argument),
+                _ => Err(Problem::new(span, format!("'{name}' takes one argument"), format!("{} here", arguments.len()))),
+            }
+        };
+        if let Some(function) = Function::ALL.into_iter().find(|f| f.name() == name) {
+            let argument = one(self)?;
+            return Ok(Value::Scalar(self.graph.apply(function, argument)));
+        }
+        match name {
+            "tan" | "cot" | "sec" | "csc" => {
+                let argument = one(self)?;
+                let sine = self.graph.apply(Function::Sin, argument);
+                let cosine = self.graph.apply(Function::Cos, argument);
+                let unit = self.graph.integer(1);
+                let (top, bottom) = match name {
+                    "tan" => (sine, cosine),
+                    "cot" => (cosine, sine),
+                    "sec" => (unit, cosine),
+                    _ => (unit, sine),
+                };
+                Ok(Value::Scalar(self.graph.div(top, bottom)))
+            }
+            "L" => self.lie(arguments, span),
+            "d" => self.differential_row(arguments, span),
+            "det" | "rank" => match arguments {
+                [argument] => match self.elaborate(argument)? {
+                    Value::Matrix(matrix) if name == "rank" => Ok(Value::Rank(matrix)),
+                    Value::Matrix(matrix) => self.determinant(&matrix, &argument.span),
+                    other => {
+                        let message = format!("'{name}' takes a matrix, not {}", other.describe());
+                        Err(Problem::new(&argument.span, message, "this").help("write [row; row; ...]"))
+                    }
+                },
+                _ => Err(Problem::new(span, format!("'{name}' takes one matrix"), "here")),
+            },
+            "pole" => match arguments {
+                [expression, factor] => {
+                    let expression = self.scalar(expression)?;
+                    let factor = self.scalar(factor)?;
+                    Ok(Value::Pole { expression, factor })
+                }
+                _ => Err(Problem::new(span, "'pole' takes an expression and what vanishes at the pole", "here")),
+            },
+            _ => {
+                let known = Function::ALL.iter().map(|f| f.name()).chain(OTHER_FUNCTIONS).chain(["pole"]);
+                let problem = Problem::new(span, format!("unknown function '{name}'"), "here");
+                Err(match nearest(name, known) {
+                    Some(near) => problem.help(format!("perhaps you meant '{near}'")),
+                    None => problem.help("a product is written with '*'"),
+                })
+            }
+        }
+    }
+
+    /// `L(f, e)`, or `L(f, g, e)` for the Lie derivative along `f` of the one along `g`.
+    fn lie(&mut self, arguments: &[Expr], span: &Span) -> Result<Value, Problem> {
+        let [fields @ .., last] = arguments else {
+            return Err(Problem::new(span, "'L' takes a field and an expression", "here"));
+        };
+        if fields.is_empty() {
+            return Err(Problem::new(span, "'L' takes a field and an expression", "here").help("as in L(f, s1)"));
+        }
+        let mut value = self.elaborate(last)?;
+        for field in fields.iter().rev() {
+            let ExprKind::Name(name) = &field.kind else {
+                return Err(Problem::new(&field.span, "expected the name of a field", "this is none"));
+            };
+            if self.field_mut(name).is_none() {
+                return Err(self.unknown(name, &field.span, "field"));
+            }
+            value = self.map(value, &last.span, |system, id| {
+                let graph = &mut system.graph;
+                match system.fields.iter_mut().chain(&mut system.imported_fields).find(|f| f.name == *name) {
+                    Some(field) => field.derivation.apply(graph, id),
+                    None => id,
+                }
+            })?;
+            if self.graph.len() > LARGEST_GRAPH {
+                return Err(Problem::new(span, format!("this grows beyond {LARGEST_GRAPH} operations"), "here"));
+            }
+        }
+        Ok(value)
+    }
+
+    /// `d(e)`, a row of as many entries as there are states; or `d(e, x, y)`, only the entries of `x` and `y`.
+    fn differential_row(&mut self, arguments: &[Expr], span: &Span) -> Result<Value, Problem> {
+        let Some((first, names)) = arguments.split_first() else {
+            return Err(Problem::new(span, "'d' takes an expression", "here"));
+        };
+        let expression = self.scalar(first)?;
+        let mut states = Vec::new();
+        for name in names {
+            let id = self.scalar(name)?;
+            let Some(symbol) = self.graph.as_symbol(id) else {
+                return Err(Problem::new(&name.span, "expected the name of a state", "this is none"));
+            };
+            states.push(symbol);
+        }
+        if names.is_empty() {
+            states = self.states.clone();
+        }
+        if states.is_empty() {
+            return Err(Problem::new(span, "there is no state to differentiate by", "here").help("declare 'state x, ...'"));
+        }
+        let entries: Vec<NodeId> = states.into_iter().map(|state| self.partial(expression, state)).collect();
+        Ok(Value::Matrix(Matrix { rows: 1, columns: entries.len(), entries }))
+    }
+
+    fn determinant(&mut self, matrix: &Matrix, span: &Span) -> Result<Value, Problem> {
+        if matrix.rows != matrix.columns {
+            let message = format!("the determinant of a matrix of {} by {}", matrix.rows, matrix.columns);
+            return Err(Problem::new(span, message, "this is not square"));
+        }
+        if matrix.rows > LARGEST {
+            let message = format!("a determinant of {} rows; at most {LARGEST} are expanded", matrix.rows);
+            return Err(Problem::new(span, message, "this"));
+        }
+        Ok(Value::Scalar(determinant(&mut self.graph, matrix)))
+    }
+
+    /// A matrix from rows of blocks: numbers, and matrices that fit together.
+    fn blocks(&mut self, rows: &[Vec<Expr>], span: &Span) -> Result<Value, Problem> {
+        let mut entries = Vec::new();
+        let (mut height, mut width) = (0, None);
+        for row in rows {
+            let mut blocks = Vec::new();
+            for block in row {
+                let matrix = match self.elaborate(block)? {
+                    Value::Scalar(id) => Matrix { rows: 1, columns: 1, entries: vec![id] },
+                    Value::Matrix(matrix) => matrix,
+                    other => {
+                        let message = format!("{} cannot stand in a matrix", other.describe());
+                        return Err(Problem::new(&block.span, message, "this"));
+                    }
+                };
+                if blocks.first().is_some_and(|first: &Matrix| first.rows != matrix.rows) {
+                    let message = format!("a block of {} rows beside one of {}", matrix.rows, blocks[0].rows);
+                    return Err(Problem::new(&block.span, message, "this block"));
+                }
+                blocks.push(matrix);
+            }
+            let columns: usize = blocks.iter().map(|block| block.columns).sum();
+            let begin = row.first().map_or(span, |first| &first.span);
+            if *width.get_or_insert(columns) != columns {
+                let message = format!("a row of {columns} entries below one of {}", width.unwrap_or(0));
+                return Err(Problem::new(begin, message, "this row"));
+            }
+            for line in 0..blocks.first().map_or(0, |block| block.rows) {
+                for block in &blocks {
+                    entries.extend_from_slice(&block.entries[line * block.columns..(line + 1) * block.columns]);
+                }
+                height += 1;
+            }
+            if entries.len() > LARGEST_MATRIX {
+                return Err(Problem::new(span, format!("a matrix of more than {LARGEST_MATRIX} entries"), "here"));
+            }
+        }
+        Ok(Value::Matrix(Matrix { rows: height, columns: width.unwrap_or(0), entries }))
+    }
+
+    /// The same operation on every entry.
+    fn map(
+        &mut self,
+        value: Value,
+        span: &Span,
+        mut operation: impl FnMut(&mut Self, NodeId) -> NodeId,
+    ) -> Result<Value, Problem> {
+        match value {
+            Value::Scalar(id) => Ok(Value::Scalar(operation(self, id))),
+            Value::Matrix(m) => {
+                let entries = m.entries.iter().map(|id| operation(self, *id)).collect();
+                Ok(Value::Matrix(Matrix { entries, ..m }))
+            }
+            other => {
+                let message = format!("{} cannot be calculated with", other.describe());
+                Err(Problem::new(span, message, "it stands alone on one side of '='"))
+            }
+        }
+    }
+
+    fn entrywise(&mut self, a: Value, b: Value, span: &Span) -> Result<Value, Problem> {
+        match (a, b) {
+            (Value::Scalar(x), Value::Scalar(y)) => Ok(Value::Scalar(self.graph.add(x, y))),
+            (Value::Matrix(x), Value::Matrix(y)) if (x.rows, x.columns) == (y.rows, y.columns) => {
+                let pairs = x.entries.iter().zip(&y.entries);
+                let entries = pairs.map(|(x, y)| self.graph.add(*x, *y)).collect();
+                Ok(Value::Matrix(Matrix { entries, ..x }))
+            }
+            (x, y) => {
+                let message = format!("{} and {} cannot be added", x.describe(), y.describe());
+                Err(Problem::new(span, message, "this"))
+            }
+        }
+    }
+
+    fn multiply(&mut self, a: Value, b: Value, divides: bool, span: &Span) -> Result<Value, Problem> {
+        match (a, b, divides) {
+            (value, Value::Scalar(divisor), true) => {
+                self.map(value, span, |system, id| system.graph.div(id, divisor))
+            }
+            (value @ (Value::Scalar(_) | Value::Matrix(_)), Value::Scalar(factor), false) => {
+                self.map(value, span, |system, id| system.graph.mul(id, factor))
+            }
+            (Value::Scalar(factor), value @ Value::Matrix(_), false) => {
+                self.map(value, span, |system, id| system.graph.mul(factor, id))
+            }
+            (Value::Matrix(x), Value::Matrix(y), false) if x.columns == y.rows => {
+                let mut entries = Vec::new();
+                for row in 0..x.rows {
+                    for column in 0..y.columns {
+                        let mut sum = self.graph.integer(0);
+                        for k in 0..x.columns {
+                            let product = self.graph.mul(x.at(row, k), y.at(k, column));
+                            sum = self.graph.add(sum, product);
+                        }
+                        entries.push(sum);
+                    }
+                }
+                Ok(Value::Matrix(Matrix { rows: x.rows, columns: y.columns, entries }))
+            }
+            (x, y, divides) => {
+                let verb = if divides { "divided" } else { "multiplied" };
+                let message = format!("{} cannot be {verb} by {}", x.describe(), y.describe());
+                Err(Problem::new(span, message, "this"))
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! What can be wrong with a file, shown at its place.
+
+use miette::{Diagnostic, NamedSource, SourceSpan};
+
+/// A file that could not be used: what, where, and what to do.
+#[derive(Debug, Diagnostic, thiserror::Error)]
+#[error("{message}")]
+pub struct ReadError {
+    /// What is wrong.
+    pub message: String,
+    /// The text, with its name.
+    #[source_code]
+    pub source_code: NamedSource<String>,
+    /// The place.
+    #[label("{label}")]
+    pub span: SourceSpan,
+    /// What stands at the place.
+    pub label: String,
+    /// What to do about it.
+    #[help]
+    pub help: Option<String>,
+}
+
+impl ReadError {
+    /// The line and the column of the place, both counted from one.
+    pub fn line_and_column(&self) -> (usize, usize) {
+        let before = &self.source_code.inner().as_bytes()[..self.span.offset().min(self.source_code.inner().len())];
+        let line = before.iter().filter(|b| **b == b'\n').count() + 1;
+        let column = before.iter().rev().take_while(|b| **b != b'\n').count() + 1;
+        (line, column)
+    }
+}
+
+/// An error without its text: what the elaborator knows.
+#[derive(Debug)]
+pub(crate) struct Problem {
+    pub message: String,
+    pub span: std::ops::Range<usize>,
+    pub label: String,
+    pub help: Option<String>,
+}
+
+impl Problem {
+    pub fn new(span: &std::ops::Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Self {
+        Problem { message: message.into(), span: span.clone(), label: label.into(), help: None }
+    }
+
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// The error with the text that it points into. The span is kept within the text and on character boundaries.
+    pub fn locate(self, name: &str, text: &str) -> ReadError {
+        let floor = |mut at: usize| {
+            at = at.min(text.len());
+            while !text.is_char_boundary(at) {
+                at -= 1;
+            }
+            at
+        };
+        let (begin, end) = (floor(self.span.start), floor(self.span.end.max(self.span.start)));
+        ReadError {
+            message: self.message,
+            source_code: NamedSource::new(name, text.to_owned()),
+            span: SourceSpan::new(begin.into(), end - begin),
+            label: self.label,
+            help: self.help,
+        }
+    }
+}
+
+/// The known name nearest to one that is not known, for "perhaps you meant".
+pub(crate) fn nearest<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    known
+        .into_iter()
+        .map(|name| (strsim::damerau_levenshtein(wanted, name), name))
+        .filter(|(distance, _)| *distance <= 1 + wanted.chars().count() / 3)
+        .min()
+        .map(|(_, name)| name)
+}

@@ -1,0 +1,249 @@
+//! The grammar of a proof file, without the meaning of its names. The README documents it; it is a public interface.
+
+use crate::expression::Expected;
+use crate::expression::parse::{Depth, Read, Text, blank, equation, keyword, name, read_all, sign, stop, sum};
+use crate::expression::syntax::{Equation, Expr, Name, Span};
+use winnow::combinator::{alt, cut_err, opt, preceded, separated};
+use winnow::error::{ErrMode, ParserError};
+use winnow::prelude::*;
+use winnow::stream::Location;
+use winnow::token::{literal, take_till, take_while};
+
+/// One entry of a file.
+#[derive(Clone, Debug)]
+pub(crate) enum Item {
+    System { title: String, cite: Option<String> },
+    Use { alias: Name, path: String, span: Span },
+    State(Vec<Name>),
+    Param(Vec<(Name, Option<Expr>)>),
+    Angle(Vec<Name>),
+    Let(Name, Expr),
+    Field { name: Name, components: Vec<(Name, Expr)>, others_are_zero: bool },
+    Output(Vec<Expr>),
+    Sample { ranges: Vec<(Name, Expr, Expr)>, avoid: Vec<Expr> },
+    Claim(ClaimSyntax),
+}
+
+/// An equation and the conditions under which it is claimed.
+#[derive(Clone, Debug)]
+pub struct Statement {
+    /// What is said to be equal.
+    pub equation: Equation,
+    /// `where a = b, ...`
+    pub conditions: Vec<Equation>,
+    /// The whole, in the text.
+    pub span: Span,
+}
+
+/// The verdict that a file says it expects where that is not *proved*.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expectation {
+    Proved,
+    Refuted,
+    Undecided,
+}
+
+/// What a claim says.
+#[derive(Clone, Debug)]
+pub enum ClaimBody {
+    /// A statement with the verdict that is expected of it.
+    Claim { statement: Statement, expected: Expectation },
+    /// A printed statement that is to be refuted, and a corrected one that is to be proved.
+    Erratum { printed: Statement, corrected: Statement },
+}
+
+/// A claim or an erratum as it stands in the file.
+#[derive(Clone, Debug)]
+pub struct ClaimSyntax {
+    /// Its number or name: `4.48`, `rank.generic`.
+    pub id: String,
+    /// Where its id stands.
+    pub span: Span,
+    /// What it says.
+    pub body: ClaimBody,
+    /// A remark in quotation marks behind it.
+    pub remark: Option<String>,
+}
+
+/// A text in double quotation marks.
+fn quoted(input: &mut Text<'_>) -> Read<String> {
+    literal("\"").void().context("a text in double quotation marks").parse_next(input)?;
+    let text = take_till(0.., |c| c == '"').parse_next(input)?;
+    cut_err(literal("\"")).context("a closing quotation mark").parse_next(input)?;
+    blank(input)?;
+    Ok(text.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+fn names(input: &mut Text<'_>) -> Read<Vec<Name>> {
+    cut_err(separated(1.., name, sign(","))).context("a list of names").parse_next(input)
+}
+
+fn system(input: &mut Text<'_>) -> Read<Item> {
+    keyword("system").parse_next(input)?;
+    let title = cut_err(quoted).parse_next(input)?;
+    let cite = opt(preceded(keyword("cite"), cut_err(quoted))).parse_next(input)?;
+    Ok(Item::System { title, cite })
+}
+
+fn import(input: &mut Text<'_>) -> Read<Item> {
+    let begin = keyword("use").parse_next(input)?.start;
+    let alias = cut_err(name).context("a name for the other system").parse_next(input)?;
+    cut_err(sign("=")).context("'=' and a file name in quotation marks").parse_next(input)?;
+    let path = cut_err(quoted).parse_next(input)?;
+    Ok(Item::Use { alias, path, span: begin..input.current_token_start() })
+}
+
+fn params(input: &mut Text<'_>) -> Read<Item> {
+    let one = |input: &mut Text<'_>| -> Read<(Name, Option<Expr>)> {
+        Ok((name(input)?, opt(preceded(sign("="), cut_err(sum))).parse_next(input)?))
+    };
+    keyword("param").parse_next(input)?;
+    let list = cut_err(separated(1.., one, sign(","))).context("a list of parameters").parse_next(input)?;
+    Ok(Item::Param(list))
+}
+
+fn definition(input: &mut Text<'_>) -> Read<Item> {
+    keyword("let").parse_next(input)?;
+    let name = cut_err(name).context("the name to define").parse_next(input)?;
+    cut_err(sign("=")).context("'=' and an expression").parse_next(input)?;
+    Ok(Item::Let(name, cut_err(sum).parse_next(input)?))
+}
+
+fn field(input: &mut Text<'_>) -> Read<Item> {
+    keyword("field").parse_next(input)?;
+    let title = cut_err(name).context("the field's name").parse_next(input)?;
+    let component = |input: &mut Text<'_>| -> Read<(Name, Expr)> {
+        let name = name(input)?;
+        cut_err(sign("'")).context("' after the state, as in r1' = ...").parse_next(input)?;
+        cut_err(sign("=")).context("'=' and the rate of change").parse_next(input)?;
+        Ok((name, cut_err(sum).parse_next(input)?))
+    };
+    let mut components = Vec::new();
+    let mut others_are_zero = false;
+    while let Some((state, value)) = opt(component).parse_next(input)? {
+        if state.text == "others" {
+            match value.kind {
+                crate::expression::syntax::ExprKind::Number(ref zero) if zero.is_zero() => others_are_zero = true,
+                _ => return stop(value.span.start, "0: the components that are not named can only be zero", None),
+            }
+        } else {
+            components.push((state, value));
+        }
+    }
+    Ok(Item::Field { name: title, components, others_are_zero })
+}
+
+fn sample(input: &mut Text<'_>) -> Read<Item> {
+    keyword("sample").parse_next(input)?;
+    let range = |input: &mut Text<'_>| -> Read<(Name, Expr, Expr)> {
+        let name = name(input)?;
+        cut_err(keyword("in")).context("'in' and a range [low, high]").parse_next(input)?;
+        cut_err(sign("[")).context("'['").parse_next(input)?;
+        let low = cut_err(sum).parse_next(input)?;
+        cut_err(sign(",")).context("','").parse_next(input)?;
+        let high = cut_err(sum).parse_next(input)?;
+        cut_err(sign("]")).context("']'").parse_next(input)?;
+        opt(sign(",")).parse_next(input)?;
+        Ok((name, low, high))
+    };
+    let mut ranges = Vec::new();
+    while let Some(found) = opt(range).parse_next(input)? {
+        ranges.push(found);
+    }
+    let avoid = opt(preceded(keyword("avoid"), cut_err(separated(1.., sum, sign(","))))).parse_next(input)?;
+    Ok(Item::Sample { ranges, avoid: avoid.unwrap_or_default() })
+}
+
+/// The number or name of a claim.
+fn identifier(input: &mut Text<'_>) -> Read<Name> {
+    let (text, span) = take_while(1.., |c: char| c.is_alphanumeric() || matches!(c, '.' | '_' | '-'))
+        .with_span()
+        .context("the claim's number or name")
+        .parse_next(input)?;
+    let text = text.to_owned();
+    blank(input)?;
+    Ok(Name { text, span })
+}
+
+fn statement(input: &mut Text<'_>) -> Read<Statement> {
+    let begin = input.current_token_start();
+    let equation_ = cut_err(equation).parse_next(input)?;
+    let conditions: Option<Vec<Equation>> =
+        opt(preceded(keyword("where"), cut_err(separated(1.., equation, sign(","))))).parse_next(input)?;
+    let conditions = conditions.unwrap_or_default();
+    let end = conditions.last().unwrap_or(&equation_);
+    let end = end.within.as_ref().unwrap_or(&end.right).span.end;
+    Ok(Statement { equation: equation_, conditions, span: begin..end })
+}
+
+fn claim(input: &mut Text<'_>) -> Read<Item> {
+    keyword("claim").parse_next(input)?;
+    let id = cut_err(identifier).parse_next(input)?;
+    let expected = match opt(preceded(keyword("expect"), cut_err(name))).parse_next(input)? {
+        None => Expectation::Proved,
+        Some(word) => match word.text.as_str() {
+            "proved" => Expectation::Proved,
+            "refuted" => Expectation::Refuted,
+            "undecided" => Expectation::Undecided,
+            _ => return stop(word.span.start, "'proved', 'refuted' or 'undecided'", None),
+        },
+    };
+    cut_err(sign(":")).context("':' and what is claimed").parse_next(input)?;
+    let statement = statement(input)?;
+    let remark = opt(quoted).parse_next(input)?;
+    let body = ClaimBody::Claim { statement, expected };
+    Ok(Item::Claim(ClaimSyntax { id: id.text, span: id.span, body, remark }))
+}
+
+fn erratum(input: &mut Text<'_>) -> Read<Item> {
+    keyword("erratum").parse_next(input)?;
+    let id = cut_err(identifier).parse_next(input)?;
+    cut_err(sign(":")).context("':'").parse_next(input)?;
+    cut_err(keyword("printed")).context("'printed' and the statement as it is printed").parse_next(input)?;
+    let printed = statement(input)?;
+    cut_err(keyword("corrected")).context("'corrected' and the statement as it should be").parse_next(input)?;
+    let corrected = statement(input)?;
+    let remark = opt(quoted).parse_next(input)?;
+    let body = ClaimBody::Erratum { printed, corrected };
+    Ok(Item::Claim(ClaimSyntax { id: id.text, span: id.span, body, remark }))
+}
+
+const ENTRY: &str = "one of: system, use, state, param, angle, let, field, output, sample, claim, erratum";
+
+fn item(input: &mut Text<'_>) -> Read<Item> {
+    alt((
+        system,
+        import,
+        preceded(keyword("state"), names).map(Item::State),
+        params,
+        preceded(keyword("angle"), names).map(Item::Angle),
+        definition,
+        field,
+        preceded(keyword("output"), cut_err(separated(1.., sum, sign(",")))).map(Item::Output),
+        alt((sample, claim, erratum)),
+    ))
+    .parse_next(input)
+}
+
+/// Reads a whole file.
+pub(crate) fn parse_file(text: &str) -> Result<Vec<Item>, Expected> {
+    let all = |input: &mut Text<'_>| -> Read<Vec<Item>> {
+        let mut items = Vec::new();
+        while input.input.as_ref().len() > 0 {
+            match item.parse_next(input) {
+                Ok(found) => items.push(found),
+                Err(ErrMode::Cut(error)) => return Err(ErrMode::Cut(error)),
+                Err(_) => {
+                    let mut error = Expected::from_input(input);
+                    error.what = ENTRY.to_owned();
+                    if !items.is_empty() {
+                        error.help = Some("or an operator, if the expression above goes on here".to_owned());
+                    }
+                    return Err(ErrMode::Cut(error));
+                }
+            }
+        }
+        Ok(items)
+    };
+    read_all(text, &Depth::default(), ENTRY, all)
+}

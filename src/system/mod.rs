@@ -1,0 +1,18 @@
+//! Floor 2: a system, that is its states, parameters, vector fields, outputs and sample box, and how it is read from a
+//! proof file.
+//!
+//! [`System::read`] turns a file into a [`System`], or into a [`ReadError`] that points into the text. The claims of
+//! the file are carried along as syntax; what they mean is decided two floors up.
+//!
+//! This floor knows nothing of ranks, verdicts or palms.
+
+mod determinant;
+mod elaborate;
+mod error;
+mod grammar;
+mod model;
+mod read;
+
+pub use error::ReadError;
+pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement};
+pub use model::{Assignment, Field, Kind, Matrix, Range, SymbolInfo, System, Value};

@@ -1,0 +1,250 @@
+//! From a file to a system.
+
+use super::elaborate as _;
+use super::error::{Problem, ReadError};
+use super::grammar::{Item, parse_file};
+use super::model::{Field, Kind, Range, SymbolInfo, System, Value};
+use crate::expression::syntax::{Expr, Name, Span};
+use crate::expression::{Derivation, Graph, Symbol, parse_expression};
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+
+/// Imports of imports beyond this are refused; so a file that imports itself is told.
+const DEEPEST_IMPORT: usize = 8;
+
+/// Files longer than this are refused.
+const LONGEST_FILE: u64 = 16 << 20;
+
+impl System {
+    /// Reads a proof file.
+    ///
+    /// # Errors
+    /// What is wrong with the file, and where.
+    pub fn read(path: &Path) -> Result<System, ReadError> {
+        let name = path.display().to_string();
+        let text = load(path).map_err(|message| {
+            Problem::new(&(0..0), message, "").locate(&name, "")
+        })?;
+        Self::parse(&name, &text, path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Reads a system from a text; imports are looked for in `folder`.
+    ///
+    /// # Errors
+    /// What is wrong with the text, and where.
+    pub fn parse(name: &str, text: &str, folder: &Path) -> Result<System, ReadError> {
+        System::build(name, text, folder, Graph::default(), 0).map_err(|problem| problem.locate(name, text))
+    }
+
+    /// The value of an expression that is not in the file but asked of it from outside.
+    ///
+    /// # Errors
+    /// What is wrong with the expression, and where in it.
+    pub fn evaluate_text(&mut self, text: &str) -> Result<Value, ReadError> {
+        let expr = parse_expression(text).map_err(|e| expected(e).locate("expression", text))?;
+        self.elaborate(&expr).map_err(|problem| problem.locate("expression", text))
+    }
+
+    fn build(name: &str, text: &str, folder: &Path, graph: Graph, depth: usize) -> Result<System, Problem> {
+        let items = parse_file(text).map_err(expected)?;
+        let mut system = System {
+            title: String::new(),
+            cite: None,
+            name: name.to_owned(),
+            source: text.to_owned(),
+            graph,
+            states: Vec::new(),
+            fields: Vec::new(),
+            outputs: Vec::new(),
+            avoid: Vec::new(),
+            claims: Vec::new(),
+            symbols: BTreeMap::new(),
+            definitions: BTreeMap::new(),
+            imported_fields: Vec::new(),
+            partials: HashMap::new(),
+        };
+        for item in items {
+            system.enter(item, folder, depth)?;
+        }
+        if system.title.is_empty() {
+            return Err(Problem::new(&(0..0), "the file does not name a system", "here")
+                .help("begin with: system \"what it is\""));
+        }
+        Ok(system)
+    }
+
+    fn enter(&mut self, item: Item, folder: &Path, depth: usize) -> Result<(), Problem> {
+        match item {
+            Item::System { title, cite } => (self.title, self.cite) = (title, cite),
+            Item::Use { alias, path, span } => self.import(&alias, &folder.join(path), &span, depth)?,
+            Item::State(names) => {
+                for name in names {
+                    let symbol = self.declare(&name, Kind::State)?;
+                    self.states.push(symbol);
+                }
+            }
+            Item::Param(list) => {
+                for (name, value) in list {
+                    let default = value.map(|value| self.rational(&value)).transpose()?;
+                    let symbol = self.declare(&name, Kind::Parameter)?;
+                    if let Some(info) = self.symbols.get_mut(&symbol) {
+                        info.default = default;
+                    }
+                }
+            }
+            Item::Angle(names) => {
+                for name in names {
+                    let Some(symbol) = self.find_symbol(&name.text) else {
+                        return Err(self.unknown(&name.text, &name.span, "state or parameter"));
+                    };
+                    if let Some(info) = self.symbols.get_mut(&symbol) {
+                        info.is_angle = true;
+                    }
+                }
+            }
+            Item::Let(name, expr) => {
+                self.refuse_taken(&name)?;
+                let value = self.elaborate(&expr)?;
+                self.definitions.insert(name.text, value);
+            }
+            Item::Field { name, components, others_are_zero } => self.field(name, &components, others_are_zero)?,
+            Item::Output(list) => {
+                for expr in list {
+                    let value = self.scalar(&expr)?;
+                    self.outputs.push((self.source[expr.span.clone()].trim().to_owned(), value));
+                }
+            }
+            Item::Sample { ranges, avoid } => self.sample(&ranges, &avoid)?,
+            Item::Claim(claim) => {
+                if self.claims.iter().any(|other| other.id == claim.id) {
+                    let message = format!("there is a claim '{}' already", claim.id);
+                    return Err(Problem::new(&claim.span, message, "the second one"));
+                }
+                self.claims.push(claim);
+            }
+        }
+        Ok(())
+    }
+
+    fn refuse_taken(&self, name: &Name) -> Result<(), Problem> {
+        let declared = self.find_symbol(&name.text).and_then(|symbol| self.symbols.get(&symbol));
+        let taken = declared.is_some_and(|info| info.kind != Kind::Imported)
+            || self.definitions.contains_key(&name.text)
+            || ["pi", "rank"].contains(&name.text.as_str());
+        if taken {
+            return Err(Problem::new(&name.span, format!("'{}' has a meaning already", name.text), "declared again"));
+        }
+        if name.text.contains('.') {
+            let message = "a name with a dot belongs to an imported system";
+            return Err(Problem::new(&name.span, message, "choose one without"));
+        }
+        Ok(())
+    }
+
+    fn declare(&mut self, name: &Name, kind: Kind) -> Result<Symbol, Problem> {
+        self.refuse_taken(name)?;
+        let symbol = self.graph.intern(&name.text);
+        let is_angle = self.is_angle(symbol);
+        self.symbols.insert(symbol, SymbolInfo { kind, is_angle, default: None, range: None });
+        Ok(symbol)
+    }
+
+    fn field(&mut self, name: Name, components: &[(Name, Expr)], others_are_zero: bool) -> Result<(), Problem> {
+        if self.field_mut(&name.text).is_some() {
+            return Err(Problem::new(&name.span, format!("there is a field '{}' already", name.text), "the second one"));
+        }
+        let mut rates: Vec<(Symbol, _)> = Vec::new();
+        for (state, expr) in components {
+            let symbol = self.find_symbol(&state.text).filter(|symbol| self.states.contains(symbol));
+            let Some(symbol) = symbol else {
+                return Err(self.unknown(&state.text, &state.span, "state"));
+            };
+            if rates.iter().any(|(other, _)| *other == symbol) {
+                let message = format!("'{}' is given twice in the field '{}'", state.text, name.text);
+                return Err(Problem::new(&state.span, message, "the second time"));
+            }
+            rates.push((symbol, self.scalar(expr)?));
+        }
+        let missing = self.states.iter().find(|state| !rates.iter().any(|(symbol, _)| symbol == *state));
+        if let (Some(missing), false) = (missing, others_are_zero) {
+            let message = format!("the field '{}' does not say how '{}' moves", name.text, self.symbol_name(*missing));
+            return Err(Problem::new(&name.span, message, "this field")
+                .help("end it with: others' = 0, if the states that it does not name stand still"));
+        }
+        let derivation = Derivation::new(rates.iter().copied().collect());
+        self.fields.push(Field { name: name.text, components: rates, derivation });
+        Ok(())
+    }
+
+    fn sample(&mut self, ranges: &[(Name, Expr, Expr)], avoid: &[Expr]) -> Result<(), Problem> {
+        for (name, low, high) in ranges {
+            let Some(symbol) = self.find_symbol(&name.text) else {
+                return Err(self.unknown(&name.text, &name.span, "state or parameter"));
+            };
+            let range = Range { low: self.rational(low)?, high: self.rational(high)? };
+            if range.low > range.high {
+                let span = low.span.start..high.span.end;
+                return Err(Problem::new(&span, format!("the range of '{}' is empty", name.text), "low above high"));
+            }
+            if let Some(info) = self.symbols.get_mut(&symbol) {
+                info.range = Some(range);
+            }
+        }
+        for expr in avoid {
+            let value = self.scalar(expr)?;
+            self.avoid.push((self.source[expr.span.clone()].trim().to_owned(), value));
+        }
+        Ok(())
+    }
+
+    /// Reads another file into the same graph. Its symbols are those of the same name here; its fields and definitions
+    /// go under `alias.name`.
+    fn import(&mut self, alias: &Name, path: &Path, span: &Span, depth: usize) -> Result<(), Problem> {
+        if depth >= DEEPEST_IMPORT {
+            return Err(Problem::new(span, "imports within imports, more than eight deep", "does a file import itself?"));
+        }
+        let name = path.display().to_string();
+        let text = load(path).map_err(|message| Problem::new(span, message, "this file"))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let graph = std::mem::take(&mut self.graph);
+        let other = System::build(&name, &text, folder, graph, depth + 1).map_err(|problem| {
+            let inner = problem.locate(&name, &text);
+            let (line, column) = inner.line_and_column();
+            let problem = Problem::new(span, format!("{name}:{line}:{column}: {}", inner.message), "imported here");
+            match inner.help {
+                Some(help) => problem.help(help),
+                None => problem,
+            }
+        })?;
+        self.graph = other.graph;
+        for (symbol, info) in other.symbols {
+            let known = self.symbols.entry(symbol).or_insert(SymbolInfo { kind: Kind::Imported, ..info });
+            known.is_angle |= info.is_angle;
+        }
+        for field in other.fields.into_iter().chain(other.imported_fields) {
+            self.imported_fields.push(Field { name: format!("{}.{}", alias.text, field.name), ..field });
+        }
+        for (name, value) in other.definitions {
+            self.definitions.insert(format!("{}.{name}", alias.text), value);
+        }
+        Ok(())
+    }
+}
+
+/// The text of a file, or what is wrong with it in words.
+fn load(path: &Path) -> Result<String, String> {
+    let shown = path.display();
+    let length = std::fs::metadata(path).map_err(|e| format!("cannot read {shown}: {e}"))?.len();
+    if length > LONGEST_FILE {
+        return Err(format!("{shown} is longer than {} MiB", LONGEST_FILE >> 20));
+    }
+    let bytes = std::fs::read(path).map_err(|e| format!("cannot read {shown}: {e}"))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        format!("{shown} is not a text in UTF-8: byte {at} is 0x{:02x}", error.as_bytes()[at])
+    })
+}
+
+fn expected(error: crate::expression::Expected) -> Problem {
+    Problem { message: error.to_string(), span: error.at..error.at + 1, label: "here".to_owned(), help: error.help }
+}
