@@ -1,3 +1,4 @@
 pub mod number;
 pub mod expression;
 pub mod system;
+pub mod observability;

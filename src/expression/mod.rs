@@ -11,6 +11,7 @@ mod graph;
 mod print;
 mod program;
 pub mod syntax;
+mod zero_test;
 
 pub(crate) mod parse;
 
@@ -19,3 +20,4 @@ pub use derivative::Derivation;
 pub use graph::{Graph, Node, NodeId, Symbol};
 pub use parse::{Expected, parse_expression};
 pub use program::{Failure, Input, Loaded, Program};
+pub use zero_test::{ZeroTest, draw_residues, failure_bound, identically_zero, sizes};

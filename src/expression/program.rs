@@ -41,6 +41,7 @@ pub struct Program {
     constants: Vec<RBig>,
     inputs: Vec<Input>,
     outputs: Vec<u32>,
+    bare_angle: Option<Symbol>,
 }
 
 /// Where and why a program stopped.
@@ -73,6 +74,7 @@ impl Program {
             constants: Vec::new(),
             inputs: Vec::new(),
             outputs: Vec::new(),
+            bare_angle: None,
         };
         let input_of = |id: NodeId| -> Option<Input> {
             match graph.node(id) {
@@ -90,6 +92,11 @@ impl Program {
             let at = |operand: NodeId| place[&operand];
             let operation = match (input_of(id), graph.node(id)) {
                 (Some(input), _) => {
+                    if let Input::Plain(symbol) = input
+                        && is_angle(symbol)
+                    {
+                        program.bare_angle = Some(symbol);
+                    }
                     program.inputs.push(input);
                     Operation::Input(program.inputs.len() as u32 - 1)
                 }
@@ -130,6 +137,11 @@ impl Program {
     /// What has to be given, in this order.
     pub fn inputs(&self) -> &[Input] {
         &self.inputs
+    }
+
+    /// An angle that is met outside sines and cosines, and so has no exact value.
+    pub fn bare_angle(&self) -> Option<Symbol> {
+        self.bare_angle
     }
 
     /// The program with its constants in the numbers of an arithmetic.

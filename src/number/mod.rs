@@ -11,7 +11,9 @@ mod decimal;
 mod dual;
 mod enclosure;
 mod float;
+mod fraction;
 mod laurent;
+pub mod polynomial;
 mod rational;
 mod residue;
 
@@ -20,9 +22,10 @@ pub use dual::{Duals, Tower};
 pub use enclosure::{Enclosure, Enclosures};
 pub(crate) use enclosure::round_to_decimal;
 pub use float::Floats;
+pub use fraction::{Factors, Fraction, Fractions};
 pub use laurent::{Laurent, Series};
 pub use rational::{Rationals, display_rational, parse_decimal, rational_from_f64, rational_to_f64};
-pub use residue::PrimeField;
+pub use residue::{LOG2_PRIMES, PrimeField};
 
 use dashu::rational::RBig;
 
@@ -135,5 +138,40 @@ pub trait Arithmetic {
             }
         }
         if n < 0 { self.div(&one, &result) } else { Ok(result) }
+    }
+}
+
+impl<A: Arithmetic> Arithmetic for &A {
+    type Number = A::Number;
+
+    fn rational(&self, value: &RBig) -> Result<Self::Number, Refusal> {
+        (**self).rational(value)
+    }
+    fn pi(&self) -> Result<Self::Number, Refusal> {
+        (**self).pi()
+    }
+    fn add(&self, a: &Self::Number, b: &Self::Number) -> Result<Self::Number, Refusal> {
+        (**self).add(a, b)
+    }
+    fn sub(&self, a: &Self::Number, b: &Self::Number) -> Result<Self::Number, Refusal> {
+        (**self).sub(a, b)
+    }
+    fn mul(&self, a: &Self::Number, b: &Self::Number) -> Result<Self::Number, Refusal> {
+        (**self).mul(a, b)
+    }
+    fn div(&self, a: &Self::Number, b: &Self::Number) -> Result<Self::Number, Refusal> {
+        (**self).div(a, b)
+    }
+    fn neg(&self, a: &Self::Number) -> Result<Self::Number, Refusal> {
+        (**self).neg(a)
+    }
+    fn apply(&self, function: Function, a: &Self::Number) -> Result<Self::Number, Refusal> {
+        (**self).apply(function, a)
+    }
+    fn is_zero(&self, a: &Self::Number) -> Option<bool> {
+        (**self).is_zero(a)
+    }
+    fn power(&self, a: &Self::Number, n: i32) -> Result<Self::Number, Refusal> {
+        (**self).power(a, n)
     }
 }

@@ -1,6 +1,5 @@
 //! From a file to a system.
 
-use super::elaborate as _;
 use super::error::{Problem, ReadError};
 use super::grammar::{Item, parse_file};
 use super::model::{Field, Kind, Range, SymbolInfo, System, Value};

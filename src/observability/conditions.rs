@@ -1,0 +1,179 @@
+//! Conditions such as `omega1 = 0`, `sin(phi1) = 0` or the vanishing of a determinant, solved for one symbol each, so
+//! that states which meet them can be written down exactly.
+
+use crate::expression::syntax::Equation;
+use crate::expression::{Node, NodeId, Symbol, ZeroTest, expand_angles, identically_zero};
+use crate::number::Function;
+use crate::system::{Assignment, Kind, System, Value};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// One way to meet all conditions: values for some symbols in terms of the others.
+#[derive(Clone, Debug, Default)]
+pub struct Branch {
+    /// The solved symbols; no value mentions a solved symbol.
+    pub values: Assignment,
+    /// How each condition was met, in words.
+    pub steps: Vec<String>,
+}
+
+/// Why a condition could not be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unsolved {
+    /// It cannot be read.
+    #[error("{0}")]
+    Unreadable(String),
+    /// It cannot be met.
+    #[error("the condition '{0}' is never met")]
+    Never(String),
+    /// It cannot be solved for a symbol.
+    #[error("the condition '{0}' is not linear in any symbol; write it as name = expression")]
+    NotLinear(String),
+}
+
+/// Solves conditions one after the other. `sin(u) = 0` and `cos(u) = 0` have two branches each.
+///
+/// # Errors
+/// A condition that has no solution of the kinds that are known: `name = expression`, a sine or cosine that vanishes,
+/// or an equation that is linear in some symbol.
+pub fn solve_conditions(system: &mut System, conditions: &[Equation]) -> Result<Vec<Branch>, Unsolved> {
+    let mut branches = vec![Branch::default()];
+    for condition in conditions {
+        let text = format!("{} = {}", written(system, &condition.left), written(system, &condition.right));
+        let mut side = |expr| match system.elaborate(expr) {
+            Ok(Value::Scalar(id)) => Ok(id),
+            Ok(other) => Err(Unsolved::Unreadable(format!("the condition '{text}' equates {}", other.describe()))),
+            Err(problem) => Err(Unsolved::Unreadable(problem.message)),
+        };
+        let (left, right) = (side(&condition.left)?, side(&condition.right)?);
+        let mut next = Vec::new();
+        for branch in &branches {
+            let sides = system.graph.substitute(&[left, right], &branch.values);
+            for (symbol, value) in solutions(system, sides[0], sides[1], &text)? {
+                let Some(symbol) = symbol else {
+                    next.push(branch.clone()); // the condition holds already
+                    continue;
+                };
+                let single = Assignment::from([(symbol, value)]);
+                let mut extended = branch.clone();
+                for known in extended.values.values_mut() {
+                    *known = system.graph.substitute(&[*known], &single)[0];
+                }
+                extended.values.insert(symbol, value);
+                extended.steps.push(format!("{} = {}", system.symbol_name(symbol), system.graph.text(value)));
+                next.push(extended);
+            }
+        }
+        branches = next;
+    }
+    Ok(branches)
+}
+
+fn written(system: &System, expr: &crate::expression::syntax::Expr) -> String {
+    system.source.get(expr.span.clone()).unwrap_or("...").trim().to_owned()
+}
+
+type Solutions = Vec<(Option<Symbol>, NodeId)>;
+
+fn solutions(system: &mut System, left: NodeId, right: NodeId, text: &str) -> Result<Solutions, Unsolved> {
+    // a name on one side, not met on the other
+    for (name, value) in [(left, right), (right, left)] {
+        if let Some(symbol) = system.graph.as_symbol(name)
+            && !system.graph.symbols_of([value]).contains(&symbol)
+        {
+            return Ok(vec![(Some(symbol), value)]);
+        }
+    }
+    let difference = system.graph.sub(left, right);
+    if vanishes(system, difference) {
+        return Ok(vec![(None, difference)]);
+    }
+    if system.graph.symbols_of([difference]).is_empty() {
+        return Err(Unsolved::Never(text.to_owned()));
+    }
+    if let Some(found) = circular(system, difference) {
+        return Ok(found);
+    }
+    // states before parameters, in the order of the file, so that the answer does not depend on anything else
+    let mut candidates = system.states.clone();
+    candidates.extend(system.symbols().filter(|(_, info)| info.kind != Kind::State).map(|(symbol, _)| symbol));
+    let mentioned = system.graph.symbols_of([difference]);
+    for symbol in candidates {
+        if !system.is_angle(symbol)
+            && mentioned.contains(&symbol)
+            && let Some(value) = linear_solution(system, difference, symbol)
+        {
+            return Ok(vec![(Some(symbol), value)]);
+        }
+    }
+    Err(Unsolved::NotLinear(text.to_owned()))
+}
+
+/// `sin(u) = 0` and `cos(u) = 0` for an integer combination `u` of angles, solved for an angle whose factor in it is
+/// plus or minus one.
+fn circular(system: &mut System, difference: NodeId) -> Option<Solutions> {
+    let inner = match system.graph.node(difference) {
+        Node::Neg(inner) => inner,
+        _ => difference,
+    };
+    let Node::Apply(function, argument) = system.graph.node(inner) else { return None };
+    let pi = system.graph.pi();
+    let zero = system.graph.integer(0);
+    let roots = match function {
+        Function::Sin => [zero, pi],
+        Function::Cos => {
+            let two = system.graph.integer(2);
+            let quarter = system.graph.div(pi, two);
+            [quarter, system.graph.neg(quarter)]
+        }
+        _ => return None,
+    };
+    for symbol in system.graph.symbols_of([argument]) {
+        if !system.is_angle(symbol) {
+            continue;
+        }
+        let slope = system.partial(argument, symbol);
+        let sign = system.graph.constant_value(slope).cloned();
+        let Some(sign) = sign.filter(|s| s.is_one() || *s == dashu::rational::RBig::from(-1)) else { continue };
+        let rest = system.graph.substitute(&[argument], &Assignment::from([(symbol, zero)]))[0];
+        return Some(
+            roots
+                .iter()
+                .map(|root| {
+                    let moved = system.graph.sub(*root, rest);
+                    let value = if sign.is_one() { moved } else { system.graph.neg(moved) };
+                    (Some(symbol), value)
+                })
+                .collect(),
+        );
+    }
+    None
+}
+
+/// The root of an expression that is linear in a symbol, confirmed by putting it in.
+pub(crate) fn linear_solution(system: &mut System, expression: NodeId, symbol: Symbol) -> Option<NodeId> {
+    let slope = system.partial(expression, symbol);
+    if vanishes(system, slope) {
+        return None;
+    }
+    let zero = system.graph.integer(0);
+    let at_zero = Assignment::from([(symbol, zero)]);
+    // both at symbol = 0: a linear expression is its value there plus its slope there times the symbol
+    let both = system.graph.substitute(&[expression, slope], &at_zero);
+    if vanishes(system, both[1]) {
+        return None;
+    }
+    let quotient = system.graph.div(both[0], both[1]);
+    let root = system.graph.neg(quotient);
+    let value = system.graph.substitute(&[expression], &Assignment::from([(symbol, root)]))[0];
+    vanishes(system, value).then_some(root)
+}
+
+/// Whether an expression is identically zero, by exact arithmetic at random points.
+pub(crate) fn vanishes(system: &mut System, expression: NodeId) -> bool {
+    let is_angle: Vec<Symbol> = system.symbols().filter(|(_, info)| info.is_angle).map(|(s, _)| s).collect();
+    let is_angle = |symbol: Symbol| is_angle.contains(&symbol);
+    let expanded = expand_angles(&mut system.graph, &[expression], is_angle);
+    let mut rng = ChaCha8Rng::seed_from_u64(0x7a65_726f); // any fixed seed: the same file gives the same answer
+    matches!(identically_zero(&system.graph, &expanded, is_angle, &mut rng), ZeroTest::Zero { .. })
+}

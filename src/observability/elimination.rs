@@ -1,0 +1,127 @@
+//! Rank and kernel of a matrix by Gaussian elimination over exact numbers.
+
+use crate::number::{Arithmetic, Refusal};
+
+/// Brings a matrix, given by its rows, to reduced row echelon form and returns the pivot columns. Over an arithmetic
+/// that always knows whether a number is zero this is exact.
+///
+/// # Errors
+/// Where an operation is refused (numbers that grow too long).
+fn reduce<A: Arithmetic>(arithmetic: &A, rows: &mut [Vec<A::Number>], full: bool) -> Result<Vec<usize>, Refusal> {
+    let columns = rows.first().map_or(0, Vec::len);
+    let mut pivots = Vec::new();
+    for column in 0..columns {
+        let top = pivots.len();
+        let Some(found) = (top..rows.len()).find(|row| arithmetic.is_zero(&rows[*row][column]) == Some(false)) else {
+            continue;
+        };
+        rows.swap(top, found);
+        let pivot = rows[top][column].clone();
+        for entry in &mut rows[top][column..] {
+            *entry = arithmetic.div(entry, &pivot)?;
+        }
+        let (above, rest) = rows.split_at_mut(top);
+        let Some((pivot_row, below)) = rest.split_first_mut() else { break };
+        let others = if full { above } else { &mut [] };
+        for row in others.iter_mut().chain(below) {
+            if arithmetic.is_zero(&row[column]) == Some(true) {
+                continue;
+            }
+            let factor = row[column].clone();
+            for (entry, pivot_entry) in row[column..].iter_mut().zip(&pivot_row[column..]) {
+                *entry = arithmetic.sub(entry, &arithmetic.mul(&factor, pivot_entry)?)?;
+            }
+        }
+        pivots.push(column);
+        if pivots.len() == rows.len() {
+            break;
+        }
+    }
+    Ok(pivots)
+}
+
+/// The rank of a matrix given by its rows.
+///
+/// # Errors
+/// Where an operation is refused.
+pub fn rank<A: Arithmetic>(arithmetic: &A, mut rows: Vec<Vec<A::Number>>) -> Result<usize, Refusal> {
+    Ok(reduce(arithmetic, &mut rows, false)?.len())
+}
+
+/// A basis of the vectors that all rows annihilate, each with a one at a free column of its own.
+///
+/// # Errors
+/// Where an operation is refused.
+pub fn kernel<A: Arithmetic>(arithmetic: &A, mut rows: Vec<Vec<A::Number>>) -> Result<Vec<Vec<A::Number>>, Refusal> {
+    let columns = rows.first().map_or(0, Vec::len);
+    let pivots = reduce(arithmetic, &mut rows, true)?;
+    let (zero, one) = (
+        arithmetic.rational(&dashu::rational::RBig::ZERO)?,
+        arithmetic.rational(&dashu::rational::RBig::ONE)?,
+    );
+    let mut basis = Vec::new();
+    for free in (0..columns).filter(|column| !pivots.contains(column)) {
+        let mut vector = vec![zero.clone(); columns];
+        vector[free] = one.clone();
+        for (row, &pivot) in rows.iter().zip(&pivots) {
+            vector[pivot] = arithmetic.neg(&row[free])?;
+        }
+        basis.push(vector);
+    }
+    Ok(basis)
+}
+
+/// The indices of rows that raise the rank, greedily from the first.
+pub(crate) fn independent_rows<A: Arithmetic>(
+    arithmetic: &A,
+    rows: &[Vec<A::Number>],
+) -> Result<Vec<usize>, Refusal> {
+    let mut echelon: Vec<(usize, Vec<A::Number>)> = Vec::new(); // pivot column, row with a one there
+    let mut kept = Vec::new();
+    for (index, row) in rows.iter().enumerate() {
+        let mut rest = row.clone();
+        for (column, pivot_row) in &echelon {
+            let factor = rest[*column].clone();
+            if arithmetic.is_zero(&factor) != Some(true) {
+                for (entry, p) in rest.iter_mut().zip(pivot_row) {
+                    *entry = arithmetic.sub(entry, &arithmetic.mul(&factor, p)?)?;
+                }
+            }
+        }
+        if let Some(column) = rest.iter().position(|entry| arithmetic.is_zero(entry) == Some(false)) {
+            let pivot = rest[column].clone();
+            for entry in &mut rest {
+                *entry = arithmetic.div(entry, &pivot)?;
+            }
+            echelon.push((column, rest));
+            kept.push(index);
+        }
+    }
+    Ok(kept)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Rationals;
+    use dashu::rational::RBig;
+
+    fn matrix(rows: &[&[i64]]) -> Vec<Vec<RBig>> {
+        rows.iter().map(|row| row.iter().map(|x| RBig::from(*x)).collect()).collect()
+    }
+
+    #[test]
+    fn the_magic_square_of_order_four_has_rank_three() {
+        // Duerer's square, Melencolia I (1514): its rank is three
+        let square = matrix(&[&[16, 3, 2, 13], &[5, 10, 11, 8], &[9, 6, 7, 12], &[4, 15, 14, 1]]);
+        let all = Rationals::default();
+        assert_eq!(rank(&all, square.clone()), Ok(3));
+        let basis = kernel(&all, square.clone()).unwrap();
+        assert_eq!(basis.len(), 1);
+        for row in &square {
+            let dot = row.iter().zip(&basis[0]).fold(RBig::ZERO, |s, (a, b)| s + a * b);
+            assert!(dot.is_zero());
+        }
+        assert_eq!(independent_rows(&all, &square), Ok(vec![0, 1, 2]));
+    }
+}

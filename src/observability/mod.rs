@@ -1,0 +1,28 @@
+//! Floor 3: is the state seen in the outputs? Lie derivatives along words of fields, the observability codistribution,
+//! its rank at sampled states, and how certain that rank is.
+//!
+//! [`Locus`] says where states are drawn from; [`Codistribution`] which differentials are taken;
+//! [`sweep`] decides the rank at every sampled state, once by singular values (*computed*) and once by exact
+//! arithmetic at that very state (*certified*).
+//!
+//! This floor knows nothing of claims or palms.
+
+mod codistribution;
+mod conditions;
+mod elimination;
+mod generic;
+mod locus;
+mod nested;
+mod singular;
+mod state;
+mod sweep;
+
+pub use codistribution::{Codistribution, Stop, Word};
+pub use conditions::{Branch, Unsolved, solve_conditions};
+pub use elimination::{kernel, rank};
+pub use generic::{GenericRank, generic_rank};
+pub use locus::{Locus, LocusError};
+pub use nested::{NestedError, differential_by_duals, lie_derivative_by_duals};
+pub use singular::{Spectrum, singular_values};
+pub use state::{Coordinate, State, float_inputs};
+pub use sweep::{Certainty, StateReport, SweepOptions, SweepReport, UnseenDirection, sweep};

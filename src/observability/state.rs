@@ -1,0 +1,100 @@
+//! A state in exact numbers.
+
+use crate::expression::{Input, Program, Symbol};
+use crate::number::{Arithmetic, Refusal, rational_to_f64};
+use crate::system::System;
+use dashu::rational::RBig;
+use std::collections::BTreeMap;
+
+/// The exact value of one symbol.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Coordinate {
+    /// A rational number.
+    Number(RBig),
+    /// An angle by its sine and cosine, both rational, their squares adding up to one.
+    Angle { sine: RBig, cosine: RBig },
+}
+
+impl Coordinate {
+    /// The angle whose half has the rational tangent `t`.
+    pub fn from_half_tangent(t: &RBig) -> Self {
+        let square = t * t;
+        let bottom = RBig::ONE + &square;
+        Coordinate::Angle { sine: (t + t) / &bottom, cosine: (RBig::ONE - square) / bottom }
+    }
+
+    /// The double nearest to the value; for an angle in radians, between minus pi and pi.
+    pub fn to_f64(&self) -> f64 {
+        match self {
+            Coordinate::Number(value) => rational_to_f64(value),
+            Coordinate::Angle { sine, cosine } => rational_to_f64(sine).atan2(rational_to_f64(cosine)),
+        }
+    }
+
+    /// The value in exact numbers, in words: `3/2`, or `sin = 4/5, cos = 3/5`.
+    pub fn exact_text(&self) -> String {
+        match self {
+            Coordinate::Number(value) => value.to_string(),
+            Coordinate::Angle { sine, cosine } => format!("sin = {sine}, cos = {cosine}"),
+        }
+    }
+}
+
+/// Exact values for some symbols.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// The values, by symbol.
+    pub values: BTreeMap<Symbol, Coordinate>,
+}
+
+impl State {
+    /// What a program needs of this state, in the numbers of an arithmetic.
+    ///
+    /// # Errors
+    /// Where a number has no image there, or where the state says nothing of a symbol (`Err(None)`).
+    pub fn inputs<A: Arithmetic>(
+        &self,
+        program: &Program,
+        arithmetic: &A,
+    ) -> Result<Vec<A::Number>, Option<Refusal>> {
+        let mut inputs = Vec::with_capacity(program.inputs().len());
+        for input in program.inputs() {
+            let value = match input {
+                Input::Plain(symbol) => match self.values.get(symbol) {
+                    Some(Coordinate::Number(value)) => value,
+                    _ => return Err(None),
+                },
+                Input::Sine(symbol) => match self.values.get(symbol) {
+                    Some(Coordinate::Angle { sine, .. }) => sine,
+                    _ => return Err(None),
+                },
+                Input::Cosine(symbol) => match self.values.get(symbol) {
+                    Some(Coordinate::Angle { cosine, .. }) => cosine,
+                    _ => return Err(None),
+                },
+                Input::Opaque(_) => return Err(None),
+            };
+            inputs.push(arithmetic.rational(value).map_err(Some)?);
+        }
+        Ok(inputs)
+    }
+
+    /// The state in words, with the names of a system.
+    pub fn describe(&self, system: &System) -> Vec<(String, String, f64)> {
+        self.values
+            .iter()
+            .map(|(symbol, value)| (system.symbol_name(*symbol).to_owned(), value.exact_text(), value.to_f64()))
+            .collect()
+    }
+}
+
+/// A program's inputs at a state given in doubles, angles in radians.
+pub fn float_inputs(program: &Program, value: impl Fn(Symbol) -> f64) -> Vec<f64> {
+    let input = |input: &Input| match input {
+        Input::Plain(symbol) => value(*symbol),
+        Input::Sine(symbol) => value(*symbol).sin(),
+        Input::Cosine(symbol) => value(*symbol).cos(),
+        Input::Opaque(_) => f64::NAN,
+    };
+    program.inputs().iter().map(input).collect()
+}
