@@ -2,3 +2,4 @@ pub mod number;
 pub mod expression;
 pub mod system;
 pub mod observability;
+pub mod claim;

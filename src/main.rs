@@ -1,1 +1,7 @@
-fn main(){}
+//! The program: see [`command`].
+
+mod command;
+
+fn main() -> std::process::ExitCode {
+    command::run()
+}

@@ -18,6 +18,7 @@ mod state;
 mod sweep;
 
 pub use codistribution::{Codistribution, Stop, Word};
+pub(crate) use conditions::linear_solution;
 pub use conditions::{Branch, Unsolved, solve_conditions};
 pub use elimination::{kernel, rank};
 pub use generic::{GenericRank, generic_rank};

@@ -1,7 +1,7 @@
 //! From a file to a system.
 
 use super::error::{Problem, ReadError};
-use super::grammar::{Item, parse_file};
+use super::grammar::{ClaimBody, ClaimSyntax, Item, parse_file};
 use super::model::{Field, Kind, Range, SymbolInfo, System, Value};
 use crate::expression::syntax::{Expr, Name, Span};
 use crate::expression::{Derivation, Graph, Symbol, parse_expression};
@@ -65,6 +65,9 @@ impl System {
         for item in items {
             system.enter(item, folder, depth)?;
         }
+        for claim in system.claims.clone() {
+            system.check(&claim)?;
+        }
         if system.title.is_empty() {
             return Err(Problem::new(&(0..0), "the file does not name a system", "here")
                 .help("begin with: system \"what it is\""));
@@ -120,6 +123,38 @@ impl System {
                     return Err(Problem::new(&claim.span, message, "the second one"));
                 }
                 self.claims.push(claim);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a claim can be understood: its names are known and its two sides can be equal at all.
+    fn check(&mut self, claim: &ClaimSyntax) -> Result<(), Problem> {
+        let statements = match &claim.body {
+            ClaimBody::Claim { statement, .. } => vec![statement],
+            ClaimBody::Erratum { printed, corrected } => vec![printed, corrected],
+        };
+        for statement in statements {
+            let (left, right) = (&statement.equation.left, &statement.equation.right);
+            let values = (self.elaborate(left)?, self.elaborate(right)?);
+            let comparable = match &values {
+                (Value::Matrix(l), Value::Matrix(r)) => (l.rows, l.columns) == (r.rows, r.columns),
+                (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
+                (left, right) => matches!(left, Value::Scalar(_)) || matches!(right, Value::Scalar(_)),
+            };
+            if !comparable {
+                let message = format!("{} cannot equal {}", values.0.describe(), values.1.describe());
+                return Err(Problem::new(&statement.span, message, "this claim"));
+            }
+            for condition in &statement.conditions {
+                self.scalar(&condition.left)?;
+                self.scalar(&condition.right)?;
+                if let Some(within) = &condition.within {
+                    return Err(Problem::new(&within.span, "a condition is met exactly", "without 'within'"));
+                }
+            }
+            if let Some(within) = &statement.equation.within {
+                self.scalar(within)?;
             }
         }
         Ok(())

@@ -1,0 +1,20 @@
+//! Floor 4: claims, the engines that decide them, and the verdicts.
+//!
+//! [`decide`] takes one claim of a file to an [`Outcome`]. A verdict never says more than its engine knows: *proved*
+//! rests on an exact argument with the probability of an error stated, *refuted* on a state in exact numbers at which
+//! the two sides differ, and everything else is *undecided*.
+//!
+//! This floor shares no formula with `proofs/`, and knows nothing of pages or plots.
+
+mod decide;
+mod identity;
+mod pole;
+mod ranks;
+mod value;
+mod verdict;
+mod witness;
+
+pub use decide::{decide, decide_all};
+pub use pole::{PoleOrder, pole_order};
+pub use value::{CertifiedValue, ValueError, certified_value};
+pub use verdict::{Outcome, Verdict, Witness};

@@ -1,0 +1,74 @@
+//! Claims about ranks: of a matrix, or of the observability codistribution, at almost all states of a set.
+
+use super::identity::RANDOM_PRIMES;
+use super::verdict::{Verdict, Witness};
+use crate::expression::{NodeId, Symbol};
+use crate::observability::{Branch, Codistribution, GenericRank, Stop, generic_rank};
+use crate::system::{Matrix, System};
+use rand::Rng;
+
+/// A nonzero minor, the certain half of a statement about a rank.
+const MINOR: &str = "a minor that is not zero modulo a prime";
+
+/// Words up to this length are always taken on a set of states, where the rank may rest before it grows.
+const ORDER_ON_A_SET: usize = 3;
+/// No longer words are taken.
+const LONGEST: usize = 12;
+
+/// Decides `rank(M) = claimed`.
+pub(crate) fn decide_rank(system: &mut System, matrix: &Matrix, claimed: usize, rng: &mut impl Rng) -> Verdict {
+    decide(system, &matrix.entries, matrix.columns, claimed, "", rng)
+}
+
+/// Decides `rank = claimed` for the codistribution, on the states of a branch.
+pub(crate) fn decide_codistribution(
+    system: &mut System,
+    branch: &Branch,
+    claimed: usize,
+    rng: &mut impl Rng,
+) -> Verdict {
+    if system.outputs.is_empty() || system.states.is_empty() {
+        return Verdict::undecided("there is no codistribution: the file declares no states or no outputs");
+    }
+    // a set of states, unlike a set of parameters, is left by the flow: there the rank may grow again
+    let on_states = branch.values.keys().any(|symbol| system.states.contains(symbol));
+    let at_least = if on_states { ORDER_ON_A_SET } else { 0 };
+    let words = match Codistribution::new(system, &branch.values, at_least, LONGEST) {
+        Ok(words) => words,
+        Err(why) => return Verdict::undecided(why),
+    };
+    let entries = system.graph.substitute(&words.entries(), &branch.values);
+    let scope = match words.stop {
+        Stop::Full => String::new(),
+        Stop::NoGrowth if !on_states => format!(", and words of {} fields do not raise it", words.order),
+        _ => format!(", for words of up to {} fields", words.order),
+    };
+    decide(system, &entries, system.states.len(), claimed, &scope, rng)
+}
+
+fn decide(
+    system: &mut System,
+    entries: &[NodeId],
+    columns: usize,
+    claimed: usize,
+    scope: &str,
+    rng: &mut impl Rng,
+) -> Verdict {
+    let angles: Vec<Symbol> = system.symbols().filter(|(_, info)| info.is_angle).map(|(s, _)| s).collect();
+    match generic_rank(&mut system.graph, entries, columns, |symbol| angles.contains(&symbol), rng) {
+        GenericRank::Rank { rank, log2_error, .. } if rank == claimed => {
+            let engine = if log2_error == f64::NEG_INFINITY { MINOR } else { RANDOM_PRIMES };
+            Verdict::Proved { engine: format!("{engine}{scope}"), log2_error }
+        }
+        GenericRank::Rank { rank, .. } => {
+            let witness =
+                Witness { state: Vec::new(), left: rank.to_string(), right: claimed.to_string(), entry: None };
+            Verdict::Refuted { engine: format!("{RANDOM_PRIMES}{scope}"), witness }
+        }
+        GenericRank::Pole(divisor) => {
+            let text = system.graph.text(divisor);
+            Verdict::undecided(format!("every state there is a pole: {text} = 0 is divided by"))
+        }
+        GenericRank::Unknown(why) => Verdict::undecided(why),
+    }
+}

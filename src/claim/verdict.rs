@@ -1,0 +1,132 @@
+//! What a claim can come to.
+
+use crate::system::Expectation;
+
+/// A state in exact numbers at which a statement fails.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Witness {
+    /// Name, exact value, and the nearest double, of everything that the statement mentions.
+    pub state: Vec<(String, String, f64)>,
+    /// The value of the left side: exact where it is rational and short, else to many certified digits.
+    pub left: String,
+    /// The value of the right side.
+    pub right: String,
+    /// Which entry differs, where matrices were compared: row and column, counted from one.
+    pub entry: Option<(usize, usize)>,
+}
+
+/// What is known of a statement.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// There is an exact argument.
+    Proved {
+        /// What decided it.
+        engine: String,
+        /// A bound on the probability that the argument fails, as a power of two; minus infinity where it cannot.
+        log2_error: f64,
+    },
+    /// There is a counterexample.
+    Refuted {
+        /// What decided it.
+        engine: String,
+        /// The counterexample.
+        witness: Witness,
+    },
+    /// Neither; what was tried.
+    Undecided {
+        /// In words.
+        why: String,
+    },
+}
+
+impl Verdict {
+    /// `proved`, `refuted` or `undecided`.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Verdict::Proved { .. } => "proved",
+            Verdict::Refuted { .. } => "refuted",
+            Verdict::Undecided { .. } => "undecided",
+        }
+    }
+
+    pub(crate) fn undecided(why: impl Into<String>) -> Self {
+        Verdict::Undecided { why: why.into() }
+    }
+
+    /// Whether it is the verdict that was expected.
+    pub fn meets(&self, expected: Expectation) -> bool {
+        matches!(
+            (self, expected),
+            (Verdict::Proved { .. }, Expectation::Proved)
+                | (Verdict::Refuted { .. }, Expectation::Refuted)
+                | (Verdict::Undecided { .. }, Expectation::Undecided)
+        )
+    }
+
+    /// What is known of several statements that are claimed together.
+    pub(crate) fn all(verdicts: impl IntoIterator<Item = Verdict>) -> Verdict {
+        let (mut engine, mut error, mut undecided) = (None, 0.0f64, None);
+        for verdict in verdicts {
+            match verdict {
+                Verdict::Proved { engine: name, log2_error } => {
+                    error += log2_error.exp2();
+                    engine.get_or_insert(name);
+                }
+                Verdict::Refuted { .. } => return verdict,
+                Verdict::Undecided { .. } => {
+                    undecided.get_or_insert(verdict);
+                }
+            }
+        }
+        match (undecided, engine) {
+            (Some(verdict), _) => verdict,
+            (None, Some(engine)) => Verdict::Proved { engine, log2_error: error.log2() },
+            (None, None) => Verdict::undecided("nothing was claimed"),
+        }
+    }
+}
+
+/// A claim of a file and what it came to.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The file's name.
+    pub file: String,
+    /// The claim's number or name.
+    pub id: String,
+    /// The statement as it stands in the file; of an erratum, the corrected one.
+    pub statement: String,
+    /// The statement as it was printed, and what became of it; of an erratum only.
+    pub printed: Option<(String, Verdict)>,
+    /// The verdict on the claim, or on the corrected form.
+    pub verdict: Verdict,
+    /// What the file expects.
+    pub expected: Expectation,
+    /// Whether everything is as the file expects.
+    pub ok: bool,
+    /// The remark in the file.
+    pub remark: Option<String>,
+    /// How long it took.
+    pub seconds: f64,
+}
+
+impl Outcome {
+    /// `proved`, `refuted`, `undecided`; or `erratum` where the printed form is refuted and the corrected one proved.
+    pub fn word(&self) -> &'static str {
+        match &self.printed {
+            None => self.verdict.word(),
+            Some(_) if self.ok => "erratum",
+            Some((_, Verdict::Refuted { .. })) => self.verdict.word(),
+            Some((_, printed)) => printed.word(),
+        }
+    }
+
+    /// The word that the file expects.
+    pub fn expected_word(&self) -> &'static str {
+        match (&self.printed, self.expected) {
+            (Some(_), _) => "erratum",
+            (None, Expectation::Proved) => "proved",
+            (None, Expectation::Refuted) => "refuted",
+            (None, Expectation::Undecided) => "undecided",
+        }
+    }
+}

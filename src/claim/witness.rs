@@ -1,0 +1,133 @@
+//! States at which two sides differ, in numbers that a pocket calculator takes.
+
+use super::verdict::Witness;
+use crate::expression::{Graph, Input, NodeId, Program, Symbol};
+use crate::number::{Enclosures, Rationals, round_to_decimal};
+use crate::observability::{Coordinate, State};
+use crate::system::System;
+use dashu::base::BitTest;
+use dashu::rational::RBig;
+use rand::{Rng, RngExt};
+
+/// How many states are tried.
+const ATTEMPTS: usize = 300;
+/// The precision of enclosures where there is no exact arithmetic.
+const BITS: usize = 400;
+/// The digits to which irrational or long values are written.
+const DIGITS: usize = 20;
+
+/// What a search for a witness came to.
+pub(crate) enum Search {
+    Found(Witness),
+    /// The sides agree to so many digits at so many states.
+    Agrees { digits: usize, states: usize },
+}
+
+/// Looks for a state at which `left` and `right` certainly differ.
+pub(crate) fn search(system: &System, graph: &Graph, left: NodeId, right: NodeId, rng: &mut impl Rng) -> Search {
+    let angles = |symbol: Symbol| system.is_angle(symbol);
+    let exact_program = Program::new(graph, &[left, right], angles, false);
+    // an angle outside sines and cosines has no exact value: then angles are numbers like all others
+    let plain = exact_program.bare_angle().is_some();
+    let program = if plain { Program::new(graph, &[left, right], |_| false, false) } else { exact_program };
+    let (mut least, mut states) = (usize::MAX, 0);
+    for attempt in 0..ATTEMPTS {
+        let state = draw(system, &program, !plain, attempt, rng);
+        if let Some((left, right)) = exact_values(&program, &state) {
+            if left != right {
+                let shown = |value: &RBig| {
+                    let short = value.numerator().bit_len() + value.denominator().bit_len() < 100;
+                    if short { value.to_string() } else { round_to_decimal(value, DIGITS) }
+                };
+                let witness =
+                    Witness { state: state.describe(system), left: shown(&left), right: shown(&right), entry: None };
+                return Search::Found(witness);
+            }
+            (least, states) = (least.min(BITS), states + 1);
+            continue;
+        }
+        let Some((left, right)) = enclosed_values(&program, &state) else { continue };
+        if Enclosures::common(&left, &right).is_none() {
+            let shown = |value: &crate::number::Enclosure| {
+                value.decimal(DIGITS).unwrap_or_else(|| format!("{:e}", value.midpoint()))
+            };
+            let witness =
+                Witness { state: state.describe(system), left: shown(&left), right: shown(&right), entry: None };
+            return Search::Found(witness);
+        }
+        let digits = (1..=120).rev().find(|n| left.decimal(*n).is_some() && left.decimal(*n) == right.decimal(*n));
+        (least, states) = (least.min(digits.unwrap_or(0)), states + 1);
+        if states >= 20 {
+            break;
+        }
+    }
+    Search::Agrees { digits: if states == 0 { 0 } else { least }, states }
+}
+
+fn exact_values(program: &Program, state: &State) -> Option<(RBig, RBig)> {
+    let exact = Rationals { bits: 1 << 16 };
+    let inputs = state.inputs(program, &exact).ok()?;
+    let values = program.load(exact).ok()?.run(&inputs, &mut Vec::new()).ok()?;
+    Some((values[0].clone(), values[1].clone()))
+}
+
+fn enclosed_values(program: &Program, state: &State) -> Option<(crate::number::Enclosure, crate::number::Enclosure)> {
+    let arithmetic = Enclosures::new(BITS);
+    let inputs = state.inputs(program, &arithmetic).ok()?;
+    let values = program.load(arithmetic).ok()?.run(&inputs, &mut Vec::new()).ok()?;
+    Some((values[0].clone(), values[1].clone()))
+}
+
+/// A state of simple numbers, inside the sample box where the file has one.
+fn draw(system: &System, program: &Program, exact_angles: bool, attempt: usize, rng: &mut impl Rng) -> State {
+    let mut state = State::default();
+    for input in program.inputs() {
+        let symbol = match input {
+            Input::Plain(symbol) | Input::Sine(symbol) | Input::Cosine(symbol) => *symbol,
+            Input::Opaque(_) => continue,
+        };
+        if state.values.contains_key(&symbol) {
+            continue;
+        }
+        let angle = exact_angles && system.is_angle(symbol);
+        let range = system.symbol_info(symbol).and_then(|info| info.range.as_ref());
+        let (low, high) = match range {
+            Some(range) => (range.low.clone(), range.high.clone()),
+            None => (RBig::from(-3), RBig::from(3)),
+        };
+        let (low, high) = if angle {
+            let tangent = |bound: &RBig| (bound.to_f64().value() / 2.0).tan();
+            let (a, b) = (tangent(&low), tangent(&high));
+            if range.is_some() && a < b {
+                (RBig::try_from(a).unwrap_or(low), RBig::try_from(b).unwrap_or(high))
+            } else {
+                (RBig::from(-2), RBig::from(2))
+            }
+        } else {
+            (low, high)
+        };
+        let value = simple_between(&low, &high, attempt, rng);
+        let value = if angle { Coordinate::from_half_tangent(&value) } else { Coordinate::Number(value) };
+        state.values.insert(symbol, value);
+    }
+    state
+}
+
+/// A rational of small numerator and denominator within a range, not zero if that can be avoided; later attempts draw
+/// from finer grids.
+fn simple_between(low: &RBig, high: &RBig, attempt: usize, rng: &mut impl Rng) -> RBig {
+    let denominator = 1 + (attempt / 20) as i64;
+    for _ in 0..20 {
+        let bottom = RBig::from(rng.random_range(1..=denominator.min(12)));
+        let (first, last) = ((low * &bottom).ceil(), (high * &bottom).floor());
+        let (Ok(first), Ok(last)) = (i64::try_from(first), i64::try_from(last)) else { break };
+        if first > last {
+            continue;
+        }
+        let top = rng.random_range(first..=last.min(first.saturating_add(1000)));
+        if top != 0 {
+            return RBig::from(top) / bottom;
+        }
+    }
+    if low == high { low.clone() } else { RBig::simplest_in(low.clone(), high.clone()) }
+}

@@ -1,0 +1,144 @@
+//! `palmistry eval`: the value of an expression at a point.
+
+use super::output::{print_json, print_text};
+use super::{Status, Unusable};
+use clap::Args;
+use dashu::rational::RBig;
+use palmistry::expression::{NodeId, Symbol};
+use palmistry::{System, ValueError, certified_value, number::parse_decimal, system::Value};
+use serde_json::{Value as Json, json};
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+/// Evaluates an expression of the language at a point, to digits that are all certain.
+///
+/// Example: palmistry eval proofs/moll2002/same_rate.proof 'L(f, s1)' --at r1=1,omega0=1/2,s1=1,s2=2,phi1=.3
+#[derive(Args)]
+pub(crate) struct Eval {
+    /// The proof file whose names the expression uses.
+    file: PathBuf,
+    /// The expression, such as 'det(A)' or 'L(f, s1)'.
+    expression: String,
+    /// Values: name=value,... (1/2 and .5 alike; angles in radians). Parameters that are not named have the values of
+    /// the file.
+    #[arg(long, value_name = "NAME=VALUE,...", value_delimiter = ',')]
+    at: Vec<String>,
+    /// Significant decimal digits.
+    #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    digits: u16,
+    /// Print one JSON object with 'value' (a string), 'exact' where the value is rational, and 'at'.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Reads `name=value` pairs, for the symbols of a system.
+pub(crate) fn assignments(system: &System, pairs: &[String]) -> miette::Result<HashMap<Symbol, RBig>> {
+    let mut values = HashMap::new();
+    for pair in pairs.iter().filter(|pair| !pair.trim().is_empty()) {
+        let Some((name, text)) = pair.split_once('=') else {
+            return Err(Unusable::report(format!("'{pair}' is not of the form name=value"), "as in --at rho=1/2,g=0"));
+        };
+        let Some(symbol) = system.find_symbol(name.trim()) else {
+            let known: Vec<&str> = system.symbols().map(|(symbol, _)| system.symbol_name(symbol)).collect();
+            return Err(Unusable::report(
+                format!("'{}' is no state or parameter of {}", name.trim(), system.name),
+                format!("these are: {}", known.join(", ")),
+            ));
+        };
+        let Some(value) = parse_decimal(text) else {
+            return Err(Unusable::report(format!("'{text}' is not a number"), "such as 2, -.5, 1e-3 or 1/3"));
+        };
+        if values.insert(symbol, value).is_some() {
+            return Err(Unusable::report(format!("'{}' is given twice", name.trim()), "give it once"));
+        }
+    }
+    Ok(values)
+}
+
+impl Eval {
+    pub fn run(self) -> miette::Result<Status> {
+        let mut system = System::read(&self.file)?;
+        let given = assignments(&system, &self.at)?;
+        let value = system.evaluate_text(&self.expression)?;
+        let mut point: HashMap<Symbol, RBig> =
+            system.symbols().filter_map(|(symbol, info)| Some((symbol, info.default.clone()?))).collect();
+        point.extend(given.clone());
+        let digits = usize::from(self.digits);
+        let one = |id: NodeId| certified_value(&system.graph, id, &point, digits).map_err(explain);
+        let shown = match &value {
+            Value::Scalar(id) => {
+                let value = one(*id)?;
+                json!({ "value": value.decimal, "exact": value.exact.map(|q| q.to_string()), "bits": value.bits })
+            }
+            Value::Matrix(matrix) => {
+                let entries: Vec<String> =
+                    matrix.entries.iter().map(|id| one(*id).map(|v| v.decimal)).collect::<Result<_, _>>()?;
+                json!({ "value": entries.chunks(matrix.columns).collect::<Vec<_>>() })
+            }
+            Value::Rank(matrix) => json!({ "value": rank_at(&mut system, matrix.entries.clone(), matrix.columns, &point)?.to_string() }),
+            other => {
+                let message = format!("{} has no value at a point", other.describe());
+                return Err(Unusable::report(message, "ask 'palmistry rank', or claim it in the file"));
+            }
+        };
+        if self.json {
+            let mut object = shown;
+            object["expression"] = json!(self.expression);
+            object["digits"] = json!(digits);
+            let mut at: Vec<(String, String)> =
+                given.iter().map(|(s, v)| (system.symbol_name(*s).to_owned(), v.to_string())).collect();
+            at.sort();
+            object["at"] = at.into_iter().map(|(name, value)| (name, json!(value))).collect();
+            print_json(&object);
+        } else {
+            match &shown["value"] {
+                Json::String(text) => print_text(text),
+                Json::Array(rows) => {
+                    for row in rows {
+                        let row: Vec<&str> = row.as_array().into_iter().flatten().filter_map(Json::as_str).collect();
+                        print_text(&row.join("  "));
+                    }
+                }
+                other => print_text(&other.to_string()),
+            }
+        }
+        Ok(Status::AsExpected)
+    }
+}
+
+/// The certified rank of a matrix at a rational point.
+fn rank_at(
+    system: &mut System,
+    entries: Vec<NodeId>,
+    columns: usize,
+    point: &HashMap<Symbol, RBig>,
+) -> miette::Result<usize> {
+    use palmistry::number::Rationals;
+    let program = palmistry::expression::Program::new(&system.graph, &entries, |_| false, false);
+    let exact = Rationals::default();
+    let refuse = |why: String| Unusable::report(why, "a rank at a point is exact: give angles only where sines are rational");
+    let inputs: Vec<RBig> = program
+        .inputs()
+        .iter()
+        .map(|input| match input {
+            palmistry::expression::Input::Plain(symbol) => point
+                .get(symbol)
+                .cloned()
+                .ok_or_else(|| explain(ValueError::Missing(system.symbol_name(*symbol).to_owned()))),
+            _ => Err(refuse("an input that is no symbol".to_owned())),
+        })
+        .collect::<Result<_, _>>()?;
+    let loaded = program.load(exact).map_err(|e| refuse(e.to_string()))?;
+    let values = loaded.run(&inputs, &mut Vec::new()).map_err(|failure| refuse(failure.refusal.to_string()))?;
+    let rows = values.chunks(columns).map(<[RBig]>::to_vec).collect();
+    palmistry::observability::rank(&exact, rows).map_err(|e| refuse(e.to_string()))
+}
+
+fn explain(error: ValueError) -> miette::Report {
+    let help = match &error {
+        ValueError::Missing(name) => format!("give it one: --at {name}=..."),
+        ValueError::Pole(_) | ValueError::NearPole { .. } => "choose another point, or ask for the order: claim pole(e, factor) = n".to_owned(),
+        _ => String::new(),
+    };
+    Unusable::report(error.to_string(), help)
+}

@@ -1,0 +1,67 @@
+//! `palmistry rank`: is the state seen in the outputs?
+
+use super::eval::assignments;
+use super::output::{INTERRUPTED, print_json, print_text, progress};
+use super::{Status, Unusable};
+use clap::Args;
+use palmistry::report::{rank_json, rank_text};
+use palmistry::{RankQuestion, System, answer_rank};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Decides the rank of the observability codistribution at sampled states.
+///
+/// Words of Lie derivatives are added shortest first until the rank stops growing or reaches the dimension. At every
+/// state the rank is computed by singular values and certified by exact arithmetic at that very state. Where the file
+/// defines a matrix named 'rows', its rank is decided at the same states too.
+#[derive(Args)]
+pub(crate) struct Rank {
+    /// The proof file.
+    file: PathBuf,
+    /// How many states are drawn from the sample box.
+    #[arg(long, default_value_t = 1000, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    samples: u64,
+    /// Seed of the sampled states.
+    #[arg(long, default_value_t = 1, value_name = "S")]
+    seed: u64,
+    /// Take words of exactly up to K fields, whether or not the rank still grows.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=12))]
+    order: Option<u16>,
+    /// Hold these states and parameters fixed, as in omega0=0 or g=0, and sample the rest.
+    #[arg(long, value_name = "NAME=VALUE,...", value_delimiter = ',')]
+    at: Vec<String>,
+    /// Sample only states that meet this condition, as in 'sin(phi1) = 0' (may be repeated).
+    #[arg(long = "where", value_name = "CONDITION")]
+    conditions: Vec<String>,
+    /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Rank {
+    pub fn run(self) -> miette::Result<Status> {
+        let mut system = System::read(&self.file)?;
+        let fixed: BTreeMap<_, _> = assignments(&system, &self.at)?.into_iter().collect();
+        let bar = progress(self.samples, "sampling states");
+        let answer = answer_rank(
+            &mut system,
+            &RankQuestion {
+                samples: self.samples,
+                seed: self.seed,
+                order: self.order.map(usize::from),
+                fixed,
+                conditions: self.conditions,
+                interrupt: &INTERRUPTED,
+                progress: &|done| bar.set_position(done),
+            },
+        );
+        bar.finish_and_clear();
+        let answer = answer.map_err(|why| Unusable::report(why, ""))?;
+        if self.json {
+            print_json(&rank_json(&system, &answer));
+        } else {
+            print_text(&rank_text(&system, &answer));
+        }
+        Ok(if answer.interrupted() { Status::NotAsExpected } else { Status::AsExpected })
+    }
+}
