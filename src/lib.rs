@@ -1,5 +1,43 @@
+//! Palmistry checks mathematics about systems that are seen only through their outputs.
+//!
+//! From a proof file to a verdict, in the order in which it happens: [`System::read`] turns the file into a system, that is states, vector
+//! fields, outputs and claims over one shared graph of expressions ([`expression`], [`system`]), or into an error that points
+//! into the text. [`decide_all`] takes each claim to an [`Outcome`]: an identity is tested in exact arithmetic at
+//! random points of random prime fields ([`number`]), a rank by minors, a number by intervals ([`claim`]).
+//! [`answer_rank`] asks at sampled states whether the differentials of the outputs and of their Lie derivatives span
+//! the state space ([`observability`]). And [`report`] writes down what came of it all.
+//!
+//! ```
+//! use palmistry::{System, decide_all};
+//! let text = r#"
+//!     system "A pendulum whose angle is seen"
+//!     state phi, omega
+//!     param k = 2
+//!     angle phi
+//!     field f
+//!       phi'   = omega
+//!       omega' = -k*sin(phi)
+//!     output phi
+//!     claim 1: L(f, L(f, phi)) = -k*sin(phi)
+//!     claim 2: rank = 2
+//! "#;
+//! let system = System::parse("pendulum.proof", text, std::path::Path::new(""))?;
+//! let outcomes = decide_all(&system, 1, &false.into(), &|_| ());
+//! assert!(outcomes.iter().all(|outcome| outcome.ok));
+//! # Ok::<(), palmistry::ReadError>(())
+//! ```
+//!
+//! Each module is a floor and imports only from those above it in this list.
+
 pub mod number;
 pub mod expression;
 pub mod system;
 pub mod observability;
 pub mod claim;
+pub mod tradeoff;
+pub mod verification;
+pub mod report;
+
+pub use claim::{CertifiedValue, Outcome, ValueError, Verdict, Witness, certified_value, decide, decide_all};
+pub use observability::{RankAnswer, RankQuestion, answer_rank};
+pub use system::{ReadError, System};

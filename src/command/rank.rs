@@ -58,9 +58,9 @@ impl Rank {
         bar.finish_and_clear();
         let answer = answer.map_err(|why| Unusable::report(why, ""))?;
         if self.json {
-            print_json(&rank_json(&system, &answer));
+            print_json(&rank_json(&answer));
         } else {
-            print_text(&rank_text(&system, &answer));
+            print_text(&rank_text(&answer));
         }
         Ok(if answer.interrupted() { Status::NotAsExpected } else { Status::AsExpected })
     }

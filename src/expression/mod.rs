@@ -7,6 +7,7 @@
 
 mod angle;
 mod derivative;
+mod expansion;
 mod graph;
 mod print;
 mod program;
@@ -17,6 +18,7 @@ pub(crate) mod parse;
 
 pub use angle::expand_angles;
 pub use derivative::Derivation;
+pub use expansion::{Expansion, expand};
 pub use graph::{Graph, Node, NodeId, Symbol};
 pub use parse::{Expected, parse_expression};
 pub use program::{Failure, Input, Loaded, Program};

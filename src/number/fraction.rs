@@ -23,19 +23,24 @@ pub struct Fraction {
 }
 
 /// Fractions whose factors are elements of a ring.
-#[derive(Debug)]
 pub struct Fractions<R> {
     table: RefCell<Vec<R>>,
     products: RefCell<HashMap<Factors, R>>,
+    normal: Box<dyn Fn(R) -> R>,
 }
 
 impl<R: Ring> Default for Fractions<R> {
     fn default() -> Self {
-        Fractions { table: RefCell::default(), products: RefCell::default() }
+        Fractions::with_normal_form(|value| value)
     }
 }
 
 impl<R: Ring> Fractions<R> {
+    /// Fractions over a ring with relations: `normal` brings what was multiplied out to its normal form.
+    pub fn with_normal_form(normal: impl Fn(R) -> R + 'static) -> Self {
+        Fractions { table: RefCell::default(), products: RefCell::default(), normal: Box::new(normal) }
+    }
+
     /// An element of the ring as a fraction.
     pub fn element(&self, value: R) -> Fraction {
         Fraction { top: Factors::from([(self.place(value), 1)]), bottom: Factors::new() }
@@ -65,11 +70,11 @@ impl<R: Ring> Fractions<R> {
             let (mut square, mut rest) = (self.factor(*place), *power);
             while rest > 0 {
                 if rest & 1 == 1 {
-                    product = product.mul(&square).ok_or(Refusal::TooLarge)?;
+                    product = (self.normal)(product.mul(&square).ok_or(Refusal::TooLarge)?);
                 }
                 rest >>= 1;
                 if rest > 0 {
-                    square = square.mul(&square).ok_or(Refusal::TooLarge)?;
+                    square = (self.normal)(square.mul(&square).ok_or(Refusal::TooLarge)?);
                 }
             }
         }

@@ -39,13 +39,13 @@ pub enum Unsolved {
 pub fn solve_conditions(system: &mut System, conditions: &[Equation]) -> Result<Vec<Branch>, Unsolved> {
     let mut branches = vec![Branch::default()];
     for condition in conditions {
-        let text = format!("{} = {}", written(system, &condition.left), written(system, &condition.right));
         let mut side = |expr| match system.elaborate(expr) {
             Ok(Value::Scalar(id)) => Ok(id),
-            Ok(other) => Err(Unsolved::Unreadable(format!("the condition '{text}' equates {}", other.describe()))),
+            Ok(other) => Err(Unsolved::Unreadable(format!("a condition equates {}", other.describe()))),
             Err(problem) => Err(Unsolved::Unreadable(problem.message)),
         };
         let (left, right) = (side(&condition.left)?, side(&condition.right)?);
+        let text = format!("{} = {}", system.graph.text(left), system.graph.text(right));
         let mut next = Vec::new();
         for branch in &branches {
             let sides = system.graph.substitute(&[left, right], &branch.values);
@@ -67,10 +67,6 @@ pub fn solve_conditions(system: &mut System, conditions: &[Equation]) -> Result<
         branches = next;
     }
     Ok(branches)
-}
-
-fn written(system: &System, expr: &crate::expression::syntax::Expr) -> String {
-    system.source.get(expr.span.clone()).unwrap_or("...").trim().to_owned()
 }
 
 type Solutions = Vec<(Option<Symbol>, NodeId)>;
@@ -151,7 +147,7 @@ fn circular(system: &mut System, difference: NodeId) -> Option<Solutions> {
 }
 
 /// The root of an expression that is linear in a symbol, confirmed by putting it in.
-pub(crate) fn linear_solution(system: &mut System, expression: NodeId, symbol: Symbol) -> Option<NodeId> {
+pub fn linear_solution(system: &mut System, expression: NodeId, symbol: Symbol) -> Option<NodeId> {
     let slope = system.partial(expression, symbol);
     if vanishes(system, slope) {
         return None;

@@ -78,8 +78,9 @@ pub struct SweepReport {
     pub disagreements: u64,
     /// Poles that were met and left out, by the divisor that was zero.
     pub poles: BTreeMap<String, u64>,
-    /// The state of full computed rank with the largest ratio of singular values.
-    pub worst: Option<(State, Spectrum)>,
+    /// The state of full rank with the largest ratio of singular values: name, exact value and nearest double of each
+    /// coordinate.
+    pub worst: Option<(Vec<(String, String, f64)>, Spectrum)>,
     /// What is not seen where the rank is short.
     pub unseen: Vec<UnseenDirection>,
     /// The smallest gap on which a computed rank rests.
@@ -137,7 +138,7 @@ pub fn sweep(
         (options.progress)(done);
     }
     let interrupted = done < options.samples;
-    Ok(tally.finish(interrupted, begin.elapsed().as_secs_f64()))
+    Ok(tally.finish(system, interrupted, begin.elapsed().as_secs_f64()))
 }
 
 /// What deciding at one state came to.
@@ -284,7 +285,7 @@ impl Tally {
         entry.count += 1;
     }
 
-    fn finish(self, interrupted: bool, seconds: f64) -> SweepReport {
+    fn finish(self, system: &System, interrupted: bool, seconds: f64) -> SweepReport {
         SweepReport {
             samples: self.samples,
             rank_histogram: self.ranks,
@@ -292,7 +293,7 @@ impl Tally {
             certified: self.certified,
             disagreements: self.disagreements,
             poles: self.poles,
-            worst: self.worst,
+            worst: self.worst.map(|(state, spectrum)| (state.describe(system), spectrum)),
             unseen: self.unseen.into_values().collect(),
             smallest_gap: self.smallest_gap.unwrap_or(f64::INFINITY),
             interrupted,

@@ -1,0 +1,160 @@
+//! The whole question of a rank, from a system and some conditions to sweeps of every branch.
+
+use super::codistribution::{Codistribution, Stop};
+use super::conditions::solve_conditions;
+use super::locus::Locus;
+use super::sweep::{SweepOptions, SweepReport, sweep};
+use crate::expression::syntax::Equation;
+use crate::expression::parse::{Depth, equation, read_all};
+use crate::expression::{NodeId, Symbol};
+use crate::system::{System, Value};
+use dashu::rational::RBig;
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+
+/// What is asked.
+pub struct RankQuestion<'a> {
+    /// States drawn on each branch of the conditions.
+    pub samples: u64,
+    pub seed: u64,
+    /// Words of exactly up to so many fields; otherwise until the rank stops growing.
+    pub order: Option<usize>,
+    /// Symbols held fixed.
+    pub fixed: BTreeMap<Symbol, RBig>,
+    /// Conditions in the language, such as `sin(phi1) = 0`.
+    pub conditions: Vec<String>,
+    /// Set from outside to stop early.
+    pub interrupt: &'a AtomicBool,
+    /// Called with the number of states done.
+    pub progress: &'a (dyn Fn(u64) + Sync),
+}
+
+/// What was found on one branch of the conditions.
+pub struct BranchAnswer {
+    /// The conditions, solved, in words.
+    pub conditions: Vec<String>,
+    /// The words that were needed, as a paper writes them.
+    pub words: Vec<String>,
+    /// The length of the longest word taken, and why no longer ones were.
+    pub order: usize,
+    pub stop: Stop,
+    /// The rank at almost all states of the branch.
+    pub generic_rank: usize,
+    /// The rank of the full codistribution at the sampled states.
+    pub full: SweepReport,
+    /// The rank of the file's own choice of rows at the same states, where it defines a matrix `rows`.
+    pub rows: Option<SweepReport>,
+}
+
+/// What was found.
+pub struct RankAnswer {
+    /// The file and the title of the system.
+    pub file: String,
+    pub title: String,
+    pub outputs: usize,
+    pub seed: u64,
+    pub dimension: usize,
+    pub branches: Vec<BranchAnswer>,
+}
+
+impl RankAnswer {
+    /// Whether any sweep was stopped early.
+    pub fn interrupted(&self) -> bool {
+        self.branches.iter().any(|branch| branch.full.interrupted)
+    }
+}
+
+/// The name of the matrix that holds a paper's own choice of rows.
+pub const OWN_ROWS: &str = "rows";
+
+/// No longer words are taken unless they are asked for.
+const LONGEST: usize = 8;
+
+/// Reads a condition such as `sin(phi1) = 0`.
+///
+/// # Errors
+/// In words: what was expected, and where.
+pub fn parse_condition(text: &str) -> Result<Equation, String> {
+    read_all(text, &Depth::default(), "an operator, or the end", equation)
+        .map_err(|e| format!("in the condition '{text}', at column {}: {e}", e.at + 1))
+}
+
+/// Answers a question about the rank of a system's observability codistribution.
+///
+/// # Errors
+/// In words: no states or outputs, conditions that cannot be solved, a pole everywhere, an empty sample box.
+pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<RankAnswer, String> {
+    if system.states.is_empty() || system.outputs.is_empty() {
+        return Err(format!("{} declares no states or no outputs", system.name));
+    }
+    let mut equations = Vec::new();
+    for text in &question.conditions {
+        equations.push(parse_condition(text)?);
+    }
+    let mut branches = solve_conditions(system, &equations).map_err(|unsolved| unsolved.to_string())?;
+    for branch in &mut branches {
+        for symbol in question.fixed.keys() {
+            if branch.values.contains_key(symbol) {
+                let name = system.symbol_name(*symbol);
+                return Err(format!("'{name}' is fixed with --at and solved for in a condition; choose one"));
+            }
+        }
+    }
+    let own = match system.definition(OWN_ROWS) {
+        Some(Value::Matrix(matrix)) if matrix.columns == system.states.len() => Some(matrix.entries.clone()),
+        _ => None,
+    };
+    let mut answers = Vec::new();
+    for branch in branches {
+        // values that are held fixed are conditions too, but for angles, whose values are no rational half turns
+        let mut conditions = branch.values.clone();
+        for (symbol, value) in &question.fixed {
+            if !system.is_angle(*symbol) || value.is_zero() {
+                conditions.insert(*symbol, system.graph.rational(value.clone()));
+            }
+        }
+        for known in conditions.clone().keys() {
+            let value = conditions[known];
+            let value = system.graph.substitute(&[value], &conditions)[0];
+            conditions.insert(*known, value);
+        }
+        let (least, longest) = (question.order.unwrap_or(0), question.order.unwrap_or(LONGEST));
+        let codistribution = Codistribution::new(system, &conditions, least, longest)?;
+        let all = codistribution.entries();
+        let mut mentioned: Vec<NodeId> = all.clone();
+        mentioned.extend(own.iter().flatten());
+        let locus =
+            Locus::new(system, &branch, &question.fixed, &mentioned).map_err(|error| error.to_string())?;
+        let options = SweepOptions {
+            samples: question.samples,
+            seed: question.seed,
+            interrupt: question.interrupt,
+            progress: question.progress,
+        };
+        let full = codistribution.sweep(system, &locus, options).map_err(|error| error.to_string())?;
+        let rows = match &own {
+            Some(own) => {
+                let silent = SweepOptions { progress: &|_| (), ..options };
+                Some(sweep(system, &locus, own, own, silent).map_err(|error| error.to_string())?)
+            }
+            None => None,
+        };
+        answers.push(BranchAnswer {
+            conditions: locus.conditions.clone(),
+            words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
+            order: codistribution.order,
+            stop: codistribution.stop,
+            generic_rank: codistribution.generic_rank(),
+            full,
+            rows,
+        });
+    }
+    Ok(RankAnswer {
+        file: system.name.clone(),
+        title: system.title.clone(),
+        outputs: system.outputs.len(),
+        seed: question.seed,
+        dimension: system.states.len(),
+        branches: answers,
+    })
+}

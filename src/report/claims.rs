@@ -1,0 +1,135 @@
+//! Outcomes of claims, in three notations.
+
+use crate::claim::{Outcome, Verdict, Witness};
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use serde_json::{Value, json};
+
+/// A bound on a probability, as people write it.
+pub(crate) fn error_bound(log2_error: f64) -> String {
+    if log2_error == f64::NEG_INFINITY { "0".to_owned() } else { format!("2^{:.0}", log2_error.ceil()) }
+}
+
+fn witness_json(witness: &Witness) -> Value {
+    let state: serde_json::Map<String, Value> = witness
+        .state
+        .iter()
+        .map(|(name, exact, float)| (name.clone(), json!({ "exact": exact, "value": float })))
+        .collect();
+    json!({ "state": state, "left": witness.left, "right": witness.right, "entry": witness.entry })
+}
+
+fn verdict_json(verdict: &Verdict) -> Value {
+    match verdict {
+        Verdict::Proved { engine, log2_error } => {
+            json!({ "verdict": "proved", "engine": engine, "error_bound": error_bound(*log2_error) })
+        }
+        Verdict::Refuted { engine, witness } => {
+            json!({ "verdict": "refuted", "engine": engine, "witness": witness_json(witness) })
+        }
+        Verdict::Undecided { why } => json!({ "verdict": "undecided", "engine": null, "why": why }),
+    }
+}
+
+/// An outcome as an entry of `claims`.
+pub fn claim_json(outcome: &Outcome) -> Value {
+    let mut object = verdict_json(&outcome.verdict);
+    object["id"] = json!(outcome.id);
+    object["file"] = json!(outcome.file);
+    object["statement"] = json!(outcome.statement);
+    object["verdict"] = json!(outcome.word());
+    object["expected"] = json!(outcome.expected_word());
+    object["ok"] = json!(outcome.ok);
+    object["seconds"] = json!(outcome.seconds);
+    if let Some(remark) = &outcome.remark {
+        object["remark"] = json!(remark);
+    }
+    if let Some((statement, verdict)) = &outcome.printed {
+        let mut printed = verdict_json(verdict);
+        printed["statement"] = json!(statement);
+        if let Verdict::Refuted { witness, .. } = verdict {
+            object["witness"] = witness_json(witness);
+        }
+        object["printed"] = printed;
+        object["corrected"] = verdict_json(&outcome.verdict);
+    }
+    object
+}
+
+/// A witness as one line.
+pub(crate) fn witness_line(witness: &Witness) -> String {
+    let state: Vec<String> = witness
+        .state
+        .iter()
+        .map(|(name, exact, float)| {
+            if exact.contains("sin") { format!("{name} = {float:.6} ({exact})") } else { format!("{name} = {exact}") }
+        })
+        .collect();
+    let place = if state.is_empty() { String::new() } else { format!("at {}: ", state.join(", ")) };
+    let entry = witness.entry.map_or(String::new(), |(row, column)| format!("entry {row},{column}: "));
+    format!("{place}{entry}left = {}, right = {}", witness.left, witness.right)
+}
+
+/// An outcome as a line for the terminal, with a second one where there is something to explain.
+pub fn claim_line(outcome: &Outcome) -> String {
+    let mark = if outcome.ok { "ok  " } else { "FAIL" };
+    let mut line = format!("  {mark} {:<10} {}", outcome.word(), outcome.id);
+    let explain = |verdict: &Verdict| match verdict {
+        Verdict::Proved { log2_error, .. } => format!("error below {}", error_bound(*log2_error)),
+        Verdict::Refuted { witness, .. } => witness_line(witness),
+        Verdict::Undecided { why } => why.clone(),
+    };
+    match &outcome.printed {
+        None => match &outcome.verdict {
+            Verdict::Proved { .. } => line.push_str(&format!("  ({})", explain(&outcome.verdict))),
+            verdict => line.push_str(&format!("\n         {}", explain(verdict))),
+        },
+        Some((statement, verdict)) => {
+            line.push_str(&format!("\n         printed    {statement}\n                    {}: {}", verdict.word(), explain(verdict)));
+            let corrected = &outcome.verdict;
+            line.push_str(&format!(
+                "\n         corrected  {}\n                    {}: {}",
+                outcome.statement,
+                corrected.word(),
+                explain(corrected)
+            ));
+        }
+    }
+    if !outcome.ok {
+        line.push_str(&format!("\n         expected: {}", outcome.expected_word()));
+    }
+    line
+}
+
+/// Outcomes as JUnit XML: a suite a file, a case a claim.
+///
+/// # Errors
+/// Where the XML cannot be built.
+pub fn junit(outcomes: &[Outcome]) -> miette::Result<String> {
+    let mut report = Report::new("palmistry prove");
+    let mut suites: Vec<TestSuite> = Vec::new();
+    for outcome in outcomes {
+        let status = if outcome.ok {
+            TestCaseStatus::success()
+        } else {
+            let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+            status.set_message(format!("{} instead of {}", outcome.word(), outcome.expected_word()));
+            status.set_description(claim_line(outcome));
+            status
+        };
+        let mut case = TestCase::new(outcome.id.as_str(), status);
+        case.set_classname(outcome.file.as_str());
+        case.set_time(std::time::Duration::from_secs_f64(outcome.seconds));
+        match suites.last_mut() {
+            Some(suite) if suite.name.as_str() == outcome.file => {
+                suite.add_test_case(case);
+            }
+            _ => {
+                let mut suite = TestSuite::new(outcome.file.as_str());
+                suite.add_test_case(case);
+                suites.push(suite);
+            }
+        }
+    }
+    report.add_test_suites(suites);
+    report.to_string().map_err(|error| miette::miette!("the JUnit report could not be written: {error}"))
+}

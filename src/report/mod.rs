@@ -1,0 +1,14 @@
+//! Floor 7: what was found, as JSON, as text, as JUnit XML, and as a page with plots.
+//!
+//! Nothing is decided here.
+
+mod claims;
+mod page;
+mod plot;
+mod ranks;
+mod verification;
+
+pub use claims::{claim_json, claim_line, junit};
+pub use page::page;
+pub use ranks::{rank_json, rank_text};
+pub use verification::{printed_value_json, verification_json, verification_text};

@@ -1,0 +1,285 @@
+//! The page that the main job writes: one file, with its plots and nothing from elsewhere.
+
+use super::claims::{error_bound, witness_line};
+use super::plot;
+use super::verification::ranks_in_words;
+use crate::claim::{Outcome, Verdict};
+use crate::observability::RankAnswer;
+use crate::tradeoff::Rows;
+use crate::verification::{Appendix, RegimeResult, Verification};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("page.css");
+
+/// The page as HTML.
+pub fn page(found: &Verification) -> String {
+    let count = |word: &str| found.outcomes.iter().filter(|outcome| outcome.word() == word).count();
+    let failed = found.outcomes.iter().filter(|outcome| !outcome.ok).count();
+    let content = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "Palmistry: what holds in chapter 4 and appendix A.2" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    h1 { "What holds, and what does not" }
+                    p {
+                        "M. Moll, " em { "Shape Reconstruction Using Active Tactile Sensors" }
+                        " (2002), chapter 4 and appendix A.2, checked from first principles. "
+                        "Each verdict says what stands behind it: " b { "proved" } " is exact arithmetic with the "
+                        "probability of an error stated, " b { "refuted" } " a state in exact numbers at which the two "
+                        "sides differ, " b { "erratum" } " a printed form refuted and its corrected form proved."
+                    }
+                    ul.tally {
+                        li { b { (count("proved")) } " proved" }
+                        li { b { (count("erratum")) } " errata" }
+                        li { b { (count("undecided")) } " undecided" }
+                        li class=[(failed > 0).then_some("bad")] { b { (failed) } " not as expected" }
+                        li { b { (format!("{:.0} s", found.seconds)) } " in all" }
+                    }
+                    @if found.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
+                    nav {
+                        a href="#errata" { "Errata" }
+                        @for (i, result) in found.regimes.iter().enumerate() {
+                            a href=(format!("#regime{i}")) { (result.title) }
+                        }
+                        a href="#appendix" { "Appendix A.2" }
+                        a href="#derivatives" { "Lie derivatives" }
+                        a href="#claims" { "All claims" }
+                    }
+                }
+                (errata(&found.outcomes))
+                @for (i, result) in found.regimes.iter().enumerate() { (regime(i, result)) }
+                @if let Some(values) = &found.appendix { (appendix(values)) }
+                (derivatives(found))
+                (all_claims(&found.outcomes))
+            }
+        }
+    };
+    content.into_string()
+}
+
+fn errata(outcomes: &[Outcome]) -> Markup {
+    html! {
+        section #errata {
+            h2 { "Errata" }
+            p { "The printed form is refuted by a state that a pocket calculator can check; the corrected form is proved." }
+            @for outcome in outcomes.iter().filter(|outcome| outcome.printed.is_some()) {
+                article class=[(!outcome.ok).then_some("bad")] {
+                    h3 { "Equation " (outcome.id) }
+                    @if let Some((statement, verdict)) = &outcome.printed {
+                        p.printed { span.label { "printed" } code { (statement) } }
+                        p { span.label { (verdict.word()) } (explain(verdict)) }
+                    }
+                    p.corrected { span.label { "corrected" } code { (outcome.statement) } }
+                    p { span.label { (outcome.verdict.word()) } (explain(&outcome.verdict)) }
+                    @if let Some(remark) = &outcome.remark { p.remark { (remark) } }
+                }
+            }
+        }
+    }
+}
+
+fn explain(verdict: &Verdict) -> Markup {
+    html! {
+        @match verdict {
+            Verdict::Proved { engine, log2_error } => {
+                (engine) "; probability of an error below " (error_bound(*log2_error))
+            }
+            Verdict::Refuted { witness, .. } => { (witness_line(witness)) }
+            Verdict::Undecided { why } => { (why) }
+        }
+    }
+}
+
+fn unseen(answer: &RankAnswer, own: bool) -> Vec<String> {
+    let mut found = Vec::new();
+    for branch in &answer.branches {
+        let report = if own { branch.rows.as_ref() } else { Some(&branch.full) };
+        for direction in report.into_iter().flat_map(|report| &report.unseen) {
+            let text = direction.states.join(", ");
+            if !found.contains(&text) {
+                found.push(text);
+            }
+        }
+    }
+    found
+}
+
+fn regime(index: usize, result: &RegimeResult) -> Markup {
+    html! {
+        section #(format!("regime{index}")) {
+            h2 { (result.title) }
+            p { "Left out: " (result.regime.left_out) "." }
+            @if let Some(c) = &result.comparison {
+                p {
+                    (c.small_states) " states instead of " (c.large_states) ". That the general regime becomes this one is "
+                    "proved among the claims (" code { "reduce.*" } "); numerically the Lie derivatives' differentials agree to "
+                    (format!("{:.0e}", c.largest_difference.max(f64::EPSILON))) " relative. One state's matrix and singular values take "
+                    b { (format!("{:.1}", c.large_seconds / c.small_seconds)) } " times as long with all ten states ("
+                    (c.large_operations) " operations and a spectrum of " (c.large_states) " against "
+                    (c.small_operations) " and " (c.small_states) ")."
+                }
+            }
+            div.scroll { table {
+                thead { tr {
+                    th { "states" } th { "sampled" } th { "certified" } th { "rank, full codistribution" } th { "words needed" }
+                    th { "not seen" } th { "rank, thesis's own rows" } th { "not seen by these" } th { "worst condition" }
+                } }
+                tbody {
+                    @for (title, answer) in &result.ranks {
+                        tr {
+                            td { (title) }
+                            td.number { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
+                            td.number { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
+                            td { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
+                            td.words { @for branch in &answer.branches { div { (branch.words.join(", ")) } } }
+                            td { (unseen(answer, false).join("; ")) }
+                            td { b { (ranks_in_words(answer, true)) } }
+                            td { (unseen(answer, true).join("; ")) }
+                            td.number { (worst(answer)) }
+                        }
+                    }
+                }
+            } }
+            figure {
+                div.pair {
+                    @for (kind, map) in &result.maps {
+                        @let title = if *kind == Rows::Own { "the thesis's own rows" } else { "the full codistribution" };
+                        (PreEscaped(plot::map(map, title)))
+                    }
+                }
+                figcaption {
+                    "The smallest singular value (rows scaled to length one; computed, not certified) over two coordinates. "
+                    (result.regime.picture.caption)
+                }
+            }
+            figure {
+                div.grid { @for (title, slope) in &result.lines { (PreEscaped(plot::slope(slope, title))) } }
+                figcaption {
+                    "The singular values of the thesis's own rows on the way into a singularity; the smallest in red. "
+                    "Distances are in the coordinate that moves."
+                }
+            }
+        }
+    }
+}
+
+fn worst(answer: &RankAnswer) -> String {
+    let conditions = answer.branches.iter().filter_map(|b| b.full.worst.as_ref()).map(|(_, s)| s.condition());
+    match conditions.fold(None::<f64>, |a, c| Some(a.map_or(c, |a| a.max(c)))) {
+        Some(condition) => format!("{condition:.1e}"),
+        None => "-".to_owned(),
+    }
+}
+
+fn appendix(found: &Appendix) -> Markup {
+    html! {
+        section #appendix {
+            h2 { "The appendix's determinants" }
+            p {
+                "Multiplied out over its common denominator, as a computer-algebra system's " code { "simplify" }
+                " leaves it, the determinant has " b { (found.monomials) } " monomials: "
+                code { (found.front) " * (" (found.beginning) ") / (" (denominator(found)) ")" } "."
+            }
+            div.scroll { table {
+                thead { tr {
+                    th { "point" } th { "printed" } th { "certified to forty digits" } th { "digits that agree" } th { "error of print" }
+                    th { "errors of ten-digit sums" } th { "print is" }
+                } }
+                tbody {
+                    @for value in &found.values {
+                        tr {
+                            td.words { (value.point) }
+                            td.number { (value.printed) }
+                            td.number { (value.certified.decimal) }
+                            td.number { (value.digits_that_agree) }
+                            td.number { (format!("{:+.2e}", value.error)) }
+                            td.number {
+                                (format!("{:+.1e}", value.study.errors.first().copied().unwrap_or(0.0))) " to "
+                                (format!("{:+.1e}", value.study.errors.last().copied().unwrap_or(0.0)))
+                                ", rms " (format!("{:.1e}", value.study.deviation()))
+                            }
+                            td { @if value.study.contains(value.error) { "inside" } @else { "outside" } }
+                        }
+                    }
+                }
+            } }
+            figure {
+                div.grid {
+                    @for value in &found.values {
+                        (PreEscaped(plot::rounding(&value.study, value.error, &format!("printed {}", value.printed))))
+                    }
+                }
+                figcaption {
+                    "The determinant's monomials added up in ten-digit decimal arithmetic, in "
+                    (found.values.first().map_or(0, |v| v.study.errors.len()))
+                    " random orders: how far each sum is from the certified value. The red line is the number in print. The "
+                    "largest monomial is "
+                    @for (i, value) in found.values.iter().enumerate() {
+                        @if i > 0 { ", " } (format!("{:.0}", value.study.cancellation))
+                    }
+                    " times the sum: that is where the digits go."
+                }
+            }
+        }
+    }
+}
+
+fn denominator(found: &Appendix) -> String {
+    let factor = |(text, power): &(String, u32)| {
+        let text = if text.contains(' ') { format!("({text})") } else { text.clone() };
+        if *power == 1 { text } else { format!("{text}^{power}") }
+    };
+    found.denominator.iter().map(factor).collect::<Vec<_>>().join(" ")
+}
+
+fn derivatives(found: &Verification) -> Markup {
+    html! {
+        section #derivatives {
+            h2 { "Lie derivatives by two routes" }
+            p {
+                "The derivatives of the shared expression graph against num-dual's nested dual numbers, which share no rule of "
+                "differentiation; same-rate regime, " code { "L(f, L(f, ... s1))" } "."
+            }
+            div.pair {
+                table {
+                    thead { tr { th { "order" } th { "largest relative difference" } th { "states" } } }
+                    tbody { @for route in &found.routes {
+                        tr {
+                            td.number { (route.order) }
+                            td.number { (format!("{:.1e}", route.largest_difference)) }
+                            td.number { (route.states) }
+                        }
+                    } }
+                }
+                (PreEscaped(plot::growth(&found.growth, "operations of the graph; grey: order^3")))
+            }
+        }
+    }
+}
+
+fn all_claims(outcomes: &[Outcome]) -> Markup {
+    html! {
+        section #claims {
+            h2 { "All claims" }
+            div.scroll { table {
+                thead { tr { th { "id" } th { "verdict" } th { "statement" } th { "what stands behind it" } } }
+                tbody {
+                    @for outcome in outcomes {
+                        tr class=[(!outcome.ok).then_some("bad")] {
+                            td { (outcome.id) }
+                            td { (outcome.word()) }
+                            td.words { code { (outcome.statement) } @if let Some(remark) = &outcome.remark { p.remark { (remark) } } }
+                            td.words { (explain(&outcome.verdict)) }
+                        }
+                    }
+                }
+            } }
+        }
+    }
+}

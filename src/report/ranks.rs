@@ -1,0 +1,157 @@
+//! Answers about ranks, as JSON and as text.
+
+use crate::observability::{BranchAnswer, RankAnswer, Stop, SweepReport};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
+    histogram.iter().map(|(rank, count)| (rank.to_string(), json!(count))).collect::<serde_json::Map<_, _>>().into()
+}
+
+/// JSON has no infinity; a gap without bound is null.
+fn finite(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { Value::Null }
+}
+
+fn sweep_json(report: &SweepReport) -> Value {
+    let worst = report.worst.as_ref().map(|(state, spectrum)| {
+        let values: serde_json::Map<String, Value> = state
+            .iter()
+            .map(|(name, exact, float)| (name.clone(), json!({ "exact": exact, "value": float })))
+            .collect();
+        json!({
+            "state": values,
+            "singular_values": spectrum.values,
+            "condition": finite(spectrum.condition()),
+            "gap": finite(spectrum.gap),
+        })
+    });
+    json!({
+        "samples": report.samples,
+        "rank_histogram": histogram_json(&report.rank_histogram),
+        "certified": report.certified,
+        "computed_rank_histogram": histogram_json(&report.computed_histogram),
+        "computed_differs_from_certified": report.disagreements,
+        "smallest_gap": finite(report.smallest_gap),
+        "worst_conditioned": worst,
+        "unseen": report.unseen.iter().map(|direction| json!({
+            "states": direction.states,
+            "count": direction.count,
+            "example": direction.example,
+            "sample": direction.index,
+        })).collect::<Vec<_>>(),
+        "poles": report.poles,
+        "seconds": report.seconds,
+        "interrupted": report.interrupted,
+    })
+}
+
+/// Why the words end where they end.
+pub(crate) fn stop_text(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Full => "the rank has reached the dimension",
+        Stop::NoGrowth => "the rank stopped growing",
+        Stop::Order => "the longest words that were allowed",
+        Stop::TooMany => "there are too many longer words",
+    }
+}
+
+fn branch_json(branch: &BranchAnswer) -> Value {
+    let mut object = sweep_json(&branch.full);
+    object["conditions"] = json!(branch.conditions);
+    object["words"] = json!(branch.words);
+    object["order"] = json!(branch.order);
+    object["stopped_because"] = json!(stop_text(branch.stop));
+    object["generic_rank"] = json!(branch.generic_rank);
+    object["own_rows"] = branch.rows.as_ref().map_or(Value::Null, sweep_json);
+    object
+}
+
+/// An answer as one object: the fields of the first branch of the conditions, and all branches where there are more.
+pub fn rank_json(answer: &RankAnswer) -> Value {
+    let mut branches: Vec<Value> = answer.branches.iter().map(branch_json).collect();
+    let mut object = if branches.len() == 1 { branches.remove(0) } else { total_json(answer, branches) };
+    object["file"] = json!(answer.file);
+    object["dimension"] = json!(answer.dimension);
+    object["seed"] = json!(answer.seed);
+    object
+}
+
+/// Several branches: their sums, and each of them.
+fn total_json(answer: &RankAnswer, branches: Vec<Value>) -> Value {
+    let mut histogram = BTreeMap::new();
+    for branch in &answer.branches {
+        for (rank, count) in &branch.full.rank_histogram {
+            *histogram.entry(*rank).or_insert(0) += count;
+        }
+    }
+    let sum = |of: fn(&SweepReport) -> u64| answer.branches.iter().map(|branch| of(&branch.full)).sum::<u64>();
+    json!({
+        "samples": sum(|r| r.samples),
+        "rank_histogram": histogram_json(&histogram),
+        "certified": sum(|r| r.certified),
+        "seconds": answer.branches.iter().map(|branch| branch.full.seconds).sum::<f64>(),
+        "interrupted": answer.interrupted(),
+        "branches": branches,
+    })
+}
+
+fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
+    let _ = writeln!(out, "{title}");
+    if report.samples == 0 {
+        let _ = writeln!(out, "  no state could be decided");
+    }
+    for (rank, count) in report.rank_histogram.iter().rev() {
+        let _ = writeln!(out, "  rank {rank:>2} at {count} states");
+    }
+    let _ = writeln!(out, "  certified at {} of {} states", report.certified, report.samples);
+    if report.disagreements > 0 {
+        let _ = writeln!(
+            out,
+            "  at {} states the singular values alone suggest another rank: {:?}",
+            report.disagreements, report.computed_histogram
+        );
+    }
+    if report.smallest_gap.is_finite() {
+        let _ = writeln!(out, "  smallest gap on which a computed rank rests: {:.1e}", report.smallest_gap);
+    }
+    if let Some((state, spectrum)) = &report.worst {
+        let values: Vec<String> =
+            state.iter().map(|(name, _, float)| format!("{name} = {float:.6}")).collect();
+        let _ = writeln!(out, "  worst conditioned: {:.3e} at {}", spectrum.condition(), values.join(", "));
+    }
+    for direction in &report.unseen {
+        let _ = writeln!(
+            out,
+            "  not seen at {} states: a direction in {}; for one, {}",
+            direction.count,
+            direction.states.join(", "),
+            direction.example
+        );
+    }
+    for (pole, count) in &report.poles {
+        let _ = writeln!(out, "  {count} poles left out: {pole}");
+    }
+    if report.interrupted {
+        let _ = writeln!(out, "  interrupted: these are the states done until then");
+    }
+    let _ = writeln!(out, "  {:.2} s", report.seconds);
+}
+
+/// An answer as text.
+pub fn rank_text(answer: &RankAnswer) -> String {
+    let mut out = format!("{}: {} states, {} outputs\n", answer.title, answer.dimension, answer.outputs);
+    for branch in &answer.branches {
+        if !branch.conditions.is_empty() {
+            let _ = writeln!(out, "where {}", branch.conditions.join(", "));
+        }
+        let _ = writeln!(out, "words that were needed: {}", branch.words.join(", "));
+        let _ = writeln!(out, "words of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
+        sweep_text("the full codistribution", &branch.full, &mut out);
+        if let Some(rows) = &branch.rows {
+            sweep_text("the file's own choice of rows", rows, &mut out);
+        }
+    }
+    out.trim_end().to_owned()
+}

@@ -1,0 +1,172 @@
+//! The main job's findings as JSON and as lines for the terminal.
+
+use super::claims::{claim_json, claim_line};
+use super::ranks::rank_json;
+use crate::observability::RankAnswer;
+use crate::tradeoff::{Map, Rows, Slope};
+use crate::verification::{PrintedValue, RegimeResult, Verification};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+fn map_json(kind: Rows, map: &Map) -> Value {
+    json!({
+        "rows": if kind == Rows::Own { "own" } else { "full" },
+        "x": { "name": map.x.0, "low": map.x.1, "high": map.x.2, "cells": map.width },
+        "y": { "name": map.y.0, "low": map.y.1, "high": map.y.2, "cells": map.height },
+        "smallest_singular_value": map.smallest,
+    })
+}
+
+fn line_json(title: &str, slope: &Slope) -> Value {
+    json!({ "into": title, "distance": slope.distance, "singular_values": slope.values })
+}
+
+fn regime_json(result: &RegimeResult) -> Value {
+    json!({
+        "file": result.regime.file,
+        "title": result.title,
+        "left_out": result.regime.left_out,
+        "ranks": result.ranks.iter().map(|(title, answer)| {
+            let mut object = rank_json(answer);
+            object["set"] = json!(title);
+            object
+        }).collect::<Vec<_>>(),
+        "maps": result.maps.iter().map(|(kind, map)| map_json(*kind, map)).collect::<Vec<_>>(),
+        "lines": result.lines.iter().map(|(title, slope)| line_json(title, slope)).collect::<Vec<_>>(),
+        "smallest_model": result.comparison.as_ref().map(|c| json!({
+            "states": c.small_states,
+            "operations": c.small_operations,
+            "operations_of_the_ten_state_model": c.large_operations,
+            "largest_relative_difference": c.largest_difference,
+            "seconds_a_state": c.small_seconds,
+            "ten_state_seconds_a_state": c.large_seconds,
+            "seconds_ratio": c.large_seconds / c.small_seconds,
+        })),
+    })
+}
+
+/// A number in print beside the certified value.
+pub fn printed_value_json(value: &PrintedValue) -> Value {
+    json!({
+        "id": value.id,
+        "point": value.point,
+        "printed": value.printed,
+        "certified": value.certified.decimal,
+        "digits_that_agree": value.digits_that_agree,
+        "printed_error": value.error,
+        "rounding": {
+            "digits": value.study.digits,
+            "monomials": value.study.monomials,
+            "orders": value.study.errors.len(),
+            "least_error": value.study.errors.first(),
+            "greatest_error": value.study.errors.last(),
+            "root_mean_square_error": value.study.deviation(),
+            "largest_monomial_over_sum": value.study.cancellation,
+            "printed_error_is_inside": value.study.contains(value.error),
+        },
+    })
+}
+
+/// Everything as one object.
+pub fn verification_json(found: &Verification) -> Value {
+    json!({
+        "ok": found.ok(),
+        "interrupted": found.interrupted,
+        "seed": found.seed,
+        "claims": found.outcomes.iter().map(claim_json).collect::<Vec<_>>(),
+        "errata": found.outcomes.iter().filter(|o| o.word() == "erratum").map(|o| &o.id).collect::<Vec<_>>(),
+        "regimes": found.regimes.iter().map(regime_json).collect::<Vec<_>>(),
+        "appendix": found.appendix.as_ref().map(|a| json!({
+            "monomials": a.monomials,
+            "front": a.front,
+            "denominator": a.denominator,
+            "values": a.values.iter().map(printed_value_json).collect::<Vec<_>>(),
+        })),
+        "lie_derivatives": {
+            "routes": found.routes.iter().map(|r| json!({
+                "order": r.order,
+                "states": r.states,
+                "largest_relative_difference": r.largest_difference,
+            })).collect::<Vec<_>>(),
+            "growth": found.growth.iter().map(|g| json!({
+                "order": g.order, "operations": g.operations, "seconds": g.seconds,
+            })).collect::<Vec<_>>(),
+        },
+        "seconds": found.seconds,
+    })
+}
+
+/// `6 at 200 states; 5 at 3`, over all branches.
+pub(crate) fn ranks_in_words(answer: &RankAnswer, own: bool) -> String {
+    let mut total = std::collections::BTreeMap::new();
+    for branch in &answer.branches {
+        let report = if own { branch.rows.as_ref() } else { Some(&branch.full) };
+        for (rank, count) in report.into_iter().flat_map(|r| &r.rank_histogram) {
+            *total.entry(*rank).or_insert(0u64) += count;
+        }
+    }
+    match total.len() {
+        0 => "-".to_owned(),
+        1 => total.keys().map(usize::to_string).collect(),
+        _ => total.iter().rev().map(|(rank, count)| format!("{rank} at {count}")).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// Everything that a reader of the terminal wants to see: what does not hold, the errata, and a line for the rest.
+pub fn verification_text(found: &Verification) -> String {
+    let mut out = String::new();
+    for outcome in found.outcomes.iter().filter(|outcome| !outcome.ok || outcome.printed.is_some()) {
+        let _ = writeln!(out, "{}", claim_line(outcome));
+    }
+    for result in &found.regimes {
+        let _ = writeln!(out, "{}", result.title);
+        let _ = writeln!(out, "  {:<48} {:>16} {:>16}", "rank on", "full", "thesis's rows");
+        for (title, answer) in &result.ranks {
+            let (full, own) = (ranks_in_words(answer, false), ranks_in_words(answer, true));
+            let _ = writeln!(out, "  {title:<48} {full:>16} {own:>16}");
+        }
+        if let Some(c) = &result.comparison {
+            let _ = writeln!(
+                out,
+                "  {} states instead of {}: {:.1} times faster a state, entries equal to {:.0e}",
+                c.small_states,
+                c.large_states,
+                c.large_seconds / c.small_seconds,
+                c.largest_difference.max(f64::EPSILON)
+            );
+        }
+    }
+    if let Some(appendix) = &found.appendix {
+        let _ = writeln!(out, "Appendix A.2: the determinant has {} monomials when multiplied out", appendix.monomials);
+        for value in &appendix.values {
+            let place = if value.study.contains(value.error) { "inside" } else { "outside" };
+            let _ = writeln!(
+                out,
+                "  printed {:<12} true {}  {} digits agree; its error {:+.1e} lies {place} what ten digits do ({:.1e} to {:.1e})",
+                value.printed,
+                &value.certified.decimal,
+                value.digits_that_agree,
+                value.error,
+                value.study.errors.first().copied().unwrap_or(0.0),
+                value.study.errors.last().copied().unwrap_or(0.0),
+            );
+        }
+    }
+    let count = |word: &str| found.outcomes.iter().filter(|outcome| outcome.word() == word).count();
+    let errata: Vec<&str> =
+        found.outcomes.iter().filter(|o| o.word() == "erratum").map(|o| o.id.as_str()).collect();
+    let _ = writeln!(
+        out,
+        "{} claims: {} proved, {} errata ({}), {} not as expected",
+        found.outcomes.len(),
+        count("proved"),
+        errata.len(),
+        errata.join(", "),
+        found.outcomes.iter().filter(|outcome| !outcome.ok).count()
+    );
+    if found.interrupted {
+        let _ = writeln!(out, "interrupted: this is what was done until then");
+    }
+    let _ = write!(out, "{:.1} s", found.seconds);
+    out
+}

@@ -1,0 +1,140 @@
+//! Singular values over a plane of two coordinates, and along a line into a singularity.
+
+use crate::expression::{NodeId, Program, Symbol};
+use crate::number::Floats;
+use crate::observability::{float_inputs, linear_solution, singular_values};
+use crate::system::System;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Rows to look at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rows {
+    /// A paper's own choice.
+    Own,
+    /// The full codistribution.
+    Full,
+}
+
+/// The smallest singular value on a grid.
+#[derive(Clone, Debug)]
+pub struct Map {
+    pub x: (String, f64, f64),
+    pub y: (String, f64, f64),
+    pub width: usize,
+    pub height: usize,
+    /// By rows from the lowest `y`; `None` at a pole.
+    pub smallest: Vec<Option<f64>>,
+}
+
+/// All singular values along a line.
+#[derive(Clone, Debug)]
+pub struct Slope {
+    /// Distance from the singularity, in the coordinate that moves.
+    pub distance: Vec<f64>,
+    /// The singular values at each distance, in descending order; empty at a pole.
+    pub values: Vec<Vec<f64>>,
+}
+
+/// Where a line ends.
+#[derive(Clone, Copy, Debug)]
+pub enum Target<'a> {
+    /// At a value of the coordinate.
+    Value(f64),
+    /// Where an expression of the language vanishes, if it is linear in the coordinate.
+    Zero(&'a str),
+}
+
+/// Some rows of a system as a function of its symbols.
+pub struct Landscape<'s> {
+    system: &'s mut System,
+    program: Program,
+    values: HashMap<Symbol, f64>,
+    columns: usize,
+}
+
+impl<'s> Landscape<'s> {
+    /// The rows, at the parameters' own values and the given ones.
+    ///
+    /// # Errors
+    /// A name that is not known.
+    pub fn new(system: &'s mut System, rows: &[NodeId], at: &[(&str, f64)]) -> Result<Self, String> {
+        let mut values: HashMap<Symbol, f64> = system
+            .symbols()
+            .filter_map(|(symbol, info)| Some((symbol, info.default.as_ref()?.to_f64().value())))
+            .collect();
+        for (name, value) in at {
+            values.insert(known(system, name)?, *value);
+        }
+        // angles stay plain numbers here: a line into phi = 0 has to be exact in phi, not in its sine
+        let program = Program::new(&system.graph, rows, |_| false, false);
+        let columns = system.states.len();
+        Ok(Landscape { system, program, values, columns })
+    }
+
+    fn spectrum(&self, values: &HashMap<Symbol, f64>) -> Option<Vec<f64>> {
+        let inputs = float_inputs(&self.program, |symbol| values.get(&symbol).copied().unwrap_or(f64::NAN));
+        let entries = self.program.load(Floats).ok()?.run(&inputs, &mut Vec::new()).ok()?;
+        Some(singular_values(&entries, self.columns)?.values)
+    }
+
+    /// The smallest singular value over two coordinates.
+    ///
+    /// # Errors
+    /// A name that is not known.
+    pub fn map(&self, x: (&str, f64, f64), y: (&str, f64, f64), width: usize, height: usize) -> Result<Map, String> {
+        let (sx, sy) = (known(self.system, x.0)?, known(self.system, y.0)?);
+        let at = |(_, low, high): (&str, f64, f64), i: usize, n: usize| low + (high - low) * (i as f64 + 0.5) / n as f64;
+        let smallest = (0..width * height)
+            .into_par_iter()
+            .map(|cell| {
+                let mut values = self.values.clone();
+                values.insert(sx, at(x, cell % width, width));
+                values.insert(sy, at(y, cell / width, height));
+                self.spectrum(&values)?.last().copied()
+            })
+            .collect();
+        Ok(Map { x: (x.0.to_owned(), x.1, x.2), y: (y.0.to_owned(), y.1, y.2), width, height, smallest })
+    }
+
+    /// The singular values on a line along one coordinate, from a distance of one down to `least`.
+    ///
+    /// # Errors
+    /// A name that is not known, or an end that does not exist.
+    pub fn line(&mut self, moving: &str, target: Target<'_>, least: f64, points: usize) -> Result<Slope, String> {
+        let symbol = known(self.system, moving)?;
+        let end = match target {
+            Target::Value(value) => value,
+            Target::Zero(expression) => self.zero(expression, symbol)?,
+        };
+        let distance: Vec<f64> =
+            (0..points).map(|i| least.powf(i as f64 / (points.max(2) - 1) as f64)).collect();
+        let values = distance
+            .iter()
+            .map(|d| {
+                let mut values = self.values.clone();
+                values.insert(symbol, end + d);
+                self.spectrum(&values).unwrap_or_default()
+            })
+            .collect();
+        Ok(Slope { distance, values })
+    }
+
+    /// The value of a symbol at which an expression that is linear in it vanishes.
+    fn zero(&mut self, expression: &str, symbol: Symbol) -> Result<f64, String> {
+        let value = self.system.evaluate_text(expression).map_err(|error| error.to_string())?;
+        let crate::system::Value::Scalar(node) = value else {
+            return Err(format!("'{expression}' is not a number"));
+        };
+        let root = linear_solution(self.system, node, symbol)
+            .ok_or_else(|| format!("'{expression}' is not linear in {}", self.system.symbol_name(symbol)))?;
+        let program = Program::new(&self.system.graph, &[root], |_| false, false);
+        let inputs = float_inputs(&program, |s| self.values.get(&s).copied().unwrap_or(f64::NAN));
+        let run = program.load(Floats).map_err(|r| r.to_string())?.run(&inputs, &mut Vec::new());
+        run.map(|values| values[0]).map_err(|failure| failure.refusal.to_string())
+    }
+}
+
+fn known(system: &System, name: &str) -> Result<Symbol, String> {
+    system.find_symbol(name).ok_or_else(|| format!("'{name}' is no symbol of {}", system.name))
+}

@@ -1,0 +1,12 @@
+//! Floor 6: speed against accuracy, and the extremes. What rounding does to a printed formula, what a smaller model
+//! saves, how the singular values behave on the way into a singularity.
+
+mod growth;
+mod landscape;
+mod models;
+mod rounding;
+
+pub use growth::{Growth, growth_of_lie_derivatives};
+pub use landscape::{Landscape, Map, Rows, Slope, Target};
+pub use models::{ModelComparison, compare_models};
+pub use rounding::{RoundingStudy, study_rounding};

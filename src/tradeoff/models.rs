@@ -1,0 +1,135 @@
+//! What the smallest state that a scene needs saves against the full model.
+
+use crate::expression::{NodeId, Program, expand_angles};
+use crate::number::Floats;
+use crate::observability::{Locus, State, singular_values};
+use crate::system::System;
+use std::time::Instant;
+
+/// Two models of the same states, timed on the same work: the rows of a codistribution and their singular values.
+#[derive(Clone, Copy, Debug)]
+pub struct ModelComparison {
+    pub small_states: usize,
+    pub large_states: usize,
+    /// Operations of the two programs.
+    pub small_operations: usize,
+    pub large_operations: usize,
+    /// Seconds a state, the median over rounds in which the two take turns.
+    pub small_seconds: f64,
+    pub large_seconds: f64,
+    /// The largest relative difference between entries that both models have.
+    pub largest_difference: f64,
+}
+
+const ROUNDS: usize = 9;
+
+/// Compares the rows `small_rows` of one system with the rows `large_rows` of another at states drawn for the large
+/// one; the small one is given the values of the symbols that it shares. `shared` pairs the columns of the first rows
+/// (small column, large column), for the check that both compute the same.
+///
+/// # Errors
+/// In words, where a state cannot be drawn or evaluated.
+pub fn compare_models(
+    small: (&mut System, &[NodeId]),
+    large: (&mut System, &[NodeId], &Locus),
+    states: u64,
+    seed: u64,
+) -> Result<ModelComparison, String> {
+    let (small_system, small_rows) = small;
+    let (large_system, large_rows, locus) = large;
+    let small_program = compiled(small_system, small_rows);
+    let large_program = compiled(large_system, large_rows);
+    let drawn: Vec<State> =
+        (0..states).map(|index| locus.draw(seed, index)).collect::<Result<_, _>>().map_err(|e| e.to_string())?;
+    let renamed: Vec<State> = drawn.iter().map(|state| rename(state, large_system, small_system)).collect();
+    let inputs = |program: &Program, states: &[State]| -> Result<Vec<Vec<f64>>, String> {
+        states
+            .iter()
+            .map(|state| state.inputs(program, &Floats).map_err(|_| "a symbol without a value".to_owned()))
+            .collect()
+    };
+    let small_inputs = inputs(&small_program, &renamed)?;
+    let large_inputs = inputs(&large_program, &drawn)?;
+    let (ns, nl) = (small_system.states.len(), large_system.states.len());
+    let largest_difference = difference(
+        (&small_program, &small_inputs, small_system),
+        (&large_program, &large_inputs, large_system),
+    )?;
+    let (mut small_times, mut large_times) = (Vec::new(), Vec::new());
+    for _ in 0..ROUNDS {
+        small_times.push(time(&small_program, &small_inputs, ns)?);
+        large_times.push(time(&large_program, &large_inputs, nl)?);
+    }
+    Ok(ModelComparison {
+        small_states: ns,
+        large_states: nl,
+        small_operations: small_program.len(),
+        large_operations: large_program.len(),
+        small_seconds: median(&mut small_times),
+        large_seconds: median(&mut large_times),
+        largest_difference,
+    })
+}
+
+fn compiled(system: &mut System, rows: &[NodeId]) -> Program {
+    let angles: Vec<_> = system.symbols().filter(|(_, info)| info.is_angle).map(|(symbol, _)| symbol).collect();
+    let is_angle = |symbol| angles.contains(&symbol);
+    let rows = expand_angles(&mut system.graph, rows, is_angle);
+    Program::new(&system.graph, &rows, is_angle, false)
+}
+
+/// The values of one system's symbols under another's symbols of the same names.
+fn rename(state: &State, from: &System, to: &System) -> State {
+    let values = state.values.iter().filter_map(|(symbol, value)| {
+        Some((to.find_symbol(from.symbol_name(*symbol))?, value.clone()))
+    });
+    State { values: values.collect() }
+}
+
+fn time(program: &Program, inputs: &[Vec<f64>], columns: usize) -> Result<f64, String> {
+    let loaded = program.load(Floats).map_err(|refusal| refusal.to_string())?;
+    let mut registers = Vec::new();
+    let begin = Instant::now();
+    for input in inputs {
+        let values = loaded.run(input, &mut registers).map_err(|failure| failure.refusal.to_string())?;
+        std::hint::black_box(singular_values(&values, columns));
+    }
+    Ok(begin.elapsed().as_secs_f64() / inputs.len() as f64)
+}
+
+/// The largest relative difference between the entries of rows that have the same place counted from the end (the
+/// large model has more outputs in front), in columns of the same name.
+fn difference(small: (&Program, &[Vec<f64>], &System), large: (&Program, &[Vec<f64>], &System)) -> Result<f64, String> {
+    let run = |program: &Program, input: &Vec<f64>| {
+        let loaded = program.load(Floats).map_err(|refusal| refusal.to_string())?;
+        loaded.run(input, &mut Vec::new()).map_err(|failure| failure.refusal.to_string())
+    };
+    let columns: Vec<(usize, usize)> = small
+        .2
+        .states
+        .iter()
+        .enumerate()
+        .filter_map(|(i, symbol)| {
+            let name = small.2.symbol_name(*symbol);
+            Some((i, large.2.states.iter().position(|other| large.2.symbol_name(*other) == name)?))
+        })
+        .collect();
+    let (ns, nl) = (small.2.states.len(), large.2.states.len());
+    let mut worst = 0.0f64;
+    for (small_input, large_input) in small.1.iter().zip(large.1) {
+        let (a, b) = (run(small.0, small_input)?, run(large.0, large_input)?);
+        let lie_rows = a.len() / ns - small.2.outputs.len();
+        for (x, y) in a.chunks(ns).rev().zip(b.chunks(nl).rev()).take(lie_rows) {
+            let scale = x.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+            for (i, j) in &columns {
+                worst = worst.max((x[*i] - y[*j]).abs() / scale);
+            }
+        }
+    }
+    Ok(worst)
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}

@@ -1,0 +1,146 @@
+//! Numbers in print beside the values of their formulas: how many digits agree, and whether rounding in few digits
+//! explains the rest.
+
+use crate::claim::{CertifiedValue, certified_value};
+use crate::expression::syntax::{Expr, ExprKind};
+use crate::expression::{Expansion, NodeId, Symbol, expand};
+use crate::number::{parse_decimal, rational_to_f64};
+use crate::system::{ClaimBody, System, Value};
+use crate::tradeoff::{RoundingStudy, study_rounding};
+use dashu::rational::RBig;
+use std::collections::HashMap;
+
+/// One number in print.
+#[derive(Clone, Debug)]
+pub struct PrintedValue {
+    /// The erratum that it belongs to.
+    pub id: String,
+    /// The point, in the words of the file.
+    pub point: String,
+    /// As printed.
+    pub printed: String,
+    /// The value of the formula to forty certified digits.
+    pub certified: CertifiedValue,
+    /// Leading digits that agree.
+    pub digits_that_agree: u32,
+    /// Printed minus true.
+    pub error: f64,
+    /// What ten digits do to the expanded formula.
+    pub study: RoundingStudy,
+}
+
+/// The expanded determinant and the numbers in print.
+#[derive(Clone, Debug)]
+pub struct Appendix {
+    /// The number of monomials of the numerator.
+    pub monomials: usize,
+    /// The factor in front.
+    pub front: String,
+    /// The factors of the common denominator, with their powers.
+    pub denominator: Vec<(String, u32)>,
+    /// The first monomials.
+    pub beginning: String,
+    pub values: Vec<PrintedValue>,
+}
+
+/// The matrix of appendix A.2.
+const MATRIX: &str = "det(A)";
+/// The digits that a computer-algebra system carries by default.
+const PRINTED_DIGITS: usize = 10;
+/// The orders in which the monomials are added up.
+const ORDERS: u64 = 400;
+/// The digits that are certified.
+const CERTIFIED_DIGITS: usize = 40;
+
+/// Examines every erratum of the file whose printed form is the value of `det(A)` at a point.
+///
+/// # Errors
+/// In words, where the file has no such matrix or a value cannot be computed.
+pub fn printed_values(system: &System, seed: u64) -> Result<Appendix, String> {
+    let mut system = system.clone();
+    let determinant = match system.evaluate_text(MATRIX).map_err(|error| error.to_string())? {
+        Value::Scalar(node) => node,
+        other => return Err(format!("{MATRIX} is {}", other.describe())),
+    };
+    let angles: Vec<Symbol> = system.symbols().filter(|(_, info)| info.is_angle).map(|(s, _)| s).collect();
+    let expansion = expand(&mut system.graph, determinant, |symbol| angles.contains(&symbol))?;
+    let mut values = Vec::new();
+    for claim in system.claims.clone() {
+        let ClaimBody::Erratum { printed, .. } = &claim.body else { continue };
+        let ExprKind::At(inner, _) = &printed.equation.left.kind else { continue };
+        let ExprKind::Number(_) = &printed.equation.right.kind else { continue };
+        if system.source[inner.span.clone()].trim() == MATRIX {
+            let (left, right) = (&printed.equation.left, &printed.equation.right);
+            values.push(examine(&mut system, &claim.id, determinant, &expansion, left, right, seed)?);
+        }
+    }
+    let name = |polynomial| expansion.text(&system.graph, polynomial, 6);
+    Ok(Appendix {
+        monomials: expansion.numerator.len(),
+        front: expansion.front.to_string(),
+        denominator: expansion.denominator.iter().map(|(factor, power)| (name(factor), *power)).collect(),
+        beginning: expansion.text(&system.graph, &expansion.numerator, 8),
+        values,
+    })
+}
+
+fn examine(
+    system: &mut System,
+    id: &str,
+    determinant: NodeId,
+    expansion: &Expansion,
+    left: &Expr,
+    right: &Expr,
+    seed: u64,
+) -> Result<PrintedValue, String> {
+    let ExprKind::At(_, list) = &left.kind else { return Err(format!("{id} is no value at a point")) };
+    let point: HashMap<Symbol, RBig> = system
+        .assignment(list)
+        .map_err(|problem| problem.message)?
+        .into_iter()
+        .map(|(symbol, node)| {
+            let value = system.graph.constant_value(node).cloned();
+            Ok((symbol, value.ok_or_else(|| format!("{id}: a value that is not rational"))?))
+        })
+        .collect::<Result<_, String>>()?;
+    let certified = certified_value(&system.graph, determinant, &point, CERTIFIED_DIGITS).map_err(|e| e.to_string())?;
+    let truth = parse_decimal(&certified.decimal).ok_or_else(|| format!("{id}: {} is no decimal", certified.decimal))?;
+    let printed_text = system.source[right.span.clone()].trim().to_owned();
+    let printed = parse_decimal(&printed_text).ok_or_else(|| format!("{id}: {printed_text} is no decimal"))?;
+    let study = study_rounding(expansion, &point, &truth, PRINTED_DIGITS, ORDERS, seed).map_err(|e| e.to_string())?;
+    Ok(PrintedValue {
+        id: id.to_owned(),
+        point: list
+            .iter()
+            .map(|(name, value)| format!("{} = {}", name.text, system.source[value.span.clone()].trim()))
+            .collect::<Vec<_>>()
+            .join(", "),
+        digits_that_agree: agreeing_digits(&printed_text, &certified.decimal),
+        error: rational_to_f64(&(printed - truth)),
+        printed: printed_text,
+        certified,
+        study,
+    })
+}
+
+/// Leading digits that two plain decimals share; none where their points stand at different places.
+fn agreeing_digits(a: &str, b: &str) -> u32 {
+    let place = |text: &str| text.find('.').unwrap_or(text.len());
+    if place(a) != place(b) {
+        return 0;
+    }
+    let same = a.chars().zip(b.chars()).take_while(|(x, y)| x == y);
+    same.filter(|(x, _)| x.is_ascii_digit()).count() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_counted_up_to_the_first_that_differs() {
+        assert_eq!(agreeing_digits("25.67009841", "25.66837164143751"), 3);
+        assert_eq!(agreeing_digits("1647.940473", "1647.937602"), 5);
+        assert_eq!(agreeing_digits("16.4", "164"), 0);
+    }
+}
