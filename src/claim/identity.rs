@@ -18,7 +18,7 @@ const INTERVALS: &str = "interval arithmetic";
 
 /// Decides an equation between matrices (or numbers, as matrices of one entry).
 pub(crate) fn decide_identity(system: &mut System, left: &Matrix, right: &Matrix, rng: &mut impl Rng) -> Verdict {
-    let angles: Vec<Symbol> = system.symbols().filter(|(_, info)| info.is_angle).map(|(s, _)| s).collect();
+    let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
     let both: Vec<NodeId> = left.entries.iter().chain(&right.entries).copied().collect();
     let both = expand_angles(&mut system.graph, &both, is_angle);
@@ -87,7 +87,7 @@ pub(crate) fn decide_nearness(system: &mut System, left: NodeId, right: NodeId, 
             return Verdict::Proved { engine: INTERVALS.to_owned(), log2_error: f64::NEG_INFINITY };
         }
         if smallest > found[1].high() {
-            let shown = |index: usize| found[index].decimal(40).unwrap_or_else(|| found[index].midpoint().to_string());
+            let shown = |index: usize| found[index].certain_decimal(20).unwrap_or_else(|| found[index].midpoint().to_string());
             let state = values
                 .iter()
                 .filter(|(symbol, _)| {

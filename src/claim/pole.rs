@@ -62,7 +62,7 @@ pub fn pole_order(
     let Some(approach) = approach(system, both[0], both[1]) else {
         return PoleOrder::Unknown("the factor is not linear in any symbol that is free, nor the sine of an angle".into());
     };
-    let angles: Vec<Symbol> = system.symbols().filter(|(_, info)| info.is_angle).map(|(s, _)| s).collect();
+    let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
     let expanded = expand_angles(&mut system.graph, &[approach.expression], is_angle);
     let program = Program::new(&system.graph, &expanded, is_angle, false);

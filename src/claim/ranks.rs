@@ -2,18 +2,13 @@
 
 use super::identity::RANDOM_PRIMES;
 use super::verdict::{Verdict, Witness};
-use crate::expression::{NodeId, Symbol};
-use crate::observability::{Branch, Codistribution, GenericRank, Stop, generic_rank};
+use crate::expression::NodeId;
+use crate::observability::{Branch, Codistribution, GenericRank, Length, Stop, generic_rank};
 use crate::system::{Matrix, System};
 use rand::Rng;
 
 /// A nonzero minor, the certain half of a statement about a rank.
 const MINOR: &str = "a minor that is not zero modulo a prime";
-
-/// Words up to this length are always taken on a set of states, where the rank may rest before it grows.
-const ORDER_ON_A_SET: usize = 3;
-/// No longer words are taken.
-const LONGEST: usize = 12;
 
 /// Decides `rank(M) = claimed`.
 pub(crate) fn decide_rank(system: &mut System, matrix: &Matrix, claimed: usize, rng: &mut impl Rng) -> Verdict {
@@ -30,10 +25,8 @@ pub(crate) fn decide_codistribution(
     if system.outputs.is_empty() || system.states.is_empty() {
         return Verdict::undecided("there is no codistribution: the file declares no states or no outputs");
     }
-    // a set of states, unlike a set of parameters, is left by the flow: there the rank may grow again
     let on_states = branch.values.keys().any(|symbol| system.states.contains(symbol));
-    let at_least = if on_states { ORDER_ON_A_SET } else { 0 };
-    let words = match Codistribution::new(system, &branch.values, at_least, LONGEST) {
+    let words = match Codistribution::new(system, &branch.values, Length::UntilItStops) {
         Ok(words) => words,
         Err(why) => return Verdict::undecided(why),
     };
@@ -54,7 +47,7 @@ fn decide(
     scope: &str,
     rng: &mut impl Rng,
 ) -> Verdict {
-    let angles: Vec<Symbol> = system.symbols().filter(|(_, info)| info.is_angle).map(|(s, _)| s).collect();
+    let angles = system.angles();
     match generic_rank(&mut system.graph, entries, columns, |symbol| angles.contains(&symbol), rng) {
         GenericRank::Rank { rank, log2_error, .. } if rank == claimed => {
             let engine = if log2_error == f64::NEG_INFINITY { MINOR } else { RANDOM_PRIMES };

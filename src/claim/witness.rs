@@ -49,13 +49,13 @@ pub(crate) fn search(system: &System, graph: &Graph, left: NodeId, right: NodeId
         let Some((left, right)) = enclosed_values(&program, &state) else { continue };
         if Enclosures::common(&left, &right).is_none() {
             let shown = |value: &crate::number::Enclosure| {
-                value.decimal(DIGITS).unwrap_or_else(|| format!("{:e}", value.midpoint()))
+                value.certain_decimal(DIGITS).unwrap_or_else(|| format!("{:e}", value.midpoint()))
             };
             let witness =
                 Witness { state: state.describe(system), left: shown(&left), right: shown(&right), entry: None };
             return Search::Found(witness);
         }
-        let digits = (1..=120).rev().find(|n| left.decimal(*n).is_some() && left.decimal(*n) == right.decimal(*n));
+        let digits = (1..=120).rev().find(|n| left.decimal(*n).is_some_and(|text| right.decimal(*n) == Some(text)));
         (least, states) = (least.min(digits.unwrap_or(0)), states + 1);
         if states >= 20 {
             break;
@@ -90,27 +90,43 @@ fn draw(system: &System, program: &Program, exact_angles: bool, attempt: usize, 
             continue;
         }
         let angle = exact_angles && system.is_angle(symbol);
-        let range = system.symbol_info(symbol).and_then(|info| info.range.as_ref());
-        let (low, high) = match range {
-            Some(range) => (range.low.clone(), range.high.clone()),
-            None => (RBig::from(-3), RBig::from(3)),
-        };
-        let (low, high) = if angle {
-            let tangent = |bound: &RBig| (bound.to_f64().value() / 2.0).tan();
-            let (a, b) = (tangent(&low), tangent(&high));
-            if range.is_some() && a < b {
-                (RBig::try_from(a).unwrap_or(low), RBig::try_from(b).unwrap_or(high))
-            } else {
-                (RBig::from(-2), RBig::from(2))
-            }
+        let value = if angle {
+            Coordinate::from_half_tangent(&half_tangent(system, symbol, attempt, rng))
         } else {
-            (low, high)
+            Coordinate::Number(number(system, symbol, attempt, rng))
         };
-        let value = simple_between(&low, &high, attempt, rng);
-        let value = if angle { Coordinate::from_half_tangent(&value) } else { Coordinate::Number(value) };
         state.values.insert(symbol, value);
     }
     state
+}
+
+/// The value that the file gives to a parameter, or a simple number from its range; after some failures any number.
+fn number(system: &System, symbol: Symbol, attempt: usize, rng: &mut impl Rng) -> RBig {
+    let info = system.symbol_info(symbol);
+    let default = info.and_then(|info| info.default.clone());
+    match (info.and_then(|info| info.range.as_ref()), default) {
+        (Some(range), _) => simple_between(&range.low, &range.high, attempt, rng),
+        (None, Some(default)) if attempt < ATTEMPTS / 3 => default,
+        _ if attempt < ATTEMPTS / 3 => simple_between(&RBig::ONE, &RBig::from(3), attempt, rng),
+        _ => simple_between(&RBig::from(-3), &RBig::from(3), attempt, rng),
+    }
+}
+
+/// The tangent of half an angle: a simple number within the angle's range, and neither zero nor one, at which a sine
+/// or a cosine vanishes and a calculator has nothing to check.
+fn half_tangent(system: &System, symbol: Symbol, attempt: usize, rng: &mut impl Rng) -> RBig {
+    let range = system.symbol_info(symbol).and_then(|info| info.range.as_ref());
+    let tangent = |bound: &RBig| RBig::try_from((bound.to_f64().value() / 2.0).tan()).ok();
+    let bounds = range.and_then(|range| Some((tangent(&range.low)?, tangent(&range.high)?))).filter(|(a, b)| a < b);
+    let (low, high) = bounds.unwrap_or((RBig::from(-2), RBig::from(2)));
+    for _ in 0..50 {
+        // halves, thirds and quarters from the start: the sines are then fractions such as 4/5 and 12/13
+        let value = simple_between(&low, &high, attempt.max(40), rng);
+        if !value.is_zero() && value != RBig::ONE && value != RBig::from(-1) {
+            return value;
+        }
+    }
+    RBig::simplest_in(low, high)
 }
 
 /// A rational of small numerator and denominator within a range, not zero if that can be avoided; later attempts draw

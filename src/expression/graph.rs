@@ -243,6 +243,11 @@ impl Graph {
                 let quotient = self.div(a, y);
                 self.neg(quotient)
             }
+            // a rational function is what it is almost everywhere: s/tan(phi) has no pole where the cosine vanishes
+            (_, Node::Div(x, y)) => {
+                let top = self.mul(a, y);
+                self.div(top, x)
+            }
             _ => self.insert(Node::Div(a, b)),
         }
     }

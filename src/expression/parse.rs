@@ -170,10 +170,12 @@ fn within<'a, T>(input: &mut Text<'a>, inner: impl Parser<Text<'a>, T, ErrMode<E
 }
 
 fn bracketed(input: &mut Text<'_>) -> Read<Expr> {
+    let begin = input.current_token_start();
     sign("(").parse_next(input)?;
     let inner = within(input, cut_err(sum))?;
+    let end = input.current_token_start() + 1;
     cut_err(sign(")")).context("')' or an operator").parse_next(input)?;
-    Ok(inner)
+    Ok(Expr { span: begin..end, ..inner })
 }
 
 fn matrix(input: &mut Text<'_>) -> Read<Expr> {

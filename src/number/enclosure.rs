@@ -55,6 +55,11 @@ impl Enclosure {
         let low = round_to_decimal(&self.low(), digits);
         (low == round_to_decimal(&self.high(), digits)).then_some(low)
     }
+
+    /// The value to as many digits as are certain, at most `digits`; `None` where not even one is.
+    pub fn certain_decimal(&self, digits: usize) -> Option<String> {
+        (1..=digits).rev().find_map(|n| self.decimal(n))
+    }
 }
 
 fn endpoint_rational(value: &Endpoint) -> RBig {

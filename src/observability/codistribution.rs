@@ -30,6 +30,21 @@ impl Word {
     }
 }
 
+/// How long the words may become.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Length {
+    /// Until the rank stops growing. On a set of states, unlike a set of parameters, the rank may rest and grow again
+    /// (the flow leaves the set): there words of [`ORDER_ON_A_SET`] fields are taken in any case.
+    UntilItStops,
+    /// So many fields, whether or not the rank grows.
+    Exactly(usize),
+}
+
+/// The length that words have in any case on a set of states.
+pub const ORDER_ON_A_SET: usize = 3;
+/// No longer words are taken unless they are asked for.
+const LONGEST: usize = 8;
+
 /// Why no longer words were taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
@@ -63,19 +78,22 @@ const MOST_WORDS: usize = 1500;
 const ATTEMPTS: usize = 40;
 
 impl Codistribution {
-    /// Takes words of up to `longest` fields until the rank at a generic state that satisfies `conditions` (values for
-    /// solved symbols) stops growing, or has reached the dimension. With `at_least`, words up to that length are taken
-    /// even if the rank has stopped growing before.
+    /// Takes words until the rank at a generic state that satisfies `conditions` (values for solved symbols) has reached
+    /// the dimension, or until they are long enough.
     ///
     /// # Errors
     /// In words, where every state of the locus is a pole or an angle is met outside sines and cosines.
     pub fn new(
         system: &mut System,
         conditions: &Assignment,
-        at_least: usize,
-        longest: usize,
+        length: Length,
     ) -> Result<Codistribution, String> {
         let dimension = system.states.len();
+        let on_states = conditions.keys().any(|symbol| system.states.contains(symbol));
+        let (at_least, longest) = match length {
+            Length::UntilItStops => (if on_states { ORDER_ON_A_SET } else { 0 }, LONGEST),
+            Length::Exactly(order) => (order, order),
+        };
         let mut result =
             Codistribution { words: Vec::new(), rows: Vec::new(), needed: Vec::new(), order: 0, stop: Stop::Order };
         let mut last: Vec<(Word, NodeId)> = (0..system.outputs.len())
@@ -97,11 +115,11 @@ impl Codistribution {
             result.order = order;
             let before = result.needed.len();
             result.needed = needed(system, &result.rows, conditions)?;
-            if result.needed.len() == dimension {
+            if result.needed.len() == dimension && (length == Length::UntilItStops || order == longest) {
                 result.stop = Stop::Full;
                 break;
             }
-            if last.is_empty() || order > at_least && result.needed.len() == before {
+            if last.is_empty() || order > 0 && order >= at_least && result.needed.len() == before {
                 result.stop = Stop::NoGrowth;
                 break;
             }
@@ -143,7 +161,7 @@ fn longer(system: &mut System, words: &[(Word, NodeId)]) -> Vec<(Word, NodeId)> 
 
 /// The rows that raise the rank at a random point of the locus.
 fn needed(system: &mut System, rows: &[Vec<NodeId>], conditions: &Assignment) -> Result<Vec<usize>, String> {
-    let angles: Vec<_> = system.symbols().filter(|(_, info)| info.is_angle).map(|(symbol, _)| symbol).collect();
+    let angles = system.angles();
     let is_angle = |symbol| angles.contains(&symbol);
     let entries: Vec<NodeId> = rows.iter().flatten().copied().collect();
     let entries = system.graph.substitute(&entries, conditions);

@@ -64,7 +64,7 @@ impl Locus {
         fixed: &BTreeMap<Symbol, RBig>,
         mentioned: &[NodeId],
     ) -> Result<Locus, LocusError> {
-        let angles: Vec<Symbol> = system.symbols().filter(|(_, info)| info.is_angle).map(|(s, _)| s).collect();
+        let angles = system.angles();
         let is_angle = |symbol: Symbol| angles.contains(&symbol);
         let mut dependent: Vec<(Symbol, bool)> =
             branch.values.keys().map(|symbol| (*symbol, is_angle(*symbol))).collect();
@@ -81,7 +81,8 @@ impl Locus {
         }
         let values = expand_angles(&mut system.graph, &values, is_angle);
 
-        let mut needed = system.graph.symbols_of(mentioned.iter().chain(&values).copied());
+        let kept_clear: Vec<NodeId> = system.avoid.iter().map(|(_, node)| *node).collect();
+        let mut needed = system.graph.symbols_of(mentioned.iter().chain(&values).chain(&kept_clear).copied());
         needed.extend(system.states.iter().copied());
         needed.sort_unstable();
         needed.dedup();

@@ -18,7 +18,7 @@ mod singular;
 mod state;
 mod sweep;
 
-pub use codistribution::{Codistribution, Stop, Word};
+pub use codistribution::{Codistribution, Length, Stop, Word};
 pub use conditions::linear_solution;
 pub use conditions::{Branch, Unsolved, solve_conditions};
 pub use elimination::{kernel, rank};

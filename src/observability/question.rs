@@ -1,6 +1,6 @@
 //! The whole question of a rank, from a system and some conditions to sweeps of every branch.
 
-use super::codistribution::{Codistribution, Stop};
+use super::codistribution::{Codistribution, Length, Stop};
 use super::conditions::solve_conditions;
 use super::locus::Locus;
 use super::sweep::{SweepOptions, SweepReport, sweep};
@@ -67,9 +67,6 @@ impl RankAnswer {
 /// The name of the matrix that holds a paper's own choice of rows.
 pub const OWN_ROWS: &str = "rows";
 
-/// No longer words are taken unless they are asked for.
-const LONGEST: usize = 8;
-
 /// Reads a condition such as `sin(phi1) = 0`.
 ///
 /// # Errors
@@ -118,8 +115,8 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             let value = system.graph.substitute(&[value], &conditions)[0];
             conditions.insert(*known, value);
         }
-        let (least, longest) = (question.order.unwrap_or(0), question.order.unwrap_or(LONGEST));
-        let codistribution = Codistribution::new(system, &conditions, least, longest)?;
+        let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
+        let codistribution = Codistribution::new(system, &conditions, length)?;
         let all = codistribution.entries();
         let mut mentioned: Vec<NodeId> = all.clone();
         mentioned.extend(own.iter().flatten());

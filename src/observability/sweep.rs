@@ -107,7 +107,7 @@ pub fn sweep(
     options: SweepOptions<'_>,
 ) -> Result<SweepReport, LocusError> {
     let begin = Instant::now();
-    let angles: Vec<Symbol> = system.symbols().filter(|(_, info)| info.is_angle).map(|(s, _)| s).collect();
+    let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
     let quick = expand_angles(&mut system.graph, quick, is_angle);
     let all = expand_angles(&mut system.graph, all, is_angle);

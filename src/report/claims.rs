@@ -1,6 +1,7 @@
 //! Outcomes of claims, in three notations.
 
 use crate::claim::{Outcome, Verdict, Witness};
+use crate::number::{parse_decimal, rational_to_f64};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde_json::{Value, json};
 
@@ -66,7 +67,15 @@ pub(crate) fn witness_line(witness: &Witness) -> String {
         .collect();
     let place = if state.is_empty() { String::new() } else { format!("at {}: ", state.join(", ")) };
     let entry = witness.entry.map_or(String::new(), |(row, column)| format!("entry {row},{column}: "));
-    format!("{place}{entry}left = {}, right = {}", witness.left, witness.right)
+    format!("{place}{entry}left = {}, right = {}", with_decimal(&witness.left), with_decimal(&witness.right))
+}
+
+/// A fraction with its decimal behind it; anything else as it is.
+fn with_decimal(value: &str) -> String {
+    match parse_decimal(value) {
+        Some(number) if value.contains('/') => format!("{value} = {:.8}", rational_to_f64(&number)),
+        _ => value.to_owned(),
+    }
 }
 
 /// An outcome as a line for the terminal, with a second one where there is something to explain.
@@ -74,7 +83,8 @@ pub fn claim_line(outcome: &Outcome) -> String {
     let mark = if outcome.ok { "ok  " } else { "FAIL" };
     let mut line = format!("  {mark} {:<10} {}", outcome.word(), outcome.id);
     let explain = |verdict: &Verdict| match verdict {
-        Verdict::Proved { log2_error, .. } => format!("error below {}", error_bound(*log2_error)),
+        Verdict::Proved { log2_error, .. } if *log2_error == f64::NEG_INFINITY => "certain".to_owned(),
+        Verdict::Proved { log2_error, .. } => format!("but for a probability below {}", error_bound(*log2_error)),
         Verdict::Refuted { witness, .. } => witness_line(witness),
         Verdict::Undecided { why } => why.clone(),
     };

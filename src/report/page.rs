@@ -88,7 +88,9 @@ fn explain(verdict: &Verdict) -> Markup {
     html! {
         @match verdict {
             Verdict::Proved { engine, log2_error } => {
-                (engine) "; probability of an error below " (error_bound(*log2_error))
+                (engine)
+                @if *log2_error == f64::NEG_INFINITY { "; certain" }
+                @else { "; probability of an error below " (error_bound(*log2_error)) }
             }
             Verdict::Refuted { witness, .. } => { (witness_line(witness)) }
             Verdict::Undecided { why } => { (why) }
@@ -107,6 +109,13 @@ fn unseen(answer: &RankAnswer, own: bool) -> Vec<String> {
             }
         }
     }
+    found
+}
+
+/// The words that were needed, branches with the same words together.
+fn distinct_words(answer: &RankAnswer) -> Vec<String> {
+    let mut found: Vec<String> = answer.branches.iter().map(|branch| branch.words.join(", ")).collect();
+    found.dedup();
     found
 }
 
@@ -137,7 +146,7 @@ fn regime(index: usize, result: &RegimeResult) -> Markup {
                             td.number { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
                             td.number { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
                             td { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
-                            td.words { @for branch in &answer.branches { div { (branch.words.join(", ")) } } }
+                            td.words { @for words in distinct_words(answer) { div { (words) } } }
                             td { (unseen(answer, false).join("; ")) }
                             td { b { (ranks_in_words(answer, true)) } }
                             td { (unseen(answer, true).join("; ")) }

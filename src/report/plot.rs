@@ -30,7 +30,7 @@ fn svg(size: (u32, u32), draw: impl FnOnce(&Drawing<'_>) -> Result<(), Box<dyn s
     };
     match result {
         // the page scales it
-        Ok(()) => text.replacen("<svg ", "<svg role=\"img\" preserveAspectRatio=\"xMidYMid meet\" ", 1),
+        Ok(()) => text.replacen("<svg ", "<svg role=\"img\" ", 1),
         Err(error) => format!("<p>this plot could not be drawn: {error}</p>"),
     }
 }
@@ -59,8 +59,9 @@ pub(crate) fn map(map: &Map, title: &str) -> String {
     if found.is_empty() {
         return "<p>there is a pole everywhere on this map</p>".to_owned();
     }
-    svg((560, 400), |area| {
-        let (plot, legend) = area.split_horizontally(480);
+    // without smoothing of edges no gaps show between the rectangles
+    let drawn = svg((580, 400), |area| {
+        let (plot, legend) = area.split_horizontally(490);
         let mut chart = ChartBuilder::on(&plot)
             .caption(title, ("sans-serif", 15).into_font().color(&INK))
             .margin(8)
@@ -86,7 +87,7 @@ pub(crate) fn map(map: &Map, title: &str) -> String {
             .margin_top(34)
             .margin_bottom(44)
             .margin_right(4)
-            .y_label_area_size(42)
+            .y_label_area_size(50)
             .build_cartesian_2d(0.0..1.0, lowest..highest)?;
         for step in 0..SHADES {
             let at = |i: usize| lowest + (highest - lowest) * i as f64 / SHADES as f64;
@@ -97,10 +98,12 @@ pub(crate) fn map(map: &Map, title: &str) -> String {
             .disable_mesh()
             .disable_x_axis()
             .y_labels(7)
-            .y_label_formatter(&|v| format!("1e{v:.1}"))
+            .y_label_style(("sans-serif", 12))
+            .y_label_formatter(&|v| format!("{:.0e}", 10f64.powf(*v)))
             .draw()?;
         Ok(())
-    })
+    });
+    drawn.replacen("<svg ", "<svg shape-rendering=\"crispEdges\" ", 1)
 }
 
 /// The singular values on the way into a singularity, both axes logarithmic.

@@ -3,7 +3,7 @@
 use super::grammar::ClaimSyntax;
 use crate::expression::{Derivation, Graph, NodeId, Symbol};
 use dashu::rational::RBig;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// What a symbol is in its system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,6 +131,11 @@ impl System {
     /// Whether a symbol is an angle.
     pub fn is_angle(&self, symbol: Symbol) -> bool {
         self.symbols.get(&symbol).is_some_and(|info| info.is_angle)
+    }
+
+    /// All symbols that are angles.
+    pub fn angles(&self) -> HashSet<Symbol> {
+        self.symbols().filter(|(_, info)| info.is_angle).map(|(symbol, _)| symbol).collect()
     }
 
     /// A symbol's name.

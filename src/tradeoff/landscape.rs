@@ -4,6 +4,7 @@ use crate::expression::{NodeId, Program, Symbol};
 use crate::number::Floats;
 use crate::observability::{float_inputs, linear_solution, singular_values};
 use crate::system::System;
+use dashu::rational::RBig;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -54,14 +55,17 @@ pub struct Landscape<'s> {
 }
 
 impl<'s> Landscape<'s> {
-    /// The rows, at the parameters' own values and the given ones.
+    /// The rows at the given values; what is not given has the file's value, or the middle of its range.
     ///
     /// # Errors
     /// A name that is not known.
     pub fn new(system: &'s mut System, rows: &[NodeId], at: &[(&str, f64)]) -> Result<Self, String> {
         let mut values: HashMap<Symbol, f64> = system
             .symbols()
-            .filter_map(|(symbol, info)| Some((symbol, info.default.as_ref()?.to_f64().value())))
+            .filter_map(|(symbol, info)| {
+                let middle = info.range.as_ref().map(|range| (&range.low + &range.high) / RBig::from(2));
+                Some((symbol, info.default.clone().or(middle)?.to_f64().value()))
+            })
             .collect();
         for (name, value) in at {
             values.insert(known(system, name)?, *value);

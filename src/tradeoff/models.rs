@@ -72,7 +72,7 @@ pub fn compare_models(
 }
 
 fn compiled(system: &mut System, rows: &[NodeId]) -> Program {
-    let angles: Vec<_> = system.symbols().filter(|(_, info)| info.is_angle).map(|(symbol, _)| symbol).collect();
+    let angles = system.angles();
     let is_angle = |symbol| angles.contains(&symbol);
     let rows = expand_angles(&mut system.graph, rows, is_angle);
     Program::new(&system.graph, &rows, is_angle, false)

@@ -4,7 +4,7 @@
 use crate::claim::{CertifiedValue, certified_value};
 use crate::expression::syntax::{Expr, ExprKind};
 use crate::expression::{Expansion, NodeId, Symbol, expand};
-use crate::number::{parse_decimal, rational_to_f64};
+use crate::number::{parse_decimal, rational_to_f64, round_to_decimal};
 use crate::system::{ClaimBody, System, Value};
 use crate::tradeoff::{RoundingStudy, study_rounding};
 use dashu::rational::RBig;
@@ -21,8 +21,8 @@ pub struct PrintedValue {
     pub printed: String,
     /// The value of the formula to forty certified digits.
     pub certified: CertifiedValue,
-    /// Leading digits that agree.
-    pub digits_that_agree: u32,
+    /// The digits to which both, when rounded, are the same.
+    pub digits_that_agree: usize,
     /// Printed minus true.
     pub error: f64,
     /// What ten digits do to the expanded formula.
@@ -62,7 +62,7 @@ pub fn printed_values(system: &System, seed: u64) -> Result<Appendix, String> {
         Value::Scalar(node) => node,
         other => return Err(format!("{MATRIX} is {}", other.describe())),
     };
-    let angles: Vec<Symbol> = system.symbols().filter(|(_, info)| info.is_angle).map(|(s, _)| s).collect();
+    let angles = system.angles();
     let expansion = expand(&mut system.graph, determinant, |symbol| angles.contains(&symbol))?;
     let mut values = Vec::new();
     for claim in system.claims.clone() {
@@ -115,22 +115,17 @@ fn examine(
             .map(|(name, value)| format!("{} = {}", name.text, system.source[value.span.clone()].trim()))
             .collect::<Vec<_>>()
             .join(", "),
-        digits_that_agree: agreeing_digits(&printed_text, &certified.decimal),
-        error: rational_to_f64(&(printed - truth)),
+        digits_that_agree: agreeing_digits(&printed, &truth),
+        error: rational_to_f64(&(&printed - &truth)),
         printed: printed_text,
         certified,
         study,
     })
 }
 
-/// Leading digits that two plain decimals share; none where their points stand at different places.
-fn agreeing_digits(a: &str, b: &str) -> u32 {
-    let place = |text: &str| text.find('.').unwrap_or(text.len());
-    if place(a) != place(b) {
-        return 0;
-    }
-    let same = a.chars().zip(b.chars()).take_while(|(x, y)| x == y);
-    same.filter(|(x, _)| x.is_ascii_digit()).count() as u32
+/// The most significant digits to which two numbers, both rounded, are the same.
+fn agreeing_digits(a: &RBig, b: &RBig) -> usize {
+    (1..=CERTIFIED_DIGITS).rev().find(|n| round_to_decimal(a, *n) == round_to_decimal(b, *n)).unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -138,9 +133,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn digits_are_counted_up_to_the_first_that_differs() {
-        assert_eq!(agreeing_digits("25.67009841", "25.66837164143751"), 3);
-        assert_eq!(agreeing_digits("1647.940473", "1647.937602"), 5);
-        assert_eq!(agreeing_digits("16.4", "164"), 0);
+    fn digits_are_counted_after_rounding() {
+        let digits = |a: &str, b: &str| agreeing_digits(&parse_decimal(a).unwrap(), &parse_decimal(b).unwrap());
+        assert_eq!(digits("25.67009841", "25.66837164143751"), 4); // both are 25.67
+        assert_eq!(digits("1647.940473", "1647.937602"), 6); // both are 1647.94
+        assert_eq!(digits("16.4", "164"), 0);
     }
 }

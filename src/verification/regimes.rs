@@ -3,7 +3,7 @@
 use super::Options;
 use crate::expression::NodeId;
 use crate::observability::{
-    Branch, Codistribution, Locus, OWN_ROWS, RankAnswer, RankQuestion, answer_rank, solve_conditions,
+    Branch, Codistribution, Length, Locus, OWN_ROWS, RankAnswer, RankQuestion, answer_rank, solve_conditions,
 };
 use crate::system::{Assignment, System, Value};
 use crate::tradeoff::{Landscape, Map, ModelComparison, Rows, Slope, Target, compare_models};
@@ -22,6 +22,8 @@ pub struct Picture {
     pub at: &'static [(&'static str, f64)],
     pub x: (&'static str, f64, f64),
     pub y: (&'static str, f64, f64),
+    /// The length of the words of the full codistribution that is drawn.
+    pub order: usize,
     /// What is seen on the map.
     pub caption: &'static str,
     /// Title, the coordinate that moves, and where it goes.
@@ -104,6 +106,7 @@ pub const REGIMES: [Regime; 4] = [
             ],
             x: ("r1", 0.2, 3.0),
             y: ("r2", 0.2, 3.0),
+            order: 1,
             caption: "The valley in the left map is where the appendix's determinant vanishes; the full \
                       codistribution, which has the drift's Lie derivatives too, does not see it.",
             lines: &[
@@ -139,6 +142,7 @@ pub const REGIMES: [Regime; 4] = [
             at: &[("r1", 1.5), ("r2", 1.5), ("s1", 1.0), ("s2", 2.0), ("omega0", 1.0), ("phi1", 0.5)],
             x: ("omega0", -3.0, 3.0),
             y: ("phi1", -1.5, 1.5),
+            order: 2,
             caption: "Valleys at omega0 = 0 and, for the thesis's own rows only, at phi1 = 0; the pole is at \
                       omega0 = omega1 = 2.",
             lines: &[
@@ -170,6 +174,7 @@ pub const REGIMES: [Regime; 4] = [
             at: &[("r1", 1.5), ("r2", 1.5), ("s1", 1.0), ("s2", 2.0), ("omega0", 1.0), ("phi2", 2.0), ("omega2", 2.0)],
             x: ("omega0", -3.0, 3.0),
             y: ("s1", 0.2, 3.0),
+            order: 3,
             caption: "The curved valley is where the bracket of 4.65 vanishes; words of three fields see through it. \
                       The straight lines are the poles at omega0 = 0 and omega0 = omega2 = 2.",
             lines: &[
@@ -198,6 +203,7 @@ pub const REGIMES: [Regime; 4] = [
             at: &[("r1", 1.5), ("r2", 1.5), ("omega0", 1.0), ("s1", 1.0), ("s2", 2.0)],
             x: ("omega0", -3.0, 3.0),
             y: ("r1", 0.2, 3.0),
+            order: 1,
             caption: "The valleys of the thesis's own rows are where rho^2 + 3 d1^2 = 2 g d1 sin(phi1)/omega0^2; the \
                       second input field sees through them. The pole is at omega0 = 0.",
             lines: &[
@@ -256,9 +262,9 @@ impl Regime {
     fn draw(&self, system: &System) -> Result<(Vec<(Rows, Map)>, Vec<(&'static str, Slope)>), String> {
         let mut system = system.clone();
         let own = own_rows(&system)?;
-        // all words of the order that shows what the full codistribution sees, not only those that a generic state needs
-        let full = Codistribution::new(&mut system, &Assignment::new(), 2, 3)?.entries();
         let picture = &self.picture;
+        let length = Length::Exactly(picture.order);
+        let full = Codistribution::new(&mut system, &Assignment::new(), length)?.entries();
         let mut maps = Vec::new();
         for (kind, rows) in [(Rows::Own, &own), (Rows::Full, &full)] {
             let mut copy = system.clone();
@@ -303,7 +309,7 @@ fn own_rows(system: &System) -> Result<Vec<NodeId>, String> {
 /// The rows that the small regime's codistribution needs, and in the ten-state model the differentials of all outputs
 /// and of the same Lie derivatives.
 fn counterparts(small: &mut System, large: &mut System) -> Result<(Vec<NodeId>, Vec<NodeId>), String> {
-    let words = Codistribution::new(small, &Assignment::new(), 0, 3)?;
+    let words = Codistribution::new(small, &Assignment::new(), Length::UntilItStops)?;
     let mut rows: Vec<NodeId> = Vec::new();
     for output in large.outputs.clone() {
         rows.extend(large.differential(output.1));
