@@ -25,18 +25,24 @@ pub(crate) fn decide_codistribution(
     if system.outputs.is_empty() || system.states.is_empty() {
         return Verdict::undecided("there is no codistribution: the file declares no states or no outputs");
     }
-    let on_states = branch.values.keys().any(|symbol| system.states.contains(symbol));
     let words = match Codistribution::new(system, &branch.values, Length::UntilItStops) {
         Ok(words) => words,
         Err(why) => return Verdict::undecided(why),
     };
     let entries = system.graph.substitute(&words.entries(), &branch.values);
+    let found = words.generic_rank();
+    if !words.is_final() && found <= claimed {
+        return Verdict::undecided(format!(
+            "words of up to {} fields give the rank {found}; the fields leave these states, so that longer words may add \
+             to it (to claim a rank for some words, write rank([d(...); ...]))",
+            words.order
+        ));
+    }
     let scope = match words.stop {
-        Stop::Full => String::new(),
-        Stop::NoGrowth if !on_states => format!(", and words of {} fields do not raise it", words.order),
-        _ => format!(", for words of up to {} fields", words.order),
+        Stop::Full => "",
+        _ => ", and longer words do not raise it",
     };
-    decide(system, &entries, system.states.len(), claimed, &scope, rng)
+    decide(system, &entries, system.states.len(), claimed, scope, rng)
 }
 
 fn decide(

@@ -59,7 +59,7 @@ fn inputs<A: Arithmetic>(
 }
 
 fn undefined(graph: &Graph, failure: &Failure, bits: usize) -> ValueError {
-    match (failure.refusal, failure.divisor(graph)) {
+    match (failure.refusal, failure.divisor) {
         (Refusal::DivisionByZero, Some(divisor)) => ValueError::Pole(graph.text(divisor)),
         (Refusal::DivisorNotSeparated, Some(divisor)) => ValueError::NearPole { divisor: graph.text(divisor), bits },
         (refusal, _) => ValueError::Undefined(format!("{refusal}, in {}", graph.text(failure.node))),

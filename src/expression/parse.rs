@@ -4,7 +4,7 @@
 use super::syntax::{Equation, Expr, ExprKind, Name, Span};
 use crate::number::parse_decimal;
 use std::cell::Cell;
-use winnow::combinator::{alt, cut_err, opt, preceded, separated};
+use winnow::combinator::{alt, cut_err, not, opt, preceded, separated};
 use winnow::error::{AddContext, ErrMode, ModalResult, ParserError};
 use winnow::prelude::*;
 use winnow::stream::{LocatingSlice, Location, Stateful, Stream};
@@ -214,9 +214,12 @@ fn assignments(input: &mut Text<'_>) -> Read<Vec<(Name, Expr)>> {
 }
 
 fn primary(input: &mut Text<'_>) -> Read<Expr> {
-    let mut value = alt((number, bracketed, matrix, name_or_call))
-        .context("a number, a name, '(' or '['")
-        .parse_next(input)?;
+    alt((number, bracketed, matrix, name_or_call)).context("a number, a name, '(' or '['").parse_next(input)
+}
+
+/// A power, perhaps at a point: `x^2 at {x = 3}` is nine.
+fn factor(input: &mut Text<'_>) -> Read<Expr> {
+    let mut value = power(input)?;
     while opt(keyword("at")).parse_next(input)?.is_some() {
         let list = assignments(input)?;
         let span = value.span.start..input.current_token_start();
@@ -246,6 +249,7 @@ fn power(input: &mut Text<'_>) -> Read<Expr> {
     let bare = |input: &mut Text<'_>| -> Read<Option<i32>> {
         let minus = opt(sign("-")).parse_next(input)?.is_some();
         let digits = take_while(1.., |c: char| c.is_ascii_digit()).parse_next(input)?;
+        not(one_of(['.', '_'])).parse_next(input)?;
         blank(input)?;
         let value = digits.parse::<i32>().ok().filter(|n| *n <= LARGEST_EXPONENT);
         Ok(value.map(|n| if minus { -n } else { n }))
@@ -270,7 +274,7 @@ fn product(input: &mut Text<'_>) -> Read<(bool, Expr)> {
     while let Some(minus) = opt(alt((sign("-").value(true), sign("+").value(false)))).parse_next(input)? {
         negative ^= minus;
     }
-    let first = power(input)?;
+    let first = factor(input)?;
     let begin = first.span.start;
     let mut factors = vec![(false, first)];
     while let Some(divides) = opt(alt((sign("*").value(false), sign("/").value(true)))).parse_next(input)? {
@@ -278,7 +282,7 @@ fn product(input: &mut Text<'_>) -> Read<(bool, Expr)> {
         while let Some(minus) = opt(alt((sign("-").value(true), sign("+").value(false)))).parse_next(input)? {
             negative ^= minus;
         }
-        factors.push((divides, cut_err(power).parse_next(input)?));
+        factors.push((divides, cut_err(factor).parse_next(input)?));
     }
     let value = if factors.len() == 1 {
         factors.remove(0).1

@@ -51,17 +51,8 @@ pub struct Failure {
     pub refusal: Refusal,
     /// The node whose value could not be computed.
     pub node: NodeId,
-}
-
-impl Failure {
-    /// The divisor that was zero, where that is what went wrong.
-    pub fn divisor(&self, graph: &Graph) -> Option<NodeId> {
-        match (self.refusal, graph.node(self.node)) {
-            (Refusal::DivisionByZero | Refusal::DivisorNotSeparated, Node::Div(_, b)) => Some(b),
-            (Refusal::DivisionByZero | Refusal::DivisorNotSeparated, Node::Power(a, _)) => Some(a),
-            _ => None,
-        }
-    }
+    /// The factor of the divisor that is zero, or may be, where that is what went wrong.
+    pub divisor: Option<NodeId>,
 }
 
 impl Program {
@@ -202,8 +193,33 @@ impl<A: Arithmetic> Loaded<'_, A> {
                 Operation::Power(a, n) => arithmetic.power(at(a), n),
                 Operation::Apply(function, a) => arithmetic.apply(function, at(a)),
             };
-            registers.push(value.map_err(|refusal| Failure { refusal, node })?);
+            match value {
+                Ok(value) => registers.push(value),
+                Err(refusal) => {
+                    let divides = matches!(refusal, Refusal::DivisionByZero | Refusal::DivisorNotSeparated);
+                    let divisor = if divides { self.zero_factor(*operation, registers) } else { None };
+                    return Err(Failure { refusal, node, divisor });
+                }
+            }
         }
         Ok(self.program.outputs.iter().map(|index| registers[*index as usize].clone()).collect())
+    }
+
+    /// The factor of an operation's divisor that may be zero: through products, powers and quotients to the sum or
+    /// the input that vanishes.
+    fn zero_factor(&self, operation: Operation, registers: &[A::Number]) -> Option<NodeId> {
+        let mut at = match operation {
+            Operation::Div(_, b) => b,
+            Operation::Power(a, n) if n < 0 => a,
+            _ => return None,
+        };
+        let may_vanish = |index: u32| self.arithmetic.is_zero(&registers[index as usize]) != Some(false);
+        loop {
+            at = match self.program.operations[at as usize] {
+                Operation::Mul(a, b) => if may_vanish(a) { a } else { b },
+                Operation::Div(a, _) | Operation::Neg(a) | Operation::Power(a, _) => a,
+                _ => return Some(self.program.origins[at as usize]),
+            };
+        }
     }
 }

@@ -70,7 +70,7 @@ pub fn identically_zero(
         return ZeroTest::Unknown(format!("the degree may be {:.1e}, too large for the prime fields", size.degree));
     };
     for _ in 0..rounds {
-        match round(graph, &program, rng) {
+        match round(&program, rng) {
             Ok(values) => {
                 if let Some(index) = values.iter().position(|value| *value != 0) {
                     return ZeroTest::Nonzero(index);
@@ -100,7 +100,7 @@ pub fn failure_bound(size: Size) -> Option<(usize, f64)> {
 }
 
 /// The values of a program at one random point of one random field.
-fn round(graph: &Graph, program: &Program, rng: &mut impl Rng) -> Result<Vec<u64>, ZeroTest> {
+fn round(program: &Program, rng: &mut impl Rng) -> Result<Vec<u64>, ZeroTest> {
     let mut registers = Vec::new();
     let mut divisor = None;
     for _ in 0..ATTEMPTS {
@@ -109,7 +109,7 @@ fn round(graph: &Graph, program: &Program, rng: &mut impl Rng) -> Result<Vec<u64
         let inputs = draw_residues(program, &field, rng);
         match loaded.run(&inputs, &mut registers) {
             Ok(values) => return Ok(values),
-            Err(failure) => match failure.divisor(graph) {
+            Err(failure) => match failure.divisor {
                 Some(zero) => divisor = Some(zero),
                 None => return Err(ZeroTest::Unknown(failure.refusal.to_string())),
             },

@@ -1,6 +1,7 @@
 //! The observability codistribution (equations 4.36 and 4.37): the differentials of the outputs and of their repeated
 //! Lie derivatives along words of fields, added shortest first.
 
+use super::conditions::vanishes;
 use super::elimination::independent_rows;
 use crate::expression::{NodeId, Program, draw_residues, expand_angles};
 use crate::number::PrimeField;
@@ -33,23 +34,25 @@ impl Word {
 /// How long the words may become.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
-    /// Until the rank stops growing. On a set of states, unlike a set of parameters, the rank may rest and grow again
-    /// (the flow leaves the set): there words of [`ORDER_ON_A_SET`] fields are taken in any case.
+    /// Until the rank stops growing for good. On a set that the fields leave the rank may rest and grow again: there
+    /// words of as many fields as there are states are taken, if they are not too many.
     UntilItStops,
     /// So many fields, whether or not the rank grows.
     Exactly(usize),
 }
 
-/// The length that words have in any case on a set of states.
-pub const ORDER_ON_A_SET: usize = 3;
 /// No longer words are taken unless they are asked for.
-const LONGEST: usize = 8;
+const LONGEST: usize = 12;
+/// On a set that the fields leave, words are taken while they are no more than this.
+const PATIENCE: usize = 300;
 
 /// Why no longer words were taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// The rank has reached the dimension of the state space.
     Full,
+    /// The rank has reached that at almost all states around, which no state of the locus can exceed.
+    Ceiling,
     /// One further order did not raise the rank.
     NoGrowth,
     /// The longest word that was allowed.
@@ -71,6 +74,9 @@ pub struct Codistribution {
     pub order: usize,
     /// Why no longer ones were.
     pub stop: Stop,
+    /// Whether the fields leave no state of the locus. There a rank that has stopped growing has stopped for good: the
+    /// span of the words is then mapped into itself by every field.
+    pub invariant: bool,
 }
 
 /// No more words than this are taken.
@@ -89,19 +95,27 @@ impl Codistribution {
         length: Length,
     ) -> Result<Codistribution, String> {
         let dimension = system.states.len();
-        let on_states = conditions.keys().any(|symbol| system.states.contains(symbol));
-        let (at_least, longest) = match length {
-            Length::UntilItStops => (if on_states { ORDER_ON_A_SET } else { 0 }, LONGEST),
-            Length::Exactly(order) => (order, order),
+        let invariant = is_invariant(system, conditions);
+        let ceiling = if invariant { dimension } else { rank_around(system, conditions, length)? };
+        let (at_least, longest, most) = match length {
+            Length::UntilItStops if invariant => (0, LONGEST, MOST_WORDS),
+            Length::UntilItStops => (dimension, dimension, PATIENCE),
+            Length::Exactly(order) => (order, order, MOST_WORDS),
         };
-        let mut result =
-            Codistribution { words: Vec::new(), rows: Vec::new(), needed: Vec::new(), order: 0, stop: Stop::Order };
+        let mut result = Codistribution {
+            words: Vec::new(),
+            rows: Vec::new(),
+            needed: Vec::new(),
+            order: 0,
+            stop: Stop::Order,
+            invariant,
+        };
         let mut last: Vec<(Word, NodeId)> = (0..system.outputs.len())
             .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
             .collect();
         for order in 0..=longest {
             if order > 0 {
-                if result.words.len() + last.len() * system.fields.len() > MOST_WORDS {
+                if result.words.len() + last.len() * system.fields.len() > most {
                     result.stop = Stop::TooMany;
                     break;
                 }
@@ -119,7 +133,11 @@ impl Codistribution {
                 result.stop = Stop::Full;
                 break;
             }
-            if last.is_empty() || order > 0 && order >= at_least && result.needed.len() == before {
+            if result.needed.len() == ceiling && length == Length::UntilItStops {
+                result.stop = Stop::Ceiling;
+                break;
+            }
+            if last.is_empty() || invariant && order > at_least && result.needed.len() == before {
                 result.stop = Stop::NoGrowth;
                 break;
             }
@@ -127,7 +145,12 @@ impl Codistribution {
         Ok(result)
     }
 
-    /// The rank at a generic state of the locus.
+    /// Whether longer words cannot raise the rank at a generic state of the locus.
+    pub fn is_final(&self) -> bool {
+        matches!(self.stop, Stop::Full | Stop::Ceiling) || self.stop == Stop::NoGrowth && self.invariant
+    }
+
+    /// The rank at a generic state of the locus, by the words that were taken.
     pub fn generic_rank(&self) -> usize {
         self.needed.len()
     }
@@ -141,6 +164,37 @@ impl Codistribution {
     pub fn entries(&self) -> Vec<NodeId> {
         self.rows.iter().flatten().copied().collect()
     }
+}
+
+/// The rank at almost all states, with only those conditions kept that concern parameters; the dimension, where that
+/// rank is not known for good. A rank falls on a special set, and never rises.
+fn rank_around(system: &mut System, conditions: &Assignment, length: Length) -> Result<usize, String> {
+    let states = system.states.clone();
+    let kept: Assignment = conditions
+        .iter()
+        .filter(|(symbol, value)| {
+            let mentioned = system.graph.symbols_of([**value]);
+            !states.contains(symbol) && !states.iter().any(|state| mentioned.contains(state))
+        })
+        .map(|(symbol, value)| (*symbol, *value))
+        .collect();
+    let around = Codistribution::new(system, &kept, length)?;
+    Ok(if around.is_final() { around.generic_rank() } else { states.len() })
+}
+
+/// Whether every field is tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
+fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
+    let mut solved: Vec<_> = conditions.iter().map(|(symbol, value)| (*symbol, *value)).collect();
+    solved.sort_unstable();
+    solved.into_iter().all(|(symbol, value)| {
+        let left = system.graph.symbol(symbol);
+        let difference = system.graph.sub(left, value);
+        (0..system.fields.len()).all(|field| {
+            let rate = system.lie_derivative(field, difference);
+            let on_the_set = system.graph.substitute(&[rate], conditions)[0];
+            vanishes(system, on_the_set)
+        })
+    })
 }
 
 /// All words with one more field in front, but those whose value is a constant.
@@ -190,7 +244,7 @@ fn needed(system: &mut System, rows: &[Vec<NodeId>], conditions: &Assignment) ->
                     break;
                 }
             }
-            Err(failure) => divisor = failure.divisor(&system.graph),
+            Err(failure) => divisor = failure.divisor,
         }
     }
     best.ok_or_else(|| match divisor {

@@ -149,7 +149,8 @@ fn circular(system: &mut System, difference: NodeId) -> Option<Solutions> {
 /// The root of an expression that is linear in a symbol, confirmed by putting it in.
 pub fn linear_solution(system: &mut System, expression: NodeId, symbol: Symbol) -> Option<NodeId> {
     let slope = system.partial(expression, symbol);
-    if vanishes(system, slope) {
+    let bend = system.partial(slope, symbol);
+    if vanishes(system, slope) || !vanishes(system, bend) {
         return None;
     }
     let zero = system.graph.integer(0);

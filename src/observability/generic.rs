@@ -65,7 +65,7 @@ pub fn generic_rank(
                 best = best.max(rank(&field, matrix).unwrap_or(0));
                 points += 1;
             }
-            Err(failure) => divisor = failure.divisor(graph),
+            Err(failure) => divisor = failure.divisor,
         }
         if best == full {
             return GenericRank::Rank { rank: best, log2_error: f64::NEG_INFINITY, points };

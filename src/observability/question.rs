@@ -38,8 +38,10 @@ pub struct BranchAnswer {
     /// The length of the longest word taken, and why no longer ones were.
     pub order: usize,
     pub stop: Stop,
-    /// The rank at almost all states of the branch.
+    /// The rank at almost all states of the branch, by these words.
     pub generic_rank: usize,
+    /// Whether longer words cannot raise it there.
+    pub is_final: bool,
     /// The rank of the full codistribution at the sampled states.
     pub full: SweepReport,
     /// The rank of the file's own choice of rows at the same states, where it defines a matrix `rows`.
@@ -142,6 +144,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             order: codistribution.order,
             stop: codistribution.stop,
             generic_rank: codistribution.generic_rank(),
+            is_final: codistribution.is_final(),
             full,
             rows,
         });

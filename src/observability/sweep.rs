@@ -224,7 +224,7 @@ impl Judge {
         let inputs = state.inputs(&self.all, &exact).map_err(|_| None)?;
         let values = loaded
             .run(&inputs, &mut Vec::new())
-            .map_err(|failure| failure.divisor(graph).map(|divisor| format!("{} = 0", graph.text(divisor))))?;
+            .map_err(|failure| failure.divisor.map(|divisor| format!("{} = 0", graph.text(divisor))))?;
         let rows = values.chunks(self.columns).map(<[RBig]>::to_vec).collect();
         let unseen = kernel(&exact, rows).map_err(|_| None)?;
         Ok((self.columns - unseen.len(), unseen))

@@ -51,6 +51,7 @@ fn sweep_json(report: &SweepReport) -> Value {
 pub(crate) fn stop_text(stop: Stop) -> &'static str {
     match stop {
         Stop::Full => "the rank has reached the dimension",
+        Stop::Ceiling => "the rank has reached that of the states around",
         Stop::NoGrowth => "the rank stopped growing",
         Stop::Order => "the longest words that were allowed",
         Stop::TooMany => "there are too many longer words",
@@ -64,6 +65,7 @@ fn branch_json(branch: &BranchAnswer) -> Value {
     object["order"] = json!(branch.order);
     object["stopped_because"] = json!(stop_text(branch.stop));
     object["generic_rank"] = json!(branch.generic_rank);
+    object["longer_words_cannot_raise_it"] = json!(branch.is_final);
     object["own_rows"] = branch.rows.as_ref().map_or(Value::Null, sweep_json);
     object
 }
@@ -148,6 +150,9 @@ pub fn rank_text(answer: &RankAnswer) -> String {
         }
         let _ = writeln!(out, "words that were needed: {}", branch.words.join(", "));
         let _ = writeln!(out, "words of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
+        if !branch.is_final {
+            let _ = writeln!(out, "the fields leave these states: longer words may still raise the rank");
+        }
         sweep_text("the full codistribution", &branch.full, &mut out);
         if let Some(rows) = &branch.rows {
             sweep_text("the file's own choice of rows", rows, &mut out);

@@ -2,7 +2,7 @@
 
 use super::determinant::{LARGEST, determinant};
 use super::error::{Problem, nearest};
-use super::model::{Assignment, Matrix, System, Value};
+use super::model::{Assignment, Kind, Matrix, System, Value};
 use crate::expression::NodeId;
 use crate::expression::syntax::{Expr, ExprKind, Name, Span};
 use crate::number::Function;
@@ -15,6 +15,15 @@ const LARGEST_MATRIX: usize = 1 << 16;
 
 /// The functions of the language beside [`Function::ALL`].
 const OTHER_FUNCTIONS: [&str; 8] = ["tan", "cot", "sec", "csc", "L", "d", "det", "rank"];
+
+/// What a name should have been.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    State,
+    Symbol,
+    Field,
+    Name,
+}
 
 impl System {
     /// The value of an expression.
@@ -86,7 +95,7 @@ impl System {
         let mut assignment = Assignment::new();
         for (name, value) in list {
             let Some(symbol) = self.find_symbol(&name.text) else {
-                return Err(self.unknown(&name.text, &name.span, "state or parameter"));
+                return Err(self.unknown(&name.text, &name.span, Wanted::Symbol));
             };
             let value = self.scalar(value)?;
             if assignment.insert(symbol, value).is_some() {
@@ -122,17 +131,33 @@ impl System {
         match name {
             "pi" => Ok(Value::Scalar(self.graph.pi())),
             "rank" => Ok(Value::CodistributionRank),
-            _ => Err(self.unknown(name, span, "name")),
+            _ => Err(self.unknown(name, span, Wanted::Name)),
         }
     }
 
-    /// The error for a name that nobody has declared.
-    pub(crate) fn unknown(&self, name: &str, span: &Span, what: &str) -> Problem {
-        let problem = Problem::new(span, format!("unknown {what} '{name}'"), "not declared above");
-        let symbols = self.symbols.keys().map(|symbol| self.symbol_name(*symbol));
+    /// The error for a name that nobody has declared as what it should be.
+    pub(crate) fn unknown(&self, name: &str, span: &Span, wanted: Wanted) -> Problem {
+        let symbols = self.symbols.iter().filter(|(_, info)| wanted != Wanted::State || info.kind == Kind::State);
+        let symbols = symbols.map(|(symbol, _)| self.symbol_name(*symbol));
+        let definitions = self.definitions.keys().map(String::as_str).chain(["pi", "rank"]);
         let fields = self.fields.iter().chain(&self.imported_fields).map(|f| f.name.as_str());
-        let known = symbols.chain(self.definitions.keys().map(String::as_str)).chain(fields).chain(["pi", "rank"]);
-        match nearest(name, known) {
+        let near = match wanted {
+            Wanted::Field => nearest(name, fields),
+            Wanted::State | Wanted::Symbol => nearest(name, symbols),
+            Wanted::Name => nearest(name, symbols.chain(definitions)),
+        };
+        let what = match wanted {
+            Wanted::Field => "field",
+            Wanted::State => "state",
+            Wanted::Symbol => "state or parameter",
+            Wanted::Name => "name",
+        };
+        let problem = if self.find_symbol(name).is_some() || self.definitions.contains_key(name) {
+            Problem::new(span, format!("'{name}' is no {what}"), "declared above as something else")
+        } else {
+            Problem::new(span, format!("unknown {what} '{name}'"), "not declared above")
+        };
+        match near {
             Some(near) => problem.help(format!("perhaps you meant '{near}'")),
             None => problem,
         }
@@ -209,7 +234,7 @@ impl System {
                 return Err(Problem::new(&field.span, "expected the name of a field", "this is none"));
             };
             if self.field_mut(name).is_none() {
-                return Err(self.unknown(name, &field.span, "field"));
+                return Err(self.unknown(name, &field.span, Wanted::Field));
             }
             value = self.map(value, &last.span, |system, id| {
                 let graph = &mut system.graph;

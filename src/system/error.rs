@@ -59,12 +59,19 @@ impl Problem {
             }
             at
         };
-        let (begin, end) = (floor(self.span.start), floor(self.span.end.max(self.span.start)));
+        let (mut begin, mut end) = (floor(self.span.start), floor(self.span.end.max(self.span.start)));
+        let mut label = self.label;
+        if begin == text.len() && !text.is_empty() {
+            // there is nothing to mark at the end of the text: mark the last thing before it
+            end = text.trim_end().len();
+            begin = floor(end.saturating_sub(1));
+            label = "the text ends after this".to_owned();
+        }
         ReadError {
             message: self.message,
             source_code: NamedSource::new(name, text.to_owned()),
             span: SourceSpan::new(begin.into(), end - begin),
-            label: self.label,
+            label,
             help: self.help,
         }
     }

@@ -225,6 +225,27 @@ fn item(input: &mut Text<'_>) -> Read<Item> {
     .parse_next(input)
 }
 
+/// The words that begin an entry.
+const ENTRIES: [&str; 11] =
+    ["system", "use", "state", "param", "angle", "let", "field", "output", "sample", "claim", "erratum"];
+
+/// What to say where no entry begins.
+fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {
+    let mut error = Expected::from_input(input);
+    let line = text[..error.at].rfind('\n').map_or(0, |newline| newline + 1);
+    let word: String = text[error.at..].chars().take_while(|c| c.is_alphanumeric()).collect();
+    if after_an_entry && !text[line..error.at].trim().is_empty() {
+        error.what = "an operator, or the next entry on a line of its own".to_owned();
+        error.help = Some("a product is written with '*'".to_owned());
+    } else {
+        error.what = ENTRY.to_owned();
+        let near = super::error::nearest(&word, ENTRIES).map(|near| format!("perhaps you meant '{near}'"));
+        let go_on = || "or an operator, if the expression above goes on here".to_owned();
+        error.help = near.or_else(|| after_an_entry.then(go_on));
+    }
+    error
+}
+
 /// Reads a whole file.
 pub(crate) fn parse_file(text: &str) -> Result<Vec<Item>, Expected> {
     let all = |input: &mut Text<'_>| -> Read<Vec<Item>> {
@@ -233,14 +254,7 @@ pub(crate) fn parse_file(text: &str) -> Result<Vec<Item>, Expected> {
             match item.parse_next(input) {
                 Ok(found) => items.push(found),
                 Err(ErrMode::Cut(error)) => return Err(ErrMode::Cut(error)),
-                Err(_) => {
-                    let mut error = Expected::from_input(input);
-                    error.what = ENTRY.to_owned();
-                    if !items.is_empty() {
-                        error.help = Some("or an operator, if the expression above goes on here".to_owned());
-                    }
-                    return Err(ErrMode::Cut(error));
-                }
+                Err(_) => return Err(ErrMode::Cut(no_entry(text, input, !items.is_empty()))),
             }
         }
         Ok(items)

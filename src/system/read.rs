@@ -1,5 +1,6 @@
 //! From a file to a system.
 
+use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimBody, ClaimSyntax, Item, parse_file};
 use super::model::{Field, Kind, Range, SymbolInfo, System, Value};
@@ -97,7 +98,7 @@ impl System {
             Item::Angle(names) => {
                 for name in names {
                     let Some(symbol) = self.find_symbol(&name.text) else {
-                        return Err(self.unknown(&name.text, &name.span, "state or parameter"));
+                        return Err(self.unknown(&name.text, &name.span, Wanted::Symbol));
                     };
                     if let Some(info) = self.symbols.get_mut(&symbol) {
                         info.is_angle = true;
@@ -191,7 +192,7 @@ impl System {
         for (state, expr) in components {
             let symbol = self.find_symbol(&state.text).filter(|symbol| self.states.contains(symbol));
             let Some(symbol) = symbol else {
-                return Err(self.unknown(&state.text, &state.span, "state"));
+                return Err(self.unknown(&state.text, &state.span, Wanted::State));
             };
             if rates.iter().any(|(other, _)| *other == symbol) {
                 let message = format!("'{}' is given twice in the field '{}'", state.text, name.text);
@@ -213,7 +214,7 @@ impl System {
     fn sample(&mut self, ranges: &[(Name, Expr, Expr)], avoid: &[Expr]) -> Result<(), Problem> {
         for (name, low, high) in ranges {
             let Some(symbol) = self.find_symbol(&name.text) else {
-                return Err(self.unknown(&name.text, &name.span, "state or parameter"));
+                return Err(self.unknown(&name.text, &name.span, Wanted::Symbol));
             };
             let range = Range { low: self.rational(low)?, high: self.rational(high)? };
             if range.low > range.high {
