@@ -46,22 +46,36 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
         let text = system.source.get(statement.span.clone()).unwrap_or_default();
         text.split_whitespace().collect::<Vec<_>>().join(" ")
     };
-    let (statement, printed, expected) = match &claim.body {
-        ClaimBody::Claim { statement, expected } => (statement, None, *expected),
-        ClaimBody::Erratum { printed, corrected } => (corrected, Some(printed), Expectation::Proved),
+    let mut printed = None;
+    let (statement, verdict, expected) = match &claim.body {
+        ClaimBody::Claim { statement, expected } => {
+            (text(&system, statement), decide_statement(&mut system, statement, &mut rng), Some(*expected))
+        }
+        ClaimBody::Erratum { printed: print, corrected } => {
+            printed = Some((text(&system, print), decide_statement(&mut system, print, &mut rng)));
+            let verdict = decide_statement(&mut system, corrected, &mut rng);
+            (text(&system, corrected), verdict, Some(Expectation::Proved))
+        }
+        ClaimBody::Scan { repaired, .. } => {
+            let verdict = decide_statement(&mut system, repaired, &mut rng);
+            (text(&system, repaired), verdict, Some(Expectation::Proved))
+        }
+        ClaimBody::Definition { text } => (text.clone(), Verdict::Definition { text: text.clone() }, None),
+        ClaimBody::Open { reason } => {
+            (reason.clone(), Verdict::Undecided { why: reason.clone() }, Some(Expectation::Undecided))
+        }
     };
-    let printed = printed.map(|printed| {
-        let verdict = decide_statement(&mut system, printed, &mut rng);
-        (text(&system, printed), verdict)
-    });
-    let verdict = decide_statement(&mut system, statement, &mut rng);
     let print_is_wrong = printed.as_ref().is_none_or(|(_, verdict)| verdict.meets(Expectation::Refuted));
     Outcome {
         file: system.name.clone(),
         id: claim.id.clone(),
-        statement: text(&system, statement),
+        ok: expected.is_none_or(|expected| verdict.meets(expected)) && print_is_wrong,
+        statement,
         printed,
-        ok: verdict.meets(expected) && print_is_wrong,
+        scanned: match &claim.body {
+            ClaimBody::Scan { scanned, .. } => Some(scanned.clone()),
+            _ => None,
+        },
         verdict,
         expected,
         remark: claim.remark.clone(),

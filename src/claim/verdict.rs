@@ -32,6 +32,11 @@ pub enum Verdict {
         /// The counterexample.
         witness: Witness,
     },
+    /// Nothing is claimed: this is what a name means.
+    Definition {
+        /// In words.
+        text: String,
+    },
     /// Neither; what was tried.
     Undecided {
         /// In words.
@@ -40,9 +45,10 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// `proved`, `refuted` or `undecided`.
+    /// `proved`, `refuted`, `definition` or `undecided`.
     pub fn word(&self) -> &'static str {
         match self {
+            Verdict::Definition { .. } => "definition",
             Verdict::Proved { .. } => "proved",
             Verdict::Refuted { .. } => "refuted",
             Verdict::Undecided { .. } => "undecided",
@@ -73,7 +79,7 @@ impl Verdict {
                     engine.get_or_insert(name);
                 }
                 Verdict::Refuted { .. } => return verdict,
-                Verdict::Undecided { .. } => {
+                Verdict::Undecided { .. } | Verdict::Definition { .. } => {
                     undecided.get_or_insert(verdict);
                 }
             }
@@ -97,10 +103,12 @@ pub struct Outcome {
     pub statement: String,
     /// The statement as it was printed, and what became of it; of an erratum only.
     pub printed: Option<(String, Verdict)>,
+    /// The text as the scanner left it; of a scanning fault only.
+    pub scanned: Option<String>,
     /// The verdict on the claim, or on the corrected form.
     pub verdict: Verdict,
-    /// What the file expects.
-    pub expected: Expectation,
+    /// What the file expects; of a definition nothing.
+    pub expected: Option<Expectation>,
     /// Whether everything is as the file expects.
     pub ok: bool,
     /// The remark in the file.
@@ -110,23 +118,26 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// `proved`, `refuted`, `undecided`; or `erratum` where the printed form is refuted and the corrected one proved.
+    /// The verdict in a word; `erratum` where the printed form is refuted and the corrected one proved, `scanning fault`
+    /// where the repaired form is proved.
     pub fn word(&self) -> &'static str {
-        match &self.printed {
-            None => self.verdict.word(),
-            Some(_) if self.ok => "erratum",
-            Some((_, Verdict::Refuted { .. })) => self.verdict.word(),
-            Some((_, printed)) => printed.word(),
+        match (&self.printed, &self.scanned) {
+            (Some(_), _) if self.ok => "erratum",
+            (Some((_, printed)), _) if !matches!(printed, Verdict::Refuted { .. }) => printed.word(),
+            (None, Some(_)) if self.ok => "scanning fault",
+            _ => self.verdict.word(),
         }
     }
 
     /// The word that the file expects.
     pub fn expected_word(&self) -> &'static str {
-        match (&self.printed, self.expected) {
-            (Some(_), _) => "erratum",
-            (None, Expectation::Proved) => "proved",
-            (None, Expectation::Refuted) => "refuted",
-            (None, Expectation::Undecided) => "undecided",
+        match (&self.printed, &self.scanned, self.expected) {
+            (Some(_), _, _) => "erratum",
+            (None, Some(_), _) => "scanning fault",
+            (None, None, Some(Expectation::Proved)) => "proved",
+            (None, None, Some(Expectation::Refuted)) => "refuted",
+            (None, None, Some(Expectation::Undecided)) => "undecided",
+            (None, None, None) => "definition",
         }
     }
 }

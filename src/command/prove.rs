@@ -68,13 +68,17 @@ impl Prove {
                 print_text(&claim_line(outcome));
             }
             let count = |word: &str| outcomes.iter().filter(|outcome| outcome.word() == word).count();
+            let words = ["proved", "erratum", "scanning fault", "definition", "refuted", "undecided"];
+            let counts: Vec<String> = words
+                .iter()
+                .map(|word| (outcomes.iter().filter(|outcome| outcome.word() == *word).count(), word))
+                .filter(|(count, _)| *count > 0)
+                .map(|(count, word)| format!("{count} {word}"))
+                .collect();
             print_text(&format!(
-                "{} claims: {} proved, {} refuted, {} undecided, {} errata; {failed} not as expected",
+                "{} claims: {}; {failed} not as expected",
                 outcomes.len(),
-                count("proved"),
-                count("refuted"),
-                count("undecided"),
-                count("erratum"),
+                counts.join(", ")
             ));
         }
         let all = failed == 0 && outcomes.len() == claims;

@@ -86,9 +86,10 @@ pub(crate) fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<
 }
 
 /// Words that begin something and so cannot be names.
-pub(crate) const RESERVED: [&str; 20] = [
+pub(crate) const RESERVED: [&str; 25] = [
     "system", "cite", "use", "state", "param", "angle", "let", "field", "output", "sample", "avoid", "in", "claim",
-    "erratum", "printed", "corrected", "where", "at", "within", "expect",
+    "erratum", "printed", "corrected", "scan", "scanned", "repaired", "definition", "undecided", "where", "at", "within",
+    "expect",
 ];
 
 /// Letters, digits and underscores, beginning with a letter.

@@ -27,6 +27,7 @@ fn verdict_json(verdict: &Verdict) -> Value {
         Verdict::Refuted { engine, witness } => {
             json!({ "verdict": "refuted", "engine": engine, "witness": witness_json(witness) })
         }
+        Verdict::Definition { .. } => json!({ "verdict": "definition", "engine": null }),
         Verdict::Undecided { why } => json!({ "verdict": "undecided", "engine": null, "why": why }),
     }
 }
@@ -43,6 +44,9 @@ pub fn claim_json(outcome: &Outcome) -> Value {
     object["seconds"] = json!(outcome.seconds);
     if let Some(remark) = &outcome.remark {
         object["remark"] = json!(remark);
+    }
+    if let Some(scanned) = &outcome.scanned {
+        object["scanned"] = json!(scanned);
     }
     if let Some((statement, verdict)) = &outcome.printed {
         let mut printed = verdict_json(verdict);
@@ -86,8 +90,12 @@ pub fn claim_line(outcome: &Outcome) -> String {
         Verdict::Proved { log2_error, .. } if *log2_error == f64::NEG_INFINITY => "certain".to_owned(),
         Verdict::Proved { log2_error, .. } => format!("but for a probability below {}", error_bound(*log2_error)),
         Verdict::Refuted { witness, .. } => witness_line(witness),
+        Verdict::Definition { text } => text.clone(),
         Verdict::Undecided { why } => why.clone(),
     };
+    if let Some(scanned) = &outcome.scanned {
+        line.push_str(&format!("\n         scanned    {scanned}\n         repaired   {}", outcome.statement));
+    }
     match &outcome.printed {
         None => match &outcome.verdict {
             Verdict::Proved { .. } => line.push_str(&format!("  ({})", explain(&outcome.verdict))),

@@ -93,6 +93,7 @@ fn explain(verdict: &Verdict) -> Markup {
                 @else { "; probability of an error below " (error_bound(*log2_error)) }
             }
             Verdict::Refuted { witness, .. } => { (witness_line(witness)) }
+            Verdict::Definition { .. } => { "nothing to decide" }
             Verdict::Undecided { why } => { (why) }
         }
     }

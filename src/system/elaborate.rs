@@ -14,7 +14,9 @@ const LARGEST_GRAPH: usize = 4_000_000;
 const LARGEST_MATRIX: usize = 1 << 16;
 
 /// The functions of the language beside [`Function::ALL`].
-const OTHER_FUNCTIONS: [&str; 8] = ["tan", "cot", "sec", "csc", "L", "d", "det", "rank"];
+const OTHER_FUNCTIONS: [&str; 13] = [
+    "tan", "cot", "sec", "csc", "L", "d", "det", "rank", "pole", "transpose", "inverse", "dot", "cross",
+];
 
 /// What a name should have been.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -201,6 +203,28 @@ impl System {
                 },
                 _ => Err(Problem::new(span, format!("'{name}' takes one matrix"), "here")),
             },
+            "transpose" | "inverse" => match arguments {
+                [argument] => match self.elaborate(argument)? {
+                    Value::Matrix(matrix) if name == "transpose" => Ok(Value::Matrix(transpose(&matrix))),
+                    Value::Matrix(matrix) => self.inverse(&matrix, &argument.span),
+                    other => {
+                        let message = format!("'{name}' takes a matrix, not {}", other.describe());
+                        Err(Problem::new(&argument.span, message, "this"))
+                    }
+                },
+                _ => Err(Problem::new(span, format!("'{name}' takes one matrix"), "here")),
+            },
+            "dot" | "cross" => match arguments {
+                [a, b] => match (self.elaborate(a)?, self.elaborate(b)?) {
+                    (Value::Matrix(x), Value::Matrix(y)) if name == "dot" => self.dot(&x, &y, span),
+                    (Value::Matrix(x), Value::Matrix(y)) => self.cross(&x, &y, span),
+                    (x, y) => {
+                        let message = format!("'{name}' of {} and {}", x.describe(), y.describe());
+                        Err(Problem::new(span, message, "two vectors are needed").help("as in [x; y; z]"))
+                    }
+                },
+                _ => Err(Problem::new(span, format!("'{name}' takes two vectors"), "here")),
+            },
             "pole" => match arguments {
                 [expression, factor] => {
                     let expression = self.scalar(expression)?;
@@ -210,7 +234,7 @@ impl System {
                 _ => Err(Problem::new(span, "'pole' takes an expression and what vanishes at the pole", "here")),
             },
             _ => {
-                let known = Function::ALL.iter().map(|f| f.name()).chain(OTHER_FUNCTIONS).chain(["pole"]);
+                let known = Function::ALL.iter().map(|f| f.name()).chain(OTHER_FUNCTIONS);
                 let problem = Problem::new(span, format!("unknown function '{name}'"), "here");
                 Err(match nearest(name, known) {
                     Some(near) => problem.help(format!("perhaps you meant '{near}'")),
@@ -284,6 +308,60 @@ impl System {
             return Err(Problem::new(span, message, "this"));
         }
         Ok(Value::Scalar(determinant(&mut self.graph, matrix)))
+    }
+
+    /// The inverse by cofactors over the determinant: exact, and short for the small matrices of papers.
+    fn inverse(&mut self, matrix: &Matrix, span: &Span) -> Result<Value, Problem> {
+        let Value::Scalar(whole) = self.determinant(matrix, span)? else {
+            return Err(Problem::new(span, "no determinant", "here"));
+        };
+        let n = matrix.rows;
+        let mut entries = Vec::with_capacity(n * n);
+        for row in 0..n {
+            for column in 0..n {
+                // the cofactor of the transposed place
+                let kept = |skip: usize| (0..n).filter(move |i| *i != skip);
+                let minor: Vec<NodeId> =
+                    kept(column).flat_map(|i| kept(row).map(move |j| (i, j))).map(|(i, j)| matrix.at(i, j)).collect();
+                let minor = Matrix { rows: n - 1, columns: n - 1, entries: minor };
+                let value = determinant(&mut self.graph, &minor);
+                let value = if (row + column) % 2 == 0 { value } else { self.graph.neg(value) };
+                entries.push(self.graph.div(value, whole));
+            }
+        }
+        Ok(Value::Matrix(Matrix { rows: n, columns: n, entries }))
+    }
+
+    /// The sum of the products of entries.
+    fn dot(&mut self, a: &Matrix, b: &Matrix, span: &Span) -> Result<Value, Problem> {
+        let vectors = (a.rows == 1 || a.columns == 1) && (b.rows == 1 || b.columns == 1);
+        if !vectors || a.entries.len() != b.entries.len() {
+            let message = format!("a matrix of {} by {} and one of {} by {}", a.rows, a.columns, b.rows, b.columns);
+            return Err(Problem::new(span, message, "'dot' takes two vectors of one length"));
+        }
+        let products: Vec<NodeId> = a.entries.iter().zip(&b.entries).map(|(x, y)| self.graph.mul(*x, *y)).collect();
+        Ok(Value::Scalar(self.graph.sum(products)))
+    }
+
+    /// The vector product in three dimensions; in two, the number `a1 b2 - a2 b1`.
+    fn cross(&mut self, a: &Matrix, b: &Matrix, span: &Span) -> Result<Value, Problem> {
+        let (x, y) = (&a.entries, &b.entries);
+        let vectors = (a.rows == 1 || a.columns == 1) && (a.rows, a.columns) == (b.rows, b.columns);
+        let mut part = |i: usize, j: usize| {
+            let (left, right) = (self.graph.mul(x[i], y[j]), self.graph.mul(x[j], y[i]));
+            self.graph.sub(left, right)
+        };
+        match x.len() {
+            2 if vectors => Ok(Value::Scalar(part(0, 1))),
+            3 if vectors => {
+                let entries = vec![part(1, 2), part(2, 0), part(0, 1)];
+                Ok(Value::Matrix(Matrix { entries, ..*a }))
+            }
+            _ => {
+                let message = format!("a matrix of {} by {} and one of {} by {}", a.rows, a.columns, b.rows, b.columns);
+                Err(Problem::new(span, message, "'cross' takes two vectors of length two or three"))
+            }
+        }
     }
 
     /// A matrix from rows of blocks: numbers, and matrices that fit together.
@@ -393,4 +471,9 @@ impl System {
             }
         }
     }
+}
+
+fn transpose(matrix: &Matrix) -> Matrix {
+    let entries = (0..matrix.columns).flat_map(|j| (0..matrix.rows).map(move |i| matrix.at(i, j))).collect();
+    Matrix { rows: matrix.columns, columns: matrix.rows, entries }
 }

@@ -50,6 +50,23 @@ pub enum ClaimBody {
     Claim { statement: Statement, expected: Expectation },
     /// A printed statement that is to be refuted, and a corrected one that is to be proved.
     Erratum { printed: Statement, corrected: Statement },
+    /// A statement that the scanner damaged: as it stands in the scan, in words, and repaired, which is to be proved.
+    Scan { scanned: String, repaired: Statement },
+    /// Something that is defined and not claimed.
+    Definition { text: String },
+    /// Something that is not decided, and why.
+    Open { reason: String },
+}
+
+impl ClaimBody {
+    /// The statements that it makes.
+    pub fn statements(&self) -> Vec<&Statement> {
+        match self {
+            ClaimBody::Claim { statement, .. } | ClaimBody::Scan { repaired: statement, .. } => vec![statement],
+            ClaimBody::Erratum { printed, corrected } => vec![printed, corrected],
+            ClaimBody::Definition { .. } | ClaimBody::Open { .. } => Vec::new(),
+        }
+    }
 }
 
 /// A claim or an erratum as it stands in the file.
@@ -179,14 +196,16 @@ fn statement(input: &mut Text<'_>) -> Read<Statement> {
 fn claim(input: &mut Text<'_>) -> Read<Item> {
     keyword("claim").parse_next(input)?;
     let id = cut_err(identifier).parse_next(input)?;
-    let expected = match opt(preceded(keyword("expect"), cut_err(name))).parse_next(input)? {
+    let verdict = alt((
+        keyword("proved").value(Expectation::Proved),
+        keyword("refuted").value(Expectation::Refuted),
+        keyword("undecided").value(Expectation::Undecided),
+    ));
+    let at = input.current_token_start();
+    let expected = match opt(preceded(keyword("expect"), opt(verdict))).parse_next(input)? {
         None => Expectation::Proved,
-        Some(word) => match word.text.as_str() {
-            "proved" => Expectation::Proved,
-            "refuted" => Expectation::Refuted,
-            "undecided" => Expectation::Undecided,
-            _ => return stop(word.span.start, "'proved', 'refuted' or 'undecided'", None),
-        },
+        Some(Some(verdict)) => verdict,
+        Some(None) => return stop(at + "expect ".len(), "'proved', 'refuted' or 'undecided'", None),
     };
     cut_err(sign(":")).context("':' and what is claimed").parse_next(input)?;
     let statement = statement(input)?;
@@ -208,7 +227,31 @@ fn erratum(input: &mut Text<'_>) -> Read<Item> {
     Ok(Item::Claim(ClaimSyntax { id: id.text, span: id.span, body, remark }))
 }
 
-const ENTRY: &str = "one of: system, use, state, param, angle, let, field, output, sample, claim, erratum";
+fn scan(input: &mut Text<'_>) -> Read<Item> {
+    keyword("scan").parse_next(input)?;
+    let id = cut_err(identifier).parse_next(input)?;
+    cut_err(sign(":")).context("':'").parse_next(input)?;
+    cut_err(keyword("scanned")).context("'scanned' and the damaged text in quotation marks").parse_next(input)?;
+    let scanned = cut_err(quoted).parse_next(input)?;
+    cut_err(keyword("repaired")).context("'repaired' and the statement as it must have been").parse_next(input)?;
+    let repaired = statement(input)?;
+    let remark = opt(quoted).parse_next(input)?;
+    let body = ClaimBody::Scan { scanned, repaired };
+    Ok(Item::Claim(ClaimSyntax { id: id.text, span: id.span, body, remark }))
+}
+
+/// `definition ID: "text"` and `undecided ID: "reason"`.
+fn remark_only(input: &mut Text<'_>) -> Read<Item> {
+    let open = alt((keyword("definition").value(false), keyword("undecided").value(true))).parse_next(input)?;
+    let id = cut_err(identifier).parse_next(input)?;
+    cut_err(sign(":")).context("':'").parse_next(input)?;
+    let text = cut_err(quoted).parse_next(input)?;
+    let body = if open { ClaimBody::Open { reason: text } } else { ClaimBody::Definition { text } };
+    Ok(Item::Claim(ClaimSyntax { id: id.text, span: id.span, body, remark: None }))
+}
+
+const ENTRY: &str = "one of: system, use, state, param, angle, let, field, output, sample, claim, erratum, scan, \
+                     definition, undecided";
 
 fn item(input: &mut Text<'_>) -> Read<Item> {
     alt((
@@ -220,14 +263,16 @@ fn item(input: &mut Text<'_>) -> Read<Item> {
         definition,
         field,
         preceded(keyword("output"), cut_err(separated(1.., sum, sign(",")))).map(Item::Output),
-        alt((sample, claim, erratum)),
+        alt((sample, claim, erratum, scan, remark_only)),
     ))
     .parse_next(input)
 }
 
 /// The words that begin an entry.
-const ENTRIES: [&str; 11] =
-    ["system", "use", "state", "param", "angle", "let", "field", "output", "sample", "claim", "erratum"];
+const ENTRIES: [&str; 14] = [
+    "system", "use", "state", "param", "angle", "let", "field", "output", "sample", "claim", "erratum", "scan", "definition",
+    "undecided",
+];
 
 /// What to say where no entry begins.
 fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {

@@ -2,7 +2,7 @@
 
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
-use super::grammar::{ClaimBody, ClaimSyntax, Item, parse_file};
+use super::grammar::{ClaimSyntax, Item, parse_file};
 use super::model::{Field, Kind, Range, SymbolInfo, System, Value};
 use crate::expression::syntax::{Expr, Name, Span};
 use crate::expression::{Derivation, Graph, Symbol, parse_expression};
@@ -131,11 +131,7 @@ impl System {
 
     /// Whether a claim can be understood: its names are known and its two sides can be equal at all.
     fn check(&mut self, claim: &ClaimSyntax) -> Result<(), Problem> {
-        let statements = match &claim.body {
-            ClaimBody::Claim { statement, .. } => vec![statement],
-            ClaimBody::Erratum { printed, corrected } => vec![printed, corrected],
-        };
-        for statement in statements {
+        for statement in claim.body.statements() {
             let (left, right) = (&statement.equation.left, &statement.equation.right);
             let values = (self.elaborate(left)?, self.elaborate(right)?);
             let comparable = match &values {
