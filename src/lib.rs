@@ -29,14 +29,14 @@
 //!
 //! Each module is a floor and imports only from those above it in this list.
 
-pub mod number;
-pub mod expression;
-pub mod system;
-pub mod observability;
 pub mod claim;
+pub mod expression;
+pub mod number;
+pub mod observability;
+pub mod report;
+pub mod system;
 pub mod tradeoff;
 pub mod verification;
-pub mod report;
 
 pub use claim::{CertifiedValue, Outcome, ValueError, Verdict, Witness, certified_value, decide, decide_all};
 pub use observability::{RankAnswer, RankQuestion, answer_rank};

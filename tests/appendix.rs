@@ -50,9 +50,10 @@ fn fractions_and_decimals_are_one() {
 /// At the thesis's singular points ("division by zero") the divisor is named.
 #[test]
 fn a_pole_is_named() {
-    for (rates, divisor) in
-        [("omega0=1,omega1=1,omega2=3", "omega1 - omega0 = 0"), ("omega0=2,omega1=1,omega2=1", "omega1 + omega2 - omega0 = 0")]
-    {
+    for (rates, divisor) in [
+        ("omega0=1,omega1=1,omega2=3", "omega1 - omega0 = 0"),
+        ("omega0=2,omega1=1,omega2=1", "omega1 + omega2 - omega0 = 0"),
+    ] {
         let at = format!("m=1,rho=.5,phi2=2,s1=1,s2=2,r1=1.5,r2=1.5,{rates}");
         let output = palmistry(&["eval", GENERAL, "det(A)", "--at", &at, "--json"]);
         assert_eq!(output.status.code(), Some(2));
@@ -123,8 +124,15 @@ fn the_expansion_is_the_determinant() {
     let q = |text: &str| parse_decimal(text).unwrap();
     let mut state = State::default();
     for (name, value) in [
-        ("m", "3/7"), ("rho", "5/11"), ("s1", "13/8"), ("s2", "2/3"), ("r1", "9/5"), ("r2", "7/4"), ("omega0", "1/6"),
-        ("omega1", "-8/3"), ("omega2", "12/5"),
+        ("m", "3/7"),
+        ("rho", "5/11"),
+        ("s1", "13/8"),
+        ("s2", "2/3"),
+        ("r1", "9/5"),
+        ("r2", "7/4"),
+        ("omega0", "1/6"),
+        ("omega1", "-8/3"),
+        ("omega2", "12/5"),
     ] {
         state.values.insert(system.find_symbol(name).unwrap(), Coordinate::Number(q(value)));
     }
@@ -133,20 +141,26 @@ fn the_expansion_is_the_determinant() {
     let values: Vec<_> = expansion
         .variables
         .iter()
-        .map(|input| match (input, state.values.get(match input {
-            Input::Plain(s) | Input::Sine(s) | Input::Cosine(s) => s,
-            Input::Opaque(_) => panic!("a function"),
-        })) {
-            (Input::Plain(_), Some(Coordinate::Number(v))) => v.clone(),
-            (Input::Sine(_), Some(Coordinate::Angle { sine, .. })) => sine.clone(),
-            (Input::Cosine(_), Some(Coordinate::Angle { cosine, .. })) => cosine.clone(),
-            other => panic!("{other:?}"),
+        .map(|input| {
+            match (
+                input,
+                state.values.get(match input {
+                    Input::Plain(s) | Input::Sine(s) | Input::Cosine(s) => s,
+                    Input::Opaque(_) => panic!("a function"),
+                }),
+            ) {
+                (Input::Plain(_), Some(Coordinate::Number(v))) => v.clone(),
+                (Input::Sine(_), Some(Coordinate::Angle { sine, .. })) => sine.clone(),
+                (Input::Cosine(_), Some(Coordinate::Angle { cosine, .. })) => cosine.clone(),
+                other => panic!("{other:?}"),
+            }
         })
         .collect();
     let order: Vec<usize> = (0..expansion.numerator.len()).collect();
     let within: Vec<usize> = (0..values.len()).collect();
     let sum = expansion.sum_terms(&exact, &values, &order, &within).unwrap();
-    let roots = palmistry::expression::expand_angles(&mut system.graph, &[determinant], |s| angles.contains(&s));
+    let roots =
+        palmistry::expression::expand_angles(&mut system.graph, &[determinant], |s| angles.contains(&s));
     let program = palmistry::expression::Program::new(&system.graph, &roots, |s| angles.contains(&s), false);
     let inputs = state.inputs(&program, &exact).unwrap();
     let direct = program.load(exact).unwrap().run(&inputs, &mut Vec::new()).unwrap();

@@ -14,7 +14,8 @@ fn shown(text: &str) -> String {
         Err(error) => error,
     };
     let mut out = String::new();
-    let handler = miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor()).with_width(90);
+    let handler =
+        miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor()).with_width(90);
     handler.render_report(&mut out, &error).unwrap();
     out
 }
@@ -70,7 +71,8 @@ fn files_that_are_none_are_refused_in_words() {
     }
     let output = palmistry(&["prove", folder.path().join("none").to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(2));
-    let output = palmistry(&["verify", "--proofs", "no/such/folder", "--out", folder.path().to_str().unwrap()]);
+    let output =
+        palmistry(&["verify", "--proofs", "no/such/folder", "--out", folder.path().to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(2));
 }
 
@@ -115,7 +117,8 @@ fn depth_and_length_are_survived() {
     }
     // every line squares the one before: the degree is 2^60, the value at x = 3 has 10^18 digits
     let lets: String = (1..=60).map(|i| format!("let a{i} = a{}^2 + 1 ", i - 1)).collect();
-    let text = format!("system \"tower\" state x let a0 = x {lets} claim 1: a60 = a59 claim 2: a60 = a60*x/x");
+    let text =
+        format!("system \"tower\" state x let a0 = x {lets} claim 1: a60 = a59 claim 2: a60 = a60*x/x");
     let system = System::parse("tower.proof", &text, Path::new("")).unwrap();
     let outcomes = decide_all(&system, 1, &false.into(), &|_| ());
     assert!(outcomes.iter().all(|outcome| outcome.word() != "refuted" || outcome.id == "1"));
@@ -124,11 +127,75 @@ fn depth_and_length_are_survived() {
 /// Pieces of the language, in any order.
 fn scraps() -> impl Strategy<Value = String> {
     let piece = prop::sample::select(vec![
-        "system", "\"t\"", "state", "x", "y", "param", "k", "= 2", "angle", "a", "let", "v", "=", "field", "f", "x' =",
-        "others' = 0", "output", "sample", "in [0, 1]", "avoid", "claim 1:", "claim", "erratum", "printed", "corrected",
-        "where", "at {", "}", "within", "expect", "refuted", "+", "-", "*", "/", "^", "^2", "(", ")", "[", "]", ",", ";",
-        "L(f, x)", "d(x)", "det(", "rank", "rank(", "pole(", "sin(", "sqrt(", "log(", "exp(", "pi", "0", "1", ".5",
-        "1e400", "1e99999", "\n", "#", "'", "\"", "é", "\u{0}", "use", "general", "rank = 1",
+        "system",
+        "\"t\"",
+        "state",
+        "x",
+        "y",
+        "param",
+        "k",
+        "= 2",
+        "angle",
+        "a",
+        "let",
+        "v",
+        "=",
+        "field",
+        "f",
+        "x' =",
+        "others' = 0",
+        "output",
+        "sample",
+        "in [0, 1]",
+        "avoid",
+        "claim 1:",
+        "claim",
+        "erratum",
+        "printed",
+        "corrected",
+        "where",
+        "at {",
+        "}",
+        "within",
+        "expect",
+        "refuted",
+        "+",
+        "-",
+        "*",
+        "/",
+        "^",
+        "^2",
+        "(",
+        ")",
+        "[",
+        "]",
+        ",",
+        ";",
+        "L(f, x)",
+        "d(x)",
+        "det(",
+        "rank",
+        "rank(",
+        "pole(",
+        "sin(",
+        "sqrt(",
+        "log(",
+        "exp(",
+        "pi",
+        "0",
+        "1",
+        ".5",
+        "1e400",
+        "1e99999",
+        "\n",
+        "#",
+        "'",
+        "\"",
+        "é",
+        "\u{0}",
+        "use",
+        "general",
+        "rank = 1",
     ]);
     prop::collection::vec(piece, 0..40).prop_map(|pieces| pieces.join(" "))
 }

@@ -34,7 +34,8 @@ fn one_wrong_sign_is_refuted_with_a_witness() {
     let right = "let d1 = (r1*cos(phi2) + r2)/sin(phi2) - s1";
     assert!(text.contains(right));
     write(&folder, "general.proof", std::fs::read("proofs/moll2002/general.proof").unwrap());
-    let file = write(&folder, "same_rate.proof", text.replace(right, "let d1 = (r1*cos(phi2) - r2)/sin(phi2) - s1"));
+    let file =
+        write(&folder, "same_rate.proof", text.replace(right, "let d1 = (r1*cos(phi2) - r2)/sin(phi2) - s1"));
     let output = palmistry(&["prove", file.to_str().unwrap(), "--json"]);
     assert_eq!(output.status.code(), Some(1));
     let found = json(&output);
@@ -42,11 +43,13 @@ fn one_wrong_sign_is_refuted_with_a_witness() {
     assert_eq!(broken["verdict"], "refuted");
     // r1' = -d1 (omega1 - omega0), once with r2 and once with -r2: the sides differ by 2 r2 (omega1 - omega0)/sin(phi2)
     let state = &broken["witness"]["state"];
-    let exact = |name: &str| palmistry::number::parse_decimal(state[name]["exact"].as_str().unwrap()).unwrap();
+    let exact =
+        |name: &str| palmistry::number::parse_decimal(state[name]["exact"].as_str().unwrap()).unwrap();
     let sine = state["phi2"]["exact"].as_str().unwrap();
     let sine = sine.strip_prefix("sin = ").unwrap().split(',').next().unwrap();
     let sine = palmistry::number::parse_decimal(sine).unwrap();
-    let side = |name: &str| palmistry::number::parse_decimal(broken["witness"][name].as_str().unwrap()).unwrap();
+    let side =
+        |name: &str| palmistry::number::parse_decimal(broken["witness"][name].as_str().unwrap()).unwrap();
     let two = dashu::rational::RBig::from(2);
     assert_eq!(side("left") - side("right"), two * exact("r2") * (exact("omega1") - exact("omega0")) / sine);
 }
@@ -93,7 +96,8 @@ fn known_statements_have_their_verdicts() {
         let text = format!(
             "system \"facts\" state x, y param a, b, k = 2 angle a, b field f x' = y y' = -k*x claim 1: {statement}"
         );
-        let system = System::parse("facts.proof", &text, Path::new("")).unwrap_or_else(|e| panic!("{statement}: {e}"));
+        let system =
+            System::parse("facts.proof", &text, Path::new("")).unwrap_or_else(|e| panic!("{statement}: {e}"));
         let outcome = decide_all(&system, 1, &false.into(), &|_| ()).remove(0);
         assert_eq!(outcome.word(), verdict, "{statement}: {:?}", outcome.verdict);
     }
@@ -124,10 +128,15 @@ fn the_outcome_does_not_depend_on_the_number_of_threads() {
 fn junit_is_written_whole() {
     let folder = folder();
     let file = folder.path().join("deep/er/claims.xml");
-    let output = palmistry(&["prove", "proofs/moll2002/fixed_palms.proof", "--junit", file.to_str().unwrap()]);
+    let output =
+        palmistry(&["prove", "proofs/moll2002/fixed_palms.proof", "--junit", file.to_str().unwrap()]);
     assert!(output.status.success());
     let xml = std::fs::read_to_string(&file).unwrap();
-    assert!(xml.starts_with("<?xml") && xml.contains("failures=\"0\"") && xml.trim_end().ends_with("</testsuites>"));
+    assert!(
+        xml.starts_with("<?xml")
+            && xml.contains("failures=\"0\"")
+            && xml.trim_end().ends_with("</testsuites>")
+    );
     assert_eq!(std::fs::read_dir(file.parent().unwrap()).unwrap().count(), 1, "nothing is left beside it");
 }
 
@@ -135,7 +144,8 @@ fn junit_is_written_whole() {
 #[test]
 fn an_unexpected_verdict_is_exit_status_one() {
     let folder = folder();
-    let file = write(&folder, "a.proof", "system \"a\" param x claim 1: x = 2*x claim 2 expect refuted: x = x + 1");
+    let file =
+        write(&folder, "a.proof", "system \"a\" param x claim 1: x = 2*x claim 2 expect refuted: x = x + 1");
     let output = palmistry(&["prove", file.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stdout).contains("1 not as expected"));

@@ -4,9 +4,7 @@
 use num_dual::Dual64;
 use palmistry::expression::{Program, Symbol};
 use palmistry::number::Floats;
-use palmistry::observability::{
-    Branch, Locus, differential_by_duals, float_inputs, lie_derivative_by_duals,
-};
+use palmistry::observability::{Branch, Locus, differential_by_duals, float_inputs, lie_derivative_by_duals};
 use palmistry::{System, tradeoff::growth_of_lie_derivatives};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -20,7 +18,13 @@ fn point(system: &mut System, index: u64) -> HashMap<Symbol, f64> {
     let everything: Vec<_> =
         system.fields.iter().flat_map(|field| field.components.iter().map(|(_, node)| *node)).collect();
     let locus = Locus::new(system, &Branch::default(), &BTreeMap::new(), &everything).unwrap();
-    locus.draw(11, index).unwrap().values.into_iter().map(|(symbol, value)| (symbol, value.to_f64())).collect()
+    locus
+        .draw(11, index)
+        .unwrap()
+        .values
+        .into_iter()
+        .map(|(symbol, value)| (symbol, value.to_f64()))
+        .collect()
 }
 
 /// All words of `length` fields.
@@ -54,7 +58,10 @@ fn differentials_agree_along_every_word() {
                         let scale = graph.iter().fold(0.0f64, |a, x| a.max(x.abs())).max(1.0);
                         for (x, y) in graph.iter().zip(&duals) {
                             let difference = (x - y).abs() / scale;
-                            assert!(difference < 1e-11, "{name} {word:?} {output}: {x} and {y}, {difference:e} apart");
+                            assert!(
+                                difference < 1e-11,
+                                "{name} {word:?} {output}: {x} and {y}, {difference:e} apart"
+                            );
                         }
                     }
                 }

@@ -17,9 +17,12 @@ fn rank(arguments: &[&str]) -> Value {
 /// Every regime is observable at every sampled state of its box, and each rank is certified.
 #[test]
 fn every_regime_is_observable_on_its_box() {
-    for (file, dimension) in
-        [(GENERAL, 10), (SAME_RATE, 6), ("proofs/moll2002/one_palm_fixed.proof", 6), ("proofs/moll2002/fixed_palms.proof", 5)]
-    {
+    for (file, dimension) in [
+        (GENERAL, 10),
+        (SAME_RATE, 6),
+        ("proofs/moll2002/one_palm_fixed.proof", 6),
+        ("proofs/moll2002/fixed_palms.proof", 5),
+    ] {
         let found = rank(&[file, "--samples", "500"]);
         assert_eq!(found["dimension"], dimension, "{file}");
         assert_eq!(found["samples"], 500, "{file}");
@@ -43,7 +46,11 @@ fn the_radii_are_unseen_where_the_object_does_not_turn() {
 #[test]
 fn two_questions_have_two_answers() {
     let found = rank(&[SAME_RATE, "--samples", "50", "--where", "sin(phi1) = 0"]);
-    assert_eq!(found["rank_histogram"], json!({ "6": 100 }), "two branches, palm 1 to the right and to the left");
+    assert_eq!(
+        found["rank_histogram"],
+        json!({ "6": 100 }),
+        "two branches, palm 1 to the right and to the left"
+    );
     for branch in found["branches"].as_array().unwrap() {
         assert_eq!(branch["own_rows"]["rank_histogram"], json!({ "5": 50 }));
     }

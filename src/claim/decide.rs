@@ -85,7 +85,8 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
 
 /// A number from a name (Fowler, Noll and Vo's hash), so that each claim has random numbers of its own.
 fn fingerprint(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    text.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 fn decide_statement(system: &mut System, statement: &Statement, rng: &mut ChaCha8Rng) -> Verdict {
@@ -105,7 +106,9 @@ fn attempt(system: &mut System, statement: &Statement, rng: &mut ChaCha8Rng) -> 
             (Value::Scalar(l), Value::Scalar(r)) if statement.conditions.is_empty() => {
                 Ok(decide_nearness(system, l, r, tolerance))
             }
-            (Value::Scalar(_), Value::Scalar(_)) => Err("'within' takes no 'where'; use 'at {...}'".to_owned()),
+            (Value::Scalar(_), Value::Scalar(_)) => {
+                Err("'within' takes no 'where'; use 'at {...}'".to_owned())
+            }
             _ => Err("'within' compares numbers".to_owned()),
         };
     }
@@ -159,9 +162,8 @@ fn pole_statement(
     rng: &mut ChaCha8Rng,
 ) -> Result<Verdict, String> {
     let (expression, factor, claimed) = match (left, right) {
-        (Value::Pole { expression, factor }, Value::Scalar(n)) | (Value::Scalar(n), Value::Pole { expression, factor }) => {
-            (expression, factor, n)
-        }
+        (Value::Pole { expression, factor }, Value::Scalar(n))
+        | (Value::Scalar(n), Value::Pole { expression, factor }) => (expression, factor, n),
         (l, r) => return Err(format!("{} is compared with {}", l.describe(), r.describe())),
     };
     let claimed = claimed_integer(system, claimed)?;

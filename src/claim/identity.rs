@@ -17,7 +17,12 @@ const EXACT: &str = "exact arithmetic at a state";
 const INTERVALS: &str = "interval arithmetic";
 
 /// Decides an equation between matrices (or numbers, as matrices of one entry).
-pub(crate) fn decide_identity(system: &mut System, left: &Matrix, right: &Matrix, rng: &mut impl Rng) -> Verdict {
+pub(crate) fn decide_identity(
+    system: &mut System,
+    left: &Matrix,
+    right: &Matrix,
+    rng: &mut impl Rng,
+) -> Verdict {
     let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
     let both: Vec<NodeId> = left.entries.iter().chain(&right.entries).copied().collect();
@@ -37,7 +42,9 @@ pub(crate) fn decide_identity(system: &mut System, left: &Matrix, right: &Matrix
             let text = system.graph.text(divisor);
             return Verdict::undecided(format!("every state there is a pole: {text} = 0 is divided by"));
         }
-        ZeroTest::Nonzero(index) => (index..index + 1, "the sides differ as expressions in their functions".to_owned()),
+        ZeroTest::Nonzero(index) => {
+            (index..index + 1, "the sides differ as expressions in their functions".to_owned())
+        }
         ZeroTest::Unknown(why) => (0..differences.len(), why),
     };
     let mut agreement = None;
@@ -46,7 +53,8 @@ pub(crate) fn decide_identity(system: &mut System, left: &Matrix, right: &Matrix
             Search::Found(witness) => {
                 let exact = witness.left.parse::<RBig>().is_ok() || witness.left.contains('/');
                 let engine = if exact { EXACT } else { INTERVALS }.to_owned();
-                let entry = (left.entries.len() > 1).then(|| (index / left.columns + 1, index % left.columns + 1));
+                let entry =
+                    (left.entries.len() > 1).then(|| (index / left.columns + 1, index % left.columns + 1));
                 return Verdict::Refuted { engine, witness: Witness { entry, ..witness } };
             }
             Search::Agrees { digits, states } => {
@@ -61,7 +69,12 @@ pub(crate) fn decide_identity(system: &mut System, left: &Matrix, right: &Matrix
 
 /// Decides `|left - right| <= tolerance` where all three have a value without further ado: constants, and parameters
 /// with the values that the file gives them.
-pub(crate) fn decide_nearness(system: &mut System, left: NodeId, right: NodeId, tolerance: NodeId) -> Verdict {
+pub(crate) fn decide_nearness(
+    system: &mut System,
+    left: NodeId,
+    right: NodeId,
+    tolerance: NodeId,
+) -> Verdict {
     let difference = system.graph.sub(left, right);
     let program = Program::new(&system.graph, &[difference, tolerance, left, right], |_| false, false);
     let values: HashMap<Symbol, RBig> =
@@ -71,7 +84,9 @@ pub(crate) fn decide_nearness(system: &mut System, left: NodeId, right: NodeId, 
         let found = match enclose(&system.graph, &program, &values, bits) {
             Ok(found) => found,
             Err(error @ ValueError::Missing(_)) => {
-                return Verdict::undecided(format!("{error}; 'within' compares numbers: give values with 'at {{...}}'"));
+                return Verdict::undecided(format!(
+                    "{error}; 'within' compares numbers: give values with 'at {{...}}'"
+                ));
             }
             Err(error) if bits >= 1 << 14 => return Verdict::undecided(error.to_string()),
             Err(ValueError::Pole(divisor)) => return Verdict::undecided(format!("a pole: {divisor} = 0")),
@@ -87,12 +102,12 @@ pub(crate) fn decide_nearness(system: &mut System, left: NodeId, right: NodeId, 
             return Verdict::Proved { engine: INTERVALS.to_owned(), log2_error: f64::NEG_INFINITY };
         }
         if smallest > found[1].high() {
-            let shown = |index: usize| found[index].certain_decimal(20).unwrap_or_else(|| found[index].midpoint().to_string());
+            let shown = |index: usize| {
+                found[index].certain_decimal(20).unwrap_or_else(|| found[index].midpoint().to_string())
+            };
             let state = values
                 .iter()
-                .filter(|(symbol, _)| {
-                    program.inputs().contains(&crate::expression::Input::Plain(**symbol))
-                })
+                .filter(|(symbol, _)| program.inputs().contains(&crate::expression::Input::Plain(**symbol)))
                 .map(|(symbol, value)| {
                     (system.symbol_name(*symbol).to_owned(), value.to_string(), rational_to_f64(value))
                 })

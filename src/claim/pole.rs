@@ -60,7 +60,9 @@ pub fn pole_order(
         .collect();
     let both = system.graph.substitute(&[expression, factor], &numbers);
     let Some(approach) = approach(system, both[0], both[1]) else {
-        return PoleOrder::Unknown("the factor is not linear in any symbol that is free, nor the sine of an angle".into());
+        return PoleOrder::Unknown(
+            "the factor is not linear in any symbol that is free, nor the sine of an angle".into(),
+        );
     };
     let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
@@ -85,7 +87,9 @@ pub fn pole_order(
     }
     match leading_coefficient_is_nonzero(&program, &approach, point, generic) {
         Ok(true) => PoleOrder::Order { order: -generic, log2_error },
-        Ok(false) => PoleOrder::Unknown("the leading coefficient cannot be told from zero at this point".to_owned()),
+        Ok(false) => {
+            PoleOrder::Unknown("the leading coefficient cannot be told from zero at this point".to_owned())
+        }
         Err(why) => PoleOrder::Unknown(why),
     }
 }
@@ -127,8 +131,12 @@ fn series<A: Arithmetic + Clone>(
     for (index, input) in program.inputs().iter().enumerate() {
         inputs.push(match input {
             Input::Plain(symbol) if *symbol == approach.small => small.clone(),
-            Input::Sine(symbol) if *symbol == approach.small => all.div(&all.add(&small, &small)?, &bottom)?,
-            Input::Cosine(symbol) if *symbol == approach.small => all.div(&all.sub(&one, &square)?, &bottom)?,
+            Input::Sine(symbol) if *symbol == approach.small => {
+                all.div(&all.add(&small, &small)?, &bottom)?
+            }
+            Input::Cosine(symbol) if *symbol == approach.small => {
+                all.div(&all.sub(&one, &square)?, &bottom)?
+            }
             _ => all.constant(constants(index)?)?,
         });
     }
@@ -187,7 +195,8 @@ fn leading_coefficient_is_nonzero(
     let inputs = series(program, &all, approach, number)
         .map_err(|_| "at a point with fixed angles, all other symbols need values too".to_owned())?;
     let loaded = program.load(all).map_err(|refusal| refusal.to_string())?;
-    let value = loaded.run(&inputs, &mut Vec::new()).map_err(|failure| failure.refusal.to_string())?.remove(0);
+    let value =
+        loaded.run(&inputs, &mut Vec::new()).map_err(|failure| failure.refusal.to_string())?.remove(0);
     let Ok(index) = usize::try_from(valuation - value.valuation) else {
         return Ok(false);
     };

@@ -11,7 +11,12 @@ use rand::Rng;
 const MINOR: &str = "a minor that is not zero modulo a prime";
 
 /// Decides `rank(M) = claimed`.
-pub(crate) fn decide_rank(system: &mut System, matrix: &Matrix, claimed: usize, rng: &mut impl Rng) -> Verdict {
+pub(crate) fn decide_rank(
+    system: &mut System,
+    matrix: &Matrix,
+    claimed: usize,
+    rng: &mut impl Rng,
+) -> Verdict {
     decide(system, &matrix.entries, matrix.columns, claimed, "", rng)
 }
 
@@ -60,8 +65,12 @@ fn decide(
             Verdict::Proved { engine: format!("{engine}{scope}"), log2_error }
         }
         GenericRank::Rank { rank, .. } => {
-            let witness =
-                Witness { state: Vec::new(), left: rank.to_string(), right: claimed.to_string(), entry: None };
+            let witness = Witness {
+                state: Vec::new(),
+                left: rank.to_string(),
+                right: claimed.to_string(),
+                entry: None,
+            };
             Verdict::Refuted { engine: format!("{RANDOM_PRIMES}{scope}"), witness }
         }
         GenericRank::Pole(divisor) => {

@@ -61,7 +61,9 @@ fn inputs<A: Arithmetic>(
 fn undefined(graph: &Graph, failure: &Failure, bits: usize) -> ValueError {
     match (failure.refusal, failure.divisor) {
         (Refusal::DivisionByZero, Some(divisor)) => ValueError::Pole(graph.text(divisor)),
-        (Refusal::DivisorNotSeparated, Some(divisor)) => ValueError::NearPole { divisor: graph.text(divisor), bits },
+        (Refusal::DivisorNotSeparated, Some(divisor)) => {
+            ValueError::NearPole { divisor: graph.text(divisor), bits }
+        }
         (refusal, _) => ValueError::Undefined(format!("{refusal}, in {}", graph.text(failure.node))),
     }
 }
@@ -101,9 +103,15 @@ pub fn certified_value(
         match loaded.run(&exact_inputs, &mut Vec::new()) {
             Ok(value) => {
                 let value = value[0].clone();
-                return Ok(CertifiedValue { decimal: round_to_decimal(&value, digits), exact: Some(value), bits: 0 });
+                return Ok(CertifiedValue {
+                    decimal: round_to_decimal(&value, digits),
+                    exact: Some(value),
+                    bits: 0,
+                });
             }
-            Err(failure) if failure.refusal == Refusal::DivisionByZero => return Err(undefined(graph, &failure, 0)),
+            Err(failure) if failure.refusal == Refusal::DivisionByZero => {
+                return Err(undefined(graph, &failure, 0));
+            }
             Err(_) => {}
         }
     }

@@ -1,12 +1,13 @@
 //! What a claim can come to.
 
+use crate::observability::StateInWords;
 use crate::system::Expectation;
 
 /// A state in exact numbers at which a statement fails.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Witness {
     /// Name, exact value, and the nearest double, of everything that the statement mentions.
-    pub state: Vec<(String, String, f64)>,
+    pub state: StateInWords,
     /// The value of the left side: exact where it is rational and short, else to many certified digits.
     pub left: String,
     /// The value of the right side.

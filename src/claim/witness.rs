@@ -20,11 +20,20 @@ const DIGITS: usize = 20;
 pub(crate) enum Search {
     Found(Witness),
     /// The sides agree to so many digits at so many states.
-    Agrees { digits: usize, states: usize },
+    Agrees {
+        digits: usize,
+        states: usize,
+    },
 }
 
 /// Looks for a state at which `left` and `right` certainly differ.
-pub(crate) fn search(system: &System, graph: &Graph, left: NodeId, right: NodeId, rng: &mut impl Rng) -> Search {
+pub(crate) fn search(
+    system: &System,
+    graph: &Graph,
+    left: NodeId,
+    right: NodeId,
+    rng: &mut impl Rng,
+) -> Search {
     let angles = |symbol: Symbol| system.is_angle(symbol);
     let exact_program = Program::new(graph, &[left, right], angles, false);
     // an angle outside sines and cosines has no exact value: then angles are numbers like all others
@@ -39,8 +48,12 @@ pub(crate) fn search(system: &System, graph: &Graph, left: NodeId, right: NodeId
                     let short = value.numerator().bit_len() + value.denominator().bit_len() < 100;
                     if short { value.to_string() } else { round_to_decimal(value, DIGITS) }
                 };
-                let witness =
-                    Witness { state: state.describe(system), left: shown(&left), right: shown(&right), entry: None };
+                let witness = Witness {
+                    state: state.describe(system),
+                    left: shown(&left),
+                    right: shown(&right),
+                    entry: None,
+                };
                 return Search::Found(witness);
             }
             (least, states) = (least.min(BITS), states + 1);
@@ -51,11 +64,16 @@ pub(crate) fn search(system: &System, graph: &Graph, left: NodeId, right: NodeId
             let shown = |value: &crate::number::Enclosure| {
                 value.certain_decimal(DIGITS).unwrap_or_else(|| format!("{:e}", value.midpoint()))
             };
-            let witness =
-                Witness { state: state.describe(system), left: shown(&left), right: shown(&right), entry: None };
+            let witness = Witness {
+                state: state.describe(system),
+                left: shown(&left),
+                right: shown(&right),
+                entry: None,
+            };
             return Search::Found(witness);
         }
-        let digits = (1..=120).rev().find(|n| left.decimal(*n).is_some_and(|text| right.decimal(*n) == Some(text)));
+        let digits =
+            (1..=120).rev().find(|n| left.decimal(*n).is_some_and(|text| right.decimal(*n) == Some(text)));
         (least, states) = (least.min(digits.unwrap_or(0)), states + 1);
         if states >= 20 {
             break;
@@ -71,7 +89,10 @@ fn exact_values(program: &Program, state: &State) -> Option<(RBig, RBig)> {
     Some((values[0].clone(), values[1].clone()))
 }
 
-fn enclosed_values(program: &Program, state: &State) -> Option<(crate::number::Enclosure, crate::number::Enclosure)> {
+fn enclosed_values(
+    program: &Program,
+    state: &State,
+) -> Option<(crate::number::Enclosure, crate::number::Enclosure)> {
     let arithmetic = Enclosures::new(BITS);
     let inputs = state.inputs(program, &arithmetic).ok()?;
     let values = program.load(arithmetic).ok()?.run(&inputs, &mut Vec::new()).ok()?;
@@ -117,7 +138,8 @@ fn number(system: &System, symbol: Symbol, attempt: usize, rng: &mut impl Rng) -
 fn half_tangent(system: &System, symbol: Symbol, attempt: usize, rng: &mut impl Rng) -> RBig {
     let range = system.symbol_info(symbol).and_then(|info| info.range.as_ref());
     let tangent = |bound: &RBig| RBig::try_from((bound.to_f64().value() / 2.0).tan()).ok();
-    let bounds = range.and_then(|range| Some((tangent(&range.low)?, tangent(&range.high)?))).filter(|(a, b)| a < b);
+    let bounds =
+        range.and_then(|range| Some((tangent(&range.low)?, tangent(&range.high)?))).filter(|(a, b)| a < b);
     let (low, high) = bounds.unwrap_or((RBig::from(-2), RBig::from(2)));
     for _ in 0..50 {
         // halves, thirds and quarters from the start: the sines are then fractions such as 4/5 and 12/13

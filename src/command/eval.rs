@@ -36,7 +36,10 @@ pub(crate) fn assignments(system: &System, pairs: &[String]) -> miette::Result<H
     let mut values = HashMap::new();
     for pair in pairs.iter().filter(|pair| !pair.trim().is_empty()) {
         let Some((name, text)) = pair.split_once('=') else {
-            return Err(Unusable::report(format!("'{pair}' is not of the form name=value"), "as in --at rho=1/2,g=0"));
+            return Err(Unusable::report(
+                format!("'{pair}' is not of the form name=value"),
+                "as in --at rho=1/2,g=0",
+            ));
         };
         let Some(symbol) = system.find_symbol(name.trim()) else {
             let known: Vec<&str> = system.symbols().map(|(symbol, _)| system.symbol_name(symbol)).collect();
@@ -75,7 +78,9 @@ impl Eval {
                     matrix.entries.iter().map(|id| one(*id).map(|v| v.decimal)).collect::<Result<_, _>>()?;
                 json!({ "value": entries.chunks(matrix.columns).collect::<Vec<_>>() })
             }
-            Value::Rank(matrix) => json!({ "value": rank_at(&mut system, matrix.entries.clone(), matrix.columns, &point)?.to_string() }),
+            Value::Rank(matrix) => {
+                json!({ "value": rank_at(&mut system, matrix.entries.clone(), matrix.columns, &point)?.to_string() })
+            }
             other => {
                 let message = format!("{} has no value at a point", other.describe());
                 return Err(Unusable::report(message, "ask 'palmistry rank', or claim it in the file"));
@@ -95,7 +100,8 @@ impl Eval {
                 Json::String(text) => print_text(text),
                 Json::Array(rows) => {
                     for row in rows {
-                        let row: Vec<&str> = row.as_array().into_iter().flatten().filter_map(Json::as_str).collect();
+                        let row: Vec<&str> =
+                            row.as_array().into_iter().flatten().filter_map(Json::as_str).collect();
                         print_text(&row.join("  "));
                     }
                 }
@@ -116,7 +122,9 @@ fn rank_at(
     use palmistry::number::Rationals;
     let program = palmistry::expression::Program::new(&system.graph, &entries, |_| false, false);
     let exact = Rationals::default();
-    let refuse = |why: String| Unusable::report(why, "a rank at a point is exact: give angles only where sines are rational");
+    let refuse = |why: String| {
+        Unusable::report(why, "a rank at a point is exact: give angles only where sines are rational")
+    };
     let inputs: Vec<RBig> = program
         .inputs()
         .iter()
@@ -129,7 +137,8 @@ fn rank_at(
         })
         .collect::<Result<_, _>>()?;
     let loaded = program.load(exact).map_err(|e| refuse(e.to_string()))?;
-    let values = loaded.run(&inputs, &mut Vec::new()).map_err(|failure| refuse(failure.refusal.to_string()))?;
+    let values =
+        loaded.run(&inputs, &mut Vec::new()).map_err(|failure| refuse(failure.refusal.to_string()))?;
     let rows = values.chunks(columns).map(<[RBig]>::to_vec).collect();
     palmistry::observability::rank(&exact, rows).map_err(|e| refuse(e.to_string()))
 }
@@ -137,7 +146,9 @@ fn rank_at(
 fn explain(error: ValueError) -> miette::Report {
     let help = match &error {
         ValueError::Missing(name) => format!("give it one: --at {name}=..."),
-        ValueError::Pole(_) | ValueError::NearPole { .. } => "choose another point, or ask for the order: claim pole(e, factor) = n".to_owned(),
+        ValueError::Pole(_) | ValueError::NearPole { .. } => {
+            "choose another point, or ask for the order: claim pole(e, factor) = n".to_owned()
+        }
         _ => String::new(),
     };
     Unusable::report(error.to_string(), help)

@@ -94,7 +94,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
 
 /// Writes a file aside and moves it into place, so that it is whole or not there.
 pub(crate) fn write_whole(path: &Path, text: &str) -> miette::Result<()> {
-    let complain = |e: std::io::Error| super::Unusable::report(format!("cannot write {}: {e}", path.display()), "");
+    let complain =
+        |e: std::io::Error| super::Unusable::report(format!("cannot write {}: {e}", path.display()), "");
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(complain)?;
     let mut file = tempfile::Builder::new()
@@ -115,5 +116,8 @@ fn readable() -> std::fs::Permissions {
 
 #[cfg(not(unix))]
 fn readable() -> std::fs::Permissions {
-    std::env::temp_dir().metadata().map(|m| m.permissions()).unwrap_or_else(|_| unreachable!("a temporary folder"))
+    std::env::temp_dir()
+        .metadata()
+        .map(|m| m.permissions())
+        .unwrap_or_else(|_| unreachable!("a temporary folder"))
 }

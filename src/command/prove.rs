@@ -38,7 +38,10 @@ impl Prove {
             .collect::<Result<_, _>>()?;
         let claims: usize = systems.iter().map(|system| system.claims.len()).sum();
         if claims == 0 {
-            return Err(Unusable::report("these files claim nothing", "add a line such as: claim 1: L(f, x) = v"));
+            return Err(Unusable::report(
+                "these files claim nothing",
+                "add a line such as: claim 1: L(f, x) = v",
+            ));
         }
         let bar = progress(claims as u64, "deciding claims");
         let outcomes: Vec<Outcome> = systems
@@ -67,7 +70,6 @@ impl Prove {
                 }
                 print_text(&claim_line(outcome));
             }
-            let count = |word: &str| outcomes.iter().filter(|outcome| outcome.word() == word).count();
             let words = ["proved", "erratum", "scanning fault", "definition", "refuted", "undecided"];
             let counts: Vec<String> = words
                 .iter()

@@ -33,13 +33,15 @@ pub fn expand_angles(graph: &mut Graph, roots: &[NodeId], is_angle: impl Fn(Symb
     for id in order {
         let node = graph.node(id);
         let new = match node {
-            Node::Apply(function @ (Function::Sin | Function::Cos), argument) => match combinations.get(&argument) {
-                Some(combination) => {
-                    let (sine, cosine) = sine_cosine(graph, combination);
-                    if function == Function::Sin { sine } else { cosine }
+            Node::Apply(function @ (Function::Sin | Function::Cos), argument) => {
+                match combinations.get(&argument) {
+                    Some(combination) => {
+                        let (sine, cosine) = sine_cosine(graph, combination);
+                        if function == Function::Sin { sine } else { cosine }
+                    }
+                    None => graph.rebuild(node, |operand| image[&operand]),
                 }
-                None => graph.rebuild(node, |operand| image[&operand]),
-            },
+            }
             _ => graph.rebuild(node, |operand| image[&operand]),
         };
         image.insert(id, new);
@@ -68,7 +70,9 @@ fn combine(
             (None, Some(factor)) => scale(known.get(&a)?, factor)?,
             _ => return None,
         },
-        Node::Div(a, b) => scale(known.get(&a)?, &(RBig::ONE / graph.constant_value(b).filter(|c| !c.is_zero())?))?,
+        Node::Div(a, b) => {
+            scale(known.get(&a)?, &(RBig::ONE / graph.constant_value(b).filter(|c| !c.is_zero())?))?
+        }
         _ => return None,
     };
     let small = combination.angles.values().all(|n| n.abs() <= LARGEST_MULTIPLE);

@@ -92,7 +92,14 @@ impl Derivation {
     }
 
     /// `D(f(a)) = f'(a) D(a)`; `value` is the node `f(a)`.
-    fn chain(&self, graph: &mut Graph, function: Function, value: NodeId, a: NodeId, inner: NodeId) -> NodeId {
+    fn chain(
+        &self,
+        graph: &mut Graph,
+        function: Function,
+        value: NodeId,
+        a: NodeId,
+        inner: NodeId,
+    ) -> NodeId {
         let one = graph.integer(1);
         match function {
             Function::Sin => {

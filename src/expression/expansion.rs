@@ -26,7 +26,11 @@ pub struct Expansion {
 ///
 /// # Errors
 /// In words, where it is no rational expression in at most sixteen variables, or too long.
-pub fn expand(graph: &mut Graph, root: NodeId, is_angle: impl Fn(Symbol) -> bool) -> Result<Expansion, String> {
+pub fn expand(
+    graph: &mut Graph,
+    root: NodeId,
+    is_angle: impl Fn(Symbol) -> bool,
+) -> Result<Expansion, String> {
     let expanded = expand_angles(graph, &[root], &is_angle);
     let program = Program::new(graph, &expanded, &is_angle, false);
     let variables = program.inputs().to_vec();
@@ -102,13 +106,17 @@ fn reduced(polynomial: Polynomial, circles: &[(usize, Option<usize>)]) -> Polyno
 }
 
 /// The quotient in the ring in which `sin^2 = 1 - cos^2`: a sine divides `a + b sin` where `1 - cos^2` divides `a`.
-fn divide(numerator: &Polynomial, factor: &Polynomial, circles: &[(usize, Option<usize>)]) -> Option<Polynomial> {
+fn divide(
+    numerator: &Polynomial,
+    factor: &Polynomial,
+    circles: &[(usize, Option<usize>)],
+) -> Option<Polynomial> {
     if let Some(quotient) = numerator.divide_exactly(factor) {
         return Some(quotient);
     }
-    let (sine, cosine) = circles.iter().find_map(|(sine, cosine)| {
-        (*factor == Polynomial::variable(*sine)).then_some((*sine, (*cosine)?))
-    })?;
+    let (sine, cosine) = circles
+        .iter()
+        .find_map(|(sine, cosine)| (*factor == Polynomial::variable(*sine)).then_some((*sine, (*cosine)?)))?;
     let raised = reduced(numerator.mul(&Polynomial::variable(sine))?, circles);
     raised.divide_exactly(&square_of_sine(cosine))
 }
@@ -137,7 +145,8 @@ impl Expansion {
         for (factor, power) in &self.denominator {
             let mut value = arithmetic.rational(&RBig::ZERO)?;
             for (exponents, coefficient) in factor.terms() {
-                value = arithmetic.add(&value, &self.monomial(arithmetic, values, exponents, coefficient, within)?)?;
+                value = arithmetic
+                    .add(&value, &self.monomial(arithmetic, values, exponents, coefficient, within)?)?;
             }
             let power = i32::try_from(*power).map_err(|_| Refusal::TooLarge)?;
             bottom = arithmetic.mul(&bottom, &arithmetic.power(&value, power)?)?;

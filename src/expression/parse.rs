@@ -51,7 +51,12 @@ impl<'a> ParserError<Text<'a>> for Expected {
 }
 
 impl<'a> AddContext<Text<'a>, &'static str> for Expected {
-    fn add_context(mut self, input: &Text<'a>, start: &<Text<'a> as Stream>::Checkpoint, what: &'static str) -> Self {
+    fn add_context(
+        mut self,
+        input: &Text<'a>,
+        start: &<Text<'a> as Stream>::Checkpoint,
+        what: &'static str,
+    ) -> Self {
         // name the whole only where nothing inside it was recognised
         let mut begin = *input;
         begin.reset(start);
@@ -87,14 +92,39 @@ pub(crate) fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<
 
 /// Words that begin something and so cannot be names.
 pub(crate) const RESERVED: [&str; 25] = [
-    "system", "cite", "use", "state", "param", "angle", "let", "field", "output", "sample", "avoid", "in", "claim",
-    "erratum", "printed", "corrected", "scan", "scanned", "repaired", "definition", "undecided", "where", "at", "within",
+    "system",
+    "cite",
+    "use",
+    "state",
+    "param",
+    "angle",
+    "let",
+    "field",
+    "output",
+    "sample",
+    "avoid",
+    "in",
+    "claim",
+    "erratum",
+    "printed",
+    "corrected",
+    "scan",
+    "scanned",
+    "repaired",
+    "definition",
+    "undecided",
+    "where",
+    "at",
+    "within",
     "expect",
 ];
 
 /// Letters, digits and underscores, beginning with a letter.
 fn word<'a>(input: &mut Text<'a>) -> Read<(&'a str, Span)> {
-    (one_of(|c: char| c.is_ascii_alphabetic() || c == '_'), take_while(0.., |c: char| c.is_ascii_alphanumeric() || c == '_'))
+    (
+        one_of(|c: char| c.is_ascii_alphabetic() || c == '_'),
+        take_while(0.., |c: char| c.is_ascii_alphanumeric() || c == '_'),
+    )
         .take()
         .with_span()
         .parse_next(input)
@@ -161,7 +191,11 @@ fn within<'a, T>(input: &mut Text<'a>, inner: impl Parser<Text<'a>, T, ErrMode<E
     let depth = input.state;
     if depth.0.get() >= DEEPEST {
         let at = input.current_token_start();
-        return stop(at, format!("at most {DEEPEST} brackets within brackets"), Some("name the inner part with 'let'".into()));
+        return stop(
+            at,
+            format!("at most {DEEPEST} brackets within brackets"),
+            Some("name the inner part with 'let'".into()),
+        );
     }
     depth.0.set(depth.0.get() + 1);
     let mut inner = inner;
@@ -185,7 +219,9 @@ fn matrix(input: &mut Text<'_>) -> Read<Expr> {
     let row = |input: &mut Text<'_>| -> Read<Vec<Expr>> { separated(1.., sum, sign(",")).parse_next(input) };
     let rows: Vec<Vec<Expr>> = within(input, cut_err(separated(1.., row, sign(";"))))?;
     let end = input.current_token_start() + 1;
-    cut_err(sign("]")).context("']', ',' between the entries of a row, or ';' between rows").parse_next(input)?;
+    cut_err(sign("]"))
+        .context("']', ',' between the entries of a row, or ';' between rows")
+        .parse_next(input)?;
     Ok(Expr { kind: ExprKind::Matrix(rows), span: begin..end })
 }
 
@@ -265,7 +301,11 @@ fn power(input: &mut Text<'_>) -> Read<Expr> {
             Ok(Expr { kind: ExprKind::Power(Box::new(base), n), span })
         }
         Some(None) => stop(at, format!("an exponent of at most {LARGEST_EXPONENT}"), None),
-        None => stop(at, "an integer as exponent, as in x^2 or x^(-1)", Some("write sqrt(x) for a square root".into())),
+        None => stop(
+            at,
+            "an integer as exponent, as in x^2 or x^(-1)",
+            Some("write sqrt(x) for a square root".into()),
+        ),
     }
 }
 

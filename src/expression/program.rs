@@ -176,7 +176,11 @@ impl<A: Arithmetic> Loaded<'_, A> {
     ///
     /// # Errors
     /// The first operation that was refused.
-    pub fn run(&self, inputs: &[A::Number], registers: &mut Vec<A::Number>) -> Result<Vec<A::Number>, Failure> {
+    pub fn run(
+        &self,
+        inputs: &[A::Number],
+        registers: &mut Vec<A::Number>,
+    ) -> Result<Vec<A::Number>, Failure> {
         let arithmetic = &self.arithmetic;
         registers.clear();
         for (operation, &node) in self.program.operations.iter().zip(&self.program.origins) {
@@ -216,7 +220,13 @@ impl<A: Arithmetic> Loaded<'_, A> {
         let may_vanish = |index: u32| self.arithmetic.is_zero(&registers[index as usize]) != Some(false);
         loop {
             at = match self.program.operations[at as usize] {
-                Operation::Mul(a, b) => if may_vanish(a) { a } else { b },
+                Operation::Mul(a, b) => {
+                    if may_vanish(a) {
+                        a
+                    } else {
+                        b
+                    }
+                }
                 Operation::Div(a, _) | Operation::Neg(a) | Operation::Power(a, _) => a,
                 _ => return Some(self.program.origins[at as usize]),
             };

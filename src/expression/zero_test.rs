@@ -57,7 +57,9 @@ pub fn identically_zero(
     let program = Program::new(graph, roots, is_angle, true);
     if let Some(angle) = program.bare_angle() {
         let name = graph.symbol_name(angle);
-        return ZeroTest::Unknown(format!("'{name}' is declared as an angle but stands outside sin, cos and tan"));
+        return ZeroTest::Unknown(format!(
+            "'{name}' is declared as an angle but stands outside sin, cos and tan"
+        ));
     }
     let size = match sizes(&program) {
         Ok(sizes) => sizes.into_iter().fold(Size::default(), |a, (top, _)| Size {
@@ -67,7 +69,10 @@ pub fn identically_zero(
         Err(why) => return ZeroTest::Unknown(why.to_string()),
     };
     let Some((rounds, log2_error)) = failure_bound(size) else {
-        return ZeroTest::Unknown(format!("the degree may be {:.1e}, too large for the prime fields", size.degree));
+        return ZeroTest::Unknown(format!(
+            "the degree may be {:.1e}, too large for the prime fields",
+            size.degree
+        ));
     };
     for _ in 0..rounds {
         match round(&program, rng) {

@@ -60,7 +60,11 @@ impl Arithmetic for Decimals {
         Self::value(self.context.mul(a, b))
     }
     fn div(&self, a: &Decimal, b: &Decimal) -> Result<Decimal, Refusal> {
-        if b.significand().is_zero() { Err(Refusal::DivisionByZero) } else { Self::value(self.context.div(a, b)) }
+        if b.significand().is_zero() {
+            Err(Refusal::DivisionByZero)
+        } else {
+            Self::value(self.context.div(a, b))
+        }
     }
     fn neg(&self, a: &Decimal) -> Result<Decimal, Refusal> {
         Ok(-a.clone())
@@ -89,7 +93,10 @@ mod tests {
     fn ten_digits_are_kept_and_the_eleventh_is_lost() {
         let ten = Decimals::new(10);
         let q = |n: i64, d: u64| ten.rational(&RBig::from_parts(n.into(), d.into())).unwrap();
-        assert_eq!(Decimals::exactly(&q(1, 3)), RBig::from_parts(3333333333i64.into(), 10000000000u64.into()));
+        assert_eq!(
+            Decimals::exactly(&q(1, 3)),
+            RBig::from_parts(3333333333i64.into(), 10000000000u64.into())
+        );
         let lost = ten.sub(&ten.add(&q(1, 1), &q(1, 100_000_000_000)).unwrap(), &q(1, 1)).unwrap();
         assert_eq!(ten.is_zero(&lost), Some(true));
     }

@@ -78,7 +78,8 @@ pub(crate) fn round_to_decimal(value: &RBig, digits: usize) -> String {
     let top: UBig = value.numerator().clone().unsigned_abs();
     let bottom = value.denominator().clone();
     // the exponent e with 10^e <= |value| < 10^(e+1), guessed from the lengths and then set right
-    let mut exponent = ((top.bit_len() as f64 - bottom.bit_len() as f64) * std::f64::consts::LOG10_2).floor() as i64;
+    let mut exponent =
+        ((top.bit_len() as f64 - bottom.bit_len() as f64) * std::f64::consts::LOG10_2).floor() as i64;
     let scaled = |exponent: i64| -> (UBig, UBig) {
         let ten = |n: i64| UBig::from(10u8).pow(n.unsigned_abs() as usize);
         let shift = digits as i64 - 1 - exponent;
@@ -146,7 +147,8 @@ impl Enclosures {
     }
 
     fn endpoints(low: Rounded<Down>, high: Rounded<Up>) -> Result<Enclosure, Refusal> {
-        let (low, high) = (low.map_err(refusal)?.value().into_repr(), high.map_err(refusal)?.value().into_repr());
+        let (low, high) =
+            (low.map_err(refusal)?.value().into_repr(), high.map_err(refusal)?.value().into_repr());
         let small = |e: &Endpoint| e.is_finite() && e.exponent().unsigned_abs() < 1 << 40;
         if small(&low) && small(&high) { Ok(Enclosure { low, high }) } else { Err(Refusal::TooLarge) }
     }
@@ -307,7 +309,10 @@ mod tests {
         for function in Function::ALL {
             for argument in ["1/3", "7/8", "1"] {
                 let (coarse, fine) = (at(20, function, argument), at(300, function, argument));
-                assert!(coarse.low() <= fine.low() && fine.high() <= coarse.high(), "{function:?} {argument}");
+                assert!(
+                    coarse.low() <= fine.low() && fine.high() <= coarse.high(),
+                    "{function:?} {argument}"
+                );
             }
         }
     }

@@ -119,8 +119,8 @@ impl<A: Arithmetic> Arithmetic for Laurent<A> {
         let mut coefficients: Vec<A::Number> = Vec::with_capacity(length);
         for n in 0..length {
             let mut rest = a.coefficients[n].clone();
-            for i in 0..n {
-                rest = self.base.sub(&rest, &self.base.mul(&coefficients[i], &b.coefficients[n - i])?)?;
+            for (known, divisor) in coefficients.iter().zip(b.coefficients[1..=n].iter().rev()) {
+                rest = self.base.sub(&rest, &self.base.mul(known, divisor)?)?;
             }
             coefficients.push(self.base.div(&rest, leading)?);
         }

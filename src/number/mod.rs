@@ -19,8 +19,8 @@ mod residue;
 
 pub use decimal::{Decimal, Decimals, decimal_to_f64};
 pub use dual::{Duals, Tower};
-pub use enclosure::{Enclosure, Enclosures};
 pub(crate) use enclosure::round_to_decimal;
+pub use enclosure::{Enclosure, Enclosures};
 pub use float::Floats;
 pub use fraction::{Factors, Fraction, Fractions};
 pub use laurent::{Laurent, Series};

@@ -112,7 +112,8 @@ pub fn parse_decimal(text: &str) -> Option<RBig> {
     };
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let all = format!("{whole}{fraction}");
-    if all.is_empty() || all.len() > 4096 || !all.bytes().all(|b| b.is_ascii_digit()) || exponent.abs() > 4096 {
+    if all.is_empty() || all.len() > 4096 || !all.bytes().all(|b| b.is_ascii_digit()) || exponent.abs() > 4096
+    {
         return None;
     }
     let significand = IBig::from_str_radix(&all, 10).ok()?;

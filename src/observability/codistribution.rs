@@ -234,7 +234,8 @@ fn needed(system: &mut System, rows: &[Vec<NodeId>], conditions: &Assignment) ->
         let inputs = draw_residues(&program, &field, &mut rng);
         match loaded.run(&inputs, &mut registers) {
             Ok(values) => {
-                let matrix: Vec<Vec<u64>> = values.chunks(system.states.len().max(1)).map(<[u64]>::to_vec).collect();
+                let matrix: Vec<Vec<u64>> =
+                    values.chunks(system.states.len().max(1)).map(<[u64]>::to_vec).collect();
                 let kept = independent_rows(&field, &matrix).map_err(|refusal| refusal.to_string())?;
                 if best.as_ref().is_none_or(|b| kept.len() > b.len()) {
                     best = Some(kept);
@@ -248,7 +249,9 @@ fn needed(system: &mut System, rows: &[Vec<NodeId>], conditions: &Assignment) ->
         }
     }
     best.ok_or_else(|| match divisor {
-        Some(divisor) => format!("every state there is a pole: {} = 0 is divided by", system.graph.text(divisor)),
+        Some(divisor) => {
+            format!("every state there is a pole: {} = 0 is divided by", system.graph.text(divisor))
+        }
         None => "no random point could be evaluated".to_owned(),
     })
 }

@@ -92,7 +92,8 @@ fn solutions(system: &mut System, left: NodeId, right: NodeId, text: &str) -> Re
     }
     // states before parameters, in the order of the file, so that the answer does not depend on anything else
     let mut candidates = system.states.clone();
-    candidates.extend(system.symbols().filter(|(_, info)| info.kind != Kind::State).map(|(symbol, _)| symbol));
+    candidates
+        .extend(system.symbols().filter(|(_, info)| info.kind != Kind::State).map(|(symbol, _)| symbol));
     let mentioned = system.graph.symbols_of([difference]);
     for symbol in candidates {
         if !system.is_angle(symbol)
@@ -130,7 +131,9 @@ fn circular(system: &mut System, difference: NodeId) -> Option<Solutions> {
         }
         let slope = system.partial(argument, symbol);
         let sign = system.graph.constant_value(slope).cloned();
-        let Some(sign) = sign.filter(|s| s.is_one() || *s == dashu::rational::RBig::from(-1)) else { continue };
+        let Some(sign) = sign.filter(|s| s.is_one() || *s == dashu::rational::RBig::from(-1)) else {
+            continue;
+        };
         let rest = system.graph.substitute(&[argument], &Assignment::from([(symbol, zero)]))[0];
         return Some(
             roots

@@ -7,12 +7,18 @@ use crate::number::{Arithmetic, Refusal};
 ///
 /// # Errors
 /// Where an operation is refused (numbers that grow too long).
-fn reduce<A: Arithmetic>(arithmetic: &A, rows: &mut [Vec<A::Number>], full: bool) -> Result<Vec<usize>, Refusal> {
+fn reduce<A: Arithmetic>(
+    arithmetic: &A,
+    rows: &mut [Vec<A::Number>],
+    full: bool,
+) -> Result<Vec<usize>, Refusal> {
     let columns = rows.first().map_or(0, Vec::len);
     let mut pivots = Vec::new();
     for column in 0..columns {
         let top = pivots.len();
-        let Some(found) = (top..rows.len()).find(|row| arithmetic.is_zero(&rows[*row][column]) == Some(false)) else {
+        let Some(found) =
+            (top..rows.len()).find(|row| arithmetic.is_zero(&rows[*row][column]) == Some(false))
+        else {
             continue;
         };
         rows.swap(top, found);
@@ -52,7 +58,10 @@ pub fn rank<A: Arithmetic>(arithmetic: &A, mut rows: Vec<Vec<A::Number>>) -> Res
 ///
 /// # Errors
 /// Where an operation is refused.
-pub fn kernel<A: Arithmetic>(arithmetic: &A, mut rows: Vec<Vec<A::Number>>) -> Result<Vec<Vec<A::Number>>, Refusal> {
+pub fn kernel<A: Arithmetic>(
+    arithmetic: &A,
+    mut rows: Vec<Vec<A::Number>>,
+) -> Result<Vec<Vec<A::Number>>, Refusal> {
     let columns = rows.first().map_or(0, Vec::len);
     let pivots = reduce(arithmetic, &mut rows, true)?;
     let (zero, one) = (

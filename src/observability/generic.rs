@@ -40,7 +40,9 @@ pub fn generic_rank(
     let program = Program::new(graph, &expanded, &is_angle, true);
     if let Some(angle) = program.bare_angle() {
         let name = graph.symbol_name(angle);
-        return GenericRank::Unknown(format!("'{name}' is declared as an angle but stands outside sin, cos and tan"));
+        return GenericRank::Unknown(format!(
+            "'{name}' is declared as an angle but stands outside sin, cos and tan"
+        ));
     }
     if program.inputs().iter().any(|input| matches!(input, crate::expression::Input::Opaque(_))) {
         return GenericRank::Unknown("a function other than sines and cosines of angles is met".to_owned());

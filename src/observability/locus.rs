@@ -23,7 +23,9 @@ const ATTEMPTS: usize = 2000;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LocusError {
     /// Nothing says where to draw a symbol.
-    #[error("nothing says where '{0}' is drawn from; give it a range in 'sample', a value in 'param', or one with --at")]
+    #[error(
+        "nothing says where '{0}' is drawn from; give it a range in 'sample', a value in 'param', or one with --at"
+    )]
     NoRange(String),
     /// The box and what it avoids leave nothing.
     #[error("no state was found in {ATTEMPTS} draws: {0}")]
@@ -95,7 +97,8 @@ impl Locus {
         }
         let (avoid, avoid_nodes) = avoided(system, branch, &sources, is_angle);
         let mut conditions = branch.steps.clone();
-        conditions.extend(fixed.iter().map(|(symbol, value)| format!("{} = {value}", system.symbol_name(*symbol))));
+        conditions
+            .extend(fixed.iter().map(|(symbol, value)| format!("{} = {value}", system.symbol_name(*symbol))));
         Ok(Locus {
             sources,
             dependent,
@@ -125,7 +128,9 @@ impl Locus {
             }
             match self.avoided_value(&state) {
                 None => return Ok(state),
-                Some(index) => complaint = format!("the last one had |{}| below {AVOIDED}", self.avoid[index]),
+                Some(index) => {
+                    complaint = format!("the last one had |{}| below {AVOIDED}", self.avoid[index])
+                }
             }
         }
         Err(LocusError::Empty(complaint))
@@ -134,7 +139,8 @@ impl Locus {
     /// Adds the symbols that the conditions give.
     fn complete(&self, state: &mut State) -> Result<(), Refusal> {
         let exact = Rationals::default();
-        let inputs = state.inputs(&self.dependent_program, &exact).map_err(|r| r.unwrap_or(Refusal::NotFinite))?;
+        let inputs =
+            state.inputs(&self.dependent_program, &exact).map_err(|r| r.unwrap_or(Refusal::NotFinite))?;
         let loaded = self.dependent_program.load(exact)?;
         let mut values = loaded.run(&inputs, &mut Vec::new()).map_err(|failure| failure.refusal)?.into_iter();
         for (symbol, is_angle) in &self.dependent {
@@ -154,9 +160,10 @@ impl Locus {
         if self.avoid.is_empty() {
             return None;
         }
-        let values = state.inputs(&self.avoid_program, &Floats).ok().and_then(|inputs| {
-            self.avoid_program.load(Floats).ok()?.run(&inputs, &mut Vec::new()).ok()
-        });
+        let values = state
+            .inputs(&self.avoid_program, &Floats)
+            .ok()
+            .and_then(|inputs| self.avoid_program.load(Floats).ok()?.run(&inputs, &mut Vec::new()).ok());
         match values {
             Some(values) => values.iter().position(|value| value.is_nan() || value.abs() < AVOIDED),
             None => Some(0),
@@ -173,7 +180,9 @@ impl Source {
                 let part = rational_from_f64(unit).unwrap_or(RBig::ZERO);
                 Coordinate::Number(low + (high - low) * part)
             }
-            Source::Turn(low, high) => Coordinate::from_half_tangent(&grid_half_tangent(low + (high - low) * unit)),
+            Source::Turn(low, high) => {
+                Coordinate::from_half_tangent(&grid_half_tangent(low + (high - low) * unit))
+            }
         }
     }
 }
@@ -202,7 +211,9 @@ fn source(system: &System, symbol: Symbol, fixed: Option<&RBig>) -> Result<Sourc
         }));
     }
     match info.and_then(|info| info.range.as_ref()) {
-        Some(range) if is_angle => Ok(Source::Turn(rational_to_f64(&range.low), rational_to_f64(&range.high))),
+        Some(range) if is_angle => {
+            Ok(Source::Turn(rational_to_f64(&range.low), rational_to_f64(&range.high)))
+        }
         Some(range) => Ok(Source::Between(range.low.clone(), range.high.clone())),
         None => Err(LocusError::NoRange(system.symbol_name(symbol).to_owned())),
     }
@@ -239,7 +250,8 @@ mod tests {
     fn the_sine_and_cosine_of_a_drawn_angle_lie_on_the_circle() {
         for step in 0..=100 {
             let angle = -3.0 + 0.06 * f64::from(step);
-            let Coordinate::Angle { sine, cosine } = Coordinate::from_half_tangent(&grid_half_tangent(angle)) else {
+            let Coordinate::Angle { sine, cosine } = Coordinate::from_half_tangent(&grid_half_tangent(angle))
+            else {
                 panic!("not an angle");
             };
             assert!((&sine * &sine + &cosine * &cosine).is_one());

@@ -27,5 +27,5 @@ pub use locus::{Locus, LocusError};
 pub use nested::{NestedError, differential_by_duals, lie_derivative_by_duals};
 pub use question::{BranchAnswer, OWN_ROWS, RankAnswer, RankQuestion, answer_rank, parse_condition};
 pub use singular::{Spectrum, singular_values};
-pub use state::{Coordinate, State, float_inputs};
+pub use state::{Coordinate, State, StateInWords, float_inputs};
 pub use sweep::{Certainty, StateReport, SweepOptions, SweepReport, UnseenDirection, sweep};

@@ -40,6 +40,9 @@ impl Coordinate {
     }
 }
 
+/// Name, exact value and nearest double of each coordinate.
+pub type StateInWords = Vec<(String, String, f64)>;
+
 /// Exact values for some symbols.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
@@ -80,10 +83,12 @@ impl State {
     }
 
     /// The state in words, with the names of a system.
-    pub fn describe(&self, system: &System) -> Vec<(String, String, f64)> {
+    pub fn describe(&self, system: &System) -> StateInWords {
         self.values
             .iter()
-            .map(|(symbol, value)| (system.symbol_name(*symbol).to_owned(), value.exact_text(), value.to_f64()))
+            .map(|(symbol, value)| {
+                (system.symbol_name(*symbol).to_owned(), value.exact_text(), value.to_f64())
+            })
             .collect()
     }
 }

@@ -4,7 +4,7 @@ use super::codistribution::Codistribution;
 use super::elimination::{kernel, rank};
 use super::locus::{Locus, LocusError};
 use super::singular::{Spectrum, singular_values};
-use super::state::State;
+use super::state::{State, StateInWords};
 use crate::expression::{Graph, Input, NodeId, Program, Symbol, expand_angles};
 use crate::number::{Floats, PrimeField, Rationals, rational_to_f64};
 use crate::system::System;
@@ -78,9 +78,8 @@ pub struct SweepReport {
     pub disagreements: u64,
     /// Poles that were met and left out, by the divisor that was zero.
     pub poles: BTreeMap<String, u64>,
-    /// The state of full rank with the largest ratio of singular values: name, exact value and nearest double of each
-    /// coordinate.
-    pub worst: Option<(Vec<(String, String, f64)>, Spectrum)>,
+    /// The state of full rank with the largest ratio of singular values.
+    pub worst: Option<(StateInWords, Spectrum)>,
     /// What is not seen where the rank is short.
     pub unseen: Vec<UnseenDirection>,
     /// The smallest gap on which a computed rank rests.
@@ -171,7 +170,13 @@ impl Judge {
         let rank = self.residue_rank(&self.all, state);
         if rank == Some(self.columns) {
             let certainty = Certainty::Certified;
-            return Judged::Report(StateReport { index, rank: self.columns, certainty, spectrum, unseen: Vec::new() });
+            return Judged::Report(StateReport {
+                index,
+                rank: self.columns,
+                certainty,
+                spectrum,
+                unseen: Vec::new(),
+            });
         }
         match self.exact(graph, state) {
             Ok((rank, unseen)) => {

@@ -66,7 +66,11 @@ pub(crate) fn witness_line(witness: &Witness) -> String {
         .state
         .iter()
         .map(|(name, exact, float)| {
-            if exact.contains("sin") { format!("{name} = {float:.6} ({exact})") } else { format!("{name} = {exact}") }
+            if exact.contains("sin") {
+                format!("{name} = {float:.6} ({exact})")
+            } else {
+                format!("{name} = {exact}")
+            }
         })
         .collect();
     let place = if state.is_empty() { String::new() } else { format!("at {}: ", state.join(", ")) };
@@ -88,7 +92,9 @@ pub fn claim_line(outcome: &Outcome) -> String {
     let mut line = format!("  {mark} {:<10} {}", outcome.word(), outcome.id);
     let explain = |verdict: &Verdict| match verdict {
         Verdict::Proved { log2_error, .. } if *log2_error == f64::NEG_INFINITY => "certain".to_owned(),
-        Verdict::Proved { log2_error, .. } => format!("but for a probability below {}", error_bound(*log2_error)),
+        Verdict::Proved { log2_error, .. } => {
+            format!("but for a probability below {}", error_bound(*log2_error))
+        }
         Verdict::Refuted { witness, .. } => witness_line(witness),
         Verdict::Definition { text } => text.clone(),
         Verdict::Undecided { why } => why.clone(),
@@ -102,7 +108,11 @@ pub fn claim_line(outcome: &Outcome) -> String {
             verdict => line.push_str(&format!("\n         {}", explain(verdict))),
         },
         Some((statement, verdict)) => {
-            line.push_str(&format!("\n         printed    {statement}\n                    {}: {}", verdict.word(), explain(verdict)));
+            line.push_str(&format!(
+                "\n         printed    {statement}\n                    {}: {}",
+                verdict.word(),
+                explain(verdict)
+            ));
             let corrected = &outcome.verdict;
             line.push_str(&format!(
                 "\n         corrected  {}\n                    {}: {}",

@@ -22,15 +22,22 @@ const INK: RGBColor = RGBColor(40, 44, 52);
 type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Draws into a string. What cannot be drawn is said in its place.
-fn svg(size: (u32, u32), draw: impl FnOnce(&Drawing<'_>) -> Result<(), Box<dyn std::error::Error>>) -> String {
+fn svg(
+    size: (u32, u32),
+    draw: impl FnOnce(&Drawing<'_>) -> Result<(), Box<dyn std::error::Error>>,
+) -> String {
     let mut text = String::new();
     let result = {
         let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
         draw(&area).and_then(|()| area.present().map_err(Into::into))
     };
     match result {
-        // the page scales it
-        Ok(()) => text.replacen("<svg ", "<svg role=\"img\" ", 1),
+        Ok(()) => {
+            // what every shape says and nobody needs
+            let text =
+                text.replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", "").replace(">\n<", "><");
+            text.replacen("<svg ", "<svg role=\"img\" ", 1)
+        }
         Err(error) => format!("<p>this plot could not be drawn: {error}</p>"),
     }
 }
@@ -53,7 +60,8 @@ fn shade(level: usize) -> RGBColor {
 
 /// The smallest singular value over two coordinates; dark where it is small, white at poles.
 pub(crate) fn map(map: &Map, title: &str) -> String {
-    let found: Vec<f64> = map.smallest.iter().flatten().copied().filter(|v| *v > 0.0).map(f64::log10).collect();
+    let found: Vec<f64> =
+        map.smallest.iter().flatten().copied().filter(|v| *v > 0.0).map(f64::log10).collect();
     let highest = found.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = found.iter().copied().fold(f64::INFINITY, f64::min).max(highest - 6.0);
     if found.is_empty() {
@@ -69,7 +77,8 @@ pub(crate) fn map(map: &Map, title: &str) -> String {
             .y_label_area_size(46)
             .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
         let (dx, dy) = ((map.x.2 - map.x.1) / map.width as f64, (map.y.2 - map.y.1) / map.height as f64);
-        let colour = |cell: &Option<f64>| cell.map(|value| level(value.max(f64::MIN_POSITIVE), lowest, highest));
+        let colour =
+            |cell: &Option<f64>| cell.map(|value| level(value.max(f64::MIN_POSITIVE), lowest, highest));
         for (row, cells) in map.smallest.chunks(map.width).enumerate() {
             // neighbours of one colour are one rectangle
             let mut start = 0;
@@ -78,11 +87,20 @@ pub(crate) fn map(map: &Map, title: &str) -> String {
                 let length = cells[start..].iter().take_while(|cell| colour(cell) == this).count();
                 let corner = |i: usize, j: usize| (map.x.1 + dx * i as f64, map.y.1 + dy * j as f64);
                 let style = this.map_or(POLE, shade).filled();
-                chart.draw_series([Rectangle::new([corner(start, row), corner(start + length, row + 1)], style)])?;
+                chart.draw_series([Rectangle::new(
+                    [corner(start, row), corner(start + length, row + 1)],
+                    style,
+                )])?;
                 start += length;
             }
         }
-        chart.configure_mesh().disable_mesh().x_desc(&map.x.0).y_desc(&map.y.0).axis_desc_style(("sans-serif", 13)).draw()?;
+        chart
+            .configure_mesh()
+            .disable_mesh()
+            .x_desc(&map.x.0)
+            .y_desc(&map.y.0)
+            .axis_desc_style(("sans-serif", 13))
+            .draw()?;
         let mut scale = ChartBuilder::on(&legend)
             .margin_top(34)
             .margin_bottom(44)
@@ -91,7 +109,10 @@ pub(crate) fn map(map: &Map, title: &str) -> String {
             .build_cartesian_2d(0.0..1.0, lowest..highest)?;
         for step in 0..SHADES {
             let at = |i: usize| lowest + (highest - lowest) * i as f64 / SHADES as f64;
-            scale.draw_series([Rectangle::new([(0.0, at(step)), (1.0, at(step + 1))], shade(step).filled())])?;
+            scale.draw_series([Rectangle::new(
+                [(0.0, at(step)), (1.0, at(step + 1))],
+                shade(step).filled(),
+            )])?;
         }
         scale
             .configure_mesh()
@@ -111,7 +132,8 @@ pub(crate) fn slope(slope: &Slope, title: &str) -> String {
     let values: Vec<f64> = slope.values.iter().flatten().copied().filter(|v| *v > 1e-20).collect();
     let highest = values.iter().copied().fold(1e-20, f64::max) * 2.0;
     let lowest = values.iter().copied().fold(highest, f64::min).max(1e-18) / 2.0;
-    let (near, far) = (slope.distance.last().copied().unwrap_or(1e-14), slope.distance.first().copied().unwrap_or(1.0));
+    let (near, far) =
+        (slope.distance.last().copied().unwrap_or(1e-14), slope.distance.first().copied().unwrap_or(1.0));
     svg((420, 300), |area| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
@@ -138,7 +160,8 @@ pub(crate) fn slope(slope: &Slope, title: &str) -> String {
                 .zip(&slope.values)
                 .filter_map(|(d, v)| v.get(index).filter(|v| **v >= lowest).map(|v| (*d, *v)));
             let last = index + 1 == count;
-            let colour = if last { RGBColor(200, 40, 60) } else { shade(index * (SHADES - 8) / count.max(1)) };
+            let colour =
+                if last { RGBColor(200, 40, 60) } else { shade(index * (SHADES - 8) / count.max(1)) };
             chart.draw_series(LineSeries::new(points, colour.stroke_width(if last { 2 } else { 1 })))?;
         }
         Ok(())
@@ -204,7 +227,10 @@ pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
             .y_desc("operations")
             .axis_desc_style(("sans-serif", 12))
             .draw()?;
-        let cubic = points.iter().map(|(k, _)| (*k, last.1 * (k / last.0).powi(3))).filter(|(_, v)| *v >= first.1 / 2.0);
+        let cubic = points
+            .iter()
+            .map(|(k, _)| (*k, last.1 * (k / last.0).powi(3)))
+            .filter(|(_, v)| *v >= first.1 / 2.0);
         chart.draw_series(LineSeries::new(cubic, RGBColor(170, 175, 182).stroke_width(1)))?;
         chart.draw_series(LineSeries::new(points.iter().copied(), shade(6).stroke_width(2)))?;
         chart.draw_series(points.iter().map(|point| Circle::new(*point, 3, shade(6).filled())))?;

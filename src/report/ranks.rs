@@ -6,7 +6,11 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
-    histogram.iter().map(|(rank, count)| (rank.to_string(), json!(count))).collect::<serde_json::Map<_, _>>().into()
+    histogram
+        .iter()
+        .map(|(rank, count)| (rank.to_string(), json!(count)))
+        .collect::<serde_json::Map<_, _>>()
+        .into()
 }
 
 /// JSON has no infinity; a gap without bound is null.
@@ -88,7 +92,8 @@ fn total_json(answer: &RankAnswer, branches: Vec<Value>) -> Value {
             *histogram.entry(*rank).or_insert(0) += count;
         }
     }
-    let sum = |of: fn(&SweepReport) -> u64| answer.branches.iter().map(|branch| of(&branch.full)).sum::<u64>();
+    let sum =
+        |of: fn(&SweepReport) -> u64| answer.branches.iter().map(|branch| of(&branch.full)).sum::<u64>();
     json!({
         "samples": sum(|r| r.samples),
         "rank_histogram": histogram_json(&histogram),
@@ -149,7 +154,8 @@ pub fn rank_text(answer: &RankAnswer) -> String {
             let _ = writeln!(out, "where {}", branch.conditions.join(", "));
         }
         let _ = writeln!(out, "words that were needed: {}", branch.words.join(", "));
-        let _ = writeln!(out, "words of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
+        let _ =
+            writeln!(out, "words of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
         if !branch.is_final {
             let _ = writeln!(out, "the fields leave these states: longer words may still raise the rank");
         }

@@ -8,17 +8,27 @@ use crate::verification::{PrintedValue, RegimeResult, Verification};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
+/// What a plot needs of a number, so that the file stays small.
+fn four_digits(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
 fn map_json(kind: Rows, map: &Map) -> Value {
     json!({
         "rows": if kind == Rows::Own { "own" } else { "full" },
         "x": { "name": map.x.0, "low": map.x.1, "high": map.x.2, "cells": map.width },
         "y": { "name": map.y.0, "low": map.y.1, "high": map.y.2, "cells": map.height },
-        "smallest_singular_value": map.smallest,
+        "smallest_singular_value": map.smallest.iter().map(|v| v.map(four_digits)).collect::<Vec<_>>(),
     })
 }
 
 fn line_json(title: &str, slope: &Slope) -> Value {
-    json!({ "into": title, "distance": slope.distance, "singular_values": slope.values })
+    let short = |values: &[f64]| values.iter().copied().map(four_digits).collect::<Vec<_>>();
+    json!({
+        "into": title,
+        "distance": short(&slope.distance),
+        "singular_values": slope.values.iter().map(|values| short(values)).collect::<Vec<_>>(),
+    })
 }
 
 fn regime_json(result: &RegimeResult) -> Value {
@@ -108,7 +118,12 @@ pub(crate) fn ranks_in_words(answer: &RankAnswer, own: bool) -> String {
     match total.len() {
         0 => "-".to_owned(),
         1 => total.keys().map(usize::to_string).collect(),
-        _ => total.iter().rev().map(|(rank, count)| format!("{rank} at {count}")).collect::<Vec<_>>().join(", "),
+        _ => total
+            .iter()
+            .rev()
+            .map(|(rank, count)| format!("{rank} at {count}"))
+            .collect::<Vec<_>>()
+            .join(", "),
     }
 }
 
@@ -137,7 +152,11 @@ pub fn verification_text(found: &Verification) -> String {
         }
     }
     if let Some(appendix) = &found.appendix {
-        let _ = writeln!(out, "Appendix A.2: the determinant has {} monomials when multiplied out", appendix.monomials);
+        let _ = writeln!(
+            out,
+            "Appendix A.2: the determinant has {} monomials when multiplied out",
+            appendix.monomials
+        );
         for value in &appendix.values {
             let place = if value.study.contains(value.error) { "inside" } else { "outside" };
             let _ = writeln!(

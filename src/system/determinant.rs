@@ -15,7 +15,8 @@ pub(crate) fn determinant(graph: &mut Graph, matrix: &Matrix) -> NodeId {
     let mut order: Vec<usize> = (0..n).collect();
     let filled = |row: &usize| (0..n).filter(|column| !is_zero(graph, matrix.at(*row, *column))).count();
     order.sort_by_key(filled);
-    let swapped = (0..n).flat_map(|i| (0..i).map(move |j| (j, i))).filter(|(j, i)| order[*j] > order[*i]).count();
+    let swapped =
+        (0..n).flat_map(|i| (0..i).map(move |j| (j, i))).filter(|(j, i)| order[*j] > order[*i]).count();
 
     // minors of the last rows of the order, by the set of columns that they use
     let mut minors: HashMap<u32, NodeId> = HashMap::from([(0, graph.integer(1))]);

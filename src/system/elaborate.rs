@@ -14,9 +14,8 @@ const LARGEST_GRAPH: usize = 4_000_000;
 const LARGEST_MATRIX: usize = 1 << 16;
 
 /// The functions of the language beside [`Function::ALL`].
-const OTHER_FUNCTIONS: [&str; 13] = [
-    "tan", "cot", "sec", "csc", "L", "d", "det", "rank", "pole", "transpose", "inverse", "dot", "cross",
-];
+const OTHER_FUNCTIONS: [&str; 13] =
+    ["tan", "cot", "sec", "csc", "L", "d", "det", "rank", "pole", "transpose", "inverse", "dot", "cross"];
 
 /// What a name should have been.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -32,7 +31,9 @@ impl System {
     pub(crate) fn elaborate(&mut self, expr: &Expr) -> Result<Value, Problem> {
         if self.graph.len() > LARGEST_GRAPH {
             let message = format!("this grows beyond {LARGEST_GRAPH} operations");
-            return Err(Problem::new(&expr.span, message, "here").help("use fewer or shorter Lie derivatives"));
+            return Err(
+                Problem::new(&expr.span, message, "here").help("use fewer or shorter Lie derivatives")
+            );
         }
         match &expr.kind {
             ExprKind::Number(value) => Ok(Value::Scalar(self.graph.rational(value.clone()))),
@@ -80,7 +81,11 @@ impl System {
     pub(crate) fn scalar(&mut self, expr: &Expr) -> Result<NodeId, Problem> {
         match self.elaborate(expr)? {
             Value::Scalar(id) => Ok(id),
-            other => Err(Problem::new(&expr.span, format!("expected a number, found {}", other.describe()), "this")),
+            other => Err(Problem::new(
+                &expr.span,
+                format!("expected a number, found {}", other.describe()),
+                "this",
+            )),
         }
     }
 
@@ -88,7 +93,8 @@ impl System {
     pub(crate) fn rational(&mut self, expr: &Expr) -> Result<RBig, Problem> {
         let id = self.scalar(expr)?;
         self.graph.constant_value(id).cloned().ok_or_else(|| {
-            Problem::new(&expr.span, "expected a rational number", "this is none").help("such as 2, 0.5 or 1/3")
+            Problem::new(&expr.span, "expected a rational number", "this is none")
+                .help("such as 2, 0.5 or 1/3")
         })
     }
 
@@ -101,7 +107,11 @@ impl System {
             };
             let value = self.scalar(value)?;
             if assignment.insert(symbol, value).is_some() {
-                return Err(Problem::new(&name.span, format!("'{}' is given twice", name.text), "the second time"));
+                return Err(Problem::new(
+                    &name.span,
+                    format!("'{}' is given twice", name.text),
+                    "the second time",
+                ));
             }
         }
         Ok(assignment)
@@ -139,7 +149,8 @@ impl System {
 
     /// The error for a name that nobody has declared as what it should be.
     pub(crate) fn unknown(&self, name: &str, span: &Span, wanted: Wanted) -> Problem {
-        let symbols = self.symbols.iter().filter(|(_, info)| wanted != Wanted::State || info.kind == Kind::State);
+        let symbols =
+            self.symbols.iter().filter(|(_, info)| wanted != Wanted::State || info.kind == Kind::State);
         let symbols = symbols.map(|(symbol, _)| self.symbol_name(*symbol));
         let definitions = self.definitions.keys().map(String::as_str).chain(["pi", "rank"]);
         let fields = self.fields.iter().chain(&self.imported_fields).map(|f| f.name.as_str());
@@ -169,7 +180,11 @@ impl System {
         let one = |system: &mut Self| -> Result<NodeId, Problem> {
             match arguments {
                 [argument] => system.scalar(argument),
-                _ => Err(Problem::new(span, format!("'{name}' takes one argument"), format!("{} here", arguments.len()))),
+                _ => Err(Problem::new(
+                    span,
+                    format!("'{name}' takes one argument"),
+                    format!("{} here", arguments.len()),
+                )),
             }
         };
         if let Some(function) = Function::ALL.into_iter().find(|f| f.name() == name) {
@@ -231,7 +246,11 @@ impl System {
                     let factor = self.scalar(factor)?;
                     Ok(Value::Pole { expression, factor })
                 }
-                _ => Err(Problem::new(span, "'pole' takes an expression and what vanishes at the pole", "here")),
+                _ => Err(Problem::new(
+                    span,
+                    "'pole' takes an expression and what vanishes at the pole",
+                    "here",
+                )),
             },
             _ => {
                 let known = Function::ALL.iter().map(|f| f.name()).chain(OTHER_FUNCTIONS);
@@ -250,7 +269,9 @@ impl System {
             return Err(Problem::new(span, "'L' takes a field and an expression", "here"));
         };
         if fields.is_empty() {
-            return Err(Problem::new(span, "'L' takes a field and an expression", "here").help("as in L(f, s1)"));
+            return Err(
+                Problem::new(span, "'L' takes a field and an expression", "here").help("as in L(f, s1)")
+            );
         }
         let mut value = self.elaborate(last)?;
         for field in fields.iter().rev() {
@@ -268,7 +289,11 @@ impl System {
                 }
             })?;
             if self.graph.len() > LARGEST_GRAPH {
-                return Err(Problem::new(span, format!("this grows beyond {LARGEST_GRAPH} operations"), "here"));
+                return Err(Problem::new(
+                    span,
+                    format!("this grows beyond {LARGEST_GRAPH} operations"),
+                    "here",
+                ));
             }
         }
         Ok(value)
@@ -292,7 +317,8 @@ impl System {
             states = self.states.clone();
         }
         if states.is_empty() {
-            return Err(Problem::new(span, "there is no state to differentiate by", "here").help("declare 'state x, ...'"));
+            return Err(Problem::new(span, "there is no state to differentiate by", "here")
+                .help("declare 'state x, ...'"));
         }
         let entries: Vec<NodeId> = states.into_iter().map(|state| self.partial(expression, state)).collect();
         Ok(Value::Matrix(Matrix { rows: 1, columns: entries.len(), entries }))
@@ -321,8 +347,10 @@ impl System {
             for column in 0..n {
                 // the cofactor of the transposed place
                 let kept = |skip: usize| (0..n).filter(move |i| *i != skip);
-                let minor: Vec<NodeId> =
-                    kept(column).flat_map(|i| kept(row).map(move |j| (i, j))).map(|(i, j)| matrix.at(i, j)).collect();
+                let minor: Vec<NodeId> = kept(column)
+                    .flat_map(|i| kept(row).map(move |j| (i, j)))
+                    .map(|(i, j)| matrix.at(i, j))
+                    .collect();
                 let minor = Matrix { rows: n - 1, columns: n - 1, entries: minor };
                 let value = determinant(&mut self.graph, &minor);
                 let value = if (row + column) % 2 == 0 { value } else { self.graph.neg(value) };
@@ -336,10 +364,12 @@ impl System {
     fn dot(&mut self, a: &Matrix, b: &Matrix, span: &Span) -> Result<Value, Problem> {
         let vectors = (a.rows == 1 || a.columns == 1) && (b.rows == 1 || b.columns == 1);
         if !vectors || a.entries.len() != b.entries.len() {
-            let message = format!("a matrix of {} by {} and one of {} by {}", a.rows, a.columns, b.rows, b.columns);
+            let message =
+                format!("a matrix of {} by {} and one of {} by {}", a.rows, a.columns, b.rows, b.columns);
             return Err(Problem::new(span, message, "'dot' takes two vectors of one length"));
         }
-        let products: Vec<NodeId> = a.entries.iter().zip(&b.entries).map(|(x, y)| self.graph.mul(*x, *y)).collect();
+        let products: Vec<NodeId> =
+            a.entries.iter().zip(&b.entries).map(|(x, y)| self.graph.mul(*x, *y)).collect();
         Ok(Value::Scalar(self.graph.sum(products)))
     }
 
@@ -358,7 +388,8 @@ impl System {
                 Ok(Value::Matrix(Matrix { entries, ..*a }))
             }
             _ => {
-                let message = format!("a matrix of {} by {} and one of {} by {}", a.rows, a.columns, b.rows, b.columns);
+                let message =
+                    format!("a matrix of {} by {} and one of {} by {}", a.rows, a.columns, b.rows, b.columns);
                 Err(Problem::new(span, message, "'cross' takes two vectors of length two or three"))
             }
         }
@@ -393,12 +424,17 @@ impl System {
             }
             for line in 0..blocks.first().map_or(0, |block| block.rows) {
                 for block in &blocks {
-                    entries.extend_from_slice(&block.entries[line * block.columns..(line + 1) * block.columns]);
+                    entries
+                        .extend_from_slice(&block.entries[line * block.columns..(line + 1) * block.columns]);
                 }
                 height += 1;
             }
             if entries.len() > LARGEST_MATRIX {
-                return Err(Problem::new(span, format!("a matrix of more than {LARGEST_MATRIX} entries"), "here"));
+                return Err(Problem::new(
+                    span,
+                    format!("a matrix of more than {LARGEST_MATRIX} entries"),
+                    "here",
+                ));
             }
         }
         Ok(Value::Matrix(Matrix { rows: height, columns: width.unwrap_or(0), entries }))

@@ -1,6 +1,7 @@
 //! What can be wrong with a file, shown at its place.
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
+use std::sync::Arc;
 
 /// A file that could not be used: what, where, and what to do.
 #[derive(Debug, Diagnostic, thiserror::Error)]
@@ -10,7 +11,7 @@ pub struct ReadError {
     pub message: String,
     /// The text, with its name.
     #[source_code]
-    pub source_code: NamedSource<String>,
+    pub source_code: Arc<NamedSource<String>>,
     /// The place.
     #[label("{label}")]
     pub span: SourceSpan,
@@ -24,7 +25,8 @@ pub struct ReadError {
 impl ReadError {
     /// The line and the column of the place, both counted from one.
     pub fn line_and_column(&self) -> (usize, usize) {
-        let before = &self.source_code.inner().as_bytes()[..self.span.offset().min(self.source_code.inner().len())];
+        let before =
+            &self.source_code.inner().as_bytes()[..self.span.offset().min(self.source_code.inner().len())];
         let line = before.iter().filter(|b| **b == b'\n').count() + 1;
         let column = before.iter().rev().take_while(|b| **b != b'\n').count() + 1;
         (line, column)
@@ -69,7 +71,7 @@ impl Problem {
         }
         ReadError {
             message: self.message,
-            source_code: NamedSource::new(name, text.to_owned()),
+            source_code: Arc::new(NamedSource::new(name, text.to_owned())),
             span: SourceSpan::new(begin.into(), end - begin),
             label,
             help: self.help,

@@ -1,7 +1,9 @@
 //! The grammar of a proof file, without the meaning of its names. The README documents it; it is a public interface.
 
 use crate::expression::Expected;
-use crate::expression::parse::{Depth, Read, Text, blank, equation, keyword, name, read_all, sign, stop, sum};
+use crate::expression::parse::{
+    Depth, Read, Text, blank, equation, keyword, name, read_all, sign, stop, sum,
+};
 use crate::expression::syntax::{Equation, Expr, Name, Span};
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};
 use winnow::error::{ErrMode, ParserError};
@@ -21,7 +23,7 @@ pub(crate) enum Item {
     Field { name: Name, components: Vec<(Name, Expr)>, others_are_zero: bool },
     Output(Vec<Expr>),
     Sample { ranges: Vec<(Name, Expr, Expr)>, avoid: Vec<Expr> },
-    Claim(ClaimSyntax),
+    Claim(Box<ClaimSyntax>),
 }
 
 /// An equation and the conditions under which it is claimed.
@@ -47,11 +49,11 @@ pub enum Expectation {
 #[derive(Clone, Debug)]
 pub enum ClaimBody {
     /// A statement with the verdict that is expected of it.
-    Claim { statement: Statement, expected: Expectation },
+    Claim { statement: Box<Statement>, expected: Expectation },
     /// A printed statement that is to be refuted, and a corrected one that is to be proved.
-    Erratum { printed: Statement, corrected: Statement },
+    Erratum { printed: Box<Statement>, corrected: Box<Statement> },
     /// A statement that the scanner damaged: as it stands in the scan, in words, and repaired, which is to be proved.
-    Scan { scanned: String, repaired: Statement },
+    Scan { scanned: String, repaired: Box<Statement> },
     /// Something that is defined and not claimed.
     Definition { text: String },
     /// Something that is not decided, and why.
@@ -62,7 +64,9 @@ impl ClaimBody {
     /// The statements that it makes.
     pub fn statements(&self) -> Vec<&Statement> {
         match self {
-            ClaimBody::Claim { statement, .. } | ClaimBody::Scan { repaired: statement, .. } => vec![statement],
+            ClaimBody::Claim { statement, .. } | ClaimBody::Scan { repaired: statement, .. } => {
+                vec![statement]
+            }
             ClaimBody::Erratum { printed, corrected } => vec![printed, corrected],
             ClaimBody::Definition { .. } | ClaimBody::Open { .. } => Vec::new(),
         }
@@ -140,8 +144,16 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     while let Some((state, value)) = opt(component).parse_next(input)? {
         if state.text == "others" {
             match value.kind {
-                crate::expression::syntax::ExprKind::Number(ref zero) if zero.is_zero() => others_are_zero = true,
-                _ => return stop(value.span.start, "0: the components that are not named can only be zero", None),
+                crate::expression::syntax::ExprKind::Number(ref zero) if zero.is_zero() => {
+                    others_are_zero = true
+                }
+                _ => {
+                    return stop(
+                        value.span.start,
+                        "0: the components that are not named can only be zero",
+                        None,
+                    );
+                }
             }
         } else {
             components.push((state, value));
@@ -182,7 +194,7 @@ fn identifier(input: &mut Text<'_>) -> Read<Name> {
     Ok(Name { text, span })
 }
 
-fn statement(input: &mut Text<'_>) -> Read<Statement> {
+fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
     let begin = input.current_token_start();
     let equation_ = cut_err(equation).parse_next(input)?;
     let conditions: Option<Vec<Equation>> =
@@ -190,7 +202,7 @@ fn statement(input: &mut Text<'_>) -> Read<Statement> {
     let conditions = conditions.unwrap_or_default();
     let end = conditions.last().unwrap_or(&equation_);
     let end = end.within.as_ref().unwrap_or(&end.right).span.end;
-    Ok(Statement { equation: equation_, conditions, span: begin..end })
+    Ok(Box::new(Statement { equation: equation_, conditions, span: begin..end }))
 }
 
 fn claim(input: &mut Text<'_>) -> Read<Item> {
@@ -211,7 +223,7 @@ fn claim(input: &mut Text<'_>) -> Read<Item> {
     let statement = statement(input)?;
     let remark = opt(quoted).parse_next(input)?;
     let body = ClaimBody::Claim { statement, expected };
-    Ok(Item::Claim(ClaimSyntax { id: id.text, span: id.span, body, remark }))
+    Ok(Item::Claim(Box::new(ClaimSyntax { id: id.text, span: id.span, body, remark })))
 }
 
 fn erratum(input: &mut Text<'_>) -> Read<Item> {
@@ -220,34 +232,41 @@ fn erratum(input: &mut Text<'_>) -> Read<Item> {
     cut_err(sign(":")).context("':'").parse_next(input)?;
     cut_err(keyword("printed")).context("'printed' and the statement as it is printed").parse_next(input)?;
     let printed = statement(input)?;
-    cut_err(keyword("corrected")).context("'corrected' and the statement as it should be").parse_next(input)?;
+    cut_err(keyword("corrected"))
+        .context("'corrected' and the statement as it should be")
+        .parse_next(input)?;
     let corrected = statement(input)?;
     let remark = opt(quoted).parse_next(input)?;
     let body = ClaimBody::Erratum { printed, corrected };
-    Ok(Item::Claim(ClaimSyntax { id: id.text, span: id.span, body, remark }))
+    Ok(Item::Claim(Box::new(ClaimSyntax { id: id.text, span: id.span, body, remark })))
 }
 
 fn scan(input: &mut Text<'_>) -> Read<Item> {
     keyword("scan").parse_next(input)?;
     let id = cut_err(identifier).parse_next(input)?;
     cut_err(sign(":")).context("':'").parse_next(input)?;
-    cut_err(keyword("scanned")).context("'scanned' and the damaged text in quotation marks").parse_next(input)?;
+    cut_err(keyword("scanned"))
+        .context("'scanned' and the damaged text in quotation marks")
+        .parse_next(input)?;
     let scanned = cut_err(quoted).parse_next(input)?;
-    cut_err(keyword("repaired")).context("'repaired' and the statement as it must have been").parse_next(input)?;
+    cut_err(keyword("repaired"))
+        .context("'repaired' and the statement as it must have been")
+        .parse_next(input)?;
     let repaired = statement(input)?;
     let remark = opt(quoted).parse_next(input)?;
     let body = ClaimBody::Scan { scanned, repaired };
-    Ok(Item::Claim(ClaimSyntax { id: id.text, span: id.span, body, remark }))
+    Ok(Item::Claim(Box::new(ClaimSyntax { id: id.text, span: id.span, body, remark })))
 }
 
 /// `definition ID: "text"` and `undecided ID: "reason"`.
 fn remark_only(input: &mut Text<'_>) -> Read<Item> {
-    let open = alt((keyword("definition").value(false), keyword("undecided").value(true))).parse_next(input)?;
+    let open =
+        alt((keyword("definition").value(false), keyword("undecided").value(true))).parse_next(input)?;
     let id = cut_err(identifier).parse_next(input)?;
     cut_err(sign(":")).context("':'").parse_next(input)?;
     let text = cut_err(quoted).parse_next(input)?;
     let body = if open { ClaimBody::Open { reason: text } } else { ClaimBody::Definition { text } };
-    Ok(Item::Claim(ClaimSyntax { id: id.text, span: id.span, body, remark: None }))
+    Ok(Item::Claim(Box::new(ClaimSyntax { id: id.text, span: id.span, body, remark: None })))
 }
 
 const ENTRY: &str = "one of: system, use, state, param, angle, let, field, output, sample, claim, erratum, scan, \
@@ -270,7 +289,19 @@ fn item(input: &mut Text<'_>) -> Read<Item> {
 
 /// The words that begin an entry.
 const ENTRIES: [&str; 14] = [
-    "system", "use", "state", "param", "angle", "let", "field", "output", "sample", "claim", "erratum", "scan", "definition",
+    "system",
+    "use",
+    "state",
+    "param",
+    "angle",
+    "let",
+    "field",
+    "output",
+    "sample",
+    "claim",
+    "erratum",
+    "scan",
+    "definition",
     "undecided",
 ];
 
@@ -295,7 +326,7 @@ fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {
 pub(crate) fn parse_file(text: &str) -> Result<Vec<Item>, Expected> {
     let all = |input: &mut Text<'_>| -> Read<Vec<Item>> {
         let mut items = Vec::new();
-        while input.input.as_ref().len() > 0 {
+        while !input.input.as_ref().is_empty() {
             match item.parse_next(input) {
                 Ok(found) => items.push(found),
                 Err(ErrMode::Cut(error)) => return Err(ErrMode::Cut(error)),

@@ -69,7 +69,10 @@ pub enum Value {
     /// `rank`, the rank of the observability codistribution.
     CodistributionRank,
     /// `pole(e, x)`, the order of the pole of `e` where `x` vanishes.
-    Pole { expression: NodeId, factor: NodeId },
+    Pole {
+        expression: NodeId,
+        factor: NodeId,
+    },
 }
 
 impl Value {

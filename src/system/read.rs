@@ -22,9 +22,7 @@ impl System {
     /// What is wrong with the file, and where.
     pub fn read(path: &Path) -> Result<System, ReadError> {
         let name = path.display().to_string();
-        let text = load(path).map_err(|message| {
-            Problem::new(&(0..0), message, "").locate(&name, "")
-        })?;
+        let text = load(path).map_err(|message| Problem::new(&(0..0), message, "").locate(&name, ""))?;
         Self::parse(&name, &text, path.parent().unwrap_or(Path::new("")))
     }
 
@@ -110,7 +108,9 @@ impl System {
                 let value = self.elaborate(&expr)?;
                 self.definitions.insert(name.text, value);
             }
-            Item::Field { name, components, others_are_zero } => self.field(name, &components, others_are_zero)?,
+            Item::Field { name, components, others_are_zero } => {
+                self.field(name, &components, others_are_zero)?
+            }
             Item::Output(list) => {
                 for expr in list {
                     let value = self.scalar(&expr)?;
@@ -123,7 +123,7 @@ impl System {
                     let message = format!("there is a claim '{}' already", claim.id);
                     return Err(Problem::new(&claim.span, message, "the second one"));
                 }
-                self.claims.push(claim);
+                self.claims.push(*claim);
             }
         }
         Ok(())
@@ -163,7 +163,11 @@ impl System {
             || self.definitions.contains_key(&name.text)
             || ["pi", "rank"].contains(&name.text.as_str());
         if taken {
-            return Err(Problem::new(&name.span, format!("'{}' has a meaning already", name.text), "declared again"));
+            return Err(Problem::new(
+                &name.span,
+                format!("'{}' has a meaning already", name.text),
+                "declared again",
+            ));
         }
         if name.text.contains('.') {
             let message = "a name with a dot belongs to an imported system";
@@ -180,9 +184,18 @@ impl System {
         Ok(symbol)
     }
 
-    fn field(&mut self, name: Name, components: &[(Name, Expr)], others_are_zero: bool) -> Result<(), Problem> {
+    fn field(
+        &mut self,
+        name: Name,
+        components: &[(Name, Expr)],
+        others_are_zero: bool,
+    ) -> Result<(), Problem> {
         if self.field_mut(&name.text).is_some() {
-            return Err(Problem::new(&name.span, format!("there is a field '{}' already", name.text), "the second one"));
+            return Err(Problem::new(
+                &name.span,
+                format!("there is a field '{}' already", name.text),
+                "the second one",
+            ));
         }
         let mut rates: Vec<(Symbol, _)> = Vec::new();
         for (state, expr) in components {
@@ -198,7 +211,8 @@ impl System {
         }
         let missing = self.states.iter().find(|state| !rates.iter().any(|(symbol, _)| symbol == *state));
         if let (Some(missing), false) = (missing, others_are_zero) {
-            let message = format!("the field '{}' does not say how '{}' moves", name.text, self.symbol_name(*missing));
+            let message =
+                format!("the field '{}' does not say how '{}' moves", name.text, self.symbol_name(*missing));
             return Err(Problem::new(&name.span, message, "this field")
                 .help("end it with: others' = 0, if the states that it does not name stand still"));
         }
@@ -215,7 +229,11 @@ impl System {
             let range = Range { low: self.rational(low)?, high: self.rational(high)? };
             if range.low > range.high {
                 let span = low.span.start..high.span.end;
-                return Err(Problem::new(&span, format!("the range of '{}' is empty", name.text), "low above high"));
+                return Err(Problem::new(
+                    &span,
+                    format!("the range of '{}' is empty", name.text),
+                    "low above high",
+                ));
             }
             if let Some(info) = self.symbols.get_mut(&symbol) {
                 info.range = Some(range);
@@ -232,7 +250,11 @@ impl System {
     /// go under `alias.name`.
     fn import(&mut self, alias: &Name, path: &Path, span: &Span, depth: usize) -> Result<(), Problem> {
         if depth >= DEEPEST_IMPORT {
-            return Err(Problem::new(span, "imports within imports, more than eight deep", "does a file import itself?"));
+            return Err(Problem::new(
+                span,
+                "imports within imports, more than eight deep",
+                "does a file import itself?",
+            ));
         }
         let name = path.display().to_string();
         let text = load(path).map_err(|message| Problem::new(span, message, "this file"))?;
@@ -241,7 +263,8 @@ impl System {
         let other = System::build(&name, &text, folder, graph, depth + 1).map_err(|problem| {
             let inner = problem.locate(&name, &text);
             let (line, column) = inner.line_and_column();
-            let problem = Problem::new(span, format!("{name}:{line}:{column}: {}", inner.message), "imported here");
+            let problem =
+                Problem::new(span, format!("{name}:{line}:{column}: {}", inner.message), "imported here");
             match inner.help {
                 Some(help) => problem.help(help),
                 None => problem,
@@ -277,5 +300,10 @@ fn load(path: &Path) -> Result<String, String> {
 }
 
 fn expected(error: crate::expression::Expected) -> Problem {
-    Problem { message: error.to_string(), span: error.at..error.at + 1, label: "here".to_owned(), help: error.help }
+    Problem {
+        message: error.to_string(),
+        span: error.at..error.at + 1,
+        label: "here".to_owned(),
+        help: error.help,
+    }
 }

@@ -23,7 +23,11 @@ pub fn growth_of_lie_derivatives(system: &System, field: usize, output: usize, o
             let begin = Instant::now();
             value = system.lie_derivative(field, value);
             let seconds = begin.elapsed().as_secs_f64();
-            Growth { order, operations: Program::new(&system.graph, &[value], |_| false, false).len(), seconds }
+            Growth {
+                order,
+                operations: Program::new(&system.graph, &[value], |_| false, false).len(),
+                seconds,
+            }
         })
         .collect()
 }

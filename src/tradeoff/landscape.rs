@@ -86,9 +86,17 @@ impl<'s> Landscape<'s> {
     ///
     /// # Errors
     /// A name that is not known.
-    pub fn map(&self, x: (&str, f64, f64), y: (&str, f64, f64), width: usize, height: usize) -> Result<Map, String> {
+    pub fn map(
+        &self,
+        x: (&str, f64, f64),
+        y: (&str, f64, f64),
+        width: usize,
+        height: usize,
+    ) -> Result<Map, String> {
         let (sx, sy) = (known(self.system, x.0)?, known(self.system, y.0)?);
-        let at = |(_, low, high): (&str, f64, f64), i: usize, n: usize| low + (high - low) * (i as f64 + 0.5) / n as f64;
+        let at = |(_, low, high): (&str, f64, f64), i: usize, n: usize| {
+            low + (high - low) * (i as f64 + 0.5) / n as f64
+        };
         let smallest = (0..width * height)
             .into_par_iter()
             .map(|cell| {
@@ -105,7 +113,13 @@ impl<'s> Landscape<'s> {
     ///
     /// # Errors
     /// A name that is not known, or an end that does not exist.
-    pub fn line(&mut self, moving: &str, target: Target<'_>, least: f64, points: usize) -> Result<Slope, String> {
+    pub fn line(
+        &mut self,
+        moving: &str,
+        target: Target<'_>,
+        least: f64,
+        points: usize,
+    ) -> Result<Slope, String> {
         let symbol = known(self.system, moving)?;
         let end = match target {
             Target::Value(value) => value,

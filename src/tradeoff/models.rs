@@ -39,8 +39,10 @@ pub fn compare_models(
     let (large_system, large_rows, locus) = large;
     let small_program = compiled(small_system, small_rows);
     let large_program = compiled(large_system, large_rows);
-    let drawn: Vec<State> =
-        (0..states).map(|index| locus.draw(seed, index)).collect::<Result<_, _>>().map_err(|e| e.to_string())?;
+    let drawn: Vec<State> = (0..states)
+        .map(|index| locus.draw(seed, index))
+        .collect::<Result<_, _>>()
+        .map_err(|e| e.to_string())?;
     let renamed: Vec<State> = drawn.iter().map(|state| rename(state, large_system, small_system)).collect();
     let inputs = |program: &Program, states: &[State]| -> Result<Vec<Vec<f64>>, String> {
         states
@@ -80,9 +82,10 @@ fn compiled(system: &mut System, rows: &[NodeId]) -> Program {
 
 /// The values of one system's symbols under another's symbols of the same names.
 fn rename(state: &State, from: &System, to: &System) -> State {
-    let values = state.values.iter().filter_map(|(symbol, value)| {
-        Some((to.find_symbol(from.symbol_name(*symbol))?, value.clone()))
-    });
+    let values = state
+        .values
+        .iter()
+        .filter_map(|(symbol, value)| Some((to.find_symbol(from.symbol_name(*symbol))?, value.clone())));
     State { values: values.collect() }
 }
 
@@ -99,7 +102,10 @@ fn time(program: &Program, inputs: &[Vec<f64>], columns: usize) -> Result<f64, S
 
 /// The largest relative difference between the entries of rows that have the same place counted from the end (the
 /// large model has more outputs in front), in columns of the same name.
-fn difference(small: (&Program, &[Vec<f64>], &System), large: (&Program, &[Vec<f64>], &System)) -> Result<f64, String> {
+fn difference(
+    small: (&Program, &[Vec<f64>], &System),
+    large: (&Program, &[Vec<f64>], &System),
+) -> Result<f64, String> {
     let run = |program: &Program, input: &Vec<f64>| {
         let loaded = program.load(Floats).map_err(|refusal| refusal.to_string())?;
         loaded.run(input, &mut Vec::new()).map_err(|failure| failure.refusal.to_string())

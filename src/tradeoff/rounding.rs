@@ -31,7 +31,8 @@ impl RoundingStudy {
 
     /// Whether an error lies between the least and the greatest that were found.
     pub fn contains(&self, error: f64) -> bool {
-        self.errors.first().is_some_and(|least| *least <= error) && self.errors.last().is_some_and(|most| error <= *most)
+        self.errors.first().is_some_and(|least| *least <= error)
+            && self.errors.last().is_some_and(|most| error <= *most)
     }
 }
 

@@ -103,11 +103,15 @@ fn examine(
             Ok((symbol, value.ok_or_else(|| format!("{id}: a value that is not rational"))?))
         })
         .collect::<Result<_, String>>()?;
-    let certified = certified_value(&system.graph, determinant, &point, CERTIFIED_DIGITS).map_err(|e| e.to_string())?;
-    let truth = parse_decimal(&certified.decimal).ok_or_else(|| format!("{id}: {} is no decimal", certified.decimal))?;
+    let certified =
+        certified_value(&system.graph, determinant, &point, CERTIFIED_DIGITS).map_err(|e| e.to_string())?;
+    let truth = parse_decimal(&certified.decimal)
+        .ok_or_else(|| format!("{id}: {} is no decimal", certified.decimal))?;
     let printed_text = system.source[right.span.clone()].trim().to_owned();
-    let printed = parse_decimal(&printed_text).ok_or_else(|| format!("{id}: {printed_text} is no decimal"))?;
-    let study = study_rounding(expansion, &point, &truth, PRINTED_DIGITS, ORDERS, seed).map_err(|e| e.to_string())?;
+    let printed =
+        parse_decimal(&printed_text).ok_or_else(|| format!("{id}: {printed_text} is no decimal"))?;
+    let study =
+        study_rounding(expansion, &point, &truth, PRINTED_DIGITS, ORDERS, seed).map_err(|e| e.to_string())?;
     Ok(PrintedValue {
         id: id.to_owned(),
         point: list
@@ -134,7 +138,8 @@ mod tests {
 
     #[test]
     fn digits_are_counted_after_rounding() {
-        let digits = |a: &str, b: &str| agreeing_digits(&parse_decimal(a).unwrap(), &parse_decimal(b).unwrap());
+        let digits =
+            |a: &str, b: &str| agreeing_digits(&parse_decimal(a).unwrap(), &parse_decimal(b).unwrap());
         assert_eq!(digits("25.67009841", "25.66837164143751"), 4); // both are 25.67
         assert_eq!(digits("1647.940473", "1647.937602"), 6); // both are 1647.94
         assert_eq!(digits("16.4", "164"), 0);

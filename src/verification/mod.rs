@@ -70,16 +70,35 @@ const ROUTE_ORDERS: usize = 7;
 /// The orders of the growth curve.
 const GROWTH_ORDERS: usize = 12;
 
+/// The proof files of the folder beside those of the regimes, in order of name.
+fn other_files(folder: &Path) -> Result<Vec<String>, VerifyError> {
+    let unreadable = |e: std::io::Error| VerifyError::Step {
+        step: folder.display().to_string(),
+        why: format!("cannot be read: {e}"),
+    };
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        let name = entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned();
+        if name.ends_with(".proof") && !REGIMES.iter().any(|regime| regime.file == name) {
+            files.push(name);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
 /// Runs the main job.
 ///
 /// # Errors
 /// A file that cannot be used, or a step that cannot be done.
 pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
     let begin = Instant::now();
-    let mut systems = Vec::new();
-    for regime in &REGIMES {
-        let system = System::read(&options.folder.join(regime.file));
-        systems.push(system.map_err(|error| VerifyError::Read(Box::new(error)))?);
+    let read = |file: &str| {
+        System::read(&options.folder.join(file)).map_err(|error| VerifyError::Read(Box::new(error)))
+    };
+    let mut systems = REGIMES.iter().map(|regime| read(regime.file)).collect::<Result<Vec<_>, _>>()?;
+    for file in other_files(options.folder)? {
+        systems.push(read(&file)?);
     }
     let claims: usize = systems.iter().map(|system| system.claims.len()).sum();
     let steps = claims as u64 + REGIMES.iter().map(Regime::steps).sum::<u64>() + 3;
@@ -92,7 +111,9 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
 
     let outcomes: Vec<Outcome> = systems
         .iter()
-        .flat_map(|system| decide_all(system, options.seed, options.interrupt, &|o| step(&format!("claim {}", o.id))))
+        .flat_map(|system| {
+            decide_all(system, options.seed, options.interrupt, &|o| step(&format!("claim {}", o.id)))
+        })
         .collect();
     let mut regimes = Vec::new();
     for (regime, system) in REGIMES.iter().zip(&systems) {

@@ -57,11 +57,13 @@ pub struct RegimeResult {
 impl RegimeResult {
     /// Every rank certified, and full on the whole box.
     pub fn as_expected(&self) -> bool {
-        let certified = |answer: &RankAnswer| answer.branches.iter().all(|b| b.full.certified == b.full.samples);
+        let certified =
+            |answer: &RankAnswer| answer.branches.iter().all(|b| b.full.certified == b.full.samples);
         let full = |answer: &RankAnswer| {
             answer.branches.iter().all(|b| b.full.rank_histogram.keys().all(|rank| *rank == answer.dimension))
         };
-        self.ranks.iter().all(|(_, answer)| certified(answer)) && self.ranks.first().is_some_and(|(_, a)| full(a))
+        self.ranks.iter().all(|(_, answer)| certified(answer))
+            && self.ranks.first().is_some_and(|(_, a)| full(a))
     }
 }
 
@@ -101,8 +103,17 @@ pub const REGIMES: [Regime; 4] = [
         },
         picture: Picture {
             at: &[
-                ("omega0", 1.0), ("s1", 1.0), ("s2", 2.0), ("phi1", 0.5), ("omega1", 2.0), ("phi2", 2.0),
-                ("omega2", 1.5), ("rho", 0.5), ("r1", 1.5), ("r2", 1.5), ("m", 1.0),
+                ("omega0", 1.0),
+                ("s1", 1.0),
+                ("s2", 2.0),
+                ("phi1", 0.5),
+                ("omega1", 2.0),
+                ("phi2", 2.0),
+                ("omega2", 1.5),
+                ("rho", 0.5),
+                ("r1", 1.5),
+                ("r2", 1.5),
+                ("m", 1.0),
             ],
             x: ("r1", 0.2, 3.0),
             y: ("r2", 0.2, 3.0),
@@ -171,7 +182,15 @@ pub const REGIMES: [Regime; 4] = [
             "the determinant 4.65 vanishes": "det(rows) = 0";
         },
         picture: Picture {
-            at: &[("r1", 1.5), ("r2", 1.5), ("s1", 1.0), ("s2", 2.0), ("omega0", 1.0), ("phi2", 2.0), ("omega2", 2.0)],
+            at: &[
+                ("r1", 1.5),
+                ("r2", 1.5),
+                ("s1", 1.0),
+                ("s2", 2.0),
+                ("omega0", 1.0),
+                ("phi2", 2.0),
+                ("omega2", 2.0),
+            ],
             x: ("omega0", -3.0, 3.0),
             y: ("s1", 0.2, 3.0),
             order: 3,

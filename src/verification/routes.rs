@@ -24,7 +24,8 @@ const STATES: u64 = 16;
 pub fn compare_routes(system: &System, orders: usize, seed: u64) -> Result<Vec<RouteAgreement>, String> {
     let mut system = system.clone();
     let output = system.outputs[0].1;
-    let locus = Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &[output]).map_err(|e| e.to_string())?;
+    let locus = Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &[output])
+        .map_err(|e| e.to_string())?;
     let mut value = output;
     let mut found = Vec::new();
     for order in 1..=orders {
@@ -34,8 +35,10 @@ pub fn compare_routes(system: &System, orders: usize, seed: u64) -> Result<Vec<R
         let mut largest = 0.0f64;
         for index in 0..STATES {
             let state = locus.draw(seed, index).map_err(|e| e.to_string())?;
-            let mut point: HashMap<Symbol, f64> =
-                system.symbols().filter_map(|(s, info)| Some((s, info.default.as_ref()?.to_f64().value()))).collect();
+            let mut point: HashMap<Symbol, f64> = system
+                .symbols()
+                .filter_map(|(s, info)| Some((s, info.default.as_ref()?.to_f64().value())))
+                .collect();
             point.extend(state.values.iter().map(|(symbol, value)| (*symbol, value.to_f64())));
             let inputs = float_inputs(&program, |symbol| point[&symbol]);
             let graph = program.load(Floats).map_err(|e| e.to_string())?.run(&inputs, &mut Vec::new());
