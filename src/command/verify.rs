@@ -3,7 +3,7 @@
 use super::output::{INTERRUPTED, print_json, print_text, progress, write_whole};
 use super::{Status, Unusable};
 use clap::Args;
-use palmistry::report::{page, verification_json, verification_text};
+use palmistry::report::{errata_markdown, page, verification_json, verification_text};
 use palmistry::verification::{Options, VerifyError, verify};
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Exit status 0 only when every claim has the verdict that its file expects and every rank is certified.
 #[derive(Args)]
 pub(crate) struct Verify {
-    /// Where to write index.html and verify.json.
+    /// Where to write index.html, verify.json and errata.md.
     #[arg(long, value_name = "DIR", default_value = "verify")]
     out: PathBuf,
     /// The folder that holds the thesis's proof files.
@@ -55,6 +55,7 @@ impl Verify {
         let (html_file, json_file) = (self.out.join("index.html"), self.out.join("verify.json"));
         write_whole(&html_file, &page(&found))?;
         write_whole(&json_file, &format!("{}\n", serde_json::to_string(&json).unwrap_or_default()))?;
+        write_whole(&self.out.join("errata.md"), &errata_markdown(&found.outcomes))?;
         if self.json {
             print_json(&json);
         } else {

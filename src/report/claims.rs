@@ -79,7 +79,7 @@ pub(crate) fn witness_line(witness: &Witness) -> String {
 }
 
 /// A fraction with its decimal behind it; anything else as it is.
-fn with_decimal(value: &str) -> String {
+pub(crate) fn with_decimal(value: &str) -> String {
     match parse_decimal(value) {
         Some(number) if value.contains('/') => format!("{value} = {:.8}", rational_to_f64(&number)),
         _ => value.to_owned(),

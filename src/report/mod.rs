@@ -3,12 +3,14 @@
 //! Nothing is decided here.
 
 mod claims;
+mod errata;
 mod page;
 mod plot;
 mod ranks;
 mod verification;
 
 pub use claims::{claim_json, claim_line, junit};
+pub use errata::errata_markdown;
 pub use page::page;
 pub use ranks::{rank_json, rank_text};
 pub use verification::{printed_value_json, verification_json, verification_text};

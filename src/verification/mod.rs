@@ -4,10 +4,12 @@
 //! This is the one place beside `proofs/` (and the mechanics to come) that knows that there are palms.
 
 mod appendix;
+mod equations;
 mod regimes;
 mod routes;
 
 pub use appendix::{Appendix, PrintedValue, printed_values};
+pub use equations::{Equation, NUMBERED, equations};
 pub use regimes::{Picture, REGIMES, Regime, RegimeResult, SingularSet};
 pub use routes::{RouteAgreement, compare_routes};
 

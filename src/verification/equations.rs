@@ -1,0 +1,80 @@
+//! The numbered equations of the thesis, and which entries speak of each. Nothing is left out silently.
+
+use crate::claim::Outcome;
+use std::collections::BTreeMap;
+
+/// The chapters that have numbered equations, with the number of the last one.
+pub const NUMBERED: [(&str, u32); 5] = [("3", 49), ("4", 91), ("5", 42), ("6", 12), ("A", 27)];
+
+/// The entries of one equation.
+#[derive(Clone, Debug)]
+pub struct Equation<'o> {
+    /// As in `4.48`.
+    pub number: String,
+    /// The outcomes whose ids begin with the number, and the parts of it.
+    pub entries: Vec<&'o Outcome>,
+}
+
+impl Equation<'_> {
+    /// One word for all entries: what is worst among them; `no entry` where there are none.
+    pub fn word(&self) -> &'static str {
+        const ORDER: [&str; 5] = ["refuted", "undecided", "erratum", "scanning fault", "proved"];
+        let has = |word: &str| self.entries.iter().any(|outcome| outcome.word() == word);
+        match ORDER.into_iter().find(|word| has(word)) {
+            Some(word) => word,
+            None if self.entries.is_empty() => "no entry",
+            None => "definition",
+        }
+    }
+}
+
+/// All equations in the order of the thesis.
+pub fn equations(outcomes: &[Outcome]) -> Vec<Equation<'_>> {
+    let mut by_number: BTreeMap<String, Vec<&Outcome>> = BTreeMap::new();
+    for outcome in outcomes {
+        if let Some(number) = number_of(&outcome.id) {
+            by_number.entry(number).or_default().push(outcome);
+        }
+    }
+    NUMBERED
+        .iter()
+        .flat_map(|(chapter, last)| (1..=*last).map(move |n| format!("{chapter}.{n}")))
+        .map(|number| {
+            let entries = by_number.remove(&number).unwrap_or_default();
+            Equation { number, entries }
+        })
+        .collect()
+}
+
+/// The equation that an id speaks of: `4.31` for `4.31.s2`, nothing for `A.2.generic` (a section) or `rank.level`.
+fn number_of(id: &str) -> Option<String> {
+    let mut parts = id.split('.');
+    let chapter = parts.next().filter(|c| NUMBERED.iter().any(|(known, _)| known == c))?;
+    let number: u32 = parts.next()?.parse().ok()?;
+    let section = chapter == "A" && SECTION_IDS.iter().any(|known| id.starts_with(known));
+    (!section).then(|| format!("{chapter}.{number}"))
+}
+
+/// Ids of what the appendix's section A.2 prints without numbers.
+const SECTION_IDS: [&str; 5] = ["A.2.generic", "A.2.same_rate", "A.2.palm_1_fixed", "A.2.pole", "A.2.section"];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_belong_to_their_equation_and_sections_to_none() {
+        assert_eq!(number_of("4.31.s2").as_deref(), Some("4.31"));
+        assert_eq!(number_of("A.16").as_deref(), Some("A.16"));
+        assert_eq!(number_of("A.2.generic"), None);
+        assert_eq!(number_of("A.2.pole_1"), None);
+        assert_eq!(number_of("3.text.curvature"), None);
+        assert_eq!(number_of("rank.level"), None);
+    }
+
+    #[test]
+    fn there_are_two_hundred_and_twenty_one() {
+        assert_eq!(equations(&[]).len(), 221);
+        assert!(equations(&[]).iter().all(|equation| equation.word() == "no entry"));
+    }
+}
