@@ -150,3 +150,14 @@ fn an_unexpected_verdict_is_exit_status_one() {
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stdout).contains("1 not as expected"));
 }
+
+/// The README's example says what is true.
+#[test]
+fn the_example_of_the_readme_holds() {
+    let readme = include_str!("../README.md");
+    let example = readme.split("```").find(|block| block.contains("system \"A pendulum")).unwrap();
+    let system = System::parse("pendulum.proof", example, Path::new("")).unwrap();
+    let outcomes = decide_all(&system, 1, &false.into(), &|_| ());
+    assert_eq!(outcomes.len(), 4);
+    assert!(outcomes.iter().all(|outcome| outcome.ok && outcome.word() == "proved"));
+}

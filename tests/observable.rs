@@ -142,3 +142,25 @@ fn what_cannot_be_asked_is_refused_with_advice() {
         assert!(words.contains(advice), "{arguments:?}: {words}");
     }
 }
+
+/// A long run that is interrupted says so and keeps what it had.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_keeps_what_it_had() {
+    use std::process::{Command, Stdio};
+    let child = Command::new(env!("CARGO_BIN_EXE_palmistry"))
+        .args(["rank", SAME_RATE, "--samples", "1000000000", "--json"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let found = json(&output);
+    assert_eq!(found["interrupted"], true);
+    let samples = found["samples"].as_u64().unwrap();
+    assert!(samples > 0 && found["certified"] == samples);
+}

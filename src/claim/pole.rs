@@ -7,6 +7,7 @@
 use super::identity::RANDOM_PRIMES;
 use super::verdict::{Verdict, Witness};
 use crate::expression::{Input, Node, NodeId, Program, Symbol, draw_residues, expand_angles};
+use crate::number::polynomial::Size;
 use crate::number::{Arithmetic, Enclosures, Function, Laurent, PrimeField, Refusal, Series};
 use crate::system::{Assignment, System};
 use dashu::rational::RBig;
@@ -28,8 +29,6 @@ pub enum PoleOrder {
 
 /// Coefficients kept of a series; a pole within a pole costs as many as its order.
 const TERMS: usize = 24;
-/// Random fields that have to agree.
-const ROUNDS: usize = 3;
 const ATTEMPTS: usize = 40;
 
 /// Where the factor becomes the small quantity.
@@ -68,19 +67,21 @@ pub fn pole_order(
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
     let expanded = expand_angles(&mut system.graph, &[approach.expression], is_angle);
     let program = Program::new(&system.graph, &expanded, is_angle, false);
-    let generic = match generic_valuation(&program, &approach, rng) {
-        Ok(valuation) => valuation,
-        Err(why) => return PoleOrder::Unknown(why),
-    };
+    // the leading coefficients of numerator and denominator are polynomials of no greater degree than these
     let bound = match crate::expression::sizes(&program) {
-        Ok(sizes) => sizes[0].0,
+        Ok(sizes) => {
+            let (top, bottom) = sizes[0];
+            Size { degree: top.degree + bottom.degree, bits: top.bits + bottom.bits }
+        }
         Err(refusal) => return PoleOrder::Unknown(refusal.to_string()),
     };
-    // a vanishing coefficient is a polynomial of no greater degree than the whole
     let Some((rounds, log2_error)) = crate::expression::failure_bound(bound) else {
         return PoleOrder::Unknown("the degree is too large for the prime fields".to_owned());
     };
-    let log2_error = log2_error / rounds as f64 * ROUNDS as f64;
+    let generic = match generic_valuation(&program, &approach, rounds, rng) {
+        Ok(valuation) => valuation,
+        Err(why) => return PoleOrder::Unknown(why),
+    };
     let fixed_angles: Vec<Symbol> = point.keys().copied().filter(|symbol| system.is_angle(*symbol)).collect();
     if fixed_angles.is_empty() {
         return PoleOrder::Order { order: -generic, log2_error };
@@ -144,10 +145,14 @@ fn series<A: Arithmetic + Clone>(
     Ok(inputs)
 }
 
-/// The leading exponent that random points of random fields agree upon: the least, since a coefficient may vanish by
-/// accident but not fail to.
-fn generic_valuation(program: &Program, approach: &Approach, rng: &mut impl Rng) -> Result<i32, String> {
-    let (mut least, mut rounds) = (i32::MAX, 0);
+/// The leading exponent that random points of random fields agree upon.
+fn generic_valuation(
+    program: &Program,
+    approach: &Approach,
+    wanted: usize,
+    rng: &mut impl Rng,
+) -> Result<i32, String> {
+    let (mut found, mut rounds) = (None, 0);
     let mut complaint = "no random point could be evaluated".to_owned();
     for _ in 0..ATTEMPTS {
         let field = PrimeField::random(rng);
@@ -159,14 +164,14 @@ fn generic_valuation(program: &Program, approach: &Approach, rng: &mut impl Rng)
             Ok(values) if values[0].coefficients.is_empty() => {
                 complaint = "all coefficients that were kept are zero".to_owned();
             }
-            Ok(values) => {
-                least = least.min(values[0].valuation);
-                rounds += 1;
+            Ok(values) if *found.get_or_insert(values[0].valuation) != values[0].valuation => {
+                return Err("random points do not agree on the order".to_owned());
             }
+            Ok(_) => rounds += 1,
             Err(failure) => complaint = failure.refusal.to_string(),
         }
-        if rounds == ROUNDS {
-            return Ok(least);
+        if let (Some(valuation), true) = (found, rounds >= wanted) {
+            return Ok(valuation);
         }
     }
     Err(complaint)

@@ -2,7 +2,7 @@
 
 use super::verdict::Witness;
 use crate::expression::{Graph, Input, NodeId, Program, Symbol};
-use crate::number::{Enclosures, Rationals, round_to_decimal};
+use crate::number::{Enclosure, Enclosures, Rationals, round_to_decimal};
 use crate::observability::{Coordinate, State};
 use crate::system::System;
 use dashu::base::BitTest;
@@ -11,6 +11,10 @@ use rand::{Rng, RngExt};
 
 /// How many states are tried.
 const ATTEMPTS: usize = 300;
+/// After so many states at which the sides agree the search ends.
+const STATES: usize = 30;
+/// Agreement is counted up to so many digits.
+const MOST_DIGITS: usize = 100;
 /// The precision of enclosures where there is no exact arithmetic.
 const BITS: usize = 400;
 /// The digits to which irrational or long values are written.
@@ -39,47 +43,53 @@ pub(crate) fn search(
     // an angle outside sines and cosines has no exact value: then angles are numbers like all others
     let plain = exact_program.bare_angle().is_some();
     let program = if plain { Program::new(graph, &[left, right], |_| false, false) } else { exact_program };
-    let (mut least, mut states) = (usize::MAX, 0);
+    let (mut least, mut states) = (MOST_DIGITS, 0);
     for attempt in 0..ATTEMPTS {
         let state = draw(system, &program, !plain, attempt, rng);
-        if let Some((left, right)) = exact_values(&program, &state) {
-            if left != right {
-                let shown = |value: &RBig| {
-                    let short = value.numerator().bit_len() + value.denominator().bit_len() < 100;
-                    if short { value.to_string() } else { round_to_decimal(value, DIGITS) }
-                };
-                let witness = Witness {
-                    state: state.describe(system),
-                    left: shown(&left),
-                    right: shown(&right),
-                    entry: None,
-                };
-                return Search::Found(witness);
+        match compare(&program, &state) {
+            Some(Comparison::Differ(left, right)) => {
+                return Search::Found(Witness { state: state.describe(system), left, right, entry: None });
             }
-            (least, states) = (least.min(BITS), states + 1);
-            continue;
+            Some(Comparison::Agree(digits)) => (least, states) = (least.min(digits), states + 1),
+            None => {}
         }
-        let Some((left, right)) = enclosed_values(&program, &state) else { continue };
-        if Enclosures::common(&left, &right).is_none() {
-            let shown = |value: &crate::number::Enclosure| {
-                value.certain_decimal(DIGITS).unwrap_or_else(|| format!("{:e}", value.midpoint()))
-            };
-            let witness = Witness {
-                state: state.describe(system),
-                left: shown(&left),
-                right: shown(&right),
-                entry: None,
-            };
-            return Search::Found(witness);
-        }
-        let digits =
-            (1..=120).rev().find(|n| left.decimal(*n).is_some_and(|text| right.decimal(*n) == Some(text)));
-        (least, states) = (least.min(digits.unwrap_or(0)), states + 1);
-        if states >= 20 {
+        if states == STATES {
             break;
         }
     }
     Search::Agrees { digits: if states == 0 { 0 } else { least }, states }
+}
+
+/// Two sides at one state.
+enum Comparison {
+    Differ(String, String),
+    /// To so many digits, at most [`MOST_DIGITS`].
+    Agree(usize),
+}
+
+/// Compares the two expressions of a program, exactly where that is possible, else by enclosures. `None` where one of
+/// them is not defined.
+fn compare(program: &Program, state: &State) -> Option<Comparison> {
+    if let Some((left, right)) = exact_values(program, state) {
+        let shown = |value: &RBig| {
+            let short = value.numerator().bit_len() + value.denominator().bit_len() < 100;
+            if short { value.to_string() } else { round_to_decimal(value, DIGITS) }
+        };
+        return Some(if left == right {
+            Comparison::Agree(MOST_DIGITS)
+        } else {
+            Comparison::Differ(shown(&left), shown(&right))
+        });
+    }
+    let (left, right) = enclosed_values(program, state)?;
+    if Enclosures::common(&left, &right).is_none() {
+        let shown = |value: &Enclosure| {
+            value.certain_decimal(DIGITS).unwrap_or_else(|| format!("{:e}", value.midpoint()))
+        };
+        return Some(Comparison::Differ(shown(&left), shown(&right)));
+    }
+    let same = |n: &usize| left.decimal(*n).is_some_and(|text| right.decimal(*n) == Some(text));
+    Some(Comparison::Agree((1..=MOST_DIGITS).rev().find(same).unwrap_or(0)))
 }
 
 fn exact_values(program: &Program, state: &State) -> Option<(RBig, RBig)> {
@@ -89,10 +99,7 @@ fn exact_values(program: &Program, state: &State) -> Option<(RBig, RBig)> {
     Some((values[0].clone(), values[1].clone()))
 }
 
-fn enclosed_values(
-    program: &Program,
-    state: &State,
-) -> Option<(crate::number::Enclosure, crate::number::Enclosure)> {
+fn enclosed_values(program: &Program, state: &State) -> Option<(Enclosure, Enclosure)> {
     let arithmetic = Enclosures::new(BITS);
     let inputs = state.inputs(program, &arithmetic).ok()?;
     let values = program.load(arithmetic).ok()?.run(&inputs, &mut Vec::new()).ok()?;

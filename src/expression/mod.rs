@@ -6,6 +6,7 @@
 //! This floor knows nothing of states, outputs or claims.
 
 mod angle;
+mod common_factor;
 mod derivative;
 mod expansion;
 mod graph;
@@ -17,6 +18,7 @@ mod zero_test;
 pub(crate) mod parse;
 
 pub use angle::expand_angles;
+pub use common_factor::share_a_factor;
 pub use derivative::Derivation;
 pub use expansion::{Expansion, expand};
 pub use graph::{Graph, Node, NodeId, Symbol};

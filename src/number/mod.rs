@@ -16,6 +16,7 @@ mod laurent;
 pub mod polynomial;
 mod rational;
 mod residue;
+pub mod univariate;
 
 pub use decimal::{Decimal, Decimals, decimal_to_f64};
 pub use dual::{Duals, Tower};

@@ -2,7 +2,7 @@
 //! that states which meet them can be written down exactly.
 
 use crate::expression::syntax::Equation;
-use crate::expression::{Node, NodeId, Symbol, ZeroTest, expand_angles, identically_zero};
+use crate::expression::{Node, NodeId, Symbol, ZeroTest, expand_angles, identically_zero, share_a_factor};
 use crate::number::Function;
 use crate::system::{Assignment, Kind, System, Value};
 use rand::SeedableRng;
@@ -29,7 +29,13 @@ pub enum Unsolved {
     /// It cannot be solved for a symbol.
     #[error("the condition '{0}' is not linear in any symbol; write it as name = expression")]
     NotLinear(String),
+    /// It is met on several sets at once, as a product is.
+    #[error("the condition '{0}' is met in more than one way; name the factor that is to vanish")]
+    Several(String),
 }
+
+/// Conditions are quoted in messages up to so many characters.
+const LONGEST_QUOTE: usize = 80;
 
 /// Solves conditions one after the other. `sin(u) = 0` and `cos(u) = 0` have two branches each.
 ///
@@ -45,7 +51,10 @@ pub fn solve_conditions(system: &mut System, conditions: &[Equation]) -> Result<
             Err(problem) => Err(Unsolved::Unreadable(problem.message)),
         };
         let (left, right) = (side(&condition.left)?, side(&condition.right)?);
-        let text = format!("{} = {}", system.graph.text(left), system.graph.text(right));
+        let mut text = format!("{} = {}", system.graph.text(left), system.graph.text(right));
+        if text.chars().count() > LONGEST_QUOTE {
+            text = text.chars().take(LONGEST_QUOTE).chain("...".chars()).collect();
+        }
         let mut next = Vec::new();
         for branch in &branches {
             let sides = system.graph.substitute(&[left, right], &branch.values);
@@ -95,15 +104,32 @@ fn solutions(system: &mut System, left: NodeId, right: NodeId, text: &str) -> Re
     candidates
         .extend(system.symbols().filter(|(_, info)| info.kind != Kind::State).map(|(symbol, _)| symbol));
     let mentioned = system.graph.symbols_of([difference]);
+    candidates.retain(|symbol| !system.is_angle(*symbol) && mentioned.contains(symbol));
+    let mut several = false;
     for symbol in candidates {
-        if !system.is_angle(symbol)
-            && mentioned.contains(&symbol)
-            && let Some(value) = linear_solution(system, difference, symbol)
-        {
-            return Ok(vec![(Some(symbol), value)]);
+        if let Some(value) = linear_solution(system, difference, symbol) {
+            // a x + b = 0 is x = -b/a, and also whatever makes a and b vanish together
+            if also_met_otherwise(system, difference, symbol) {
+                several = true;
+            } else {
+                return Ok(vec![(Some(symbol), value)]);
+            }
         }
     }
-    Err(Unsolved::NotLinear(text.to_owned()))
+    Err(if several { Unsolved::Several(text.to_owned()) } else { Unsolved::NotLinear(text.to_owned()) })
+}
+
+/// Whether an expression `a x + b` has a factor that does not depend on `x`: then it vanishes with that factor too, and
+/// `x = -b/a` is not all.
+fn also_met_otherwise(system: &mut System, expression: NodeId, symbol: Symbol) -> bool {
+    let slope = system.partial(expression, symbol);
+    let zero = system.graph.integer(0);
+    let both = system.graph.substitute(&[slope, expression], &Assignment::from([(symbol, zero)]));
+    let angles = system.angles();
+    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let both = expand_angles(&mut system.graph, &both, is_angle);
+    let mut rng = ChaCha8Rng::seed_from_u64(0x6c69_6e65);
+    share_a_factor(&system.graph, both[0], both[1], is_angle, &mut rng) != Some(false)
 }
 
 /// `sin(u) = 0` and `cos(u) = 0` for an integer combination `u` of angles, solved for an angle whose factor in it is

@@ -18,10 +18,15 @@ pub fn errata_markdown(outcomes: &[Outcome]) -> String {
     for outcome in of_kind("erratum") {
         erratum(outcome, &mut out);
     }
-    let _ = writeln!(out, "# Scanning faults\n\nThe formula is right once the damage of the scan is repaired.\n");
+    let _ =
+        writeln!(out, "# Scanning faults\n\nThe formula is right once the damage of the scan is repaired.\n");
     for outcome in of_kind("scanning fault") {
         let _ = writeln!(out, "## {}\n", outcome.id);
-        let _ = writeln!(out, "Scanned:\n\n{}\nRepaired, and proved:\n", block(outcome.scanned.as_deref().unwrap_or("")));
+        let _ = writeln!(
+            out,
+            "Scanned:\n\n{}\nRepaired, and proved:\n",
+            block(outcome.scanned.as_deref().unwrap_or(""))
+        );
         let _ = writeln!(out, "{}", block(&outcome.statement));
         if let Some(remark) = &outcome.remark {
             let _ = writeln!(out, "{remark}\n");
@@ -59,7 +64,8 @@ fn erratum(outcome: &Outcome, out: &mut String) {
 }
 
 fn in_words(witness: &Witness) -> String {
-    let state: Vec<String> = witness.state.iter().map(|(name, exact, _)| format!("{name}: {exact}")).collect();
+    let state: Vec<String> =
+        witness.state.iter().map(|(name, exact, _)| format!("{name}: {exact}")).collect();
     let place = match (state.is_empty(), witness.entry) {
         (true, None) => "The left side of the printed form".to_owned(),
         (false, None) => format!("At {} the left side of the printed form", state.join("; ")),
@@ -67,7 +73,11 @@ fn in_words(witness: &Witness) -> String {
             format!("At {} the entry in row {row}, column {column} of the left side", state.join("; "))
         }
     };
-    format!("{place} is `{}`, the right side `{}`.", with_decimal(&witness.left), with_decimal(&witness.right))
+    format!(
+        "{place} is `{}`, the right side `{}`.",
+        with_decimal(&witness.left),
+        with_decimal(&witness.right)
+    )
 }
 
 fn table(all: &[Equation<'_>], out: &mut String) {
@@ -79,7 +89,12 @@ fn table(all: &[Equation<'_>], out: &mut String) {
         .filter(|(count, _)| *count > 0)
         .map(|(count, word)| format!("{count} {word}"))
         .collect();
-    let _ = writeln!(out, "{} equations: {}.\n\n| equation | verdict | entries |\n|---|---|---|", all.len(), counts.join(", "));
+    let _ = writeln!(
+        out,
+        "{} equations: {}.\n\n| equation | verdict | entries |\n|---|---|---|",
+        all.len(),
+        counts.join(", ")
+    );
     for equation in all {
         let entries: Vec<String> = equation
             .entries

@@ -141,18 +141,21 @@ fn regime(index: usize, result: &RegimeResult) -> Markup {
                     th { "not seen" } th { "rank, thesis's own rows" } th { "not seen by these" } th { "worst condition" }
                 } }
                 tbody {
-                    @for (title, answer) in &result.ranks {
-                        tr {
-                            td { (title) }
-                            td.number { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
-                            td.number { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
-                            td { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
-                            td.words { @for words in distinct_words(answer) { div { (words) } } }
-                            td { (unseen(answer, false).join("; ")) }
-                            td { b { (ranks_in_words(answer, true)) } }
-                            td { (unseen(answer, true).join("; ")) }
-                            td.number { (worst(answer)) }
-                        }
+                    @for (set, found) in &result.ranks {
+                        tr { td { (set.title) @if !set.conditions.is_empty() { br; code { (set.conditions.join(", ")) } } }
+                        @match found {
+                            Ok(answer) => {
+                                td.number { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
+                                td.number { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
+                                td { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
+                                td.words { @for words in distinct_words(answer) { div { (words) } } }
+                                td { (unseen(answer, false).join("; ")) }
+                                td { b { (ranks_in_words(answer, true)) } }
+                                td { (unseen(answer, true).join("; ")) }
+                                td.number { (worst(answer)) }
+                            }
+                            Err(pole) => { td colspan="8" { (pole) } }
+                        } }
                     }
                 }
             } }

@@ -36,9 +36,13 @@ fn regime_json(result: &RegimeResult) -> Value {
         "file": result.regime.file,
         "title": result.title,
         "left_out": result.regime.left_out,
-        "ranks": result.ranks.iter().map(|(title, answer)| {
-            let mut object = rank_json(answer);
-            object["set"] = json!(title);
+        "ranks": result.ranks.iter().map(|(set, found)| {
+            let mut object = match found {
+                Ok(answer) => rank_json(answer),
+                Err(pole) => json!({ "pole": pole }),
+            };
+            object["set"] = json!(set.title);
+            object["conditions"] = json!(set.conditions);
             object
         }).collect::<Vec<_>>(),
         "maps": result.maps.iter().map(|(kind, map)| map_json(*kind, map)).collect::<Vec<_>>(),
@@ -136,9 +140,12 @@ pub fn verification_text(found: &Verification) -> String {
     for result in &found.regimes {
         let _ = writeln!(out, "{}", result.title);
         let _ = writeln!(out, "  {:<48} {:>16} {:>16}", "rank on", "full", "thesis's rows");
-        for (title, answer) in &result.ranks {
-            let (full, own) = (ranks_in_words(answer, false), ranks_in_words(answer, true));
-            let _ = writeln!(out, "  {title:<48} {full:>16} {own:>16}");
+        for (set, found) in &result.ranks {
+            let (full, own) = match found {
+                Ok(answer) => (ranks_in_words(answer, false), ranks_in_words(answer, true)),
+                Err(_) => ("a pole".to_owned(), "a pole".to_owned()),
+            };
+            let _ = writeln!(out, "  {:<48} {full:>16} {own:>16}", set.title);
         }
         if let Some(c) = &result.comparison {
             let _ = writeln!(

@@ -10,6 +10,7 @@ mod determinant;
 mod elaborate;
 mod error;
 mod grammar;
+mod matrices;
 mod model;
 mod read;
 

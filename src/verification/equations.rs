@@ -56,7 +56,8 @@ fn number_of(id: &str) -> Option<String> {
 }
 
 /// Ids of what the appendix's section A.2 prints without numbers.
-const SECTION_IDS: [&str; 5] = ["A.2.generic", "A.2.same_rate", "A.2.palm_1_fixed", "A.2.pole", "A.2.section"];
+const SECTION_IDS: [&str; 5] =
+    ["A.2.generic", "A.2.same_rate", "A.2.palm_1_fixed", "A.2.pole", "A.2.section"];
 
 #[cfg(test)]
 mod tests {
