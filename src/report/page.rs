@@ -6,7 +6,7 @@ use super::verification::ranks_in_words;
 use crate::claim::{Outcome, Verdict};
 use crate::observability::RankAnswer;
 use crate::tradeoff::Rows;
-use crate::verification::{Appendix, RegimeResult, Verification};
+use crate::verification::{Appendix, RegimeResult, Verification, equations};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");
@@ -21,7 +21,7 @@ pub fn page(found: &Verification) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Palmistry: what holds in chapter 4 and appendix A.2" }
+                title { "Palmistry: what holds in Moll 2002, and what does not" }
                 style { (PreEscaped(STYLE)) }
             }
             body {
@@ -29,7 +29,8 @@ pub fn page(found: &Verification) -> String {
                     h1 { "What holds, and what does not" }
                     p {
                         "M. Moll, " em { "Shape Reconstruction Using Active Tactile Sensors" }
-                        " (2002), chapter 4 and appendix A.2, checked from first principles. "
+                        " (2002), checked from first principles: every numbered equation, the rank of every regime of chapter 4 "
+                        "on its singular sets, and the determinants of appendix A.2. "
                         "Each verdict says what stands behind it: " b { "proved" } " is exact arithmetic with the "
                         "probability of an error stated, " b { "refuted" } " a state in exact numbers at which the two "
                         "sides differ, " b { "erratum" } " a printed form refuted and its corrected form proved."
@@ -37,13 +38,17 @@ pub fn page(found: &Verification) -> String {
                     ul.tally {
                         li { b { (count("proved")) } " proved" }
                         li { b { (count("erratum")) } " errata" }
+                        li { b { (count("scanning fault")) } " scanning faults" }
+                        li { b { (count("definition")) } " definitions" }
                         li { b { (count("undecided")) } " undecided" }
                         li class=[(failed > 0).then_some("bad")] { b { (failed) } " not as expected" }
                         li { b { (format!("{:.0} s", found.seconds)) } " in all" }
                     }
                     @if found.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
                     nav {
+                        a href="#equations" { "All equations" }
                         a href="#errata" { "Errata" }
+                        a href="#scan" { "Scanning faults" }
                         @for (i, result) in found.regimes.iter().enumerate() {
                             a href=(format!("#regime{i}")) { (result.title) }
                         }
@@ -52,7 +57,9 @@ pub fn page(found: &Verification) -> String {
                         a href="#claims" { "All claims" }
                     }
                 }
+                (all_equations(&found.outcomes))
                 (errata(&found.outcomes))
+                (scanning_faults(&found.outcomes))
                 @for (i, result) in found.regimes.iter().enumerate() { (regime(i, result)) }
                 @if let Some(values) = &found.appendix { (appendix(values)) }
                 (derivatives(found))
@@ -80,6 +87,58 @@ fn errata(outcomes: &[Outcome]) -> Markup {
                     @if let Some(remark) = &outcome.remark { p.remark { (remark) } }
                 }
             }
+        }
+    }
+}
+
+/// One cell for each numbered equation, coloured by its verdict.
+fn all_equations(outcomes: &[Outcome]) -> Markup {
+    let all = equations(outcomes);
+    let mut words: Vec<&str> = all.iter().map(|equation| equation.word()).collect();
+    words.sort_unstable();
+    words.dedup();
+    html! {
+        section #equations {
+            h2 { "All numbered equations" }
+            p.legend {
+                @for word in words {
+                    span class=(class_of(word)) { (word) } " " (all.iter().filter(|e| e.word() == word).count()) " "
+                }
+            }
+            div.cells {
+                @for equation in &all {
+                    @let ids = equation.entries.iter().map(|o| format!("{} {}", o.id, o.word())).collect::<Vec<_>>().join("; ");
+                    span class=(class_of(equation.word())) title=(ids) { (equation.number) }
+                }
+            }
+        }
+    }
+}
+
+fn class_of(word: &str) -> String {
+    format!("cell {}", word.replace(' ', "-"))
+}
+
+fn scanning_faults(outcomes: &[Outcome]) -> Markup {
+    html! {
+        section #scan {
+            h2 { "Scanning faults" }
+            p { "What the scanner damaged; the formula is right once repaired." }
+            div.scroll { table {
+                thead { tr { th { "id" } th { "scanned" } th { "repaired, and proved" } } }
+                tbody {
+                    @for outcome in outcomes.iter().filter(|outcome| outcome.scanned.is_some()) {
+                        tr class=[(!outcome.ok).then_some("bad")] {
+                            td { (outcome.id) }
+                            td.words { code { (outcome.scanned.as_deref().unwrap_or_default()) } }
+                            td.words {
+                                code { (outcome.statement) }
+                                @if let Some(remark) = &outcome.remark { p.remark { (remark) } }
+                            }
+                        }
+                    }
+                }
+            } }
         }
     }
 }
@@ -281,10 +340,11 @@ fn all_claims(outcomes: &[Outcome]) -> Markup {
         section #claims {
             h2 { "All claims" }
             div.scroll { table {
-                thead { tr { th { "id" } th { "verdict" } th { "statement" } th { "what stands behind it" } } }
+                thead { tr { th { "file" } th { "id" } th { "verdict" } th { "statement" } th { "what stands behind it" } } }
                 tbody {
                     @for outcome in outcomes {
                         tr class=[(!outcome.ok).then_some("bad")] {
+                            td { (outcome.file.rsplit('/').next().unwrap_or_default()) }
                             td { (outcome.id) }
                             td { (outcome.word()) }
                             td.words { code { (outcome.statement) } @if let Some(remark) = &outcome.remark { p.remark { (remark) } } }

@@ -4,7 +4,7 @@ use super::claims::{claim_json, claim_line};
 use super::ranks::rank_json;
 use crate::observability::RankAnswer;
 use crate::tradeoff::{Map, Rows, Slope};
-use crate::verification::{PrintedValue, RegimeResult, Verification};
+use crate::verification::{PrintedValue, RegimeResult, Verification, equations};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -89,6 +89,11 @@ pub fn verification_json(found: &Verification) -> Value {
         "seed": found.seed,
         "claims": found.outcomes.iter().map(claim_json).collect::<Vec<_>>(),
         "errata": found.outcomes.iter().filter(|o| o.word() == "erratum").map(|o| &o.id).collect::<Vec<_>>(),
+        "equations": equations(&found.outcomes).iter().map(|equation| json!({
+            "number": equation.number,
+            "verdict": equation.word(),
+            "entries": equation.entries.iter().map(|outcome| &outcome.id).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
         "regimes": found.regimes.iter().map(regime_json).collect::<Vec<_>>(),
         "appendix": found.appendix.as_ref().map(|a| json!({
             "monomials": a.monomials,
@@ -183,9 +188,12 @@ pub fn verification_text(found: &Verification) -> String {
         found.outcomes.iter().filter(|o| o.word() == "erratum").map(|o| o.id.as_str()).collect();
     let _ = writeln!(
         out,
-        "{} claims: {} proved, {} errata ({}), {} not as expected",
+        "{} claims: {} proved, {} scanning faults, {} definitions, {} undecided, {} errata ({}), {} not as expected",
         found.outcomes.len(),
         count("proved"),
+        count("scanning fault"),
+        count("definition"),
+        count("undecided"),
         errata.len(),
         errata.join(", "),
         found.outcomes.iter().filter(|outcome| !outcome.ok).count()

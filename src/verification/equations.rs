@@ -16,15 +16,15 @@ pub struct Equation<'o> {
 }
 
 impl Equation<'_> {
-    /// One word for all entries: what is worst among them; `no entry` where there are none.
+    /// One word for all entries: what most needs saying among them; `no entry` where there are none. That a variant is
+    /// refuted, where the file expects it, says nothing against the equation.
     pub fn word(&self) -> &'static str {
-        const ORDER: [&str; 5] = ["refuted", "undecided", "erratum", "scanning fault", "proved"];
-        let has = |word: &str| self.entries.iter().any(|outcome| outcome.word() == word);
-        match ORDER.into_iter().find(|word| has(word)) {
-            Some(word) => word,
-            None if self.entries.is_empty() => "no entry",
-            None => "definition",
+        const ORDER: [&str; 5] = ["erratum", "scanning fault", "undecided", "proved", "definition"];
+        if let Some(bad) = self.entries.iter().find(|outcome| !outcome.ok) {
+            return bad.word();
         }
+        let has = |word: &str| self.entries.iter().any(|outcome| outcome.word() == word);
+        ORDER.into_iter().find(|word| has(word)).unwrap_or("no entry")
     }
 }
 
