@@ -3,7 +3,7 @@
 
 use super::claims::{error_bound, with_decimal};
 use crate::claim::{Outcome, Verdict, Witness};
-use crate::verification::{Equation, equations};
+use crate::verification::{Equation, equations, in_order_of_the_thesis};
 use std::fmt::Write;
 
 /// The errata, the scanning faults, and a table of all numbered equations, in Markdown.
@@ -14,7 +14,9 @@ pub fn errata_markdown(outcomes: &[Outcome]) -> String {
          state in exact numbers at which its two sides differ; the corrected form is proved. What may be the doing of the \
          scanner, and not of the author, is said where it is so.\n\n",
     );
-    let of_kind = |word: &'static str| outcomes.iter().filter(move |outcome| outcome.word() == word);
+    let of_kind = |word: &'static str| {
+        in_order_of_the_thesis(outcomes.iter().filter(move |outcome| outcome.word() == word))
+    };
     for outcome in of_kind("erratum") {
         erratum(outcome, &mut out);
     }

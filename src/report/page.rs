@@ -6,7 +6,7 @@ use super::verification::ranks_in_words;
 use crate::claim::{Outcome, Verdict};
 use crate::observability::RankAnswer;
 use crate::tradeoff::Rows;
-use crate::verification::{Appendix, RegimeResult, Verification, equations};
+use crate::verification::{Appendix, RegimeResult, Verification, equations, in_order_of_the_thesis};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");
@@ -75,9 +75,9 @@ fn errata(outcomes: &[Outcome]) -> Markup {
         section #errata {
             h2 { "Errata" }
             p { "The printed form is refuted by a state that a pocket calculator can check; the corrected form is proved." }
-            @for outcome in outcomes.iter().filter(|outcome| outcome.printed.is_some()) {
+            @for outcome in in_order_of_the_thesis(outcomes.iter().filter(|outcome| outcome.printed.is_some())) {
                 article class=[(!outcome.ok).then_some("bad")] {
-                    h3 { "Equation " (outcome.id) }
+                    h3 { (outcome.id) }
                     @if let Some((statement, verdict)) = &outcome.printed {
                         p.printed { span.label { "printed" } code { (statement) } }
                         p { span.label { (verdict.word()) } (explain(verdict)) }
@@ -127,7 +127,7 @@ fn scanning_faults(outcomes: &[Outcome]) -> Markup {
             div.scroll { table {
                 thead { tr { th { "id" } th { "scanned" } th { "repaired, and proved" } } }
                 tbody {
-                    @for outcome in outcomes.iter().filter(|outcome| outcome.scanned.is_some()) {
+                    @for outcome in in_order_of_the_thesis(outcomes.iter().filter(|outcome| outcome.scanned.is_some())) {
                         tr class=[(!outcome.ok).then_some("bad")] {
                             td { (outcome.id) }
                             td.words { code { (outcome.scanned.as_deref().unwrap_or_default()) } }

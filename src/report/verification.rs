@@ -4,7 +4,7 @@ use super::claims::{claim_json, claim_line};
 use super::ranks::rank_json;
 use crate::observability::RankAnswer;
 use crate::tradeoff::{Map, Rows, Slope};
-use crate::verification::{PrintedValue, RegimeResult, Verification, equations};
+use crate::verification::{PrintedValue, RegimeResult, Verification, equations, in_order_of_the_thesis};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -139,7 +139,8 @@ pub(crate) fn ranks_in_words(answer: &RankAnswer, own: bool) -> String {
 /// Everything that a reader of the terminal wants to see: what does not hold, the errata, and a line for the rest.
 pub fn verification_text(found: &Verification) -> String {
     let mut out = String::new();
-    for outcome in found.outcomes.iter().filter(|outcome| !outcome.ok || outcome.printed.is_some()) {
+    let notable = found.outcomes.iter().filter(|outcome| !outcome.ok || outcome.printed.is_some());
+    for outcome in in_order_of_the_thesis(notable) {
         let _ = writeln!(out, "{}", claim_line(outcome));
     }
     for result in &found.regimes {
@@ -184,8 +185,8 @@ pub fn verification_text(found: &Verification) -> String {
         }
     }
     let count = |word: &str| found.outcomes.iter().filter(|outcome| outcome.word() == word).count();
-    let errata: Vec<&str> =
-        found.outcomes.iter().filter(|o| o.word() == "erratum").map(|o| o.id.as_str()).collect();
+    let errata = found.outcomes.iter().filter(|outcome| outcome.word() == "erratum");
+    let errata: Vec<&str> = in_order_of_the_thesis(errata).into_iter().map(|o| o.id.as_str()).collect();
     let _ = writeln!(
         out,
         "{} claims: {} proved, {} scanning faults, {} definitions, {} undecided, {} errata ({}), {} not as expected",

@@ -46,6 +46,19 @@ pub fn equations(outcomes: &[Outcome]) -> Vec<Equation<'_>> {
         .collect()
 }
 
+/// Outcomes in the order of the thesis: by chapter, number and part; what speaks of no numbered equation comes with its
+/// chapter, and the rest at the end.
+pub fn in_order_of_the_thesis<'o>(outcomes: impl IntoIterator<Item = &'o Outcome>) -> Vec<&'o Outcome> {
+    let mut sorted: Vec<&Outcome> = outcomes.into_iter().collect();
+    sorted.sort_by_key(|outcome| {
+        let mut parts = outcome.id.split('.');
+        let chapter = parts.next().and_then(|c| NUMBERED.iter().position(|(known, _)| *known == c));
+        let number = number_of(&outcome.id).and_then(|n| n.split('.').nth(1)?.parse().ok());
+        (chapter.unwrap_or(NUMBERED.len()), number.unwrap_or(u32::MAX), outcome.id.clone())
+    });
+    sorted
+}
+
 /// The equation that an id speaks of: `4.31` for `4.31.s2`, nothing for `A.2.generic` (a section) or `rank.level`.
 fn number_of(id: &str) -> Option<String> {
     let mut parts = id.split('.');

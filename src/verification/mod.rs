@@ -9,7 +9,7 @@ mod regimes;
 mod routes;
 
 pub use appendix::{Appendix, PrintedValue, printed_values};
-pub use equations::{Equation, NUMBERED, equations};
+pub use equations::{Equation, NUMBERED, equations, in_order_of_the_thesis};
 pub use regimes::{Picture, REGIMES, Regime, RegimeResult, SingularSet};
 pub use routes::{RouteAgreement, compare_routes};
 
