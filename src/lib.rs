@@ -27,16 +27,32 @@
 //! # Ok::<(), palmistry::ReadError>(())
 //! ```
 //!
-//! Each module is a floor and imports only from those above it in this list.
+//! Beside these stand [`tradeoff`], speed against accuracy and the extremes, and [`verification`], the main job.
+//! Each module is a floor and imports only from those above it here.
 
-pub mod claim;
-pub mod expression;
+// what a value can be
 pub mod number;
-pub mod observability;
-pub mod report;
+
+// from text to a shared graph of expressions, its derivative, its value
+pub mod expression;
+
+// a system, and how it is read from a proof file
 pub mod system;
+
+// Lie derivatives, codistribution, rank at sampled states
+pub mod observability;
+
+// claims, the engines that decide them, verdicts
+pub mod claim;
+
+// speed against accuracy, the extremes
 pub mod tradeoff;
+
+// the main job: the thesis
 pub mod verification;
+
+// the page, the plots, the JSON
+pub mod report;
 
 pub use claim::{CertifiedValue, Outcome, ValueError, Verdict, Witness, certified_value, decide, decide_all};
 pub use observability::{RankAnswer, RankQuestion, answer_rank};

@@ -4,8 +4,8 @@ use super::codistribution::Codistribution;
 use super::elimination::{kernel, rank};
 use super::locus::{Locus, LocusError};
 use super::singular::{Spectrum, singular_values};
-use super::state::{State, StateInWords};
-use crate::expression::{Graph, Input, NodeId, Program, Symbol, expand_angles};
+use super::state::{State, StateInWords, float_inputs};
+use crate::expression::{Graph, NodeId, Program, Symbol, expand_angles};
 use crate::number::{Floats, PrimeField, Rationals, rational_to_f64};
 use crate::system::System;
 use dashu::rational::RBig;
@@ -208,15 +208,7 @@ impl Judge {
     fn spectrum(&self, program: &Program, state: &State) -> Option<Spectrum> {
         let float = |symbol: Symbol| state.values.get(&symbol).map_or(f64::NAN, |value| value.to_f64());
         // exact sines and cosines where the state has them, so that rounding enters once
-        let inputs = state.inputs(program, &Floats).unwrap_or_else(|_| {
-            let of = |input: &Input| match input {
-                Input::Plain(symbol) => float(*symbol),
-                Input::Sine(symbol) => float(*symbol).sin(),
-                Input::Cosine(symbol) => float(*symbol).cos(),
-                Input::Opaque(_) => f64::NAN,
-            };
-            program.inputs().iter().map(of).collect()
-        });
+        let inputs = state.inputs(program, &Floats).unwrap_or_else(|_| float_inputs(program, float));
         let values = program.load(Floats).ok()?.run(&inputs, &mut Vec::new()).ok()?;
         singular_values(&values, self.columns)
     }
