@@ -1,6 +1,10 @@
 //! Rank by singular values: what floating point has to say, with the gap on which it rests.
 
 use faer::Mat;
+use nalgebra::DMatrix;
+
+/// A singular value decomposition that takes more steps than this is given up.
+const MOST_ITERATIONS: usize = 10_000;
 
 /// The singular values of a matrix whose rows were first scaled to length one, and the rank that they suggest.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,10 +53,20 @@ pub fn singular_values(entries: &[f64], columns: usize) -> Option<Spectrum> {
             scaled[(i, j)] = if largest > 0.0 { x / length } else { 0.0 };
         }
     }
-    let mut values = scaled.singular_values().ok()?;
-    if values.iter().any(|v| !v.is_finite()) {
-        return None;
-    }
+    // faer resolves small values best, but now and then gives up on an ordinary matrix; then nalgebra, with a bound on
+    // its iterations, which it needs
+    let mut values = match scaled.singular_values() {
+        Ok(values) => values,
+        Err(_) => {
+            let copy = DMatrix::from_fn(rows, columns, |i, j| scaled[(i, j)]);
+            copy.try_svd(false, false, f64::EPSILON, MOST_ITERATIONS)?
+                .singular_values
+                .iter()
+                .copied()
+                .collect()
+        }
+    };
+    values.sort_by(|a, b| b.total_cmp(a));
     values.resize(columns, 0.0); // fewer rows than columns: the rest of the spectrum is zero
     let largest = values[0];
     let tolerance = rows.max(columns) as f64 * f64::EPSILON * largest;
@@ -85,5 +99,61 @@ mod tests {
         assert_eq!(singular_values(&[f64::NAN, 1.0], 2), None);
         assert_eq!(singular_values(&[f64::INFINITY, 1.0], 2), None);
         assert_eq!(singular_values(&[1e200, 0.0, 0.0, 1e-200], 2).unwrap().rank, 2);
+    }
+
+    /// The general regime's matrix at a state at which faer 0.24.4 reports that it does not converge (the two rows along
+    /// the drift and the two along an input field; the six outputs are unit rows).
+    #[test]
+    fn an_ordinary_matrix_is_not_given_up() {
+        let mut entries = Vec::new();
+        for output in [3, 4, 5, 6, 7, 8] {
+            entries.extend((0..10).map(|column| f64::from(u8::from(column == output))));
+        }
+        entries.extend([
+            1.198284080221406,
+            1.5920562190019318,
+            -15.491130501180447,
+            -2.560294776831794,
+            -3.5681800277418674,
+            3.349784557596555,
+            9.897195412375236,
+            4.266217312039949,
+            5.172570499477162,
+            -2.376141333116341,
+            -1.541806759043932,
+            -1.1474729152315413,
+            5.049475652258063,
+            0.7085878759935629,
+            0.7126526408394348,
+            -6.372630466128818,
+            1.4899753322260887,
+            0.5103387302440963,
+            1.8879770037212245,
+            3.4620292767190044,
+            1.7239474507209331,
+            3.5556862455684617,
+            1.025160289881425,
+            -3.9891182479644454,
+            0.0,
+            0.0,
+            -1.025160289881425,
+            -12.21166132703306,
+            0.0,
+            -4.607320017047065,
+            -2.858838153320799,
+            -3.3674869382690966,
+            1.051670865848755,
+            3.265961027281011,
+            1.4019386601133852,
+            0.0,
+            -1.051670865848755,
+            12.848628540541938,
+            -1.051670865848755,
+            6.712848501023682,
+        ]);
+        let spectrum = singular_values(&entries, 10).unwrap();
+        assert_eq!(spectrum.rank, 10);
+        // rows of length one: the squares add up to the number of rows
+        assert!((spectrum.values.iter().map(|v| v * v).sum::<f64>() - 10.0).abs() < 1e-12);
     }
 }

@@ -61,7 +61,7 @@ pub fn page(found: &Verification) -> String {
                 (errata(&found.outcomes))
                 (scanning_faults(&found.outcomes))
                 @for (i, result) in found.regimes.iter().enumerate() { (regime(i, result)) }
-                @if let Some(values) = &found.appendix { (appendix(values)) }
+                @if let Some(values) = &found.appendix { (appendix(values, &found.outcomes)) }
                 (derivatives(found))
                 (all_claims(&found.outcomes))
             }
@@ -249,7 +249,7 @@ fn worst(answer: &RankAnswer) -> String {
     }
 }
 
-fn appendix(found: &Appendix) -> Markup {
+fn appendix(found: &Appendix, outcomes: &[Outcome]) -> Markup {
     html! {
         section #appendix {
             h2 { "The appendix's determinants" }
@@ -296,6 +296,18 @@ fn appendix(found: &Appendix) -> Markup {
                         @if i > 0 { ", " } (format!("{:.0}", value.study.cancellation))
                     }
                     " times the sum: that is where the digits go."
+                }
+            }
+            h3 { "Where the thesis met a division by zero" }
+            table {
+                thead { tr { th { "the factor that vanishes, and the order of the pole" } th { "verdict" } } }
+                tbody {
+                    @for outcome in outcomes.iter().filter(|outcome| outcome.statement.starts_with("pole(det(A)")) {
+                        tr {
+                            td.words { code { (outcome.statement) } }
+                            td.words { (outcome.word()) ": " (explain(&outcome.verdict)) }
+                        }
+                    }
                 }
             }
         }

@@ -37,6 +37,7 @@ fn sweep_json(report: &SweepReport) -> Value {
         "certified": report.certified,
         "computed_rank_histogram": histogram_json(&report.computed_histogram),
         "computed_differs_from_certified": report.disagreements,
+        "not_computed": report.samples - report.computed_histogram.values().sum::<u64>(),
         "smallest_gap": finite(report.smallest_gap),
         "worst_conditioned": worst,
         "unseen": report.unseen.iter().map(|direction| json!({

@@ -184,6 +184,9 @@ pub fn verification_text(found: &Verification) -> String {
             );
         }
     }
+    for outcome in found.outcomes.iter().filter(|outcome| outcome.statement.starts_with("pole(det(A)")) {
+        let _ = writeln!(out, "  {}: {}", outcome.word(), outcome.statement);
+    }
     let count = |word: &str| found.outcomes.iter().filter(|outcome| outcome.word() == word).count();
     let errata = found.outcomes.iter().filter(|outcome| outcome.word() == "erratum");
     let errata: Vec<&str> = in_order_of_the_thesis(errata).into_iter().map(|o| o.id.as_str()).collect();
