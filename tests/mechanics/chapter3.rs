@@ -64,6 +64,7 @@ fn chapter_3(body: &PlanarBody, palms: &PalmMotion, placement: &Placement, motio
     let [centre, centre_0, centre_00] = by_phi0(|placement| placement.centre.clone());
     let [rotation, rotation_0, _] = by_phi0(centre_of_rotation);
     sheet.vector("cm", &centre).vector("cm_0", &centre_0).vector("cm_00", &centre_00);
+    sheet.vector("cm_t", &motion.centre.each_ref().map(|x| x.first.clone()));
     sheet.vector("cr", &rotation).vector("cr_0", &rotation_0);
     sheet.number("phi0", &phi0.value).number("phi0_t", &phi0.first);
     sheet.number("phi1", &palms.phi1.value).number("phi1_t", &palms.phi1.rate);
@@ -112,6 +113,8 @@ const GEOMETRY: &[(&str, &str, &str)] = &[
     ("3.25", "cr_0", "-(v1*nb2 - v2*nb1 - rt2*nb1 + dt2*tb1)/sin(phi2)"),
     ("3.26", "cm_0", "J*(cm - cr)"),
     ("below 3.27", "cm_00", "J*(cm_0 - cr_0)"),
+    // section 3.2 has the first term alone, which is the motion while the palms stand still
+    ("3.26, palms moving", "cm_t", "phi0_t*J*(cm - cr) + phi1_t*J*cr - phi2_t*s2*tb1/sin(phi2)"),
     ("3.29", "v1", "-(rt2_t + (theta_t + phi2_t)*dt2)/(theta_t*sin(phi2))"),
     ("3.30", "v2", "-(rt1_t + theta_t*dt1)/((theta_t + phi2_t)*sin(phi2))"),
     ("3.32, 3.33", "dot(R0*x1, [1; 0])", "r1*sin(phi1) - d1*cos(phi1)"),
@@ -166,6 +169,8 @@ fn the_geometry_of_chapter_3_holds_for_a_real_body() {
         for (label, left, right) in GEOMETRY {
             sheet.holds(label, left, right);
         }
+        sheet.fails("section 3.2, 'if we move the palms'", "cm_t", "phi0_t*J*(cm - cr)");
+        sheet.fails("section 3.3, x' as printed", "x1_t", "theta_t*v1*t1");
         worst = worst.max(sheet.worst);
     }
     println!("greatest difference {worst:e}");
