@@ -5,7 +5,8 @@
 //! into the text. [`decide_all`] takes each claim to an [`Outcome`]: an identity is tested in exact arithmetic at
 //! random points of random prime fields ([`number`]), a rank by minors, a number by intervals ([`claim`]).
 //! [`answer_rank`] asks at sampled states whether the differentials of the outputs and of their Lie derivatives span
-//! the state space ([`observability`]). And [`report`] writes down what came of it all.
+//! the state space ([`observability`]). Real bodies, moved by Newton's laws alone, are a second witness for the physics
+//! ([`mechanics`]). And [`report`] writes down what came of it all.
 //!
 //! ```
 //! use palmistry::{System, decide_all};
@@ -44,6 +45,9 @@ pub mod observability;
 
 // claims, the engines that decide them, verdicts
 pub mod claim;
+
+// real bodies between real palms, a second witness for the physics
+pub mod mechanics;
 
 // speed against accuracy, the extremes
 pub mod tradeoff;

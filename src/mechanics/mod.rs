@@ -1,0 +1,46 @@
+//! Floor 4: real bodies, as a second and independent witness for the physics.
+//!
+//! A body is given by its support function: [`PlanarBody`] with a few harmonics, [`Solid`] as an ellipsoid or
+//! as a body that is none. It is laid on palms so that it touches them ([`place`], [`grip`](grip())), which
+//! is a linear problem, and carried along while palms and body turn as they are told. What a sensor would
+//! read, and where the centre of mass goes, is then differentiated numerically in numbers of 320 bits
+//! ([`differentiate`]): some seventy correct digits, of which the estimate vouches for more than forty.
+//! Newton's laws, written for the centre of mass and the rotation and solved as linear equations, give the
+//! accelerations, the contact forces and the palms' torques ([`planar_dynamics`], [`solid_dynamics`]); where
+//! nothing accelerates, the potential energy gives the pose ([`lowest_pose`], [`follow`], [`resting_pose`]).
+//!
+//! What a published formula says of such a motion can then be held against the motion itself. For that to be
+//! worth something this floor has to stay ignorant: it imports numbers only, reads no proof file, and uses no
+//! formula of the thesis beyond the definitions of the frames and of what `s`, `r`, `d` and `e` mean. In
+//! particular it does not know that `r' = -d`, nor how `s` moves, nor Euler's equation.
+//!
+//! Left out: friction, contact that breaks (the sign of a contact force is reported, not enforced), palms
+//! that are not flat, and time: a motion is known at one moment, with its first two derivatives there.
+
+mod body;
+mod contact;
+mod derivative;
+mod dynamics;
+mod grip;
+pub mod linear;
+mod motion;
+mod precise;
+mod quasistatics;
+mod rest;
+mod solid;
+mod tumbling;
+
+pub use body::{PlanarBody, ShapeError};
+pub use contact::{Angles, Contact, Placement, place};
+pub use derivative::{Derivatives, Moving, differentiate};
+pub use dynamics::{Inertia, PlanarDynamics, planar_dynamics};
+pub use grip::{Grip, SolidContact, grip, palm_frame, rotation, rotation_about};
+pub use motion::{PalmMotion, PlanarMotion, Swing, observe, radius_of_curvature};
+pub use precise::{BITS, Real};
+pub use quasistatics::{follow, lowest_pose};
+pub use rest::resting_pose;
+pub use solid::{Solid, SolidShape};
+pub use tumbling::{
+    MovingContact, MovingSquare, MovingVector, SolidDynamics, SolidInertia, SolidMotion, Tumbling,
+    angular_acceleration, angular_velocity, solid_dynamics,
+};
