@@ -1,9 +1,10 @@
 //! Palmistry checks mathematics about systems that are seen only through their outputs.
 //!
-//! From a proof file to a verdict, in the order in which it happens: [`System::read`] turns the file into a system, that is states, vector
-//! fields, outputs and claims over one shared graph of expressions ([`expression`], [`system`]), or into an error that points
-//! into the text. [`decide_all`] takes each claim to an [`Outcome`]: an identity is tested in exact arithmetic at
-//! random points of random prime fields ([`number`]), a rank by minors, a number by intervals ([`claim`]).
+//! From a proof file to a verdict, in the order in which it happens: [`System::read`] turns the file into a system,
+//! that is states, vector fields, outputs and claims over one shared graph of expressions ([`expression`],
+//! [`system`]), or into an error that points into the text. [`decide_all`] takes each claim to an [`Outcome`]: an
+//! identity is tested in exact arithmetic at random points of random prime fields ([`number`]), a rank by minors, a
+//! number by intervals ([`claim`]).
 //! [`answer_rank`] asks at sampled states whether the differentials of the outputs and of their Lie derivatives span
 //! the state space ([`observability`]). Real bodies, moved by Newton's laws alone, are a second witness for the physics
 //! ([`mechanics`]). And [`report`] writes down what came of it all.
