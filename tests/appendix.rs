@@ -124,6 +124,33 @@ fn the_expansion_is_the_determinant() {
     let angles = system.angles();
     let expansion = expand(&mut system.graph, determinant, |s| angles.contains(&s)).unwrap();
     assert_eq!(expansion.numerator.len(), 1481); // also counted with SymPy
+    // the monomials that the thesis prints of its own expansion (those that the scan leaves legible), with the factor -18
+    assert_eq!(expansion.front.to_string(), "-18");
+    let place = |name: &str| {
+        (0..expansion.variables.len()).find(|i| expansion.variable_name(&system.graph, *i) == name).unwrap()
+    };
+    for (coefficient, factors) in [
+        (-12, &[("r1", 3), ("cos(phi2)", 5), ("rho", 4), ("r2", 1), ("omega1", 1)][..]),
+        (
+            -4,
+            &[("s1", 1), ("sin(phi2)", 1), ("r1", 2), ("cos(phi2)", 6), ("rho", 2), ("r2", 3), ("omega0", 1)],
+        ),
+        (-42, &[("r1", 2), ("cos(phi2)", 6), ("s1", 2), ("r2", 4), ("omega2", 1)]),
+        (-2, &[("rho", 4), ("cos(phi2)", 6), ("r2", 4), ("omega0", 1)]),
+        (12, &[("r1", 3), ("cos(phi2)", 5), ("rho", 4), ("r2", 1), ("omega0", 1)]),
+        (12, &[("r1", 1), ("cos(phi2)", 3), ("r2", 3), ("rho", 4), ("omega0", 1)]),
+        (18, &[("s1", 4), ("cos(phi2)", 4), ("r1", 2), ("s2", 2), ("omega2", 1)]),
+        (-6, &[("r2", 4), ("s1", 2), ("rho", 2), ("cos(phi2)", 2), ("omega0", 1)]),
+        (
+            12,
+            &[("s1", 1), ("sin(phi2)", 1), ("r2", 1), ("rho", 4), ("r1", 2), ("cos(phi2)", 2), ("omega0", 1)],
+        ),
+    ] {
+        let mut wanted = [0u8; 16];
+        factors.iter().for_each(|(name, power)| wanted[place(name)] = *power);
+        let found = expansion.numerator.terms().find(|(exponents, _)| **exponents == wanted);
+        assert_eq!(found.map(|(_, c)| c.clone()), Some(coefficient.into()), "{factors:?}");
+    }
     let q = |text: &str| parse_decimal(text).unwrap();
     let mut state = State::default();
     for (name, value) in [

@@ -102,6 +102,45 @@ fn a_pause_of_the_rank_is_not_taken_for_its_end() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
 }
 
+/// A parameter that the file holds at zero is zero for the choice of words too: `k z` says nothing, L_f L_f x does.
+#[test]
+fn parameters_that_are_held_are_held_everywhere() {
+    let folder = folder();
+    for param in ["param k = 0", "param k sample k in [0, 0]"] {
+        let text = format!(
+            "system \"held\" state x, y, z {param} field f x' = y y' = z z' = 0 output x, k*z
+             sample x in [1, 2] y in [1, 2] z in [1, 2]"
+        );
+        let file = write(&folder, "held.proof", text);
+        let found = rank(&[file.to_str().unwrap(), "--samples", "20"]);
+        assert_eq!(found["rank_histogram"], json!({ "3": 20 }), "{param}");
+        assert_eq!(found["words"], json!(["x", "Lf x", "Lf Lf x"]), "{param}");
+    }
+}
+
+/// Where an output does not exist its derivative may; such states are left out and named.
+#[test]
+fn a_state_without_output_is_left_out() {
+    let folder = folder();
+    let text = "system \"log\" state x field f x' = 0 output log(x - 5) sample x in [1, 2]";
+    let file = write(&folder, "log.proof", text);
+    let found = rank(&[file.to_str().unwrap(), "--samples", "10"]);
+    assert_eq!(found["samples"], 0);
+    let poles = found["poles"].as_object().unwrap();
+    assert!(poles.keys().all(|why| why.contains("not defined")) && poles.values().all(|count| count == 10));
+}
+
+/// Unknown functions may conspire: exp(x) exp(-x) - 1 is zero, and nothing here knows it. Then the choice of words is a
+/// guess, and said to be one.
+#[test]
+fn a_guess_is_not_called_final() {
+    let folder = folder();
+    let text = "system \"exp\" state x, y field f x' = 0 y' = 0 output x, (exp(x)*exp(-x) - 1)*y
+                sample x in [1, 2] y in [1, 2]";
+    let file = write(&folder, "exp.proof", text);
+    assert_eq!(rank(&[file.to_str().unwrap(), "--samples", "10"])["longer_words_cannot_raise_it"], false);
+}
+
 /// The same bits for one seed, whatever the number of threads; others for another seed.
 #[test]
 fn one_seed_gives_one_result_on_any_number_of_threads() {

@@ -5,7 +5,7 @@ use super::pole::decide_pole;
 use super::ranks::{decide_codistribution, decide_rank};
 use super::verdict::{Outcome, Verdict};
 use crate::expression::{NodeId, Symbol};
-use crate::observability::{Branch, solve_conditions};
+use crate::observability::{Branch, solve_conditions, turns_do_not_matter};
 use crate::system::{ClaimBody, ClaimSyntax, Expectation, Matrix, Statement, System, Value};
 use dashu::rational::RBig;
 use rand::SeedableRng;
@@ -66,7 +66,9 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
         }
     };
     let print_is_wrong = printed.as_ref().is_none_or(|(_, verdict)| verdict.meets(Expectation::Refuted));
+    let mentioned = format!("{statement} {}", printed.as_ref().map_or("", |(text, _)| text));
     Outcome {
+        definitions: system.definitions_in(&mentioned),
         file: system.name.clone(),
         id: claim.id.clone(),
         ok: expected.is_none_or(|expected| verdict.meets(expected)) && print_is_wrong,
@@ -133,6 +135,21 @@ fn on_branch(
     right: Value,
     rng: &mut ChaCha8Rng,
 ) -> Result<Verdict, String> {
+    for value in [&left, &right] {
+        let entries = match value {
+            Value::Scalar(id) => vec![*id],
+            Value::Matrix(m) | Value::Rank(m) => m.entries.clone(),
+            Value::CodistributionRank | Value::Pole { .. } => Vec::new(),
+        };
+        for angle in &branch.up_to_turns {
+            if !turns_do_not_matter(system, &entries, *angle) {
+                let name = system.symbol_name(*angle);
+                return Err(format!(
+                    "the condition fixes '{name}' up to whole turns, and the statement tells them apart"
+                ));
+            }
+        }
+    }
     let (left, right) = (system.substitute(left, &branch.values), system.substitute(right, &branch.values));
     let single = |id: NodeId| Matrix { rows: 1, columns: 1, entries: vec![id] };
     match (left, right) {

@@ -30,7 +30,13 @@ pub(crate) fn decide_identity(
     let (left_entries, right_entries) = both.split_at(left.entries.len());
     let differences: Vec<NodeId> =
         left_entries.iter().zip(right_entries).map(|(l, r)| system.graph.sub(*l, *r)).collect();
-    let test = identically_zero(&system.graph, &differences, is_angle, rng);
+    let mut test = identically_zero(&system.graph, &differences, is_angle, rng);
+    // the difference of two sides may be zero where neither has a value: both have to have one somewhere
+    if matches!(test, ZeroTest::Zero { .. })
+        && let pole @ ZeroTest::Pole(_) = identically_zero(&system.graph, &both, is_angle, rng)
+    {
+        test = pole;
+    }
     let (suspects, why) = match test {
         ZeroTest::Zero { points: 0, .. } => {
             return Verdict::Proved { engine: IDENTICAL.to_owned(), log2_error: f64::NEG_INFINITY };
@@ -102,9 +108,8 @@ pub(crate) fn decide_nearness(
             return Verdict::Proved { engine: INTERVALS.to_owned(), log2_error: f64::NEG_INFINITY };
         }
         if smallest > found[1].high() {
-            let shown = |index: usize| {
-                found[index].certain_decimal(20).unwrap_or_else(|| found[index].midpoint().to_string())
-            };
+            let shown =
+                |index: usize| found[index].certain_decimal(20).unwrap_or_else(|| found[index].bounds_text());
             let state = values
                 .iter()
                 .filter(|(symbol, _)| program.inputs().contains(&crate::expression::Input::Plain(**symbol)))

@@ -78,10 +78,18 @@ pub fn pole_order(
     let Some((rounds, log2_error)) = crate::expression::failure_bound(bound) else {
         return PoleOrder::Unknown("the degree is too large for the prime fields".to_owned());
     };
-    let generic = match generic_valuation(&program, &approach, rounds, rng) {
+    if approach.by_angle && point.contains_key(&approach.small) {
+        return PoleOrder::Unknown("the angle whose sine is to vanish has a value already".to_owned());
+    }
+    let generic = match generic_valuation(&program, &approach, false, rounds, rng) {
         Ok(valuation) => valuation,
         Err(why) => return PoleOrder::Unknown(why),
     };
+    if approach.by_angle && generic_valuation(&program, &approach, true, rounds, rng) != Ok(generic) {
+        return PoleOrder::Unknown(
+            "the orders at the angle zero and at half a turn are not the same".to_owned(),
+        );
+    }
     let fixed_angles: Vec<Symbol> = point.keys().copied().filter(|symbol| system.is_angle(*symbol)).collect();
     if fixed_angles.is_empty() {
         return PoleOrder::Order { order: -generic, log2_error };
@@ -109,7 +117,10 @@ fn approach(system: &mut System, expression: NodeId, factor: NodeId) -> Option<A
         if system.is_angle(symbol) {
             continue;
         }
-        if let Some(root) = crate::observability::linear_solution(system, equation, symbol) {
+        // a factor that vanishes on several sets may have a pole of another order on each
+        if let Some(root) = crate::observability::linear_solution(system, equation, symbol)
+            && !crate::observability::also_met_otherwise(system, factor, symbol)
+        {
             let expression = system.graph.substitute(&[expression], &Assignment::from([(symbol, root)]))[0];
             return Some(Approach { expression, small, by_angle: false });
         }
@@ -122,12 +133,15 @@ fn series<A: Arithmetic + Clone>(
     program: &Program,
     all: &Laurent<A>,
     approach: &Approach,
+    half_a_turn_on: bool,
     constants: impl Fn(usize) -> Result<A::Number, Refusal>,
 ) -> Result<Vec<Series<A::Number>>, Refusal> {
     let small = all.small()?;
     let one = all.rational(&RBig::ONE)?;
     let square = all.mul(&small, &small)?;
+    // half a turn further on, sine and cosine change their signs
     let bottom = all.add(&one, &square)?;
+    let bottom = if half_a_turn_on { all.neg(&bottom)? } else { bottom };
     let mut inputs = Vec::new();
     for (index, input) in program.inputs().iter().enumerate() {
         inputs.push(match input {
@@ -149,6 +163,7 @@ fn series<A: Arithmetic + Clone>(
 fn generic_valuation(
     program: &Program,
     approach: &Approach,
+    half_a_turn_on: bool,
     wanted: usize,
     rng: &mut impl Rng,
 ) -> Result<i32, String> {
@@ -158,7 +173,9 @@ fn generic_valuation(
         let field = PrimeField::random(rng);
         let residues = draw_residues(program, &field, rng);
         let all = Laurent { base: field, terms: TERMS };
-        let Ok(inputs) = series(program, &all, approach, |index| Ok(residues[index])) else { continue };
+        let Ok(inputs) = series(program, &all, approach, half_a_turn_on, |index| Ok(residues[index])) else {
+            continue;
+        };
         let Ok(loaded) = program.load(all) else { continue };
         match loaded.run(&inputs, &mut Vec::new()) {
             Ok(values) if values[0].coefficients.is_empty() => {
@@ -197,7 +214,7 @@ fn leading_coefficient_is_nonzero(
         let value = base.rational(point.get(&symbol).ok_or(Refusal::NotFinite)?)?;
         function.map_or(Ok(value.clone()), |function| base.apply(function, &value))
     };
-    let inputs = series(program, &all, approach, number)
+    let inputs = series(program, &all, approach, false, number)
         .map_err(|_| "at a point with fixed angles, all other symbols need values too".to_owned())?;
     let loaded = program.load(all).map_err(|refusal| refusal.to_string())?;
     let value =

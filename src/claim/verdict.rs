@@ -106,6 +106,8 @@ pub struct Outcome {
     pub printed: Option<(String, Verdict)>,
     /// The text as the scanner left it; of a scanning fault only.
     pub scanned: Option<String>,
+    /// The abbreviations that these statements use: name and meaning.
+    pub definitions: Vec<(String, String)>,
     /// The verdict on the claim, or on the corrected form.
     pub verdict: Verdict,
     /// What the file expects; of a definition nothing.

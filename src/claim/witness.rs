@@ -9,6 +9,8 @@ use dashu::base::BitTest;
 use dashu::rational::RBig;
 use rand::{Rng, RngExt};
 
+/// The first so many states have the file's values and positive numbers; later ones any.
+const SIMPLE: usize = 10;
 /// How many states are tried.
 const ATTEMPTS: usize = 300;
 /// After so many states at which the sides agree the search ends.
@@ -83,9 +85,7 @@ fn compare(program: &Program, state: &State) -> Option<Comparison> {
     }
     let (left, right) = enclosed_values(program, state)?;
     if Enclosures::common(&left, &right).is_none() {
-        let shown = |value: &Enclosure| {
-            value.certain_decimal(DIGITS).unwrap_or_else(|| format!("{:e}", value.midpoint()))
-        };
+        let shown = |value: &Enclosure| value.certain_decimal(DIGITS).unwrap_or_else(|| value.bounds_text());
         return Some(Comparison::Differ(shown(&left), shown(&right)));
     }
     let same = |n: &usize| left.decimal(*n).is_some_and(|text| right.decimal(*n) == Some(text));
@@ -134,8 +134,8 @@ fn number(system: &System, symbol: Symbol, attempt: usize, rng: &mut impl Rng) -
     let default = info.and_then(|info| info.default.clone());
     match (info.and_then(|info| info.range.as_ref()), default) {
         (Some(range), _) => simple_between(&range.low, &range.high, attempt, rng),
-        (None, Some(default)) if attempt < ATTEMPTS / 3 => default,
-        _ if attempt < ATTEMPTS / 3 => simple_between(&RBig::ONE, &RBig::from(3), attempt, rng),
+        (None, Some(default)) if attempt < SIMPLE => default,
+        _ if attempt < SIMPLE => simple_between(&RBig::ONE, &RBig::from(3), attempt, rng),
         _ => simple_between(&RBig::from(-3), &RBig::from(3), attempt, rng),
     }
 }

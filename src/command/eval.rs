@@ -18,6 +18,7 @@ pub(crate) struct Eval {
     /// The proof file whose names the expression uses.
     file: PathBuf,
     /// The expression, such as 'det(A)' or 'L(f, s1)'.
+    #[arg(allow_hyphen_values = true)]
     expression: String,
     /// Values: name=value,... (1/2 and .5 alike; angles in radians). Parameters that are not named have the values of
     /// the file.

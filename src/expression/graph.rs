@@ -3,7 +3,7 @@
 //! Nodes are only ever added, and a node's operands come before it; a pass over the nodes in their order needs no
 //! recursion, so no expression is too deep.
 
-use crate::number::{Arithmetic, Function, Rationals};
+use crate::number::{Arithmetic, Function, Rationals, Refusal};
 use dashu::rational::RBig;
 use std::collections::HashMap;
 
@@ -47,6 +47,8 @@ impl Node {
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Vec<Node>,
+    /// Nodes that have no value anywhere (a division by the constant zero), or need one that has none.
+    undefined: Vec<bool>,
     places: HashMap<Node, NodeId>,
     constants: Vec<RBig>,
     constant_places: HashMap<RBig, u32>,
@@ -116,10 +118,29 @@ impl Graph {
     }
 
     fn insert(&mut self, node: Node) -> NodeId {
-        *self.places.entry(node).or_insert_with(|| {
-            self.nodes.push(node);
-            NodeId(self.nodes.len() as u32 - 1)
-        })
+        if let Some(known) = self.places.get(&node) {
+            return *known;
+        }
+        let outside = |function, a| {
+            let value = self.constant_value(a).map(|c| Rationals { bits: FOLDED_BITS }.apply(function, c));
+            matches!(value, Some(Err(Refusal::OutsideDomain(_))))
+        };
+        let undefined = match node {
+            Node::Div(_, b) => self.is(b, 0),
+            Node::Power(a, n) => n < 0 && self.is(a, 0),
+            Node::Apply(function, a) => outside(function, a),
+            _ => false,
+        } || node.operands().any(|operand| self.undefined[operand.0 as usize]);
+        let id = NodeId(self.nodes.len() as u32);
+        self.nodes.push(node);
+        self.undefined.push(undefined);
+        self.places.insert(node, id);
+        id
+    }
+
+    /// Whether nothing may be simplified here, because an operand has no value: zero times nothing is not zero.
+    fn has_no_value(&self, operands: &[NodeId]) -> bool {
+        operands.iter().any(|operand| self.undefined[operand.0 as usize])
     }
 
     /// A symbol as an expression.
@@ -171,6 +192,9 @@ impl Graph {
 
     /// `a + b`
     pub fn add(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        if self.has_no_value(&[a, b]) {
+            return self.insert(Node::Add(a.min(b), a.max(b)));
+        }
         if let Some(sum) = self.fold(a, b, |q, x, y| q.add(x, y).ok()) {
             return sum;
         }
@@ -185,6 +209,9 @@ impl Graph {
 
     /// `a - b`
     pub fn sub(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        if self.has_no_value(&[a, b]) {
+            return self.insert(Node::Sub(a, b));
+        }
         if let Some(difference) = self.fold(a, b, |q, x, y| q.sub(x, y).ok()) {
             return difference;
         }
@@ -199,6 +226,9 @@ impl Graph {
 
     /// `a * b`
     pub fn mul(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        if self.has_no_value(&[a, b]) {
+            return self.insert(Node::Mul(a.min(b), a.max(b)));
+        }
         if let Some(product) = self.fold(a, b, |q, x, y| q.mul(x, y).ok()) {
             return product;
         }
@@ -226,6 +256,9 @@ impl Graph {
 
     /// `a / b`. A division by the constant zero is kept, so that its evaluation reports it.
     pub fn div(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        if self.has_no_value(&[a, b]) {
+            return self.insert(Node::Div(a, b));
+        }
         if let Some(quotient) = self.fold(a, b, |q, x, y| q.div(x, y).ok()) {
             return quotient;
         }
@@ -267,6 +300,9 @@ impl Graph {
 
     /// `a^n`; a square root is unwound.
     pub fn power(&mut self, a: NodeId, n: i32) -> NodeId {
+        if self.has_no_value(&[a]) {
+            return self.insert(Node::Power(a, n));
+        }
         if let Some(value) = self.constant_value(a)
             && let Ok(power) = (Rationals { bits: FOLDED_BITS }).power(value, n)
         {

@@ -56,6 +56,15 @@ impl Enclosure {
         (low == round_to_decimal(&self.high(), digits)).then_some(low)
     }
 
+    /// The interval in words, its ends rounded.
+    pub fn bounds_text(&self) -> String {
+        format!(
+            "between about {} and {}",
+            round_to_decimal(&self.low(), 6),
+            round_to_decimal(&self.high(), 6)
+        )
+    }
+
     /// The value to as many digits as are certain, at most `digits`; `None` where not even one is.
     pub fn certain_decimal(&self, digits: usize) -> Option<String> {
         (1..=digits).rev().find_map(|n| self.decimal(n))
@@ -129,6 +138,9 @@ pub struct Enclosures {
     up: Context<Up>,
 }
 
+/// Endpoints beyond `2^(2^24)` or that near to zero are refused: as exact numbers they would fill the memory.
+const LARGEST_ENDPOINT: usize = 24;
+
 /// Beyond this binary exponent an argument of a function is refused: its reduction would need as many bits of pi.
 const LARGEST_EXPONENT: isize = 4096;
 
@@ -149,7 +161,7 @@ impl Enclosures {
     fn endpoints(low: Rounded<Down>, high: Rounded<Up>) -> Result<Enclosure, Refusal> {
         let (low, high) =
             (low.map_err(refusal)?.value().into_repr(), high.map_err(refusal)?.value().into_repr());
-        let small = |e: &Endpoint| e.is_finite() && e.exponent().unsigned_abs() < 1 << 40;
+        let small = |e: &Endpoint| e.is_finite() && e.exponent().unsigned_abs() < 1 << LARGEST_ENDPOINT;
         if small(&low) && small(&high) { Ok(Enclosure { low, high }) } else { Err(Refusal::TooLarge) }
     }
 
@@ -260,7 +272,7 @@ impl Arithmetic for Enclosures {
             Function::Acos => Self::endpoints(self.down.acos(&a.high, None), self.up.acos(&a.low, None)),
             Function::Sqrt if below(0) => Err(outside),
             Function::Sqrt => self.increasing(a, |c, x| c.sqrt(x), |c, x| c.sqrt(x)),
-            Function::Exp if magnitude(&a.low).max(magnitude(&a.high)) > 30 => Err(Refusal::TooLarge),
+            Function::Exp if magnitude(&a.low).max(magnitude(&a.high)) > 20 => Err(Refusal::TooLarge),
             Function::Exp => self.increasing(a, |c, x| c.exp(x, None), |c, x| c.exp(x, None)),
             Function::Log if a.low.sign() == Sign::Negative || a.low.significand().is_zero() => Err(outside),
             Function::Log => self.increasing(a, |c, x| c.ln(x, None), |c, x| c.ln(x, None)),

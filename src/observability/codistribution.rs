@@ -3,7 +3,7 @@
 
 use super::conditions::vanishes;
 use super::elimination::independent_rows;
-use crate::expression::{NodeId, Program, draw_residues, expand_angles};
+use crate::expression::{Input, NodeId, Program, draw_residues, expand_angles};
 use crate::number::PrimeField;
 use crate::system::{Assignment, System};
 use rand::SeedableRng;
@@ -77,6 +77,9 @@ pub struct Codistribution {
     /// Whether the fields leave no state of the locus. There a rank that has stopped growing has stopped for good: the
     /// span of the words is then mapped into itself by every field.
     pub invariant: bool,
+    /// Whether functions other than sines and cosines of angles are met, which the choice of words takes for
+    /// independent unknowns: the generic rank is then no more than a guess.
+    pub guessed: bool,
 }
 
 /// No more words than this are taken.
@@ -109,6 +112,7 @@ impl Codistribution {
             order: 0,
             stop: Stop::Order,
             invariant,
+            guessed: false,
         };
         let mut last: Vec<(Word, NodeId)> = (0..system.outputs.len())
             .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
@@ -128,7 +132,7 @@ impl Codistribution {
             }
             result.order = order;
             let before = result.needed.len();
-            result.needed = needed(system, &result.rows, conditions)?;
+            (result.needed, result.guessed) = needed(system, &result.rows, conditions)?;
             if result.needed.len() == dimension && (length == Length::UntilItStops || order == longest) {
                 result.stop = Stop::Full;
                 break;
@@ -147,7 +151,9 @@ impl Codistribution {
 
     /// Whether longer words cannot raise the rank at a generic state of the locus.
     pub fn is_final(&self) -> bool {
-        matches!(self.stop, Stop::Full | Stop::Ceiling) || self.stop == Stop::NoGrowth && self.invariant
+        !self.guessed
+            && (matches!(self.stop, Stop::Full | Stop::Ceiling)
+                || self.stop == Stop::NoGrowth && self.invariant)
     }
 
     /// The rank at a generic state of the locus, by the words that were taken.
@@ -213,8 +219,12 @@ fn longer(system: &mut System, words: &[(Word, NodeId)]) -> Vec<(Word, NodeId)> 
     found
 }
 
-/// The rows that raise the rank at a random point of the locus.
-fn needed(system: &mut System, rows: &[Vec<NodeId>], conditions: &Assignment) -> Result<Vec<usize>, String> {
+/// The rows that raise the rank at a random point of the locus, and whether unknown functions took part.
+fn needed(
+    system: &mut System,
+    rows: &[Vec<NodeId>],
+    conditions: &Assignment,
+) -> Result<(Vec<usize>, bool), String> {
     let angles = system.angles();
     let is_angle = |symbol| angles.contains(&symbol);
     let entries: Vec<NodeId> = rows.iter().flatten().copied().collect();
@@ -248,7 +258,8 @@ fn needed(system: &mut System, rows: &[Vec<NodeId>], conditions: &Assignment) ->
             Err(failure) => divisor = failure.divisor,
         }
     }
-    best.ok_or_else(|| match divisor {
+    let guessed = program.inputs().iter().any(|input| matches!(input, Input::Opaque(_)));
+    best.map(|kept| (kept, guessed)).ok_or_else(|| match divisor {
         Some(divisor) => {
             format!("every state there is a pole: {} = 0 is divided by", system.graph.text(divisor))
         }

@@ -2,7 +2,9 @@
 //! that states which meet them can be written down exactly.
 
 use crate::expression::syntax::Equation;
-use crate::expression::{Node, NodeId, Symbol, ZeroTest, expand_angles, identically_zero, share_a_factor};
+use crate::expression::{
+    Input, Node, NodeId, Program, Symbol, ZeroTest, expand_angles, identically_zero, share_a_factor,
+};
 use crate::number::Function;
 use crate::system::{Assignment, Kind, System, Value};
 use rand::SeedableRng;
@@ -11,6 +13,8 @@ use rand_chacha::ChaCha8Rng;
 /// One way to meet all conditions: values for some symbols in terms of the others.
 #[derive(Clone, Debug, Default)]
 pub struct Branch {
+    /// Angles that were solved for from a sine or cosine: their values are known up to whole turns.
+    pub up_to_turns: Vec<Symbol>,
     /// The solved symbols; no value mentions a solved symbol.
     pub values: Assignment,
     /// How each condition was met, in words.
@@ -58,7 +62,12 @@ pub fn solve_conditions(system: &mut System, conditions: &[Equation]) -> Result<
         let mut next = Vec::new();
         for branch in &branches {
             let sides = system.graph.substitute(&[left, right], &branch.values);
-            for (symbol, value) in solutions(system, sides[0], sides[1], &text)? {
+            let found = match solutions(system, sides[0], sides[1], &text) {
+                Err(Unsolved::Never(_)) => continue, // not on this branch
+                found => found?,
+            };
+            let by_turns = found.len() > 1;
+            for (symbol, value) in found {
                 let Some(symbol) = symbol else {
                     next.push(branch.clone()); // the condition holds already
                     continue;
@@ -69,13 +78,33 @@ pub fn solve_conditions(system: &mut System, conditions: &[Equation]) -> Result<
                     *known = system.graph.substitute(&[*known], &single)[0];
                 }
                 extended.values.insert(symbol, value);
+                if by_turns {
+                    extended.up_to_turns.push(symbol);
+                }
                 extended.steps.push(format!("{} = {}", system.symbol_name(symbol), system.graph.text(value)));
                 next.push(extended);
             }
         }
+        if next.is_empty() {
+            return Err(Unsolved::Never(text));
+        }
         branches = next;
     }
     Ok(branches)
+}
+
+/// Whether expressions mention an angle only through sines and cosines of integer combinations, so that whole turns of
+/// it do not matter.
+pub fn turns_do_not_matter(system: &mut System, expressions: &[NodeId], angle: Symbol) -> bool {
+    let angles = system.angles();
+    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let expanded = expand_angles(&mut system.graph, expressions, is_angle);
+    let program = Program::new(&system.graph, &expanded, is_angle, true);
+    program.inputs().iter().all(|input| match input {
+        Input::Plain(symbol) => *symbol != angle,
+        Input::Opaque(node) => !system.graph.symbols_of([*node]).contains(&angle),
+        Input::Sine(_) | Input::Cosine(_) => true,
+    })
 }
 
 type Solutions = Vec<(Option<Symbol>, NodeId)>;
@@ -121,7 +150,7 @@ fn solutions(system: &mut System, left: NodeId, right: NodeId, text: &str) -> Re
 
 /// Whether an expression `a x + b` has a factor that does not depend on `x`: then it vanishes with that factor too, and
 /// `x = -b/a` is not all.
-fn also_met_otherwise(system: &mut System, expression: NodeId, symbol: Symbol) -> bool {
+pub fn also_met_otherwise(system: &mut System, expression: NodeId, symbol: Symbol) -> bool {
     let slope = system.partial(expression, symbol);
     let zero = system.graph.integer(0);
     let both = system.graph.substitute(&[slope, expression], &Assignment::from([(symbol, zero)]));

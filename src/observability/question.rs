@@ -7,7 +7,7 @@ use super::sweep::{SweepOptions, SweepReport, sweep};
 use crate::expression::parse::{Depth, equation, read_all};
 use crate::expression::syntax::Equation;
 use crate::expression::{NodeId, Symbol};
-use crate::system::{System, Value};
+use crate::system::{Kind, SymbolInfo, System, Value};
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -69,6 +69,20 @@ impl RankAnswer {
 /// The name of the matrix that holds a paper's own choice of rows.
 pub const OWN_ROWS: &str = "rows";
 
+/// Symbols that every drawn state has the same value of: parameters with a value and no range, and ranges of no width.
+fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol, RBig)> {
+    let held = |(symbol, info): (Symbol, &SymbolInfo)| {
+        let value = match &info.range {
+            Some(range) => (range.low == range.high).then(|| range.low.clone()),
+            None => info.default.clone(),
+        }?;
+        let exact = !info.is_angle || value.is_zero();
+        (exact && info.kind != Kind::Imported && !question.fixed.contains_key(&symbol))
+            .then_some((symbol, value))
+    };
+    system.symbols().filter_map(held).collect()
+}
+
 /// Reads a condition such as `sin(phi1) = 0`.
 ///
 /// # Errors
@@ -110,6 +124,13 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         for (symbol, value) in &question.fixed {
             if !system.is_angle(*symbol) || value.is_zero() {
                 conditions.insert(*symbol, system.graph.rational(value.clone()));
+            }
+        }
+        // so are parameters that the file gives one value to
+        for (symbol, value) in held_by_the_file(system, question) {
+            if !conditions.contains_key(&symbol) {
+                let value = system.graph.rational(value);
+                conditions.insert(symbol, value);
             }
         }
         for known in conditions.clone().keys() {

@@ -111,7 +111,10 @@ pub fn sweep(
     let quick = expand_angles(&mut system.graph, quick, is_angle);
     let all = expand_angles(&mut system.graph, all, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
+    let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
+    let outputs = expand_angles(&mut system.graph, &outputs, is_angle);
     let judge = Judge {
+        outputs: Program::new(&system.graph, &outputs, |_| false, false),
         quick: Program::new(&system.graph, &quick, is_angle, false),
         all: Program::new(&system.graph, &all, is_angle, false),
         columns: system.states.len(),
@@ -147,6 +150,8 @@ enum Judged {
 }
 
 struct Judge {
+    /// Evaluated only to see whether the outputs exist.
+    outputs: Program,
     quick: Program,
     all: Program,
     columns: usize,
@@ -155,6 +160,9 @@ struct Judge {
 
 impl Judge {
     fn decide(&self, graph: &Graph, index: u64, state: &State) -> Judged {
+        if let Some(undefined) = self.undefined_output(graph, state) {
+            return Judged::Pole(undefined);
+        }
         // where few rows suffice modulo a prime, the rank is certainly full
         let residues = self.residue_rank(&self.quick, state);
         if residues == Some(self.columns) {
@@ -193,6 +201,20 @@ impl Judge {
                 }),
                 None => Judged::Pole("a value that is infinite or not a number".to_owned()),
             },
+        }
+    }
+
+    /// Why an output does not exist at a state, if one does not.
+    fn undefined_output(&self, graph: &Graph, state: &State) -> Option<String> {
+        let float = |symbol: Symbol| state.values.get(&symbol).map_or(f64::NAN, |value| value.to_f64());
+        let inputs = float_inputs(&self.outputs, float);
+        match self.outputs.load(Floats).ok()?.run(&inputs, &mut Vec::new()) {
+            Ok(_) => None,
+            Err(failure) => Some(format!(
+                "an output is not defined: {}, in {}",
+                failure.refusal,
+                graph.text(failure.node)
+            )),
         }
     }
 

@@ -45,6 +45,10 @@ pub fn claim_json(outcome: &Outcome) -> Value {
     if let Some(remark) = &outcome.remark {
         object["remark"] = json!(remark);
     }
+    if !outcome.definitions.is_empty() {
+        object["definitions"] =
+            outcome.definitions.iter().map(|(name, text)| (name.clone(), json!(text))).collect();
+    }
     if let Some(scanned) = &outcome.scanned {
         object["scanned"] = json!(scanned);
     }

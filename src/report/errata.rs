@@ -30,6 +30,7 @@ pub fn errata_markdown(outcomes: &[Outcome]) -> String {
             block(outcome.scanned.as_deref().unwrap_or(""))
         );
         let _ = writeln!(out, "{}", block(&outcome.statement));
+        definitions(outcome, &mut out);
         if let Some(remark) = &outcome.remark {
             let _ = writeln!(out, "{remark}\n");
         }
@@ -47,6 +48,7 @@ fn erratum(outcome: &Outcome, out: &mut String) {
     let _ = writeln!(out, "## {}\n", outcome.id);
     let _ = writeln!(out, "Printed:\n\n{}", block(printed));
     let _ = writeln!(out, "Corrected:\n\n{}", block(&outcome.statement));
+    definitions(outcome, out);
     if let Verdict::Refuted { witness, .. } = refutation {
         let _ = writeln!(out, "{}\n", in_words(witness));
     }
@@ -65,18 +67,28 @@ fn erratum(outcome: &Outcome, out: &mut String) {
     }
 }
 
+/// What the abbreviations of a statement mean.
+fn definitions(outcome: &Outcome, out: &mut String) {
+    if !outcome.definitions.is_empty() {
+        let lines: Vec<String> =
+            outcome.definitions.iter().map(|(name, text)| format!("{name} = {text}")).collect();
+        let _ = writeln!(out, "where\n\n{}", block(&lines.join("\n")));
+    }
+}
+
 fn in_words(witness: &Witness) -> String {
     let state: Vec<String> =
         witness.state.iter().map(|(name, exact, _)| format!("{name}: {exact}")).collect();
-    let place = match (state.is_empty(), witness.entry) {
-        (true, None) => "The left side of the printed form".to_owned(),
-        (false, None) => format!("At {} the left side of the printed form", state.join("; ")),
-        (_, Some((row, column))) => {
-            format!("At {} the entry in row {row}, column {column} of the left side", state.join("; "))
+    let side = match witness.entry {
+        None => "left side of the printed form".to_owned(),
+        Some((row, column)) => {
+            format!("entry in row {row}, column {column} of the left side of the printed form")
         }
     };
+    let place =
+        if state.is_empty() { format!("The {side}") } else { format!("At {} the {side}", state.join("; ")) };
     format!(
-        "{place} is `{}`, the right side `{}`.",
+        "{place} is `{}`, of the right side `{}`.",
         with_decimal(&witness.left),
         with_decimal(&witness.right)
     )

@@ -84,6 +84,12 @@ fn errata(outcomes: &[Outcome]) -> Markup {
                     }
                     p.corrected { span.label { "corrected" } code { (outcome.statement) } }
                     p { span.label { (outcome.verdict.word()) } (explain(&outcome.verdict)) }
+                    @if !outcome.definitions.is_empty() {
+                        details {
+                            summary { "what the names mean" }
+                            @for (name, text) in &outcome.definitions { div { code { (name) " = " (text) } } }
+                        }
+                    }
                     @if let Some(remark) = &outcome.remark { p.remark { (remark) } }
                 }
             }

@@ -158,7 +158,8 @@ pub fn rank_text(answer: &RankAnswer) -> String {
         let _ =
             writeln!(out, "words of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
         if !branch.is_final {
-            let _ = writeln!(out, "the fields leave these states: longer words may still raise the rank");
+            let _ =
+                writeln!(out, "longer words may still raise the rank: nothing here says that they cannot");
         }
         sweep_text("the full codistribution", &branch.full, &mut out);
         if let Some(rows) = &branch.rows {

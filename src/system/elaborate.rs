@@ -69,6 +69,11 @@ impl System {
             ExprKind::Matrix(rows) => self.blocks(rows, &expr.span),
             ExprKind::At(inner, list) => {
                 let value = self.elaborate(inner)?;
+                if matches!(value, Value::CodistributionRank | Value::Pole { .. }) {
+                    let message = format!("{} is not taken at a point", value.describe());
+                    return Err(Problem::new(&expr.span, message, "here")
+                        .help("write 'where name = value' behind the claim"));
+                }
                 let assignment = self.assignment(list)?;
                 Ok(self.substitute(value, &assignment))
             }

@@ -115,6 +115,8 @@ pub struct System {
     pub claims: Vec<ClaimSyntax>,
     pub(crate) symbols: BTreeMap<Symbol, SymbolInfo>,
     pub(crate) definitions: BTreeMap<String, Value>,
+    /// The definitions of this file as they are written.
+    pub(crate) definition_texts: BTreeMap<String, String>,
     /// Fields of imported systems, under their full names.
     pub(crate) imported_fields: Vec<Field>,
     pub(crate) partials: HashMap<Symbol, Derivation>,
@@ -159,6 +161,25 @@ impl System {
     /// The names that a definition of the file has given.
     pub fn definition(&self, name: &str) -> Option<&Value> {
         self.definitions.get(name)
+    }
+
+    /// The definitions of this file that a text mentions, and those that they mention in turn: name and text, in the
+    /// order in which they are met.
+    pub fn definitions_in(&self, text: &str) -> Vec<(String, String)> {
+        let mut found: Vec<(String, String)> = Vec::new();
+        let mut texts = vec![text.to_owned()];
+        while let Some(text) = texts.pop() {
+            let words = text.split(|c: char| !c.is_alphanumeric() && c != '_' && c != '.');
+            for word in words.filter(|word| !word.is_empty()) {
+                if let Some(definition) = self.definition_texts.get(word)
+                    && !found.iter().any(|(name, _)| name == word)
+                {
+                    found.push((word.to_owned(), definition.clone()));
+                    texts.push(definition.clone());
+                }
+            }
+        }
+        found
     }
 
     /// The Lie derivative of an expression along a field of this file, by its place among [`System::fields`].

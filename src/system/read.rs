@@ -58,6 +58,7 @@ impl System {
             claims: Vec::new(),
             symbols: BTreeMap::new(),
             definitions: BTreeMap::new(),
+            definition_texts: BTreeMap::new(),
             imported_fields: Vec::new(),
             partials: HashMap::new(),
         };
@@ -80,6 +81,10 @@ impl System {
             Item::Use { alias, path, span } => self.import(&alias, &folder.join(path), &span, depth)?,
             Item::State(names) => {
                 for name in names {
+                    if let Some(field) = self.fields.first() {
+                        let message = format!("the field '{}' above does not know of this state", field.name);
+                        return Err(Problem::new(&name.span, message, "declare states before fields"));
+                    }
                     let symbol = self.declare(&name, Kind::State)?;
                     self.states.push(symbol);
                 }
@@ -106,6 +111,15 @@ impl System {
             Item::Let(name, expr) => {
                 self.refuse_taken(&name)?;
                 let value = self.elaborate(&expr)?;
+                if value == Value::CodistributionRank {
+                    return Err(Problem::new(
+                        &expr.span,
+                        "the rank of the codistribution has no name",
+                        "claim it as it is",
+                    ));
+                }
+                let text = self.source[expr.span.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
+                self.definition_texts.insert(name.text.clone(), text);
                 self.definitions.insert(name.text, value);
             }
             Item::Field { name, components, others_are_zero } => {
