@@ -383,6 +383,40 @@ impl Graph {
 
     /// The expressions with symbols replaced, all at once.
     pub fn substitute(&mut self, roots: &[NodeId], values: &HashMap<Symbol, NodeId>) -> Vec<NodeId> {
+        let image = self.images(roots, values);
+        roots.iter().map(|root| image[root]).collect()
+    }
+
+    /// The factor of a divisor that becomes the constant zero when symbols are replaced, as it was before.
+    pub fn vanishing_divisor(
+        &mut self,
+        roots: &[NodeId],
+        values: &HashMap<Symbol, NodeId>,
+    ) -> Option<NodeId> {
+        let image = self.images(roots, values);
+        let vanishes = |graph: &Graph, id: NodeId| image.get(&id).is_some_and(|new| graph.is(*new, 0));
+        let mut found =
+            self.reachable(roots.iter().copied()).into_iter().find_map(|id| match self.node(id) {
+                Node::Div(_, b) if vanishes(self, b) => Some(b),
+                _ => None,
+            })?;
+        loop {
+            found = match self.node(found) {
+                Node::Mul(a, b) => {
+                    if vanishes(self, a) {
+                        a
+                    } else {
+                        b
+                    }
+                }
+                Node::Neg(a) | Node::Power(a, _) => a,
+                _ => return Some(found),
+            };
+        }
+    }
+
+    /// Everything that some expressions need, with symbols replaced.
+    fn images(&mut self, roots: &[NodeId], values: &HashMap<Symbol, NodeId>) -> HashMap<NodeId, NodeId> {
         let mut image: HashMap<NodeId, NodeId> = HashMap::new();
         for id in self.reachable(roots.iter().copied()) {
             let node = self.node(id);
@@ -392,6 +426,6 @@ impl Graph {
             };
             image.insert(id, new);
         }
-        roots.iter().map(|root| image[root]).collect()
+        image
     }
 }

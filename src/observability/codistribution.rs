@@ -1,7 +1,7 @@
 //! The observability codistribution (equations 4.36 and 4.37): the differentials of the outputs and of their repeated
 //! Lie derivatives along words of fields, added shortest first.
 
-use super::conditions::vanishes;
+use super::conditions::{all_vanish, vanishes};
 use super::elimination::independent_rows;
 use crate::expression::{Input, NodeId, Program, draw_residues, expand_angles};
 use crate::number::PrimeField;
@@ -127,6 +127,11 @@ impl Codistribution {
             }
             for (word, value) in &last {
                 let row = system.differential(*value);
+                // a row that is zero on the locus adds nothing; in floating point it would be noise
+                let on_the_locus = system.graph.substitute(&row, conditions);
+                if all_vanish(system, &on_the_locus) {
+                    continue;
+                }
                 result.words.push(word.clone());
                 result.rows.push(row);
             }
@@ -227,8 +232,8 @@ fn needed(
 ) -> Result<(Vec<usize>, bool), String> {
     let angles = system.angles();
     let is_angle = |symbol| angles.contains(&symbol);
-    let entries: Vec<NodeId> = rows.iter().flatten().copied().collect();
-    let entries = system.graph.substitute(&entries, conditions);
+    let as_written: Vec<NodeId> = rows.iter().flatten().copied().collect();
+    let entries = system.graph.substitute(&as_written, conditions);
     let entries = expand_angles(&mut system.graph, &entries, is_angle);
     let program = Program::new(&system.graph, &entries, is_angle, true);
     if let Some(angle) = program.bare_angle() {
@@ -261,7 +266,9 @@ fn needed(
     let guessed = program.inputs().iter().any(|input| matches!(input, Input::Opaque(_)));
     best.map(|kept| (kept, guessed)).ok_or_else(|| match divisor {
         Some(divisor) => {
-            format!("every state there is a pole: {} = 0 is divided by", system.graph.text(divisor))
+            // what has become the constant zero is named as it was written
+            let named = system.graph.vanishing_divisor(&as_written, conditions).unwrap_or(divisor);
+            format!("every state there is a pole: {} = 0 is divided by", system.graph.text(named))
         }
         None => "no random point could be evaluated".to_owned(),
     })

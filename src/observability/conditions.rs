@@ -215,8 +215,8 @@ pub fn linear_solution(system: &mut System, expression: NodeId, symbol: Symbol) 
     let at_zero = Assignment::from([(symbol, zero)]);
     // both at symbol = 0: a linear expression is its value there plus its slope there times the symbol
     let both = system.graph.substitute(&[expression, slope], &at_zero);
-    let value_is_finite = matches!(test(system, both[0]), ZeroTest::Zero { .. } | ZeroTest::Nonzero(_));
-    if !value_is_finite || !matches!(test(system, both[1]), ZeroTest::Nonzero(_)) {
+    let value_is_finite = matches!(test(system, &both[..1]), ZeroTest::Zero { .. } | ZeroTest::Nonzero(_));
+    if !value_is_finite || !matches!(test(system, &both[1..]), ZeroTest::Nonzero(_)) {
         return None;
     }
     let quotient = system.graph.div(both[0], both[1]);
@@ -227,13 +227,18 @@ pub fn linear_solution(system: &mut System, expression: NodeId, symbol: Symbol) 
 
 /// Whether an expression is identically zero, by exact arithmetic at random points.
 pub(crate) fn vanishes(system: &mut System, expression: NodeId) -> bool {
-    matches!(test(system, expression), ZeroTest::Zero { .. })
+    all_vanish(system, &[expression])
 }
 
-fn test(system: &mut System, expression: NodeId) -> ZeroTest {
+/// Whether all of some expressions are.
+pub(crate) fn all_vanish(system: &mut System, expressions: &[NodeId]) -> bool {
+    matches!(test(system, expressions), ZeroTest::Zero { .. })
+}
+
+fn test(system: &mut System, expressions: &[NodeId]) -> ZeroTest {
     let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
-    let expanded = expand_angles(&mut system.graph, &[expression], is_angle);
+    let expanded = expand_angles(&mut system.graph, expressions, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(0x7a65_726f); // any fixed seed: the same file gives the same answer
     identically_zero(&system.graph, &expanded, is_angle, &mut rng)
 }

@@ -128,10 +128,8 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         }
         // so are parameters that the file gives one value to
         for (symbol, value) in held_by_the_file(system, question) {
-            if !conditions.contains_key(&symbol) {
-                let value = system.graph.rational(value);
-                conditions.insert(symbol, value);
-            }
+            let value = system.graph.rational(value);
+            conditions.entry(symbol).or_insert(value);
         }
         for known in conditions.clone().keys() {
             let value = conditions[known];
