@@ -211,8 +211,8 @@ pub const REGIMES: [Regime; 4] = [
                 ("phi2", 2.0),
                 ("omega2", 2.0),
             ],
-            x: ("omega0", -3.0, 3.0),
-            y: ("s1", 0.2, 3.0),
+            x: ("omega0", -1.0, 4.0),
+            y: ("r1", 0.2, 6.0),
             order: 3,
             caption: "The curved valley is where the bracket of 4.65 vanishes; words of three fields see through it. \
                       The straight lines are the poles at omega0 = 0 and omega0 = omega2 = 2.",
