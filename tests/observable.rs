@@ -141,6 +141,22 @@ fn a_guess_is_not_called_final() {
     assert_eq!(rank(&[file.to_str().unwrap(), "--samples", "10"])["longer_words_cannot_raise_it"], false);
 }
 
+/// `sin(phi) = 0` leaves whole turns open; rows with phi/2 in them tell these apart, and no rank is claimed for all.
+#[test]
+fn a_rank_that_whole_turns_change_is_not_decided() {
+    let folder = folder();
+    let text = "system \"half turns\" state x, y, phi angle phi field f x' = 0 y' = 0 phi' = 0
+                output x, phi, y*(cos(phi/2) - 1) sample x in [1, 2] y in [1, 2] phi in [-1, 1]
+                claim 1 expect undecided: rank = 2 where sin(phi) = 0
+                claim 2 expect undecided: rank = 3 where sin(phi) = 0";
+    let file = write(&folder, "turns.proof", text);
+    let file = file.to_str().unwrap();
+    assert!(palmistry(&["prove", file]).status.success());
+    let output = palmistry(&["rank", file, "--where", "sin(phi) = 0"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("whole turns"));
+}
+
 /// The same bits for one seed, whatever the number of threads; others for another seed.
 #[test]
 fn one_seed_gives_one_result_on_any_number_of_threads() {

@@ -5,7 +5,7 @@ use super::pole::decide_pole;
 use super::ranks::{decide_codistribution, decide_rank};
 use super::verdict::{Outcome, Verdict};
 use crate::expression::{NodeId, Symbol};
-use crate::observability::{Branch, solve_conditions, turns_do_not_matter};
+use crate::observability::{Branch, solve_conditions};
 use crate::system::{ClaimBody, ClaimSyntax, Expectation, Matrix, Statement, System, Value};
 use dashu::rational::RBig;
 use rand::SeedableRng;
@@ -141,14 +141,7 @@ fn on_branch(
             Value::Matrix(m) | Value::Rank(m) => m.entries.clone(),
             Value::CodistributionRank | Value::Pole { .. } => Vec::new(),
         };
-        for angle in &branch.up_to_turns {
-            if !turns_do_not_matter(system, &entries, *angle) {
-                let name = system.symbol_name(*angle);
-                return Err(format!(
-                    "the condition fixes '{name}' up to whole turns, and the statement tells them apart"
-                ));
-            }
-        }
+        branch.check_turns(system, &entries)?;
     }
     let (left, right) = (system.substitute(left, &branch.values), system.substitute(right, &branch.values));
     let single = |id: NodeId| Matrix { rows: 1, columns: 1, entries: vec![id] };

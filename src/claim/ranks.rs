@@ -30,6 +30,9 @@ pub(crate) fn decide_codistribution(
     if system.outputs.is_empty() || system.states.is_empty() {
         return Verdict::undecided("there is no codistribution: the file declares no states or no outputs");
     }
+    if let Err(why) = branch.check_codistribution(system) {
+        return Verdict::undecided(why);
+    }
     let words = match Codistribution::new(system, &branch.values, Length::UntilItStops) {
         Ok(words) => words,
         Err(why) => return Verdict::undecided(why),

@@ -93,9 +93,50 @@ pub fn solve_conditions(system: &mut System, conditions: &[Equation]) -> Result<
     Ok(branches)
 }
 
+impl Branch {
+    /// Refuses a codistribution that tells apart what the conditions leave open; see [`Branch::check_turns`].
+    ///
+    /// # Errors
+    /// In words: which angle is known up to whole turns only.
+    pub fn check_codistribution(&self, system: &mut System) -> Result<(), String> {
+        if self.up_to_turns.is_empty() {
+            return Ok(());
+        }
+        let ingredients = ingredients(system);
+        self.check_turns(system, &ingredients)
+    }
+
+    /// Refuses expressions that tell apart the values which a condition such as `sin(phi) = 0` leaves open: all that differ
+    /// by whole turns.
+    ///
+    /// # Errors
+    /// In words: which angle is known up to whole turns only.
+    pub fn check_turns(&self, system: &mut System, expressions: &[NodeId]) -> Result<(), String> {
+        for angle in &self.up_to_turns {
+            if !turns_do_not_matter(system, expressions, *angle) {
+                let name = system.symbol_name(*angle);
+                return Err(format!(
+                    "the condition fixes '{name}' up to whole turns, and the statement tells them apart"
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What every Lie derivative's differential is made of: the outputs' differentials and the fields' components.
+fn ingredients(system: &mut System) -> Vec<NodeId> {
+    let mut found: Vec<NodeId> = Vec::new();
+    for (_, output) in system.outputs.clone() {
+        found.extend(system.differential(output));
+    }
+    found.extend(system.fields.iter().flat_map(|field| field.components.iter().map(|(_, node)| *node)));
+    found
+}
+
 /// Whether expressions mention an angle only through sines and cosines of integer combinations, so that whole turns of
 /// it do not matter.
-pub fn turns_do_not_matter(system: &mut System, expressions: &[NodeId], angle: Symbol) -> bool {
+fn turns_do_not_matter(system: &mut System, expressions: &[NodeId], angle: Symbol) -> bool {
     let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
     let expanded = expand_angles(&mut system.graph, expressions, is_angle);

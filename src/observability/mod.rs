@@ -20,7 +20,7 @@ mod sweep;
 
 pub use codistribution::{Codistribution, Length, Stop, Word};
 pub use conditions::linear_solution;
-pub use conditions::{Branch, Unsolved, also_met_otherwise, solve_conditions, turns_do_not_matter};
+pub use conditions::{Branch, Unsolved, also_met_otherwise, solve_conditions};
 pub use elimination::{kernel, rank};
 pub use generic::{GenericRank, generic_rank};
 pub use locus::{Locus, LocusError};

@@ -119,6 +119,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
     };
     let mut answers = Vec::new();
     for branch in branches {
+        branch.check_codistribution(system)?;
         // values that are held fixed are conditions too, but for angles, whose values are no rational half turns
         let mut conditions = branch.values.clone();
         for (symbol, value) in &question.fixed {
