@@ -1,58 +1,77 @@
-//! Machine floats as an [`Arithmetic`]: fast, rounded, and never the last word.
+//! Numbers of fixed size as an [`Arithmetic`].
 
-use super::{Arithmetic, Function, Refusal, rational_to_f64};
+use super::{Arithmetic, Function, Real, Refusal};
 use dashu::rational::RBig;
+use std::marker::PhantomData;
 
-/// IEEE double precision. A division by exactly zero is refused and named; an overflow runs through as an infinity
-/// and is for the caller to find at the end, where one test covers all operations.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Floats;
+/// The arithmetic of a number of fixed size, IEEE double precision if none is named.
+///
+/// Over machine floats it is fast, rounded, and never the last word. A division by exactly zero is refused and named;
+/// an overflow runs through as an infinity and is for the caller to find at the end, where one test covers all
+/// operations. Over an [`Interval`](super::Interval) it is rigorous, and a divisor that may be zero is refused.
+#[derive(Clone, Copy, Debug)]
+pub struct Floats<T = f64> {
+    number: PhantomData<T>,
+}
 
-impl Arithmetic for Floats {
-    type Number = f64;
+/// The arithmetic of `f64`: as a value, `Floats` is `Floats::<f64>::new()`.
+#[allow(non_upper_case_globals)]
+pub const Floats: Floats = Floats::new();
+
+impl<T> Floats<T> {
+    /// The arithmetic; it has no settings.
+    pub const fn new() -> Self {
+        Floats { number: PhantomData }
+    }
+}
+
+impl<T> Default for Floats<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Real> Arithmetic for Floats<T> {
+    type Number = T;
 
     #[inline]
-    fn rational(&self, value: &RBig) -> Result<f64, Refusal> {
-        Ok(rational_to_f64(value))
+    fn rational(&self, value: &RBig) -> Result<T, Refusal> {
+        Ok(T::from_rational(value))
     }
     #[inline]
-    fn pi(&self) -> Result<f64, Refusal> {
-        Ok(std::f64::consts::PI)
+    fn pi(&self) -> Result<T, Refusal> {
+        Ok(T::pi())
     }
     #[inline]
-    fn add(&self, a: &f64, b: &f64) -> Result<f64, Refusal> {
-        Ok(a + b)
+    fn add(&self, a: &T, b: &T) -> Result<T, Refusal> {
+        Ok(*a + *b)
     }
     #[inline]
-    fn sub(&self, a: &f64, b: &f64) -> Result<f64, Refusal> {
-        Ok(a - b)
+    fn sub(&self, a: &T, b: &T) -> Result<T, Refusal> {
+        Ok(*a - *b)
     }
     #[inline]
-    fn mul(&self, a: &f64, b: &f64) -> Result<f64, Refusal> {
-        Ok(a * b)
+    fn mul(&self, a: &T, b: &T) -> Result<T, Refusal> {
+        Ok(*a * *b)
     }
     #[inline]
-    fn div(&self, a: &f64, b: &f64) -> Result<f64, Refusal> {
-        if *b == 0.0 { Err(Refusal::DivisionByZero) } else { Ok(a / b) }
+    fn div(&self, a: &T, b: &T) -> Result<T, Refusal> {
+        a.quotient(*b)
     }
     #[inline]
-    fn neg(&self, a: &f64) -> Result<f64, Refusal> {
-        Ok(-a)
+    fn neg(&self, a: &T) -> Result<T, Refusal> {
+        Ok(-*a)
     }
-    fn apply(&self, function: Function, a: &f64) -> Result<f64, Refusal> {
-        let value = match function {
-            Function::Sin => a.sin(),
-            Function::Cos => a.cos(),
-            Function::Asin => a.asin(),
-            Function::Acos => a.acos(),
-            Function::Atan => a.atan(),
-            Function::Sqrt => a.sqrt(),
-            Function::Exp => a.exp(),
-            Function::Log => a.ln(),
-        };
-        if value.is_nan() && !a.is_nan() { Err(Refusal::OutsideDomain(function)) } else { Ok(value) }
+    #[inline]
+    fn apply(&self, function: Function, a: &T) -> Result<T, Refusal> {
+        a.function(function)
     }
-    fn is_zero(&self, a: &f64) -> Option<bool> {
-        Some(*a == 0.0)
+    #[inline]
+    fn is_zero(&self, a: &T) -> Option<bool> {
+        a.is_zero()
+    }
+    #[inline]
+    fn power(&self, a: &T, n: i32) -> Result<T, Refusal> {
+        a.power(n)
     }
 }

@@ -12,9 +12,11 @@ mod dual;
 mod enclosure;
 mod float;
 mod fraction;
+mod interval;
 mod laurent;
 pub mod polynomial;
 mod rational;
+mod real;
 mod residue;
 pub mod univariate;
 
@@ -24,8 +26,10 @@ pub(crate) use enclosure::round_to_decimal;
 pub use enclosure::{Enclosure, Enclosures};
 pub use float::Floats;
 pub use fraction::{Factors, Fraction, Fractions};
+pub use interval::Interval;
 pub use laurent::{Laurent, Series};
 pub use rational::{Rationals, display_rational, parse_decimal, rational_from_f64, rational_to_f64};
+pub use real::Real;
 pub use residue::{LOG2_PRIMES, PrimeField};
 
 use dashu::rational::RBig;
