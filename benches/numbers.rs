@@ -4,7 +4,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use palmistry::number::{Interval, Real};
+use palmistry::number::{DoubleDouble, Function, Interval, Real};
 
 fn main() {
     divan::main();
@@ -28,17 +28,37 @@ fn each<T: Real>(bencher: Bencher, operation: impl Fn(T, T) -> T) {
     });
 }
 
-#[divan::bench(types = [f32, f64, Interval])]
+#[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
 fn add<T: Real>(bencher: Bencher) {
     each::<T>(bencher, |a, b| a + b);
 }
 
-#[divan::bench(types = [f32, f64, Interval])]
+#[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
 fn mul<T: Real>(bencher: Bencher) {
     each::<T>(bencher, |a, b| a * b);
 }
 
-#[divan::bench(types = [f32, f64, Interval])]
+#[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
 fn div<T: Real>(bencher: Bencher) {
     each::<T>(bencher, |a, b| a / b);
+}
+
+#[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
+fn sin<T: Real>(bencher: Bencher) {
+    each::<T>(bencher, |a, _| a.function(Function::Sin).unwrap_or(a));
+}
+
+#[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
+fn exp<T: Real>(bencher: Bencher) {
+    each::<T>(bencher, |a, _| a.function(Function::Exp).unwrap_or(a));
+}
+
+#[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
+fn atan<T: Real>(bencher: Bencher) {
+    each::<T>(bencher, |a, _| a.function(Function::Atan).unwrap_or(a));
+}
+
+#[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
+fn sqrt<T: Real>(bencher: Bencher) {
+    each::<T>(bencher, |a, _| a.function(Function::Sqrt).unwrap_or(a));
 }

@@ -8,8 +8,10 @@
 //! This floor knows nothing of expressions, systems or palms.
 
 mod decimal;
+mod double_double;
 mod dual;
 mod enclosure;
+mod error_free;
 mod float;
 mod fraction;
 mod interval;
@@ -21,6 +23,7 @@ mod residue;
 pub mod univariate;
 
 pub use decimal::{Decimal, Decimals, decimal_to_f64};
+pub use double_double::DoubleDouble;
 pub use dual::{Duals, Tower};
 pub(crate) use enclosure::round_to_decimal;
 pub use enclosure::{Enclosure, Enclosures};

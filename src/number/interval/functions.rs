@@ -1,14 +1,17 @@
 //! Functions of one variable on intervals: from the values at the ends where the function is monotone, and sine and
 //! cosine from where their greatest and least values may lie.
+//!
+//! The value at an end is found as a double-double, whose error is bounded by proof ([`DoubleDouble`]), and the double
+//! is stepped outward where that error could carry the value beyond it: nearly always the two doubles next to the
+//! value are found.
 
 use super::Interval;
 use super::rounding::{sqrt_down, sqrt_up};
-use crate::number::{Arithmetic, Enclosures, Function, rational_from_f64, rational_to_f64};
+use crate::number::{DoubleDouble, Function};
 
 impl Interval {
     /// The function's values on the interval; `None` where one of its numbers lies outside the function's domain.
     pub fn image(self, function: Function) -> Option<Self> {
-        let increasing = |f: &dyn Fn(f64) -> Interval| Interval { lo: f(self.lo).lo, hi: f(self.hi).hi };
         let outside = match function {
             Function::Asin | Function::Acos => self.lo < -1.0 || self.hi > 1.0,
             Function::Sqrt => self.lo < 0.0,
@@ -18,57 +21,87 @@ impl Interval {
         if outside {
             return None;
         }
-        Some(match function {
-            Function::Sin => self.wave(Function::Sin, 0.25),
-            Function::Cos => self.wave(Function::Cos, 0.0),
+        let increasing = |f: fn(DoubleDouble) -> DoubleDouble| Interval {
+            lo: around(f(self.lo.into())).lo,
+            hi: around(f(self.hi.into())).hi,
+        };
+        let all = match function {
+            Function::Sin => self.sin_cos().0,
+            Function::Cos => self.sin_cos().1,
             Function::Sqrt => Interval { lo: sqrt_down(self.lo), hi: sqrt_up(self.hi) },
-            Function::Acos => Interval { lo: at(function, self.hi).lo, hi: at(function, self.lo).hi },
-            _ => increasing(&|x| at(function, x)),
+            Function::Exp => increasing(DoubleDouble::exp),
+            Function::Log => increasing(DoubleDouble::ln),
+            Function::Atan => increasing(DoubleDouble::atan),
+            Function::Asin => increasing(DoubleDouble::asin),
+            Function::Acos => -increasing(|x| -x.acos()),
+        };
+        // where the value is rational, it is met exactly
+        let exactly = |x: f64| match function {
+            Function::Asin | Function::Atan if x == 0.0 => Some(0.0),
+            Function::Exp if x == 0.0 => Some(1.0),
+            Function::Log | Function::Acos if x == 1.0 => Some(0.0),
+            Function::Exp if x == f64::NEG_INFINITY => Some(0.0),
+            _ => None,
+        };
+        let (first, last) = if function == Function::Acos { (self.hi, self.lo) } else { (self.lo, self.hi) };
+        let least = if function == Function::Exp { 0.0 } else { f64::NEG_INFINITY };
+        Some(Interval {
+            lo: exactly(first).unwrap_or(all.lo.max(least)),
+            hi: exactly(last).unwrap_or(all.hi),
         })
     }
 
-    /// A function of period 2 pi whose greatest value 1 is at `crest` turns, its least value -1 half a turn on, and
-    /// which is monotone between them.
-    fn wave(self, function: Function, crest: f64) -> Self {
+    /// Sine and cosine together, for half the price.
+    pub fn sin_cos(self) -> (Self, Self) {
         const RANGE: Interval = Interval { lo: -1.0, hi: 1.0 };
         if self.lo == f64::NEG_INFINITY || self.hi == f64::INFINITY {
-            return RANGE;
+            return (RANGE, RANGE);
         }
-        let ends = at(function, self.lo).hull(at(function, self.hi));
+        let (sin, cos) = at(self.lo);
         if self.is_point() {
-            return ends;
+            return (sin, cos);
         }
-        // whether a whole number of turns lies in it, counted from the crest or the trough: if in doubt, yes
-        let turns = self / (Interval::PI * 2.0);
-        let meets = |shift: f64| {
-            let counted = turns - shift;
+        let (sin_high, cos_high) = at(self.hi);
+        let (sin, cos) = (sin.hull(sin_high), cos.hull(cos_high));
+        // between its crests, a whole number of turns from `crest`, and its troughs half a turn on, a wave is monotone;
+        // if in doubt whether there is one between the ends there is
+        let turns = self / (Interval::PI + Interval::PI);
+        let meets = |crest: f64| {
+            let counted = turns - Interval::point(crest);
             counted.lo.ceil() <= counted.hi
         };
-        Interval {
+        let wave = |ends: Interval, crest: f64| Interval {
             lo: if meets(crest + 0.5) { -1.0 } else { ends.lo },
             hi: if meets(crest) { 1.0 } else { ends.hi },
-        }
+        };
+        (wave(sin, 0.25), wave(cos, 0.0))
     }
 }
 
-/// The function's value at one number of its domain, which may be infinite where the function has a limit.
-fn at(function: Function, x: f64) -> Interval {
-    match function {
-        Function::Exp if x > 709.8 => return Interval { lo: f64::MAX, hi: f64::INFINITY },
-        Function::Exp if x < -745.2 => return Interval { lo: 0.0, hi: f64::from_bits(1) },
-        Function::Log if x == f64::INFINITY => return Interval { lo: 709.7, hi: f64::INFINITY },
-        Function::Atan if x.is_infinite() => return Interval::PI * 0.5_f64.copysign(x),
-        _ => (),
+/// Sine and cosine of a finite number.
+fn at(x: f64) -> (Interval, Interval) {
+    if x == 0.0 {
+        return (Interval::ZERO, Interval::ONE);
     }
-    let wide = Enclosures::new(64);
-    let value = rational_from_f64(x).and_then(|x| wide.apply(function, &wide.rational(&x).ok()?).ok());
-    value.map_or(Interval::WHOLE, |value| {
-        // the conversion is to nearest, and the neighbours of the nearest are beyond
-        let (lo, hi) = (rational_to_f64(&value.low()), rational_to_f64(&value.high()));
-        let exact = |x: f64, end| rational_from_f64(x) == Some(end);
-        Interval {
-            lo: if exact(lo, value.low()) { lo } else { lo.next_down() },
-            hi: if exact(hi, value.high()) { hi } else { hi.next_up() },
-        }
-    })
+    let (sin, cos) = DoubleDouble::from(x).sin_cos();
+    let within = |all: Interval| Interval { lo: all.lo.max(-1.0), hi: all.hi.min(1.0) };
+    (within(around(sin)), within(around(cos)))
+}
+
+/// The doubles around the number of which this is the value of a function, right to `2^-100` of itself.
+fn around(value: DoubleDouble) -> Interval {
+    let (hi, lo) = (value.hi(), value.lo());
+    if hi.abs() < 1e-270 {
+        // here a double-double may have no low part; it is right to a unit in the last place of a double
+        return Interval { lo: hi.next_down().next_down(), hi: hi.next_up().next_up() };
+    }
+    if hi.is_infinite() {
+        return Interval::point(hi);
+    }
+    // |lo| is at most half a step from hi in either direction, and the error far below the other half
+    let error = hi.abs() * f64::from_bits((1023 - 99) << 52);
+    Interval {
+        lo: if lo >= error { hi } else { hi.next_down() },
+        hi: if lo <= -error { hi } else { hi.next_up() },
+    }
 }

@@ -1,0 +1,314 @@
+//! Double-double numbers: the unevaluated sum of two doubles, about 31 decimal digits.
+//!
+//! With `u = 2^-53`, the relative error of a sum is at most `3u^2 + 13u^3`, of a product `7u^2`, of a quotient
+//! `15u^2 + 56u^3` (M. Joldes, J.-M. Muller, V. Popescu, *Tight and rigorous error bounds for basic building blocks of
+//! double-word arithmetic*, ACM TOMS 44 (2017), algorithms 6, 10 and 17; after Y. Hida, X. S. Li, D. H. Bailey,
+//! *Algorithms for quad-double precision floating point arithmetic*, ARITH-15 (2001)), of a square root `25/8 u^2`
+//! (V. Lefevre et al., *Accurate calculation of Euclidean norms using double-word arithmetic*, ACM TOMS 49 (2023)).
+//! So every operation is right to 2^-102, and every function to 2^-100 (the count is in `functions`).
+//!
+//! This holds as long as nothing comes near the ends of the range. A result beyond the greatest double is an infinity,
+//! whose low part is zero; what has no value is a NaN; below about 1e-290 the low part has fewer bits and then none,
+//! so that a result is right to 2^-102 of itself or to a few times 2^-1074, whichever is more.
+
+mod functions;
+mod reduction;
+mod tables;
+
+use super::error_free::{fast_two_sum, two_product, two_sum};
+use super::{Function, Real, Refusal, rational_from_f64, rational_to_f64, round_to_decimal};
+use dashu::rational::RBig;
+use std::cmp::Ordering;
+use std::fmt;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// `hi + lo`, where `hi` is the double nearest to the sum.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct DoubleDouble {
+    hi: f64,
+    lo: f64,
+}
+
+impl DoubleDouble {
+    /// Zero.
+    pub const ZERO: DoubleDouble = DoubleDouble { hi: 0.0, lo: 0.0 };
+    /// One.
+    pub const ONE: DoubleDouble = DoubleDouble { hi: 1.0, lo: 0.0 };
+    /// Pi.
+    pub const PI: DoubleDouble = tables::PI;
+
+    /// The sum of two doubles, exactly.
+    pub fn new(a: f64, b: f64) -> Self {
+        let (hi, lo) = two_sum(a, b);
+        Self::guarded(hi, lo)
+    }
+
+    /// The double nearest to it.
+    #[inline]
+    pub const fn hi(self) -> f64 {
+        self.hi
+    }
+
+    /// What the double nearest to it leaves over.
+    #[inline]
+    pub const fn lo(self) -> f64 {
+        self.lo
+    }
+
+    /// The rational that it is; `None` for an infinity or a NaN.
+    pub fn to_rational(self) -> Option<RBig> {
+        Some(rational_from_f64(self.hi)? + rational_from_f64(self.lo)?)
+    }
+
+    /// The magnitude.
+    #[inline]
+    pub fn abs(self) -> Self {
+        if self.hi.is_sign_negative() { -self } else { self }
+    }
+
+    /// The square.
+    #[inline]
+    pub fn sqr(self) -> Self {
+        self * self
+    }
+
+    /// Two parts that are normalised already, unless the result left the range: its low part is then meaningless.
+    #[inline]
+    fn guarded(hi: f64, lo: f64) -> Self {
+        DoubleDouble { hi, lo: if hi.is_finite() { lo } else { 0.0 } }
+    }
+
+    /// `hi + lo` for `|hi| >= |lo|`.
+    #[inline]
+    fn normalised(hi: f64, lo: f64) -> Self {
+        let (hi, lo) = fast_two_sum(hi, lo);
+        Self::guarded(hi, lo)
+    }
+
+    /// Times a power of two.
+    fn scaled(self, by: f64) -> Self {
+        let high = self.hi * by;
+        if high.is_finite() {
+            Self::normalised(high, self.lo * by)
+        } else {
+            DoubleDouble { hi: high, lo: 0.0 }
+        }
+    }
+
+    /// Times a double (algorithm 7 of Joldes et al.: at most `1.5u^2 + 4u^3`).
+    #[inline]
+    fn times(self, y: f64) -> Self {
+        let (high, low) = two_product(self.hi, y);
+        if !high.is_finite() {
+            return DoubleDouble { hi: high, lo: 0.0 };
+        }
+        let (t1, t2) = fast_two_sum(high, self.lo * y);
+        Self::normalised(t1, t2 + low)
+    }
+
+    /// The square root; a NaN for negative numbers.
+    pub fn sqrt(self) -> Self {
+        let root = self.hi.sqrt();
+        if root == 0.0 || !root.is_finite() {
+            return DoubleDouble { hi: root, lo: 0.0 };
+        }
+        if !(1e-250..=1e300).contains(&self.hi) {
+            // 2^400 and 2^-200 are exact, and the square of the root is then within the range
+            let (up, down) = if self.hi < 1.0 {
+                (2f64.powi(400), 2f64.powi(-200))
+            } else {
+                (2f64.powi(-400), 2f64.powi(200))
+            };
+            return self.scaled(up).sqrt().scaled(down);
+        }
+        let (square, error) = two_product(root, root);
+        let rest = self.lo + ((self.hi - square) - error);
+        Self::normalised(root, rest / (2.0 * root))
+    }
+}
+
+impl From<f64> for DoubleDouble {
+    #[inline]
+    fn from(value: f64) -> Self {
+        DoubleDouble { hi: value, lo: 0.0 }
+    }
+}
+
+impl Neg for DoubleDouble {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        DoubleDouble { hi: -self.hi, lo: -self.lo }
+    }
+}
+
+impl Add for DoubleDouble {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let (high, low) = two_sum(self.hi, other.hi);
+        if !high.is_finite() {
+            return DoubleDouble { hi: high, lo: 0.0 };
+        }
+        let (t1, t2) = two_sum(self.lo, other.lo);
+        let (high, low) = fast_two_sum(high, low + t1);
+        Self::normalised(high, t2 + low)
+    }
+}
+
+impl Sub for DoubleDouble {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for DoubleDouble {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let (high, low) = two_product(self.hi, other.hi);
+        if !high.is_finite() {
+            return DoubleDouble { hi: high, lo: 0.0 };
+        }
+        Self::normalised(high, low + (self.hi * other.lo + self.lo * other.hi))
+    }
+}
+
+impl Div for DoubleDouble {
+    type Output = Self;
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let quotient = self.hi / other.hi;
+        // the divisor times the quotient has to stay within the range, and must not lose its low bits
+        let ordinary = |x: f64| (1e-150..=1e150).contains(&x.abs());
+        if !(ordinary(self.hi) && ordinary(other.hi)) {
+            return divide_extremes(self, other, quotient);
+        }
+        let product = other.times(quotient);
+        let rest = (self.hi - product.hi) + (self.lo - product.lo);
+        Self::normalised(quotient, rest / other.hi)
+    }
+}
+
+/// The quotient where one of the numbers is zero, infinite, a NaN, or so great or small that it is scaled first.
+#[cold]
+fn divide_extremes(a: DoubleDouble, b: DoubleDouble, quotient: f64) -> DoubleDouble {
+    let plain = |x: f64| x != 0.0 && x.is_finite();
+    if !(plain(a.hi) && plain(b.hi)) {
+        return DoubleDouble { hi: quotient, lo: 0.0 };
+    }
+    // each to the neighbourhood of one (2^-52 is near enough, where it was subnormal)
+    let (of_a, of_b) = (exponent_of(a.hi), exponent_of(b.hi));
+    let unit = shifted(a, -of_a) / shifted(b, -of_b);
+    shifted(unit, of_a - of_b)
+}
+
+/// The binary exponent of a normal number; -1022 for zero and subnormal ones.
+fn exponent_of(x: f64) -> i32 {
+    ((x.abs().max(f64::MIN_POSITIVE).to_bits() >> 52) & 0x7ff) as i32 - 1023
+}
+
+/// Times `2^n`, `|n|` below 3000; one power of two could be out of range where the product is not.
+fn shifted(x: DoubleDouble, n: i32) -> DoubleDouble {
+    let third = n / 3;
+    x.scaled(2f64.powi(third)).scaled(2f64.powi(third)).scaled(2f64.powi(n - 2 * third))
+}
+
+macro_rules! further_operators {
+    ($($operator:ident $method:ident $assign:ident $assign_method:ident;)*) => {$(
+        impl $operator<&DoubleDouble> for DoubleDouble {
+            type Output = Self;
+            #[inline]
+            fn $method(self, other: &DoubleDouble) -> Self {
+                self.$method(*other)
+            }
+        }
+        impl $operator<f64> for DoubleDouble {
+            type Output = Self;
+            #[inline]
+            fn $method(self, other: f64) -> Self {
+                self.$method(DoubleDouble::from(other))
+            }
+        }
+        impl $assign for DoubleDouble {
+            #[inline]
+            fn $assign_method(&mut self, other: Self) {
+                *self = self.$method(other);
+            }
+        }
+        impl $assign<f64> for DoubleDouble {
+            #[inline]
+            fn $assign_method(&mut self, other: f64) {
+                *self = self.$method(other);
+            }
+        }
+    )*};
+}
+
+further_operators! {
+    Add add AddAssign add_assign;
+    Sub sub SubAssign sub_assign;
+    Mul mul MulAssign mul_assign;
+    Div div DivAssign div_assign;
+}
+
+impl PartialOrd for DoubleDouble {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        match self.hi.partial_cmp(&other.hi) {
+            Some(Ordering::Equal) => self.lo.partial_cmp(&other.lo),
+            order => order,
+        }
+    }
+}
+
+/// Thirty-two significant digits.
+impl fmt::Display for DoubleDouble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.to_rational() {
+            Some(value) => write!(f, "{}", round_to_decimal(&value, 32)),
+            None => write!(f, "{}", self.hi),
+        }
+    }
+}
+
+impl Real for DoubleDouble {
+    fn from_rational(value: &RBig) -> Self {
+        let hi = rational_to_f64(value);
+        let lo = rational_from_f64(hi).map_or(0.0, |hi| rational_to_f64(&(value - hi)));
+        Self::normalised(hi, lo)
+    }
+    fn from_f64(value: f64) -> Self {
+        value.into()
+    }
+    fn to_f64(self) -> f64 {
+        self.hi
+    }
+    fn pi() -> Self {
+        DoubleDouble::PI
+    }
+    fn function(self, function: Function) -> Result<Self, Refusal> {
+        let value = match function {
+            Function::Sin => self.sin_cos().0,
+            Function::Cos => self.sin_cos().1,
+            Function::Asin => self.asin(),
+            Function::Acos => self.acos(),
+            Function::Atan => self.atan(),
+            Function::Sqrt => self.sqrt(),
+            Function::Exp => self.exp(),
+            Function::Log => self.ln(),
+        };
+        if value.hi.is_nan() && !self.hi.is_nan() { Err(Refusal::OutsideDomain(function)) } else { Ok(value) }
+    }
+    #[inline]
+    fn is_zero(self) -> Option<bool> {
+        Some(self.hi == 0.0)
+    }
+    fn is_finite(self) -> bool {
+        self.hi.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests;
