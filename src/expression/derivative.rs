@@ -86,50 +86,49 @@ impl Derivation {
                 if graph.constant_value(inner).is_some_and(|c| c.is_zero()) {
                     return inner;
                 }
-                self.chain(graph, function, id, a, inner)
+                chain(graph, function, id, a, inner)
             }
         }
     }
+}
 
-    /// `D(f(a)) = f'(a) D(a)`; `value` is the node `f(a)`.
-    fn chain(
-        &self,
-        graph: &mut Graph,
-        function: Function,
-        value: NodeId,
-        a: NodeId,
-        inner: NodeId,
-    ) -> NodeId {
-        let one = graph.integer(1);
-        match function {
-            Function::Sin => {
-                let outer = graph.apply(Function::Cos, a);
-                graph.mul(outer, inner)
-            }
-            Function::Cos => {
-                let outer = graph.apply(Function::Sin, a);
-                let product = graph.mul(outer, inner);
-                graph.neg(product)
-            }
-            Function::Exp => graph.mul(value, inner),
-            Function::Log => graph.div(inner, a),
-            Function::Sqrt => {
-                let two = graph.integer(2);
-                let twice = graph.mul(two, value);
-                graph.div(inner, twice)
-            }
-            Function::Atan => {
-                let square = graph.power(a, 2);
-                let bottom = graph.add(one, square);
-                graph.div(inner, bottom)
-            }
-            Function::Asin | Function::Acos => {
-                let square = graph.power(a, 2);
-                let rest = graph.sub(one, square);
-                let bottom = graph.apply(Function::Sqrt, rest);
-                let quotient = graph.div(inner, bottom);
-                if function == Function::Asin { quotient } else { graph.neg(quotient) }
-            }
+/// `D(f(a)) = f'(a) D(a)`; `value` is the node `f(a)`.
+pub(super) fn chain(
+    graph: &mut Graph,
+    function: Function,
+    value: NodeId,
+    a: NodeId,
+    inner: NodeId,
+) -> NodeId {
+    let one = graph.integer(1);
+    match function {
+        Function::Sin => {
+            let outer = graph.apply(Function::Cos, a);
+            graph.mul(outer, inner)
+        }
+        Function::Cos => {
+            let outer = graph.apply(Function::Sin, a);
+            let product = graph.mul(outer, inner);
+            graph.neg(product)
+        }
+        Function::Exp => graph.mul(value, inner),
+        Function::Log => graph.div(inner, a),
+        Function::Sqrt => {
+            let two = graph.integer(2);
+            let twice = graph.mul(two, value);
+            graph.div(inner, twice)
+        }
+        Function::Atan => {
+            let square = graph.power(a, 2);
+            let bottom = graph.add(one, square);
+            graph.div(inner, bottom)
+        }
+        Function::Asin | Function::Acos => {
+            let square = graph.power(a, 2);
+            let rest = graph.sub(one, square);
+            let bottom = graph.apply(Function::Sqrt, rest);
+            let quotient = graph.div(inner, bottom);
+            if function == Function::Asin { quotient } else { graph.neg(quotient) }
         }
     }
 }

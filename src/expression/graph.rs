@@ -139,7 +139,7 @@ impl Graph {
     }
 
     /// Whether nothing may be simplified here, because an operand has no value: zero times nothing is not zero.
-    fn has_no_value(&self, operands: &[NodeId]) -> bool {
+    pub(super) fn has_no_value(&self, operands: &[NodeId]) -> bool {
         operands.iter().any(|operand| self.undefined[operand.0 as usize])
     }
 

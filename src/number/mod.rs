@@ -20,6 +20,7 @@ pub mod polynomial;
 mod rational;
 mod real;
 mod residue;
+mod taylor;
 pub mod univariate;
 
 pub use decimal::{Decimal, Decimals, decimal_to_f64};
@@ -34,6 +35,7 @@ pub use laurent::{Laurent, Series};
 pub use rational::{Rationals, display_rational, parse_decimal, rational_from_f64, rational_to_f64};
 pub use real::Real;
 pub use residue::{LOG2_PRIMES, PrimeField};
+pub use taylor::{Coefficients, Recurrences};
 
 use dashu::rational::RBig;
 

@@ -3,8 +3,8 @@
 use super::error::{Problem, nearest};
 use super::matrices::transpose;
 use super::model::{Assignment, Kind, Matrix, System, Value};
-use crate::expression::NodeId;
 use crate::expression::syntax::{Expr, ExprKind, Name, Span};
+use crate::expression::{NodeId, gradient};
 use crate::number::Function;
 use dashu::rational::RBig;
 
@@ -323,7 +323,7 @@ impl System {
             return Err(Problem::new(span, "there is no state to differentiate by", "here")
                 .help("declare 'state x, ...'"));
         }
-        let entries: Vec<NodeId> = states.into_iter().map(|state| self.partial(expression, state)).collect();
+        let entries = gradient(&mut self.graph, expression, &states);
         Ok(Value::Matrix(Matrix { rows: 1, columns: entries.len(), entries }))
     }
 }

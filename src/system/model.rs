@@ -1,7 +1,7 @@
 //! What a system is.
 
 use super::grammar::ClaimSyntax;
-use crate::expression::{Derivation, Graph, NodeId, Symbol};
+use crate::expression::{Derivation, Graph, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -189,7 +189,7 @@ impl System {
 
     /// The differential of an expression: its derivatives by the states, in their order.
     pub fn differential(&mut self, expression: NodeId) -> Vec<NodeId> {
-        self.states.clone().into_iter().map(|state| self.partial(expression, state)).collect()
+        gradient(&mut self.graph, expression, &self.states)
     }
 
     /// The partial derivative of an expression by a symbol.
