@@ -266,8 +266,8 @@ def markdown(report):
 
 
 def figures(value):
-    """At least two digits, and no decimals from ten on."""
-    return f"{value:.0f}" if value >= 10 else f"{value:.1f}"
+    """Two digits, and no decimals from ten on."""
+    return f"{value:.0f}" if value >= 10 else f"{value:.1f}" if value >= 1 else f"{value:.2g}"
 
 
 def note(words, passing=False):
