@@ -1,13 +1,23 @@
 //! Two routes to a Lie derivative that share no rule of differentiation: the graph's, and num-dual's. And what the
 //! graph costs.
 
-use num_dual::Dual64;
-use palmistry::expression::{Program, Symbol};
-use palmistry::number::{Arithmetic, Enclosures, Floats, rational_from_f64, rational_to_f64};
-use palmistry::observability::{Branch, Locus, differential_by_duals, float_inputs, lie_derivative_by_duals};
+use dashu::base::Abs;
+use dashu::integer::IBig;
+use dashu::rational::RBig;
+use num_dual::{Dual64, DualNum};
+use palmistry::expression::{Input, Program, Symbol, expand_angles};
+use palmistry::number::{
+    Arithmetic, DoubleDouble, Enclosures, Floats, Function, Interval, Rationals, Real, rational_from_f64,
+    rational_to_f64,
+};
+use palmistry::observability::{
+    Branch, Coordinate, Locus, differential_by_duals, float_inputs, lie_derivative_by_duals,
+};
 use palmistry::{System, tradeoff::growth_of_lie_derivatives};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
+
+const REGIMES: [&str; 4] = ["general.proof", "same_rate.proof", "one_palm_fixed.proof", "fixed_palms.proof"];
 
 fn read(name: &str) -> System {
     System::read(&Path::new("proofs/moll2002").join(name)).unwrap()
@@ -34,18 +44,32 @@ fn words(fields: usize, length: usize) -> Vec<Vec<usize>> {
     })
 }
 
-/// Differentials along every word of up to two fields, all regimes, every output. What rounding may do to a value is
-/// measured, not guessed: the same program is run in interval arithmetic with the 53 bits of a double, and the width of
-/// the result bounds what any evaluation in doubles of these operations may be off by. The graph's value has to lie in
-/// that interval; num-dual takes other steps to the same value, and may be off by some widths (its quotient rule
-/// squares the divisor, its products take two roundings more).
-#[test]
-fn differentials_agree_to_what_conditioning_allows() {
-    let intervals = Enclosures::new(53);
-    for name in ["general.proof", "same_rate.proof", "one_palm_fixed.proof", "fixed_palms.proof"] {
+/// The inputs of a program over any number; angles in radians.
+fn inputs<T: Real>(program: &Program, point: &HashMap<Symbol, T>) -> Vec<T> {
+    let input = |input: &Input| match input {
+        Input::Plain(symbol) => point[symbol],
+        Input::Sine(symbol) => point[symbol].function(Function::Sin).unwrap(),
+        Input::Cosine(symbol) => point[symbol].function(Function::Cos).unwrap(),
+        Input::Opaque(node) => panic!("{node:?}"),
+    };
+    program.inputs().iter().map(input).collect()
+}
+
+/// Differentials along every word of up to two fields, all regimes, every output, over a number of `bits` bits. What
+/// rounding may do to a value is measured, not guessed: the same program is run in interval arithmetic of as many bits,
+/// and the width of the result bounds what any evaluation of these operations in such numbers may be off by. The graph's
+/// value has to lie in that interval; num-dual takes other steps to the same value, and may be off by some widths (its
+/// quotient rule squares the divisor, its products take two roundings more).
+fn differentials_agree<T: Real + DualNum>(bits: usize, exactly: fn(T) -> RBig) {
+    let intervals = Enclosures::new(bits);
+    let unit = |x: &RBig| x.clone().abs() / RBig::from(IBig::ONE << (bits - 1));
+    for name in REGIMES {
         let mut system = read(name);
         for index in 0..5 {
-            let point = point(&mut system, index);
+            let point: HashMap<Symbol, T> = point(&mut system, index)
+                .into_iter()
+                .map(|(symbol, x)| (symbol, <T as Real>::from_f64(x)))
+                .collect();
             let fields = system.fields.len();
             for word in (0..=2).flat_map(|length| words(fields, length)) {
                 for (output, h) in system.outputs.clone() {
@@ -55,27 +79,116 @@ fn differentials_agree_to_what_conditioning_allows() {
                     }
                     let row = system.differential(value);
                     let program = Program::new(&system.graph, &row, |_| false, false);
-                    let inputs = float_inputs(&program, |symbol| point[&symbol]);
-                    let graph = program.load(Floats).unwrap().run(&inputs, &mut Vec::new()).unwrap();
-                    let exact: Vec<_> = inputs
-                        .iter()
-                        .map(|x| intervals.rational(&rational_from_f64(*x).unwrap()).unwrap())
-                        .collect();
+                    let inputs = inputs(&program, &point);
+                    let graph =
+                        program.load(Floats::<T>::new()).unwrap().run(&inputs, &mut Vec::new()).unwrap();
+                    let exact: Vec<_> =
+                        inputs.iter().map(|x| intervals.rational(&exactly(*x)).unwrap()).collect();
                     let bounds = program.load(intervals).unwrap().run(&exact, &mut Vec::new()).unwrap();
                     let duals = differential_by_duals(&system, &word, h, &point).unwrap();
                     for ((x, y), bound) in graph.iter().zip(&duals).zip(&bounds) {
-                        let (low, high) = (rational_to_f64(&bound.low()), rational_to_f64(&bound.high()));
-                        // a sine of the system's library may be off by one more unit than a correctly rounded one
-                        let width = 2.0 * (high - low) + f64::EPSILON * x.abs();
-                        let middle = low + (high - low) / 2.0;
-                        let place = format!("{name} {word:?} {output}: {x} and {y} in {low} to {high}");
-                        assert!((x - middle).abs() <= width, "graph: {place}");
-                        assert!((y - middle).abs() <= 8.0 * width, "duals: {place}");
+                        let (x, y) = (exactly(*x), exactly(*y));
+                        // a sine of the number's library may be off by one more unit than a correctly rounded one
+                        let width = RBig::from(2) * (bound.high() - bound.low()) + unit(&x);
+                        let middle = (bound.low() + bound.high()) / RBig::from(2);
+                        let off = |x: &RBig| rational_to_f64(&(x - &middle)).abs();
+                        let width = rational_to_f64(&width);
+                        let place = format!("{name} {word:?} {output}: width {width}");
+                        assert!(off(&x) <= width, "graph: {place}, off by {}", off(&x));
+                        assert!(off(&y) <= 8.0 * width, "duals: {place}, off by {}", off(&y));
                     }
                 }
             }
         }
     }
+}
+
+#[test]
+fn differentials_agree_to_what_conditioning_allows() {
+    differentials_agree::<f64>(53, |x| rational_from_f64(x).unwrap());
+}
+
+#[test]
+fn differentials_agree_in_single_precision() {
+    differentials_agree::<f32>(24, |x| rational_from_f64(f64::from(x)).unwrap());
+}
+
+/// A hundred bits are what a double-double promises of each operation.
+#[test]
+fn differentials_agree_to_thirty_digits() {
+    differentials_agree::<DoubleDouble>(100, |x| x.to_rational().unwrap());
+}
+
+/// At states whose coordinates are rational, and whose angles have rational sines and cosines, the exact differential
+/// lies in the intervals of both routes.
+#[test]
+fn intervals_enclose_the_exact_differential() {
+    for name in REGIMES {
+        let mut system = read(name);
+        let everything: Vec<_> =
+            system.fields.iter().flat_map(|field| field.components.iter().map(|(_, node)| *node)).collect();
+        let locus = Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &everything).unwrap();
+        let (angles, fields) = (system.angles(), system.fields.len());
+        for index in 0..5 {
+            let state = locus.draw(7, index).unwrap();
+            let enclosed = |value: &Coordinate| match value {
+                Coordinate::Number(value) => Interval::from_rational(value),
+                Coordinate::Angle { sine, cosine } => {
+                    Interval::from_rational(sine).atan2(Interval::from_rational(cosine))
+                }
+            };
+            let point: HashMap<Symbol, Interval> =
+                state.values.iter().map(|(symbol, value)| (*symbol, enclosed(value))).collect();
+            for word in (0..=2).flat_map(|length| words(fields, length)) {
+                for (output, h) in system.outputs.clone() {
+                    let mut value = h;
+                    for field in word.iter().rev() {
+                        value = system.lie_derivative(*field, value);
+                    }
+                    let row = system.differential(value);
+                    let row = expand_angles(&mut system.graph, &row, |s| angles.contains(&s));
+                    let program = Program::new(&system.graph, &row, |s| angles.contains(&s), false);
+                    let inputs = state.inputs(&program, &Rationals::default()).unwrap();
+                    let exact =
+                        program.load(Rationals::default()).unwrap().run(&inputs, &mut Vec::new()).unwrap();
+                    let inputs = inputs(&program, &point);
+                    let graph = program
+                        .load(Floats::<Interval>::new())
+                        .unwrap()
+                        .run(&inputs, &mut Vec::new())
+                        .unwrap();
+                    let duals = differential_by_duals(&system, &word, h, &point).unwrap();
+                    for (exact, bounds) in exact.iter().zip(graph.iter().zip(&duals)) {
+                        for (route, bound) in [("graph", bounds.0), ("duals", bounds.1)] {
+                            let end = |x: f64| rational_from_f64(x).unwrap();
+                            assert!(
+                                end(bound.low()) <= *exact && *exact <= end(bound.high()),
+                                "{route} {name} {word:?} {output}: {bound} for {}",
+                                rational_to_f64(exact)
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A third is no double: were it passed through one on its way into the duals, the interval would not hold the exact
+/// derivative, and the double-double would end after sixteen digits.
+#[test]
+fn constants_of_a_program_keep_their_digits_within_duals() {
+    let text = "system \"third\" state x field f x' = x/3 + 1/7 output x";
+    let system = System::parse("third.proof", text, Path::new("")).unwrap();
+    let (x, h) = (system.find_symbol("x").unwrap(), system.outputs[0].1);
+    let ninth = RBig::from_parts(1.into(), 9u8.into());
+    let point = HashMap::from([(x, Interval::point(0.75))]);
+    let bound = differential_by_duals(&system, &[0, 0], h, &point).unwrap()[0];
+    let end = |x: f64| rational_from_f64(x).unwrap();
+    assert!(end(bound.low()) < ninth && ninth < end(bound.high()) && bound.width() < 1e-15);
+    let point = HashMap::from([(x, DoubleDouble::from(0.75))]);
+    let fine = differential_by_duals(&system, &[0, 0], h, &point).unwrap()[0];
+    assert!((fine - DoubleDouble::from_rational(&ninth)).hi().abs() < 1e-31);
 }
 
 /// Over another number type: the derivative by a parameter of a Lie derivative, with num-dual's own duals at the leaves,

@@ -34,6 +34,8 @@ impl DoubleDouble {
     pub const ZERO: DoubleDouble = DoubleDouble { hi: 0.0, lo: 0.0 };
     /// One.
     pub const ONE: DoubleDouble = DoubleDouble { hi: 1.0, lo: 0.0 };
+    /// No number.
+    pub const NAN: DoubleDouble = DoubleDouble { hi: f64::NAN, lo: 0.0 };
     /// Pi.
     pub const PI: DoubleDouble = tables::PI;
 
@@ -64,6 +66,18 @@ impl DoubleDouble {
     #[inline]
     pub fn abs(self) -> Self {
         if self.hi.is_sign_negative() { -self } else { self }
+    }
+
+    /// The whole number next to it on the way to zero.
+    pub fn trunc(self) -> Self {
+        let whole = self.hi.trunc();
+        if whole != self.hi {
+            whole.into()
+        } else if self.hi > 0.0 {
+            Self::new(self.hi, self.lo.floor())
+        } else {
+            Self::new(self.hi, self.lo.ceil())
+        }
     }
 
     /// The square.

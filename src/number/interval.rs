@@ -10,7 +10,7 @@ mod arithmetic;
 mod functions;
 mod rounding;
 
-use super::{Real, Refusal, rational_from_f64, rational_to_f64};
+use super::{Function, Real, Refusal, rational_from_f64, rational_to_f64};
 use dashu::rational::RBig;
 use rounding::{add_up, mul_down, mul_up};
 use std::cmp::Ordering;
@@ -246,7 +246,15 @@ impl Real for Interval {
     fn pi() -> Self {
         Interval::PI
     }
-    fn function(self, function: super::Function) -> Result<Self, Refusal> {
+    fn is_outside(self, function: Function) -> bool {
+        match function {
+            Function::Asin | Function::Acos => self.lo < -1.0 || self.hi > 1.0,
+            Function::Sqrt => self.lo < 0.0,
+            Function::Log => self.lo <= 0.0,
+            Function::Sin | Function::Cos | Function::Atan | Function::Exp => false,
+        }
+    }
+    fn function(self, function: Function) -> Result<Self, Refusal> {
         self.image(function).ok_or(Refusal::OutsideDomain(function))
     }
     #[inline]

@@ -1,7 +1,8 @@
 //! Floor 0: what a value can be.
 //!
-//! An [`Arithmetic`] is a set of numbers together with its operations: machine floats, residues modulo a prime,
-//! exact rationals, enclosures of any precision, rounded decimals, Laurent series, dual numbers. A straight-line
+//! An [`Arithmetic`] is a set of numbers together with its operations: numbers of fixed size ([`Real`]: single and
+//! double precision, double-doubles, intervals), residues modulo a prime, exact rationals, enclosures of any precision,
+//! rounded decimals, Laurent series, dual numbers. A straight-line
 //! program is evaluated over any of them. An arithmetic may *refuse* an operation, and says why: a residue has no
 //! exponential, an enclosure that contains zero is no divisor.
 //!
@@ -10,6 +11,7 @@
 mod decimal;
 mod double_double;
 mod dual;
+mod dual_number;
 mod enclosure;
 mod error_free;
 mod float;
@@ -21,11 +23,12 @@ mod rational;
 mod real;
 mod residue;
 mod taylor;
+mod tower;
 pub mod univariate;
 
 pub use decimal::{Decimal, Decimals, decimal_to_f64};
 pub use double_double::DoubleDouble;
-pub use dual::{Duals, Tower};
+pub use dual::{Differentiable, Duals};
 pub(crate) use enclosure::round_to_decimal;
 pub use enclosure::{Enclosure, Enclosures};
 pub use float::Floats;
@@ -36,6 +39,7 @@ pub use rational::{Rationals, display_rational, parse_decimal, rational_from_f64
 pub use real::Real;
 pub use residue::{LOG2_PRIMES, PrimeField};
 pub use taylor::{Coefficients, Recurrences};
+pub use tower::Tower;
 
 use dashu::rational::RBig;
 

@@ -35,27 +35,46 @@ pub trait Real:
     fn to_f64(self) -> f64;
     /// The image of pi.
     fn pi() -> Self;
+    /// Whether it lies outside a function's real domain, or may do so. A NaN does not: it is already named.
+    fn is_outside(self, function: Function) -> bool {
+        let (one, zero) = (Self::from_f64(1.0), Self::from_f64(0.0));
+        match function {
+            Function::Asin | Function::Acos => self < -one || self > one,
+            Function::Sqrt | Function::Log => self < zero,
+            Function::Sin | Function::Cos | Function::Atan | Function::Exp => false,
+        }
+    }
     /// `f(self)`.
     ///
     /// # Errors
-    /// [`Refusal::OutsideDomain`] where the argument lies outside the function's real domain, or may do so.
+    /// [`Refusal::OutsideDomain`] where [`Real::is_outside`], or where there is no value (the sine of an infinity).
     fn function(self, function: Function) -> Result<Self, Refusal>;
     /// Whether it is zero; `None` where that cannot be told.
     fn is_zero(self) -> Option<bool>;
     /// Whether neither an infinity nor a NaN is met in it.
     fn is_finite(self) -> bool;
 
-    /// `self / divisor`.
+    /// Whether one may divide by it.
     ///
     /// # Errors
-    /// [`Refusal::DivisionByZero`] or [`Refusal::DivisorNotSeparated`], where the divisor is zero or may be.
+    /// [`Refusal::DivisionByZero`] or [`Refusal::DivisorNotSeparated`], where it is zero or may be.
     #[inline]
-    fn quotient(self, divisor: Self) -> Result<Self, Refusal> {
-        match divisor.is_zero() {
-            Some(false) => Ok(self / divisor),
+    fn check_divisor(self) -> Result<(), Refusal> {
+        match self.is_zero() {
+            Some(false) => Ok(()),
             Some(true) => Err(Refusal::DivisionByZero),
             None => Err(Refusal::DivisorNotSeparated),
         }
+    }
+
+    /// `self / divisor`.
+    ///
+    /// # Errors
+    /// As [`Real::check_divisor`].
+    #[inline]
+    fn quotient(self, divisor: Self) -> Result<Self, Refusal> {
+        divisor.check_divisor()?;
+        Ok(self / divisor)
     }
 
     /// `self^n` by repeated squaring; a negative power is the reciprocal of the positive one.

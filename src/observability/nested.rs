@@ -5,7 +5,7 @@
 //! taken from the expression graph; every rule of differentiation is num-dual's. The cost doubles with each level.
 
 use crate::expression::{Failure, Input, NodeId, Program, Symbol};
-use crate::number::{Duals, Refusal, Tower};
+use crate::number::{Differentiable, Duals, Real, Refusal, Tower};
 use crate::system::System;
 use nalgebra::{DVector, Dyn};
 use num_dual::{DualNum, DualVec, gradient};
@@ -25,7 +25,7 @@ pub enum NestedError {
 ///
 /// # Errors
 /// Where the point is a pole.
-pub fn lie_derivative_by_duals<T: DualNum<Primitive = f64>>(
+pub fn lie_derivative_by_duals<T: Differentiable>(
     system: &System,
     word: &[usize],
     h: NodeId,
@@ -35,7 +35,7 @@ pub fn lie_derivative_by_duals<T: DualNum<Primitive = f64>>(
     climb(system, word, h, &point, 0).map(Tower::leaf)
 }
 
-fn climb<T: DualNum<Primitive = f64>>(
+fn climb<T: Differentiable>(
     system: &System,
     word: &[usize],
     h: NodeId,
@@ -56,7 +56,7 @@ fn climb<T: DualNum<Primitive = f64>>(
     Ok(climb(system, rest, h, &moved, depth + 1)?.slope(depth + 1))
 }
 
-fn values<T: DualNum<Primitive = f64>>(
+fn values<T: Differentiable>(
     system: &System,
     nodes: &[NodeId],
     point: &HashMap<Symbol, Tower<T>>,
@@ -72,22 +72,23 @@ fn values<T: DualNum<Primitive = f64>>(
     loaded.run(&inputs, &mut Vec::new()).map_err(NestedError::Failure)
 }
 
-/// The differential of `L_{X1} L_{X2} ... h` by the states, in their order.
+/// The differential of `L_{X1} L_{X2} ... h` by the states, in their order, over any plain number: `f32`, `f64`,
+/// double-doubles, or intervals, which then enclose it.
 ///
 /// # Errors
-/// Where the point is a pole.
-pub fn differential_by_duals(
+/// Where the point is a pole, or may be one.
+pub fn differential_by_duals<T: Real + DualNum>(
     system: &System,
     word: &[usize],
     h: NodeId,
-    point: &HashMap<Symbol, f64>,
-) -> Result<Vec<f64>, NestedError> {
+    point: &HashMap<Symbol, T>,
+) -> Result<Vec<T>, NestedError> {
     let states = DVector::from_iterator(
         system.states.len(),
-        system.states.iter().map(|symbol| point.get(symbol).copied().unwrap_or(0.0)),
+        system.states.iter().map(|symbol| point.get(symbol).copied().unwrap_or_else(T::zero)),
     );
-    let function = |x: DVector<DualVec<f64, Dyn>>| {
-        let mut full: HashMap<Symbol, DualVec<f64, Dyn>> =
+    let function = |x: DVector<DualVec<T, Dyn>>| {
+        let mut full: HashMap<Symbol, DualVec<T, Dyn>> =
             point.iter().map(|(symbol, value)| (*symbol, DualVec::from_re(*value))).collect();
         for (symbol, value) in system.states.iter().zip(x.iter()) {
             full.insert(*symbol, value.clone());

@@ -3,8 +3,8 @@
 use super::Interval;
 use super::rounding::{
     FRACTION, LOWER_HALF, SAFE, add_down, add_up, div_down, div_up, is_short_quotient, mul_down, mul_up,
-    sum_error,
 };
+use crate::number::error_free::sum_error;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// The next double below a finite one that is not zero, where `step` is one; the same one where it is zero.

@@ -7,18 +7,12 @@
 
 use super::Interval;
 use super::rounding::{sqrt_down, sqrt_up};
-use crate::number::{DoubleDouble, Function};
+use crate::number::{DoubleDouble, Function, Real};
 
 impl Interval {
     /// The function's values on the interval; `None` where one of its numbers lies outside the function's domain.
     pub fn image(self, function: Function) -> Option<Self> {
-        let outside = match function {
-            Function::Asin | Function::Acos => self.lo < -1.0 || self.hi > 1.0,
-            Function::Sqrt => self.lo < 0.0,
-            Function::Log => self.lo <= 0.0,
-            _ => false,
-        };
-        if outside {
+        if self.is_outside(function) {
             return None;
         }
         let increasing = |f: fn(DoubleDouble) -> DoubleDouble| Interval {

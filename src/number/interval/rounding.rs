@@ -5,6 +5,8 @@
 //! An infinite argument is an end that does not exist, and so 0 * inf = 0. Downwards the result is never +inf: what
 //! overflowed is a number above the greatest double.
 
+use crate::number::error_free::sum_error;
+
 /// The fraction bits of a double.
 pub(super) const FRACTION: u64 = (1 << 52) - 1;
 
@@ -25,7 +27,7 @@ pub(super) fn is_short_product(x: f64, y: f64) -> bool {
 /// Whether `quotient` is exactly `x / y`. Sufficient, not necessary; `x` and the quotient are far from underflow.
 #[inline]
 pub(super) fn is_short_quotient(x: f64, y: f64, quotient: f64) -> bool {
-    y.to_bits() & FRACTION == 0 || (quotient.to_bits() | y.to_bits()) & LOWER_HALF == 0 && quotient * y == x
+    y.to_bits() & FRACTION == 0 || is_short_product(quotient, y) && quotient * y == x
 }
 
 /// `x + y`, neither of them +inf.
@@ -37,14 +39,6 @@ pub(super) fn add_down(x: f64, y: f64) -> f64 {
 /// `x + y`, neither of them -inf.
 pub(super) fn add_up(x: f64, y: f64) -> f64 {
     -add_down(-x, -y)
-}
-
-/// `x + y - sum` exactly (D. E. Knuth, TAOCP 2, 4.2.2, theorem B; no underflow can harm it), or a NaN where an
-/// intermediate step overflows.
-#[inline]
-pub(super) fn sum_error(x: f64, y: f64, sum: f64) -> f64 {
-    let rest = sum - x;
-    (x - (sum - rest)) + (y - rest)
 }
 
 /// `x * y`
