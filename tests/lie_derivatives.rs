@@ -45,7 +45,7 @@ fn words(fields: usize, length: usize) -> Vec<Vec<usize>> {
 }
 
 /// The inputs of a program over any number; angles in radians.
-fn inputs<T: Real>(program: &Program, point: &HashMap<Symbol, T>) -> Vec<T> {
+fn inputs_at<T: Real>(program: &Program, point: &HashMap<Symbol, T>) -> Vec<T> {
     let input = |input: &Input| match input {
         Input::Plain(symbol) => point[symbol],
         Input::Sine(symbol) => point[symbol].function(Function::Sin).unwrap(),
@@ -79,7 +79,7 @@ fn differentials_agree<T: Real + DualNum>(bits: usize, exactly: fn(T) -> RBig) {
                     }
                     let row = system.differential(value);
                     let program = Program::new(&system.graph, &row, |_| false, false);
-                    let inputs = inputs(&program, &point);
+                    let inputs = inputs_at(&program, &point);
                     let graph =
                         program.load(Floats::<T>::new()).unwrap().run(&inputs, &mut Vec::new()).unwrap();
                     let exact: Vec<_> =
@@ -151,7 +151,7 @@ fn intervals_enclose_the_exact_differential() {
                     let inputs = state.inputs(&program, &Rationals::default()).unwrap();
                     let exact =
                         program.load(Rationals::default()).unwrap().run(&inputs, &mut Vec::new()).unwrap();
-                    let inputs = inputs(&program, &point);
+                    let inputs = inputs_at(&program, &point);
                     let graph = program
                         .load(Floats::<Interval>::new())
                         .unwrap()
