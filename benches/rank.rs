@@ -4,6 +4,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
+use palmistry::observability::Certainty;
 use palmistry::{RankQuestion, System, answer_rank};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -24,6 +25,7 @@ fn sweep(bencher: Bencher, regime: &str) {
             let question = RankQuestion {
                 samples: black_box(STATES),
                 seed: 1,
+                wanted: Certainty::Certified,
                 order: None,
                 fixed: BTreeMap::new(),
                 conditions: Vec::new(),

@@ -124,7 +124,10 @@ impl Work {
                 None => self.results.extend(entries),
                 Some(singular) => {
                     let columns = if matches!(singular, Singular::Block) { 4 } else { self.dimension };
-                    self.results.extend(singular_values(&entries, columns).map_or(vec![], |s| s.values));
+                    self.results.extend(
+                        singular_values(&entries, &vec![0.0; entries.len()], columns)
+                            .map_or(vec![], |s| s.values),
+                    );
                 }
             }
         }

@@ -3,7 +3,8 @@
 use super::eval::assignments;
 use super::output::{INTERRUPTED, print_json, print_text, progress};
 use super::{Status, Unusable};
-use clap::Args;
+use clap::{Args, ValueEnum};
+use palmistry::observability::Certainty;
 use palmistry::report::{rank_json, rank_text};
 use palmistry::{RankQuestion, System, answer_rank};
 use std::collections::BTreeMap;
@@ -33,9 +34,29 @@ pub(crate) struct Rank {
     /// Sample only states that meet this condition, as in 'sin(phi1) = 0' (may be repeated).
     #[arg(long = "where", value_name = "CONDITION")]
     conditions: Vec<String>,
+    /// What every rank has to be: 'certified', proved at the very state, or 'computed', by numbers that round. The
+    /// cheapest numbers that suffice are taken, and better ones where a state needs them.
+    #[arg(long, value_enum, default_value_t = Wanted::Certified, value_name = "HOW")]
+    verdict: Wanted,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
+}
+
+/// What a verdict has to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Wanted {
+    Certified,
+    Computed,
+}
+
+impl From<Wanted> for Certainty {
+    fn from(wanted: Wanted) -> Self {
+        match wanted {
+            Wanted::Certified => Certainty::Certified,
+            Wanted::Computed => Certainty::Computed,
+        }
+    }
 }
 
 impl Rank {
@@ -48,6 +69,7 @@ impl Rank {
             &RankQuestion {
                 samples: self.samples,
                 seed: self.seed,
+                wanted: self.verdict.into(),
                 order: self.order.map(usize::from),
                 fixed,
                 conditions: self.conditions,

@@ -39,6 +39,17 @@ impl Enclosure {
             || self.high.significand().is_zero()
     }
 
+    /// How far it lies from zero in units of its own half width: infinite for one number that is not zero, at most one
+    /// where zero is inside.
+    pub fn significance(&self) -> f64 {
+        let (low, high) = (self.low(), self.high());
+        let half_width = &high - &low;
+        if half_width.is_zero() {
+            return if low.is_zero() { 0.0 } else { f64::INFINITY };
+        }
+        rational_to_f64(&((low + high) / half_width)).abs()
+    }
+
     /// Whether it consists of one number.
     pub fn is_exact(&self) -> bool {
         self.low == self.high

@@ -1,4 +1,4 @@
-//! Rank and kernel of a matrix by Gaussian elimination over exact numbers.
+//! Rank and kernel of a matrix by Gaussian elimination: over exact numbers, and over numbers that know their own error.
 
 use crate::number::{Arithmetic, Refusal};
 
@@ -78,6 +78,53 @@ pub fn kernel<A: Arithmetic>(
         basis.push(vector);
     }
     Ok(basis)
+}
+
+/// A lower bound on the rank of every matrix that lies in a matrix of enclosures: elimination that takes a pivot only if
+/// it is certainly not zero.
+///
+/// `significance` is how far a number lies from zero in units of its own uncertainty (infinite where it has none); the
+/// most significant entry of all that remain is taken. Multiplying a row or a column by a positive number changes no
+/// significance, so that the choice of pivots, and the rank, do not depend on units.
+///
+/// # Errors
+/// Where an operation is refused.
+pub fn certain_rank<A: Arithmetic>(
+    arithmetic: &A,
+    mut rows: Vec<Vec<A::Number>>,
+    significance: impl Fn(&A::Number) -> f64,
+) -> Result<usize, Refusal> {
+    let columns = rows.first().map_or(0, Vec::len);
+    for step in 0..rows.len().min(columns) {
+        let mut best = None;
+        for (i, row) in rows.iter().enumerate().skip(step) {
+            for (j, entry) in row.iter().enumerate().skip(step) {
+                if arithmetic.is_zero(entry) == Some(false) {
+                    let weight = significance(entry);
+                    if best.is_none_or(|(most, _, _)| weight > most) {
+                        best = Some((weight, i, j));
+                    }
+                }
+            }
+        }
+        let Some((_, i, j)) = best else { return Ok(step) };
+        rows.swap(step, i);
+        for row in &mut rows {
+            row.swap(step, j);
+        }
+        let (above, below) = rows.split_at_mut(step + 1);
+        let Some(pivot_row) = above.last() else { break };
+        for row in below {
+            if arithmetic.is_zero(&row[step]) == Some(true) {
+                continue;
+            }
+            let factor = arithmetic.div(&row[step], &pivot_row[step])?;
+            for (entry, p) in row[step + 1..].iter_mut().zip(&pivot_row[step + 1..]) {
+                *entry = arithmetic.sub(entry, &arithmetic.mul(&factor, p)?)?;
+            }
+        }
+    }
+    Ok(rows.len().min(columns))
 }
 
 /// The indices of rows that raise the rank, greedily from the first.

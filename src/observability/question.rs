@@ -2,6 +2,7 @@
 
 use super::codistribution::{Codistribution, Length, Stop};
 use super::conditions::solve_conditions;
+use super::ladder::Certainty;
 use super::locus::Locus;
 use super::sweep::{SweepOptions, SweepReport, sweep};
 use crate::expression::parse::{Depth, equation, read_all};
@@ -17,6 +18,8 @@ pub struct RankQuestion<'a> {
     /// States drawn on each branch of the conditions.
     pub samples: u64,
     pub seed: u64,
+    /// What every rank has to be, at the least.
+    pub wanted: Certainty,
     /// Words of exactly up to so many fields; otherwise until the rank stops growing.
     pub order: Option<usize>,
     /// Symbols held fixed.
@@ -147,6 +150,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         let options = SweepOptions {
             samples: question.samples,
             seed: question.seed,
+            wanted: question.wanted,
             interrupt: question.interrupt,
             progress: question.progress,
         };

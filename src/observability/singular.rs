@@ -1,19 +1,25 @@
 //! Rank by singular values: what floating point has to say, with the gap on which it rests.
 
+use super::equilibrate::equilibrate;
 use faer::Mat;
 use nalgebra::DMatrix;
 
 /// A singular value decomposition that takes more steps than this is given up.
 const MOST_ITERATIONS: usize = 10_000;
 
-/// The singular values of a matrix whose rows were first scaled to length one, and the rank that they suggest.
+/// A full rank may be taken from doubles whose errors are not known where the smallest singular value is at least this
+/// part of the largest: half of the digits of a double.
+pub const SEPARATED: f64 = 1.5e-8;
+
+/// The singular values of a matrix after [`equilibrate`], and the rank that they suggest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// In descending order.
     pub values: Vec<f64>,
     /// How many of them exceed [`Spectrum::tolerance`].
     pub rank: usize,
-    /// `max(rows, columns) * 2^-52 * largest`, the customary threshold.
+    /// By how much the errors of the entries and of the decomposition may move a singular value (H. Weyl): the
+    /// Frobenius norm of the errors, scaled as the entries are, and `max(rows, columns) * 2^-52 * largest`.
     pub tolerance: f64,
     /// The gap on which the rank rests: the smallest value that counts, over the largest that does not (or over the
     /// threshold, where all count).
@@ -28,52 +34,76 @@ impl Spectrum {
 
     /// The largest over the smallest singular value.
     pub fn condition(&self) -> f64 {
-        self.values.first().copied().unwrap_or(0.0) / self.smallest()
+        self.values.first().map_or(1.0, |largest| largest / self.smallest())
+    }
+
+    /// Whether all singular values count and half of the digits are left for errors that are not known.
+    pub fn is_separated(&self) -> bool {
+        self.values.is_empty() || self.smallest() >= SEPARATED * self.values[0]
+    }
+
+    fn new(mut values: Vec<f64>, rows: usize, columns: usize, noise: f64) -> Spectrum {
+        values.sort_by(|a, b| b.total_cmp(a));
+        values.resize(columns, 0.0); // fewer rows than columns: the rest of the spectrum is zero
+        let largest = values.first().copied().unwrap_or(0.0);
+        let tolerance = noise + rows.max(columns) as f64 * f64::EPSILON * largest;
+        let rank = values.iter().filter(|v| **v > tolerance).count();
+        let below = values.get(rank).copied().unwrap_or(0.0).max(tolerance);
+        let gap = match rank.checked_sub(1) {
+            Some(last) => values[last] / below,
+            None if columns == 0 => f64::INFINITY, // nothing was left to decide
+            None => 0.0,
+        };
+        Spectrum { values, rank, tolerance, gap }
     }
 }
 
-/// The singular values of a matrix given by rows. `None` where an entry or a singular value is not finite.
+/// The singular values of a matrix given by rows, and bounds on the absolute errors of its entries. `None` where an
+/// entry, a bound or a singular value is not finite. A matrix without rows has the rank zero.
 ///
-/// A row of zeros stays one; every other row is scaled to length one, because the differentials of different outputs
-/// come in different units.
-pub fn singular_values(entries: &[f64], columns: usize) -> Option<Spectrum> {
-    if columns == 0 || entries.is_empty() {
+/// The matrix is equilibrated first, so that neither the values nor the rank depend on units.
+pub fn singular_values(entries: &[f64], errors: &[f64], columns: usize) -> Option<Spectrum> {
+    if !entries.iter().chain(errors).all(|x| x.is_finite()) {
         return None;
     }
-    let rows = entries.len() / columns;
-    let mut scaled = Mat::<f64>::zeros(rows, columns);
-    for (i, row) in entries.chunks(columns).enumerate() {
+    if columns == 0 || entries.is_empty() {
+        return Some(Spectrum::new(Vec::new(), 0, columns, 0.0));
+    }
+    let (mut scaled, mut noise) = (entries.to_vec(), errors.to_vec());
+    equilibrate(&mut scaled, &mut noise, columns);
+    let noise = noise.iter().map(|e| e * e).sum::<f64>().sqrt();
+    Some(Spectrum::new(decompose(&scaled, columns)?, entries.len() / columns, columns, noise))
+}
+
+/// The customary way, for comparison: rows scaled to length one, and a threshold relative to the largest singular value,
+/// `max(rows, columns) * 2^-52 * largest`. Other units of the states give other values, and may give another rank.
+pub fn customary_singular_values(entries: &[f64], columns: usize) -> Option<Spectrum> {
+    if columns == 0 || entries.is_empty() || !entries.iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let mut scaled = entries.to_vec();
+    for row in scaled.chunks_mut(columns) {
         // by the largest entry first, so that squares neither overflow nor vanish
         let largest = row.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-        if !largest.is_finite() || row.iter().any(|x| x.is_nan()) {
-            return None;
-        }
         let length = largest * row.iter().map(|x| (x / largest).powi(2)).sum::<f64>().sqrt();
-        for (j, x) in row.iter().enumerate() {
-            scaled[(i, j)] = if largest > 0.0 { x / length } else { 0.0 };
+        for x in row {
+            *x = if largest > 0.0 { *x / length } else { 0.0 };
         }
     }
+    Some(Spectrum::new(decompose(&scaled, columns)?, entries.len() / columns, columns, 0.0))
+}
+
+/// The singular values of a finite matrix, in no order.
+fn decompose(entries: &[f64], columns: usize) -> Option<Vec<f64>> {
+    let rows = entries.len() / columns;
+    let matrix = Mat::<f64>::from_fn(rows, columns, |i, j| entries[i * columns + j]);
     // faer resolves small values best, but now and then gives up on an ordinary matrix; then nalgebra, with a bound on
     // its iterations, which it needs
-    let mut values = match scaled.singular_values() {
-        Ok(values) => values,
-        Err(_) => {
-            let copy = DMatrix::from_fn(rows, columns, |i, j| scaled[(i, j)]);
-            copy.try_svd(false, false, f64::EPSILON, MOST_ITERATIONS)?
-                .singular_values
-                .iter()
-                .copied()
-                .collect()
-        }
-    };
-    values.sort_by(|a, b| b.total_cmp(a));
-    values.resize(columns, 0.0); // fewer rows than columns: the rest of the spectrum is zero
-    let largest = values[0];
-    let tolerance = rows.max(columns) as f64 * f64::EPSILON * largest;
-    let rank = values.iter().filter(|v| **v > tolerance).count();
-    let below = values.get(rank).copied().unwrap_or(0.0).max(tolerance);
-    let gap = if rank == 0 { 0.0 } else { values[rank - 1] / below };
-    Some(Spectrum { values, rank, tolerance, gap })
+    matrix.singular_values().ok().or_else(|| {
+        let copy = DMatrix::from_row_slice(rows, columns, entries);
+        let found = copy.try_svd(false, false, f64::EPSILON, MOST_ITERATIONS)?;
+        Some(found.singular_values.iter().copied().collect())
+    })
 }
 
 #[cfg(test)]
@@ -82,23 +112,24 @@ mod tests {
 
     #[test]
     fn a_rotation_has_unit_singular_values() {
-        let spectrum = singular_values(&[0.6, -0.8, 0.8, 0.6], 2).unwrap();
+        let spectrum = singular_values(&[0.6, -0.8, 0.8, 0.6], &[0.0; 4], 2).unwrap();
         assert_eq!(spectrum.rank, 2);
         assert!(spectrum.values.iter().all(|v| (v - 1.0).abs() < 1e-15));
     }
 
     #[test]
     fn equal_rows_leave_a_gap() {
-        let spectrum = singular_values(&[1.0, 2.0, 3.0, 1.0, 2.0, 3.0], 3).unwrap();
+        let spectrum = singular_values(&[1.0, 2.0, 3.0, 1.0, 2.0, 3.0], &[0.0; 6], 3).unwrap();
         assert_eq!(spectrum.rank, 1);
         assert!(spectrum.gap > 1e14);
     }
 
     #[test]
     fn what_is_not_finite_is_reported_and_the_extremes_are_not() {
-        assert_eq!(singular_values(&[f64::NAN, 1.0], 2), None);
-        assert_eq!(singular_values(&[f64::INFINITY, 1.0], 2), None);
-        assert_eq!(singular_values(&[1e200, 0.0, 0.0, 1e-200], 2).unwrap().rank, 2);
+        assert_eq!(singular_values(&[f64::NAN, 1.0], &[0.0; 2], 2), None);
+        assert_eq!(singular_values(&[f64::INFINITY, 1.0], &[0.0; 2], 2), None);
+        assert_eq!(singular_values(&[2.0, 1.0], &[0.0, f64::INFINITY], 2), None);
+        assert_eq!(singular_values(&[1e200, 0.0, 0.0, 1e-200], &[0.0; 4], 2).unwrap().rank, 2);
     }
 
     /// The general regime's matrix at a state at which faer 0.24.4 reports that it does not converge (the two rows along
@@ -151,9 +182,17 @@ mod tests {
             -1.051670865848755,
             6.712848501023682,
         ]);
-        let spectrum = singular_values(&entries, 10).unwrap();
+        let spectrum = singular_values(&entries, &[0.0; 100], 10).unwrap();
         assert_eq!(spectrum.rank, 10);
-        // rows of length one: the squares add up to the number of rows
+        // columns of length one: the squares add up to their number
         assert!((spectrum.values.iter().map(|v| v * v).sum::<f64>() - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_row_of_noise_does_not_count_and_says_so() {
+        let entries = [1.0, 2.0, 1e-17, -1e-17];
+        let spectrum = singular_values(&entries, &[0.0, 0.0, 2e-17, 2e-17], 2).unwrap();
+        assert_eq!(spectrum.rank, 1);
+        assert_eq!(customary_singular_values(&entries, 2).unwrap().rank, 2);
     }
 }

@@ -1,7 +1,7 @@
 //! A state in exact numbers.
 
 use crate::expression::{Input, Program, Symbol};
-use crate::number::{Arithmetic, Refusal, rational_to_f64};
+use crate::number::{Arithmetic, Function, Refusal, rational_to_f64};
 use crate::system::System;
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 /// The exact value of one symbol.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Coordinate {
-    /// A rational number.
+    /// A rational number; of an angle, in radians.
     Number(RBig),
     /// An angle by its sine and cosine, both rational, their squares adding up to one.
     Angle { sine: RBig, cosine: RBig },
@@ -62,22 +62,23 @@ impl State {
     ) -> Result<Vec<A::Number>, Option<Refusal>> {
         let mut inputs = Vec::with_capacity(program.inputs().len());
         for input in program.inputs() {
-            let value = match input {
-                Input::Plain(symbol) => match self.values.get(symbol) {
-                    Some(Coordinate::Number(value)) => value,
-                    _ => return Err(None),
-                },
-                Input::Sine(symbol) => match self.values.get(symbol) {
-                    Some(Coordinate::Angle { sine, .. }) => sine,
-                    _ => return Err(None),
-                },
-                Input::Cosine(symbol) => match self.values.get(symbol) {
-                    Some(Coordinate::Angle { cosine, .. }) => cosine,
-                    _ => return Err(None),
-                },
+            let (symbol, function) = match input {
+                Input::Plain(symbol) => (symbol, None),
+                Input::Sine(symbol) => (symbol, Some(Function::Sin)),
+                Input::Cosine(symbol) => (symbol, Some(Function::Cos)),
                 Input::Opaque(_) => return Err(None),
             };
-            inputs.push(arithmetic.rational(value).map_err(Some)?);
+            let image = |value| arithmetic.rational(value).map_err(Some);
+            inputs.push(match (self.values.get(symbol).ok_or(None)?, function) {
+                (Coordinate::Number(value), None) => image(value)?,
+                // an angle in radians: its sine is no rational, and exact arithmetic refuses
+                (Coordinate::Number(value), Some(function)) => {
+                    arithmetic.apply(function, &image(value)?).map_err(Some)?
+                }
+                (Coordinate::Angle { sine, .. }, Some(Function::Sin)) => image(sine)?,
+                (Coordinate::Angle { cosine, .. }, Some(_)) => image(cosine)?,
+                (Coordinate::Angle { .. }, None) => return Err(None),
+            });
         }
         Ok(inputs)
     }

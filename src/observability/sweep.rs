@@ -1,12 +1,12 @@
 //! The rank of a set of rows at many sampled states.
 
 use super::codistribution::Codistribution;
-use super::elimination::{kernel, rank};
+use super::ladder::{Certainty, Judge, Judged, Rung};
 use super::locus::{Locus, LocusError};
-use super::singular::{Spectrum, singular_values};
-use super::state::{State, StateInWords, float_inputs};
-use crate::expression::{Graph, NodeId, Program, Symbol, expand_angles};
-use crate::number::{Floats, PrimeField, Rationals, rational_to_f64};
+use super::singular::Spectrum;
+use super::state::{State, StateInWords};
+use crate::expression::{NodeId, Symbol, expand_angles};
+use crate::number::{PrimeField, rational_to_f64};
 use crate::system::System;
 use dashu::rational::RBig;
 use rand::SeedableRng;
@@ -16,34 +16,13 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// How a rank is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Certainty {
-    /// Exact arithmetic at the very state: no less by a nonzero minor, no more by exact elimination or full rank.
-    Certified,
-    /// Singular values only.
-    Computed,
-}
-
-/// What was found at one state.
-#[derive(Clone, Debug)]
-pub struct StateReport {
-    /// The index of the draw.
-    pub index: u64,
-    /// The rank, and how it is known.
-    pub rank: usize,
-    pub certainty: Certainty,
-    /// What floating point says.
-    pub spectrum: Option<Spectrum>,
-    /// Where the rank is short: a basis of the directions that no row sees, exactly.
-    pub unseen: Vec<Vec<RBig>>,
-}
-
 /// How to sweep.
 #[derive(Clone, Copy)]
 pub struct SweepOptions<'a> {
     pub samples: u64,
     pub seed: u64,
+    /// What every rank has to be, at the least.
+    pub wanted: Certainty,
     /// Set from outside to stop early; what was found is kept.
     pub interrupt: &'a AtomicBool,
     /// Called after every block with the number of states done.
@@ -74,8 +53,14 @@ pub struct SweepReport {
     pub computed_histogram: BTreeMap<usize, u64>,
     /// How many of the ranks are certified.
     pub certified: u64,
-    /// At how many states the singular values say something else than exact arithmetic.
+    /// At how many states the singular values say something else than what decided.
     pub disagreements: u64,
+    /// How many states each rung of the ladder decided.
+    pub rungs: BTreeMap<Rung, u64>,
+    /// The rung with which every state began.
+    pub first: Rung,
+    /// Rows and columns of the matrix that remains without unit rows; the singular values are its.
+    pub remaining: (usize, usize),
     /// Poles that were met and left out, by the divisor that was zero.
     pub poles: BTreeMap<String, u64>,
     /// The state of full rank with the largest ratio of singular values.
@@ -87,6 +72,13 @@ pub struct SweepReport {
     /// Whether it was stopped early.
     pub interrupted: bool,
     pub seconds: f64,
+}
+
+impl SweepReport {
+    /// How many states were left by the first rung of the ladder to a later one.
+    pub fn climbed(&self) -> u64 {
+        self.rungs.iter().filter(|(rung, _)| **rung != self.first).map(|(_, count)| count).sum()
+    }
 }
 
 /// States are swept in blocks of this size; between blocks it can be interrupted.
@@ -113,13 +105,11 @@ pub fn sweep(
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
     let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
     let outputs = expand_angles(&mut system.graph, &outputs, is_angle);
-    let judge = Judge {
-        outputs: Program::new(&system.graph, &outputs, |_| false, false),
-        quick: Program::new(&system.graph, &quick, is_angle, false),
-        all: Program::new(&system.graph, &all, is_angle, false),
-        columns: system.states.len(),
-        field: PrimeField::random(&mut rng),
-    };
+    let field = PrimeField::random(&mut rng);
+    // the judge looks at the graph while the tally asks the system for names
+    let graph = system.graph.clone();
+    let judge =
+        Judge::new(&graph, &outputs, (&quick, &all), system.states.len(), is_angle, (field, options.wanted));
     let mut tally = Tally::default();
     let mut done = 0;
     while done < options.samples && !options.interrupt.load(Ordering::Relaxed) {
@@ -128,126 +118,21 @@ pub fn sweep(
             .into_par_iter()
             .map(|index| {
                 let state = locus.draw(options.seed, index)?;
-                let judged = judge.decide(&system.graph, index, &state);
+                let judged = judge.decide(&state);
                 Ok((state, judged))
             })
             .collect();
-        for item in block {
+        for (index, item) in (done..end).zip(block) {
             let (state, judged) = item?;
-            tally.add(system, state, judged);
+            tally.add(system, index, state, judged);
         }
         done = end;
         (options.progress)(done);
     }
     let interrupted = done < options.samples;
-    Ok(tally.finish(system, interrupted, begin.elapsed().as_secs_f64()))
-}
-
-/// What deciding at one state came to.
-enum Judged {
-    Report(StateReport),
-    Pole(String),
-}
-
-struct Judge {
-    /// Evaluated only to see whether the outputs exist.
-    outputs: Program,
-    quick: Program,
-    all: Program,
-    columns: usize,
-    field: PrimeField,
-}
-
-impl Judge {
-    fn decide(&self, graph: &Graph, index: u64, state: &State) -> Judged {
-        if let Some(undefined) = self.undefined_output(graph, state) {
-            return Judged::Pole(undefined);
-        }
-        // where few rows suffice modulo a prime, the rank is certainly full
-        let residues = self.residue_rank(&self.quick, state);
-        if residues == Some(self.columns) {
-            return Judged::Report(StateReport {
-                index,
-                rank: self.columns,
-                certainty: Certainty::Certified,
-                spectrum: self.spectrum(&self.quick, state),
-                unseen: Vec::new(),
-            });
-        }
-        let spectrum = self.spectrum(&self.all, state);
-        let rank = self.residue_rank(&self.all, state);
-        if rank == Some(self.columns) {
-            let certainty = Certainty::Certified;
-            return Judged::Report(StateReport {
-                index,
-                rank: self.columns,
-                certainty,
-                spectrum,
-                unseen: Vec::new(),
-            });
-        }
-        match self.exact(graph, state) {
-            Ok((rank, unseen)) => {
-                Judged::Report(StateReport { index, rank, certainty: Certainty::Certified, spectrum, unseen })
-            }
-            Err(Some(pole)) => Judged::Pole(pole),
-            Err(None) => match spectrum {
-                Some(spectrum) => Judged::Report(StateReport {
-                    index,
-                    rank: spectrum.rank,
-                    certainty: Certainty::Computed,
-                    spectrum: Some(spectrum),
-                    unseen: Vec::new(),
-                }),
-                None => Judged::Pole("a value that is infinite or not a number".to_owned()),
-            },
-        }
-    }
-
-    /// Why an output does not exist at a state, if one does not.
-    fn undefined_output(&self, graph: &Graph, state: &State) -> Option<String> {
-        let float = |symbol: Symbol| state.values.get(&symbol).map_or(f64::NAN, |value| value.to_f64());
-        let inputs = float_inputs(&self.outputs, float);
-        match self.outputs.load(Floats).ok()?.run(&inputs, &mut Vec::new()) {
-            Ok(_) => None,
-            Err(failure) => Some(format!(
-                "an output is not defined: {}, in {}",
-                failure.refusal,
-                graph.text(failure.node)
-            )),
-        }
-    }
-
-    /// A lower bound on the rank: the rank modulo a prime.
-    fn residue_rank(&self, program: &Program, state: &State) -> Option<usize> {
-        let loaded = program.load(self.field).ok()?;
-        let inputs = state.inputs(program, &self.field).ok()?;
-        let values = loaded.run(&inputs, &mut Vec::new()).ok()?;
-        rank(&self.field, values.chunks(self.columns).map(<[u64]>::to_vec).collect()).ok()
-    }
-
-    /// Singular values at the doubles nearest to the state.
-    fn spectrum(&self, program: &Program, state: &State) -> Option<Spectrum> {
-        let float = |symbol: Symbol| state.values.get(&symbol).map_or(f64::NAN, |value| value.to_f64());
-        // exact sines and cosines where the state has them, so that rounding enters once
-        let inputs = state.inputs(program, &Floats).unwrap_or_else(|_| float_inputs(program, float));
-        let values = program.load(Floats).ok()?.run(&inputs, &mut Vec::new()).ok()?;
-        singular_values(&values, self.columns)
-    }
-
-    /// The rank and the unseen directions by exact elimination. `Err(Some(..))` names a pole; `Err(None)` means that
-    /// there is no exact arithmetic for these rows.
-    fn exact(&self, graph: &Graph, state: &State) -> Result<(usize, Vec<Vec<RBig>>), Option<String>> {
-        let exact = Rationals::default();
-        let loaded = self.all.load(exact).map_err(|_| None)?;
-        let inputs = state.inputs(&self.all, &exact).map_err(|_| None)?;
-        let values = loaded
-            .run(&inputs, &mut Vec::new())
-            .map_err(|failure| failure.divisor.map(|divisor| format!("{} = 0", graph.text(divisor))))?;
-        let rows = values.chunks(self.columns).map(<[RBig]>::to_vec).collect();
-        let unseen = kernel(&exact, rows).map_err(|_| None)?;
-        Ok((self.columns - unseen.len(), unseen))
-    }
+    let mut report = tally.finish(system, interrupted, begin.elapsed().as_secs_f64());
+    report.remaining = judge.remaining();
+    Ok(report)
 }
 
 #[derive(Default)]
@@ -255,6 +140,7 @@ struct Tally {
     samples: u64,
     certified: u64,
     disagreements: u64,
+    rungs: BTreeMap<Rung, u64>,
     ranks: BTreeMap<usize, u64>,
     computed: BTreeMap<usize, u64>,
     poles: BTreeMap<String, u64>,
@@ -264,7 +150,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, system: &System, state: State, judged: Judged) {
+    fn add(&mut self, system: &System, index: u64, state: State, judged: Judged) {
         let report = match judged {
             Judged::Pole(divisor) => {
                 *self.poles.entry(divisor).or_insert(0) += 1;
@@ -275,16 +161,17 @@ impl Tally {
         self.samples += 1;
         *self.ranks.entry(report.rank).or_insert(0) += 1;
         self.certified += u64::from(report.certainty == Certainty::Certified);
+        *self.rungs.entry(report.rung).or_insert(0) += 1;
         for direction in &report.unseen {
-            self.add_unseen(system, direction, report.index);
+            self.add_unseen(system, direction, index);
         }
-        let Some(spectrum) = report.spectrum else { return };
-        *self.computed.entry(spectrum.rank).or_insert(0) += 1;
-        self.disagreements += u64::from(spectrum.rank != report.rank);
+        let (Some(spectrum), Some(computed)) = (report.spectrum, report.computed) else { return };
+        *self.computed.entry(computed).or_insert(0) += 1;
+        self.disagreements += u64::from(computed != report.rank);
         let gap = self.smallest_gap.get_or_insert(f64::INFINITY);
         *gap = gap.min(spectrum.gap);
         let worse = self.worst.as_ref().is_none_or(|(_, worst)| spectrum.condition() > worst.condition());
-        if report.rank == spectrum.values.len() && worse {
+        if report.rank == system.states.len() && worse {
             self.worst = Some((state, spectrum));
         }
     }
@@ -311,6 +198,9 @@ impl Tally {
             computed_histogram: self.computed,
             certified: self.certified,
             disagreements: self.disagreements,
+            rungs: self.rungs,
+            remaining: (0, 0),
+            first: Rung::Intervals,
             poles: self.poles,
             worst: self.worst.map(|(state, spectrum)| (state.describe(system), spectrum)),
             unseen: self.unseen.into_values().collect(),

@@ -18,6 +18,12 @@ fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }
 
+/// How many states each rung of the ladder decided.
+fn rungs_json(report: &SweepReport) -> Value {
+    let counts = report.rungs.iter().map(|(rung, count)| (rung.name(), json!(count)));
+    counts.collect::<serde_json::Map<_, _>>().into()
+}
+
 fn sweep_json(report: &SweepReport) -> Value {
     let worst = report.worst.as_ref().map(|(state, spectrum)| {
         let values: serde_json::Map<String, Value> = state
@@ -35,6 +41,9 @@ fn sweep_json(report: &SweepReport) -> Value {
         "samples": report.samples,
         "rank_histogram": histogram_json(&report.rank_histogram),
         "certified": report.certified,
+        "decided_by": rungs_json(report),
+        "climbed": report.climbed(),
+        "singular_values_of": [report.remaining.0, report.remaining.1],
         "computed_rank_histogram": histogram_json(&report.computed_histogram),
         "computed_differs_from_certified": report.disagreements,
         "not_computed": report.samples - report.computed_histogram.values().sum::<u64>(),
@@ -114,6 +123,9 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
         let _ = writeln!(out, "  rank {rank:>2} at {count} states");
     }
     let _ = writeln!(out, "  certified at {} of {} states", report.certified, report.samples);
+    let rungs: Vec<String> =
+        report.rungs.iter().map(|(rung, count)| format!("{} at {count}", rung.name())).collect();
+    let _ = writeln!(out, "  decided by {}; {} states climbed", rungs.join(", "), report.climbed());
     if report.disagreements > 0 {
         let _ = writeln!(
             out,
@@ -128,6 +140,11 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
         let values: Vec<String> =
             state.iter().map(|(name, _, float)| format!("{name} = {float:.6}")).collect();
         let _ = writeln!(out, "  worst conditioned: {:.3e} at {}", spectrum.condition(), values.join(", "));
+        let (rows, columns) = report.remaining;
+        let _ = writeln!(
+            out,
+            "  (singular values are those of the {rows} by {columns} matrix that remains without unit rows, equilibrated)"
+        );
     }
     for direction in &report.unseen {
         let _ = writeln!(

@@ -2,7 +2,7 @@
 
 use crate::expression::{NodeId, Program, Symbol};
 use crate::number::Floats;
-use crate::observability::{float_inputs, linear_solution, singular_values};
+use crate::observability::{Reduction, float_inputs, linear_solution, singular_values};
 use crate::system::System;
 use dashu::rational::RBig;
 use rayon::prelude::*;
@@ -46,7 +46,7 @@ pub enum Target<'a> {
     Zero(&'a str),
 }
 
-/// Some rows of a system as a function of its symbols.
+/// Some rows of a system as a function of its symbols, less the unit rows and their columns.
 pub struct Landscape<'s> {
     system: &'s mut System,
     program: Program,
@@ -71,15 +71,15 @@ impl<'s> Landscape<'s> {
             values.insert(known(system, name)?, *value);
         }
         // angles stay plain numbers here: a line into phi = 0 has to be exact in phi, not in its sine
-        let program = Program::new(&system.graph, rows, |_| false, false);
-        let columns = system.states.len();
-        Ok(Landscape { system, program, values, columns })
+        let reduced = Reduction::new(&system.graph, rows, system.states.len());
+        let program = Program::new(&system.graph, &reduced.entries, |_| false, false);
+        Ok(Landscape { system, program, values, columns: reduced.columns.len() })
     }
 
     fn spectrum(&self, values: &HashMap<Symbol, f64>) -> Option<Vec<f64>> {
         let inputs = float_inputs(&self.program, |symbol| values.get(&symbol).copied().unwrap_or(f64::NAN));
         let entries = self.program.load(Floats).ok()?.run(&inputs, &mut Vec::new()).ok()?;
-        Some(singular_values(&entries, self.columns)?.values)
+        Some(singular_values(&entries, &vec![0.0; entries.len()], self.columns)?.values)
     }
 
     /// The smallest singular value over two coordinates.

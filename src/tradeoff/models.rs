@@ -2,7 +2,7 @@
 
 use crate::expression::{NodeId, Program, expand_angles};
 use crate::number::Floats;
-use crate::observability::{Locus, State, singular_values};
+use crate::observability::{Locus, Reduction, State, singular_values};
 use crate::system::System;
 use std::time::Instant;
 
@@ -37,8 +37,8 @@ pub fn compare_models(
 ) -> Result<ModelComparison, String> {
     let (small_system, small_rows) = small;
     let (large_system, large_rows, locus) = large;
-    let small_program = compiled(small_system, small_rows);
-    let large_program = compiled(large_system, large_rows);
+    let (small_program, small_reduced) = compiled(small_system, small_rows);
+    let (large_program, large_reduced) = compiled(large_system, large_rows);
     let drawn: Vec<State> = (0..states)
         .map(|index| locus.draw(seed, index))
         .collect::<Result<_, _>>()
@@ -52,32 +52,45 @@ pub fn compare_models(
     };
     let small_inputs = inputs(&small_program, &renamed)?;
     let large_inputs = inputs(&large_program, &drawn)?;
-    let (ns, nl) = (small_system.states.len(), large_system.states.len());
     let largest_difference = difference(
         (&small_program, &small_inputs, small_system),
         (&large_program, &large_inputs, large_system),
     )?;
     let (mut small_times, mut large_times) = (Vec::new(), Vec::new());
+    let small_work = (&small_reduced, inputs(&small_reduced.program, &renamed)?);
+    let large_work = (&large_reduced, inputs(&large_reduced.program, &drawn)?);
     for _ in 0..ROUNDS {
-        small_times.push(time(&small_program, &small_inputs, ns)?);
-        large_times.push(time(&large_program, &large_inputs, nl)?);
+        small_times.push(time(small_work.0, &small_work.1)?);
+        large_times.push(time(large_work.0, &large_work.1)?);
     }
     Ok(ModelComparison {
-        small_states: ns,
-        large_states: nl,
-        small_operations: small_program.len(),
-        large_operations: large_program.len(),
+        small_states: small_system.states.len(),
+        large_states: large_system.states.len(),
+        small_operations: small_reduced.program.len(),
+        large_operations: large_reduced.program.len(),
         small_seconds: median(&mut small_times),
         large_seconds: median(&mut large_times),
         largest_difference,
     })
 }
 
-fn compiled(system: &mut System, rows: &[NodeId]) -> Program {
+/// What remains of some rows without unit rows.
+struct Reduced {
+    program: Program,
+    columns: usize,
+}
+
+/// The program of all rows, and of what remains of them.
+fn compiled(system: &mut System, rows: &[NodeId]) -> (Program, Reduced) {
     let angles = system.angles();
     let is_angle = |symbol| angles.contains(&symbol);
     let rows = expand_angles(&mut system.graph, rows, is_angle);
-    Program::new(&system.graph, &rows, is_angle, false)
+    let rest = Reduction::new(&system.graph, &rows, system.states.len());
+    let reduced = Reduced {
+        program: Program::new(&system.graph, &rest.entries, is_angle, false),
+        columns: rest.columns.len(),
+    };
+    (Program::new(&system.graph, &rows, is_angle, false), reduced)
 }
 
 /// The values of one system's symbols under another's symbols of the same names.
@@ -89,13 +102,13 @@ fn rename(state: &State, from: &System, to: &System) -> State {
     State { values: values.collect() }
 }
 
-fn time(program: &Program, inputs: &[Vec<f64>], columns: usize) -> Result<f64, String> {
-    let loaded = program.load(Floats).map_err(|refusal| refusal.to_string())?;
+fn time(rows: &Reduced, inputs: &[Vec<f64>]) -> Result<f64, String> {
+    let loaded = rows.program.load(Floats).map_err(|refusal| refusal.to_string())?;
     let mut registers = Vec::new();
     let begin = Instant::now();
     for input in inputs {
         let values = loaded.run(input, &mut registers).map_err(|failure| failure.refusal.to_string())?;
-        std::hint::black_box(singular_values(&values, columns));
+        std::hint::black_box(singular_values(&values, &vec![0.0; values.len()], rows.columns));
     }
     Ok(begin.elapsed().as_secs_f64() / inputs.len() as f64)
 }

@@ -3,7 +3,8 @@
 use super::Options;
 use crate::expression::NodeId;
 use crate::observability::{
-    Branch, Codistribution, Length, Locus, OWN_ROWS, RankAnswer, RankQuestion, answer_rank, solve_conditions,
+    Branch, Certainty, Codistribution, Length, Locus, OWN_ROWS, RankAnswer, RankQuestion, answer_rank,
+    solve_conditions,
 };
 use crate::system::{Assignment, System, Value};
 use crate::tradeoff::{Landscape, Map, ModelComparison, Rows, Slope, Target, compare_models};
@@ -281,6 +282,7 @@ impl Regime {
             let question = RankQuestion {
                 samples: if set.conditions.is_empty() { SAMPLES } else { SAMPLES_ON_A_SET },
                 seed: options.seed,
+                wanted: Certainty::Certified,
                 order: None,
                 fixed: BTreeMap::new(),
                 conditions: set.conditions.iter().map(|c| (*c).to_owned()).collect(),

@@ -1,0 +1,277 @@
+//! The rank at one state, by the cheapest rung of the ladder of numbers that suffices.
+//!
+//! | rung | numbers | what it knows |
+//! |---|---|---|
+//! | doubles | f64, singular values after equilibration | *computed*; for streams of states only (see below) |
+//! | intervals | f64 rounded outward, elimination | a full rank for *certain* |
+//! | residues | modulo a prime of 62 bits | a lower bound for *certain* |
+//! | exact | rational numbers | the rank, and what is not seen |
+//! | precise | enclosures of 128 bits and more | a lower bound for *certain*; the rank as *computed* |
+//!
+//! A rung that cannot tell leaves the state to the next one. The ladder begins with intervals, which cost little more than
+//! doubles and know their errors: on a set where a row vanishes doubles see rounding noise of full rank. Where intervals
+//! fall short, a computed rank is taken from enclosures, a certified one by exact numbers.
+
+use super::elimination::{certain_rank, kernel, rank};
+use super::reduction::Reduction;
+use super::singular::{Spectrum, singular_values};
+use super::state::{State, float_inputs};
+use crate::expression::{Failure, Graph, Loaded, NodeId, Program, Symbol};
+use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals};
+use dashu::rational::RBig;
+
+/// How a rank is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Certainty {
+    /// Proved for the very state.
+    Certified,
+    /// By numbers that round, or that cannot tell zero from very small.
+    Computed,
+}
+
+/// A rung of the ladder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rung {
+    Doubles,
+    Intervals,
+    Residues,
+    Exact,
+    /// Enclosures of so many bits.
+    Precise(usize),
+}
+
+impl Rung {
+    /// In a word.
+    pub fn name(self) -> String {
+        match self {
+            Rung::Doubles => "doubles".to_owned(),
+            Rung::Intervals => "intervals".to_owned(),
+            Rung::Residues => "residues".to_owned(),
+            Rung::Exact => "exact".to_owned(),
+            Rung::Precise(bits) => format!("enclosures of {bits} bits"),
+        }
+    }
+}
+
+/// The bits of enclosures, one after the other.
+const PRECISE: [usize; 2] = [128, 512];
+
+/// What was found at one state.
+#[derive(Clone, Debug)]
+pub struct StateReport {
+    /// The rank, how it is known, and on which rung that was found.
+    pub rank: usize,
+    pub certainty: Certainty,
+    pub rung: Rung,
+    /// What floating point says of the rows that remain without unit rows.
+    pub spectrum: Option<Spectrum>,
+    /// The rank that floating point suggests, unit rows included.
+    pub computed: Option<usize>,
+    /// Where the rank is short: a basis of the directions that no row sees, exactly.
+    pub unseen: Vec<Vec<RBig>>,
+}
+
+/// What deciding at one state came to.
+pub enum Judged {
+    Report(StateReport),
+    /// The divisor that is zero there, in words.
+    Pole(String),
+}
+
+/// Rows as programs.
+struct Rows {
+    reduction: Reduction,
+    program: Program,
+}
+
+impl Rows {
+    fn new(graph: &Graph, entries: &[NodeId], columns: usize, is_angle: impl Fn(Symbol) -> bool) -> Rows {
+        let reduction = Reduction::new(graph, entries, columns);
+        let program = Program::new(graph, &reduction.entries, is_angle, false);
+        Rows { reduction, program }
+    }
+
+    fn matrix<N>(&self, values: Vec<N>) -> Vec<Vec<N>> {
+        let width = self.reduction.columns.len().max(1);
+        let mut values = values.into_iter();
+        (0..self.reduction.rows.len()).map(|_| values.by_ref().take(width).collect()).collect()
+    }
+}
+
+/// Decides the rank of some rows at any state.
+pub struct Judge<'g> {
+    graph: &'g Graph,
+    /// Evaluated only to see whether the outputs exist.
+    outputs: Program,
+    quick: Rows,
+    all: Rows,
+    /// All rows without any elimination, for the directions that they do not see.
+    exact: Program,
+    columns: usize,
+    field: PrimeField,
+    wanted: Certainty,
+}
+
+impl<'g> Judge<'g> {
+    /// `quick` rows (those that suffice at a generic state) are tried first; where they fall short, `all` rows decide.
+    /// Angles must have been expanded.
+    pub fn new(
+        graph: &'g Graph,
+        outputs: &[NodeId],
+        (quick, all): (&[NodeId], &[NodeId]),
+        columns: usize,
+        is_angle: impl Fn(Symbol) -> bool + Copy,
+        (field, wanted): (PrimeField, Certainty),
+    ) -> Self {
+        Judge {
+            graph,
+            outputs: Program::new(graph, outputs, |_| false, false),
+            quick: Rows::new(graph, quick, columns, is_angle),
+            all: Rows::new(graph, all, columns, is_angle),
+            exact: Program::new(graph, all, is_angle, false),
+            columns,
+            field,
+            wanted,
+        }
+    }
+
+    /// Rows and columns of what remains of the quick rows without unit rows.
+    pub fn remaining(&self) -> (usize, usize) {
+        (self.quick.reduction.rows.len(), self.quick.reduction.columns.len())
+    }
+
+    /// The rank at a state.
+    pub fn decide(&self, state: &State) -> Judged {
+        if let Some(undefined) = self.undefined_output(state) {
+            return Judged::Pole(undefined);
+        }
+        let full = self.columns;
+        let mut report = StateReport {
+            rank: full,
+            certainty: Certainty::Certified,
+            rung: Rung::Intervals,
+            spectrum: None,
+            computed: None,
+            unseen: Vec::new(),
+        };
+        for rows in [&self.quick, &self.all] {
+            let found = self.intervals(rows, state);
+            let certain = found.as_ref().map(|(rank, _)| *rank);
+            report.spectrum = found.and_then(|(_, spectrum)| spectrum).or_else(|| self.doubles(rows, state));
+            report.computed = report.spectrum.as_ref().map(|s| rows.reduction.eliminated + s.rank);
+            if certain == Some(full) {
+                return Judged::Report(report);
+            }
+            if self.wanted == Certainty::Certified && self.residue_rank(rows, state) == Some(full) {
+                report.rung = Rung::Residues;
+                return Judged::Report(report);
+            }
+        }
+        if self.wanted == Certainty::Certified {
+            match self.exact(state) {
+                Ok((rank, unseen)) => {
+                    (report.rank, report.unseen, report.rung) = (rank, unseen, Rung::Exact);
+                    return Judged::Report(report);
+                }
+                Err(Some(pole)) => return Judged::Pole(pole),
+                Err(None) => {}
+            }
+        }
+        match self.precise(state) {
+            Ok((rank, bits)) => {
+                report.rank = rank;
+                report.rung = Rung::Precise(bits);
+                if rank < full {
+                    report.certainty = Certainty::Computed;
+                }
+                Judged::Report(report)
+            }
+            Err(pole) => Judged::Pole(pole),
+        }
+    }
+
+    /// Why an output does not exist at a state, if one does not.
+    fn undefined_output(&self, state: &State) -> Option<String> {
+        let float = |symbol: Symbol| state.values.get(&symbol).map_or(f64::NAN, |value| value.to_f64());
+        let inputs = float_inputs(&self.outputs, float);
+        match self.outputs.load(Floats).ok()?.run(&inputs, &mut Vec::new()) {
+            Ok(_) => None,
+            Err(failure) => Some(format!(
+                "an output is not defined: {}, in {}",
+                failure.refusal,
+                self.graph.text(failure.node)
+            )),
+        }
+    }
+
+    /// The values of rows over an arithmetic.
+    fn values<A: Arithmetic + Copy>(
+        &self,
+        rows: &Rows,
+        state: &State,
+        arithmetic: A,
+    ) -> Result<Vec<A::Number>, Option<Failure>> {
+        let inputs = state.inputs(&rows.program, &arithmetic).map_err(|_| None)?;
+        let loaded: Loaded<'_, A> = rows.program.load(arithmetic).map_err(|_| None)?;
+        loaded.run(&inputs, &mut Vec::new()).map_err(Some)
+    }
+
+    /// Singular values at the doubles nearest to the state, nothing known of their errors.
+    fn doubles(&self, rows: &Rows, state: &State) -> Option<Spectrum> {
+        let values = self.values(rows, state, Floats).ok()?;
+        singular_values(&values, &vec![0.0; values.len()], rows.reduction.columns.len())
+    }
+
+    /// A lower bound on the rank, and singular values with the errors of the entries.
+    fn intervals(&self, rows: &Rows, state: &State) -> Option<(usize, Option<Spectrum>)> {
+        let arithmetic = Floats::<Interval>::default();
+        let values = self.values(rows, state, arithmetic).ok()?;
+        let (middles, errors): (Vec<f64>, Vec<f64>) = values.iter().map(|v| (v.mid(), v.rad())).unzip();
+        let spectrum = singular_values(&middles, &errors, rows.reduction.columns.len());
+        let matrix = rows.matrix(values);
+        let certain = certain_rank(&arithmetic, matrix, |v| v.mid().abs() / v.rad()).ok()?;
+        Some((rows.reduction.eliminated + certain, spectrum))
+    }
+
+    /// A lower bound on the rank: the rank modulo a prime.
+    fn residue_rank(&self, rows: &Rows, state: &State) -> Option<usize> {
+        let values = self.values(rows, state, self.field).ok()?;
+        Some(rows.reduction.eliminated + rank(&self.field, rows.matrix(values)).ok()?)
+    }
+
+    /// The rank and the unseen directions by exact elimination. `Err(Some(..))` names a pole; `Err(None)` means that
+    /// there is no exact arithmetic for these rows.
+    fn exact(&self, state: &State) -> Result<(usize, Vec<Vec<RBig>>), Option<String>> {
+        let exact = Rationals::default();
+        let loaded = self.exact.load(exact).map_err(|_| None)?;
+        let inputs = state.inputs(&self.exact, &exact).map_err(|_| None)?;
+        let values = loaded
+            .run(&inputs, &mut Vec::new())
+            .map_err(|failure| failure.divisor.map(|divisor| format!("{} = 0", self.graph.text(divisor))))?;
+        let rows = values.chunks(self.columns).map(<[RBig]>::to_vec).collect();
+        let unseen = kernel(&exact, rows).map_err(|_| None)?;
+        Ok((self.columns - unseen.len(), unseen))
+    }
+
+    /// A lower bound on the rank, by more and more bits until it is full; the rank by the last and most precise.
+    fn precise(&self, state: &State) -> Result<(usize, usize), String> {
+        let mut found = Err("a value that is infinite or not a number".to_owned());
+        for bits in PRECISE {
+            let arithmetic = Enclosures::new(bits);
+            found = match self.values(&self.all, state, arithmetic) {
+                Ok(values) => certain_rank(&arithmetic, self.all.matrix(values), Enclosure::significance)
+                    .map(|rank| (self.all.reduction.eliminated + rank, bits))
+                    .map_err(|refusal| refusal.to_string()),
+                Err(Some(Failure { divisor: Some(divisor), .. })) => {
+                    Err(format!("{} cannot be told from zero with {bits} bits", self.graph.text(divisor)))
+                }
+                Err(Some(failure)) => Err(format!("{} is not defined", self.graph.text(failure.node))),
+                Err(None) => return found,
+            };
+            if found == Ok((self.columns, bits)) {
+                break;
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,175 @@
+//! Story 1, continued: other units of length, mass and time change no verdict.
+
+use dashu::rational::RBig;
+use palmistry::System;
+use palmistry::expression::expand_angles;
+use palmistry::number::{Floats, PrimeField};
+use palmistry::observability::{
+    Branch, Certainty, Codistribution, Coordinate, Judge, Judged, Length, Locus, State, StateReport,
+    customary_singular_values, parse_condition, solve_conditions,
+};
+use palmistry::system::Value;
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The powers of length, mass and time in the dimension of a symbol of the planar files.
+fn dimension(name: &str) -> [i32; 3] {
+    match name {
+        "r1" | "r2" | "s1" | "s2" | "rho" => [1, 0, 0],
+        "omega0" | "omega1" | "omega2" => [0, 0, -1],
+        "alpha1" | "alpha2" => [0, 0, -2],
+        "phi1" | "phi2" => [0, 0, 0],
+        "m" => [0, 1, 0],
+        "I1" | "I2" => [2, 1, 0],
+        "g" => [1, 0, -2],
+        "tau1" | "tau2" => [2, 1, -2],
+        other => panic!("what is the dimension of {other}?"),
+    }
+}
+
+fn in_other_units(system: &System, state: &State, units: [&RBig; 3]) -> State {
+    let values = state.values.iter().map(|(symbol, value)| {
+        let value = match value {
+            Coordinate::Number(number) => {
+                let powers = dimension(system.symbol_name(*symbol));
+                let factor = powers
+                    .iter()
+                    .zip(units)
+                    .fold(RBig::ONE, |factor, (power, unit)| factor * unit.pow(*power as isize));
+                Coordinate::Number(number * factor)
+            }
+            angle => angle.clone(),
+        };
+        (*symbol, value)
+    });
+    State { values: values.collect() }
+}
+
+/// A regime's own rows and its full codistribution, with states on a set.
+struct Case {
+    system: System,
+    rows: Vec<Vec<palmistry::expression::NodeId>>,
+    states: Vec<State>,
+}
+
+fn case(file: &str, conditions: &[&str], count: u64) -> Vec<Case> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(file);
+    let mut system = System::read(&path).unwrap();
+    let equations: Vec<_> = conditions.iter().map(|text| parse_condition(text).unwrap()).collect();
+    let branches: Vec<Branch> = solve_conditions(&mut system, &equations).unwrap();
+    branches
+        .into_iter()
+        .map(|branch| {
+            let full =
+                Codistribution::new(&mut system, &branch.values, Length::UntilItStops).unwrap().entries();
+            let Some(Value::Matrix(own)) = system.definition("rows").cloned() else { panic!("no rows") };
+            let mentioned: Vec<_> = full.iter().chain(&own.entries).copied().collect();
+            let locus = Locus::new(&mut system, &branch, &BTreeMap::new(), &mentioned).unwrap();
+            let angles = system.angles();
+            let rows = [full, own.entries]
+                .map(|rows| expand_angles(&mut system.graph, &rows, |symbol| angles.contains(&symbol)));
+            let states = (0..count).map(|index| locus.draw(5, index).unwrap()).collect();
+            Case { system: system.clone(), rows: rows.to_vec(), states }
+        })
+        .collect()
+}
+
+fn cases() -> Vec<Case> {
+    [
+        ("general.proof", &[][..]),
+        ("general.proof", &["omega0 = 0"]),
+        ("general.proof", &["det_A_factor = 0"]),
+        ("same_rate.proof", &[]),
+        ("same_rate.proof", &["omega0 = 0"]),
+        ("same_rate.proof", &["sin(phi1) = 0"]),
+        ("one_palm_fixed.proof", &[]),
+        ("one_palm_fixed.proof", &["omega2 = 0"]),
+        ("fixed_palms.proof", &[]),
+    ]
+    .into_iter()
+    .flat_map(|(file, conditions)| case(file, conditions, 6))
+    .collect()
+}
+
+fn decide(
+    case: &Case,
+    rows: &[palmistry::expression::NodeId],
+    state: &State,
+    wanted: Certainty,
+) -> StateReport {
+    let angles = case.system.angles();
+    let judge = Judge::new(
+        &case.system.graph,
+        &[],
+        (rows, rows),
+        case.system.states.len(),
+        |symbol| angles.contains(&symbol),
+        (PrimeField::random(&mut rand_chacha_rng()), wanted),
+    );
+    match judge.decide(state) {
+        Judged::Report(report) => report,
+        Judged::Pole(pole) => panic!("{pole}"),
+    }
+}
+
+fn rand_chacha_rng() -> impl rand::Rng {
+    use rand::SeedableRng;
+    rand_chacha::ChaCha8Rng::seed_from_u64(1)
+}
+
+/// A unit: an odd part of two digits over another, and a power of ten.
+fn unit(exponents: std::ops::RangeInclusive<i32>) -> impl Strategy<Value = RBig> {
+    (11u32..99, 11u32..99, exponents)
+        .prop_map(|(a, b, exponent)| RBig::from(a) / RBig::from(b) * RBig::from(10).pow(exponent as isize))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 6, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// From picometres to a thousand light years, and so on: the rank, what decides it and what singular values say.
+    #[test]
+    fn no_verdict_depends_on_units(length in unit(-12..=18), mass in unit(-30..=30), time in unit(-12..=15)) {
+        for case in cases() {
+            for rows in &case.rows {
+                for state in &case.states {
+                    let other = in_other_units(&case.system, state, [&length, &mass, &time]);
+                    for wanted in [Certainty::Certified, Certainty::Computed] {
+                        let (here, there) =
+                            (decide(&case, rows, state, wanted), decide(&case, rows, &other, wanted));
+                        prop_assert_eq!(here.rank, there.rank);
+                        prop_assert_eq!(here.certainty, there.certainty);
+                        prop_assert_eq!(here.rung, there.rung);
+                        prop_assert_eq!(here.computed, there.computed);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The customary threshold fails the same test: with lengths in picometres it finds another rank.
+#[test]
+fn the_customary_threshold_depends_on_units() {
+    let mut changed = 0;
+    for case in case("general.proof", &[], 20) {
+        let angles = case.system.angles();
+        let program = palmistry::expression::Program::new(
+            &case.system.graph,
+            &case.rows[1],
+            |symbol| angles.contains(&symbol),
+            false,
+        );
+        let customary = |state: &State| {
+            let inputs = state.inputs(&program, &Floats).unwrap();
+            let values = program.load(Floats).unwrap().run(&inputs, &mut Vec::new()).unwrap();
+            customary_singular_values(&values, case.system.states.len()).unwrap().rank
+        };
+        for state in &case.states {
+            let picometres = RBig::from(10).pow(12);
+            let other = in_other_units(&case.system, state, [&picometres, &RBig::ONE, &RBig::ONE]);
+            changed += usize::from(customary(state) != customary(&other));
+        }
+    }
+    assert!(changed > 0);
+}
