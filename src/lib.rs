@@ -59,6 +59,6 @@ pub mod verification;
 // the page, the plots, the JSON
 pub mod report;
 
-pub use claim::{CertifiedValue, Outcome, ValueError, Verdict, Witness, certified_value, decide, decide_all};
+pub use claim::{Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all};
 pub use observability::{RankAnswer, RankQuestion, answer_rank};
 pub use system::{ReadError, System};

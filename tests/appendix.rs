@@ -37,6 +37,28 @@ fn more_digits_begin_with_fewer() {
     }
 }
 
+/// The cheapest numbers that suffice are taken, better ones where they do not, and the answer is the same.
+#[test]
+fn an_accuracy_is_asked_for_and_not_a_type() {
+    let exact = "25.66837164143751"; // of the forty digits above
+    for (digits, verdict, numbers, certainty, climbed) in [
+        ("10", "certified", "intervals", "certified", 0),
+        ("10", "computed", "double-doubles", "computed", 0),
+        ("15", "certified", "enclosures of 116 bits", "certified", 1),
+        ("16", "computed", "enclosures of 120 bits", "certified", 0),
+    ] {
+        let arguments = ["eval", GENERAL, "det(A)", "--at", POINT, "--digits", digits, "--json"];
+        let found = json(&palmistry(&[&arguments[..], &["--verdict", verdict]].concat()));
+        let (value, wanted) = (found["value"].as_str().unwrap(), digits.parse::<usize>().unwrap() + 1);
+        assert_eq!(value.len(), wanted, "digits and the point");
+        assert_eq!(value[..wanted - 1], exact[..wanted - 1]);
+        assert_eq!(
+            (&found["numbers"], &found["verdict"], &found["climbed"]),
+            (&json!(numbers), &json!(certainty), &json!(climbed))
+        );
+    }
+}
+
 #[test]
 fn fractions_and_decimals_are_one() {
     let value = |rho: &str| {

@@ -16,5 +16,5 @@ mod witness;
 
 pub use decide::{decide, decide_all};
 pub use pole::{PoleOrder, pole_order};
-pub use value::{CertifiedValue, ValueError, certified_value};
+pub use value::{PointValue, ValueError, certified_value, computed_value};
 pub use verdict::{Outcome, Verdict, Witness};

@@ -1,16 +1,19 @@
 //! `palmistry eval`: the value of an expression at a point.
 
 use super::output::{print_json, print_text};
+use super::rank::Wanted;
 use super::{Status, Unusable};
 use clap::Args;
 use dashu::rational::RBig;
+use palmistry::claim::{PointValue, computed_value};
 use palmistry::expression::{NodeId, Symbol};
+use palmistry::observability::Certainty;
 use palmistry::{System, ValueError, certified_value, number::parse_decimal, system::Value};
 use serde_json::{Value as Json, json};
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-/// Evaluates an expression of the language at a point, to digits that are all certain.
+/// Evaluates an expression of the language at a point, to as many digits as you like, all of them certain.
 ///
 /// Example: palmistry eval proofs/moll2002/same_rate.proof 'L(f, s1)' --at r1=1,omega0=1/2,s1=1,s2=2,phi1=.3
 #[derive(Args)]
@@ -27,7 +30,11 @@ pub(crate) struct Eval {
     /// Significant decimal digits.
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     digits: u16,
-    /// Print one JSON object with 'value' (a string), 'exact' where the value is rational, and 'at'.
+    /// What the digits have to be: 'certified', all of them certain, or 'computed', agreed on by doubles and
+    /// double-doubles. The cheapest numbers that suffice are taken; 'climbed' says how many were tried before.
+    #[arg(long, value_enum, default_value_t = Wanted::Certified, value_name = "HOW")]
+    verdict: Wanted,
+    /// Print one JSON object with 'value' (a string), 'exact' where the value is rational, 'numbers' and 'at'.
     #[arg(long)]
     pub json: bool,
 }
@@ -68,16 +75,32 @@ impl Eval {
             system.symbols().filter_map(|(symbol, info)| Some((symbol, info.default.clone()?))).collect();
         point.extend(given.clone());
         let digits = usize::from(self.digits);
-        let one = |id: NodeId| certified_value(&system.graph, id, &point, digits).map_err(explain);
+        let one = |id: NodeId| {
+            match self.verdict {
+                Wanted::Certified => certified_value(&system.graph, id, &point, digits),
+                Wanted::Computed => computed_value(&system.graph, id, &point, digits),
+            }
+            .map_err(explain)
+        };
         let shown = match &value {
             Value::Scalar(id) => {
                 let value = one(*id)?;
-                json!({ "value": value.decimal, "exact": value.exact.map(|q| q.to_string()), "bits": value.bits })
+                json!({
+                    "value": value.decimal,
+                    "exact": value.exact.map(|q| q.to_string()),
+                    "verdict": if value.certainty == Certainty::Certified { "certified" } else { "computed" },
+                    "numbers": value.rung.name(),
+                    "climbed": value.climbed,
+                })
             }
             Value::Matrix(matrix) => {
-                let entries: Vec<String> =
-                    matrix.entries.iter().map(|id| one(*id).map(|v| v.decimal)).collect::<Result<_, _>>()?;
-                json!({ "value": entries.chunks(matrix.columns).collect::<Vec<_>>() })
+                let entries: Vec<PointValue> =
+                    matrix.entries.iter().map(|id| one(*id)).collect::<Result<_, _>>()?;
+                let decimals: Vec<&str> = entries.iter().map(|value| value.decimal.as_str()).collect();
+                json!({
+                    "value": decimals.chunks(matrix.columns).collect::<Vec<_>>(),
+                    "climbed": entries.iter().filter(|value| value.climbed > 0).count(),
+                })
             }
             Value::Rank(matrix) => {
                 json!({ "value": rank_at(&mut system, matrix.entries.clone(), matrix.columns, &point)?.to_string() })

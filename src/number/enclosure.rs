@@ -63,8 +63,7 @@ impl Enclosure {
     /// The value to `digits` significant decimal digits, if every number in the interval rounds to the same ones
     /// (halves away from zero). The text is a plain decimal, or in scientific notation where that is shorter.
     pub fn decimal(&self, digits: usize) -> Option<String> {
-        let low = round_to_decimal(&self.low(), digits);
-        (low == round_to_decimal(&self.high(), digits)).then_some(low)
+        common_decimal(&self.low(), &self.high(), digits)
     }
 
     /// The interval in words, its ends rounded.
@@ -86,6 +85,12 @@ fn endpoint_rational(value: &Endpoint) -> RBig {
     let significand = RBig::from(value.significand().clone());
     let scale = RBig::from(UBig::ONE << value.exponent().unsigned_abs());
     if value.exponent() >= 0 { significand * scale } else { significand / scale }
+}
+
+/// What all numbers between two rationals round to, if that is one decimal.
+pub(crate) fn common_decimal(low: &RBig, high: &RBig, digits: usize) -> Option<String> {
+    let rounded = round_to_decimal(low, digits);
+    (rounded == round_to_decimal(high, digits)).then_some(rounded)
 }
 
 /// A rational rounded to `digits` significant decimal digits, halves away from zero.

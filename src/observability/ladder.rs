@@ -6,7 +6,7 @@
 //! | intervals | f64 rounded outward, elimination | a full rank for *certain* |
 //! | residues | modulo a prime of 62 bits | a lower bound for *certain* |
 //! | exact | rational numbers | the rank, and what is not seen |
-//! | precise | enclosures of 128 bits and more | a lower bound for *certain*; the rank as *computed* |
+//! | enclosures | enclosures of 128 bits and more | a lower bound for *certain*; the rank as *computed* |
 //!
 //! A rung that cannot tell leaves the state to the next one. The ladder begins with intervals, which cost little more than
 //! doubles and know their errors: on a set where a row vanishes doubles see rounding noise of full rank. Where intervals
@@ -17,7 +17,7 @@ use super::reduction::Reduction;
 use super::singular::{Spectrum, singular_values};
 use super::state::{State, float_inputs};
 use crate::expression::{Failure, Graph, Loaded, NodeId, Program, Symbol};
-use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals};
+use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals, Rung};
 use dashu::rational::RBig;
 
 /// How a rank is known.
@@ -27,30 +27,6 @@ pub enum Certainty {
     Certified,
     /// By numbers that round, or that cannot tell zero from very small.
     Computed,
-}
-
-/// A rung of the ladder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Rung {
-    Doubles,
-    Intervals,
-    Residues,
-    Exact,
-    /// Enclosures of so many bits.
-    Precise(usize),
-}
-
-impl Rung {
-    /// In a word.
-    pub fn name(self) -> String {
-        match self {
-            Rung::Doubles => "doubles".to_owned(),
-            Rung::Intervals => "intervals".to_owned(),
-            Rung::Residues => "residues".to_owned(),
-            Rung::Exact => "exact".to_owned(),
-            Rung::Precise(bits) => format!("enclosures of {bits} bits"),
-        }
-    }
 }
 
 /// The bits of enclosures, one after the other.
@@ -180,7 +156,7 @@ impl<'g> Judge<'g> {
         match self.precise(state) {
             Ok((rank, bits)) => {
                 report.rank = rank;
-                report.rung = Rung::Precise(bits);
+                report.rung = Rung::Enclosures(bits);
                 if rank < full {
                     report.certainty = Certainty::Computed;
                 }

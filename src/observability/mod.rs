@@ -27,7 +27,7 @@ pub use conditions::{Branch, Unsolved, also_met_otherwise, solve_conditions};
 pub use elimination::{certain_rank, kernel, rank};
 pub use equilibrate::equilibrate;
 pub use generic::{GenericRank, generic_rank};
-pub use ladder::{Certainty, Judge, Judged, Rung, StateReport};
+pub use ladder::{Certainty, Judge, Judged, StateReport};
 pub use locus::{Locus, LocusError};
 pub use nested::{NestedError, differential_by_duals, lie_derivative_by_duals};
 pub use question::{BranchAnswer, OWN_ROWS, RankAnswer, RankQuestion, answer_rank, parse_condition};

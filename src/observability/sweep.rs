@@ -1,12 +1,12 @@
 //! The rank of a set of rows at many sampled states.
 
 use super::codistribution::Codistribution;
-use super::ladder::{Certainty, Judge, Judged, Rung};
+use super::ladder::{Certainty, Judge, Judged};
 use super::locus::{Locus, LocusError};
 use super::singular::Spectrum;
 use super::state::{State, StateInWords};
 use crate::expression::{NodeId, Symbol, expand_angles};
-use crate::number::{PrimeField, rational_to_f64};
+use crate::number::{PrimeField, Rung, rational_to_f64};
 use crate::system::System;
 use dashu::rational::RBig;
 use rand::SeedableRng;

@@ -1,7 +1,7 @@
 //! Numbers in print beside the values of their formulas: how many digits agree, and whether rounding in few digits
 //! explains the rest.
 
-use crate::claim::{CertifiedValue, certified_value};
+use crate::claim::{PointValue, certified_value};
 use crate::expression::syntax::{Expr, ExprKind};
 use crate::expression::{Expansion, NodeId, Symbol, expand};
 use crate::number::{parse_decimal, rational_to_f64, round_to_decimal};
@@ -20,7 +20,7 @@ pub struct PrintedValue {
     /// As printed.
     pub printed: String,
     /// The value of the formula to forty certified digits.
-    pub certified: CertifiedValue,
+    pub certified: PointValue,
     /// The digits to which both, when rounded, are the same.
     pub digits_that_agree: usize,
     /// Printed minus true.
