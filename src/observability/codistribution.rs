@@ -3,6 +3,7 @@
 
 use super::conditions::{all_vanish, vanishes};
 use super::elimination::independent_rows;
+use super::series::lie_derivative_by_series;
 use crate::expression::{Input, NodeId, Program, draw_residues, expand_angles};
 use crate::number::PrimeField;
 use crate::system::{Assignment, System};
@@ -126,7 +127,8 @@ impl Codistribution {
                 last = longer(system, &last);
             }
             for (word, value) in &last {
-                let row = system.differential(*value);
+                let value = cheaper(system, word, *value);
+                let row = system.differential(value);
                 // a row that is zero on the locus adds nothing; in floating point it would be noise
                 let on_the_locus = system.graph.substitute(&row, conditions);
                 if all_vanish(system, &on_the_locus) {
@@ -222,6 +224,23 @@ fn longer(system: &mut System, words: &[(Word, NodeId)]) -> Vec<(Word, NodeId)> 
         }
     }
     found
+}
+
+/// From so many fields on the series of a word may have fewer operations than its repeated derivation (of the order
+/// k^2 for each run of one field, against k^3; `cargo bench --bench series` shows where they cross).
+const SERIES_FROM: usize = 5;
+
+/// The same Lie derivative in the fewer operations: as it was derived, or by series.
+fn cheaper(system: &mut System, word: &Word, derived: NodeId) -> NodeId {
+    if word.fields.len() < SERIES_FROM {
+        return derived;
+    }
+    let operations = |system: &System, value| system.graph.reachable([value]).len();
+    let output = system.outputs[word.output].1;
+    match lie_derivative_by_series(system, &word.fields, output) {
+        Ok(series) if operations(system, series) < operations(system, derived) => series,
+        _ => derived,
+    }
 }
 
 /// The rows that raise the rank at a random point of the locus, and whether unknown functions took part.

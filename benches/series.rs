@@ -1,0 +1,183 @@
+//! What a repeated Lie derivative of the ten-state regime costs, `L_g1^k s1` and its gradient, by the order `k` and by
+//! the way: repeated derivation of the graph, Taylor series, nested duals. Preparation and run apart.
+//!
+//! `cargo bench --bench series`
+
+use divan::{Bencher, black_box};
+use palmistry::System;
+use palmistry::expression::{Derivation, NodeId, Program, Symbol, gradient};
+use palmistry::number::Floats;
+use palmistry::observability::{
+    Branch, Flow, Locus, differential_by_duals, float_inputs, lie_derivative_by_duals,
+    lie_derivative_by_series,
+};
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+
+fn main() {
+    divan::main();
+}
+
+const ORDERS: [usize; 5] = [1, 2, 4, 6, 8];
+
+fn general() -> (System, usize, NodeId) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002/general.proof");
+    let system = System::read(&file).expect("the file is read");
+    let field = system.fields.iter().position(|field| field.name == "g1").expect("it has a field g1");
+    let output = system.outputs.iter().find(|(name, _)| name == "s1").expect("it has an output s1").1;
+    (system, field, output)
+}
+
+/// The first state that the sample box gives.
+fn point(system: &mut System) -> HashMap<Symbol, f64> {
+    let everything: Vec<NodeId> =
+        system.fields.iter().flat_map(|field| field.components.iter().map(|(_, node)| *node)).collect();
+    let locus = Locus::new(system, &Branch::default(), &BTreeMap::new(), &everything).expect("it has ranges");
+    let state = locus.draw(1, 0).expect("the box is not empty");
+    state.values.into_iter().map(|(symbol, value)| (symbol, value.to_f64())).collect()
+}
+
+fn by_derivation(system: &mut System, field: usize, h: NodeId, order: usize) -> NodeId {
+    (0..order).fold(h, |value, _| system.lie_derivative(field, value))
+}
+
+fn by_series(system: &mut System, field: usize, h: NodeId, order: usize) -> NodeId {
+    lie_derivative_by_series(system, &vec![field; order], h).expect("no constant zero is divided by")
+}
+
+fn one_by_one(system: &mut System, value: NodeId) -> Vec<NodeId> {
+    let graph = &mut system.graph;
+    system.states.iter().map(|state| Derivation::partial(graph, *state).apply(graph, value)).collect()
+}
+
+fn at_once(system: &mut System, value: NodeId) -> Vec<NodeId> {
+    gradient(&mut system.graph, value, &system.states)
+}
+
+/// Builds an expression and its program, from the system as it was read.
+fn prepared(bencher: Bencher, build: impl Fn(&mut System, usize, NodeId) -> Vec<NodeId>) {
+    let (system, field, h) = general();
+    bencher.with_inputs(|| system.clone()).bench_local_values(|mut system| {
+        let roots = build(&mut system, field, h);
+        let program = Program::new(&system.graph, &roots, |_| false, false);
+        (program, system)
+    });
+}
+
+/// Runs the program at one state in doubles.
+fn run(bencher: Bencher, build: impl Fn(&mut System, usize, NodeId) -> Vec<NodeId>) {
+    let (mut system, field, h) = general();
+    let point = point(&mut system);
+    let roots = build(&mut system, field, h);
+    let program = Program::new(&system.graph, &roots, |_| false, false);
+    let inputs = float_inputs(&program, |symbol| point[&symbol]);
+    let loaded = program.load(Floats::default()).expect("constants are finite");
+    let mut registers = Vec::new();
+    bencher
+        .counter(divan::counter::ItemsCount::new(program.len()))
+        .bench_local(|| loaded.run(black_box(&inputs), &mut registers));
+}
+
+mod prepare {
+    use super::*;
+
+    #[divan::bench(args = ORDERS)]
+    fn value_by_derivation(bencher: Bencher, order: usize) {
+        prepared(bencher, |system, field, h| vec![by_derivation(system, field, h, order)]);
+    }
+
+    #[divan::bench(args = ORDERS)]
+    fn value_by_series(bencher: Bencher, order: usize) {
+        prepared(bencher, |system, field, h| vec![by_series(system, field, h, order)]);
+    }
+
+    #[divan::bench(args = ORDERS)]
+    fn gradient_by_derivation(bencher: Bencher, order: usize) {
+        prepared(bencher, |system, field, h| {
+            let value = by_derivation(system, field, h, order);
+            one_by_one(system, value)
+        });
+    }
+
+    #[divan::bench(args = ORDERS)]
+    fn gradient_by_series_and_reverse_mode(bencher: Bencher, order: usize) {
+        prepared(bencher, |system, field, h| {
+            let value = by_series(system, field, h, order);
+            at_once(system, value)
+        });
+    }
+}
+
+/// The counter gives operations a second.
+mod value {
+    use super::*;
+
+    #[divan::bench(args = ORDERS)]
+    fn by_the_derived_graph(bencher: Bencher, order: usize) {
+        run(bencher, |system, field, h| vec![by_derivation(system, field, h, order)]);
+    }
+
+    #[divan::bench(args = ORDERS)]
+    fn by_the_graph_of_the_series(bencher: Bencher, order: usize) {
+        run(bencher, |system, field, h| vec![by_series(system, field, h, order)]);
+    }
+
+    /// No graph is built: series of doubles.
+    #[divan::bench(args = ORDERS)]
+    fn by_series_of_doubles(bencher: Bencher, order: usize) {
+        let (mut system, field, h) = general();
+        let point = point(&mut system);
+        let flow = Flow::new(&system.graph, &system.fields[field].components, &[h], |_| false);
+        let value = |input: &palmistry::expression::Input| match input {
+            palmistry::expression::Input::Plain(symbol) => point[symbol],
+            _ => f64::NAN,
+        };
+        let inputs: Vec<f64> = flow.inputs().iter().map(value).collect();
+        bencher.bench_local(|| flow.lie_derivatives(&Floats::default(), black_box(&inputs), order));
+    }
+
+    #[divan::bench(args = ORDERS)]
+    fn by_nested_duals(bencher: Bencher, order: usize) {
+        let (mut system, field, h) = general();
+        let point = point(&mut system);
+        let word = vec![field; order];
+        bencher.bench_local(|| lie_derivative_by_duals(&system, black_box(&word), h, &point));
+    }
+}
+
+/// The counter gives operations a second.
+mod gradients {
+    use super::*;
+
+    #[divan::bench(args = ORDERS)]
+    fn of_the_derived_graph_one_by_one(bencher: Bencher, order: usize) {
+        run(bencher, |system, field, h| {
+            let value = by_derivation(system, field, h, order);
+            one_by_one(system, value)
+        });
+    }
+
+    #[divan::bench(args = ORDERS)]
+    fn of_the_derived_graph_by_reverse_mode(bencher: Bencher, order: usize) {
+        run(bencher, |system, field, h| {
+            let value = by_derivation(system, field, h, order);
+            at_once(system, value)
+        });
+    }
+
+    #[divan::bench(args = ORDERS)]
+    fn of_the_series_by_reverse_mode(bencher: Bencher, order: usize) {
+        run(bencher, |system, field, h| {
+            let value = by_series(system, field, h, order);
+            at_once(system, value)
+        });
+    }
+
+    #[divan::bench(args = [1, 2, 4, 6], sample_count = 20)]
+    fn by_nested_duals(bencher: Bencher, order: usize) {
+        let (mut system, field, h) = general();
+        let point = point(&mut system);
+        let word = vec![field; order];
+        bencher.bench_local(|| differential_by_duals(&system, black_box(&word), h, &point));
+    }
+}
