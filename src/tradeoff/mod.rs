@@ -1,12 +1,18 @@
 //! Floor 6: speed against accuracy, and the extremes. What rounding does to a printed formula, what a smaller model
 //! saves, how the singular values behave on the way into a singularity.
 
+mod differences;
 mod growth;
 mod landscape;
 mod models;
+mod point_programs;
 mod rounding;
+mod term_by_term;
 
+pub use differences::{Difference, Differences};
 pub use growth::{Growth, growth_of_lie_derivatives};
 pub use landscape::{Landscape, Map, Rows, Slope, Target};
 pub use models::{ModelComparison, compare_models};
+pub use point_programs::{LoadedPoints, PointPrograms};
 pub use rounding::{RoundingStudy, study_rounding};
+pub use term_by_term::term_by_term;
