@@ -201,7 +201,7 @@ def machine():
         try:
             return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()[0]
         except (OSError, subprocess.CalledProcessError, IndexError):
-            return "not there"
+            return f"{command[0]}: not there"
 
     processor = platform.processor() or platform.machine()
     try:
