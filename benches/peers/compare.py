@@ -2,8 +2,10 @@
 
 Each peer is a process of its own (`worker.py`; ours is `ours.rs`), pinned to one core. After all have prepared, rounds go
 from peer to peer, so that what else the machine does falls on all alike. A time is the least over the rounds (and the
-median); a ratio is that of the least times. Results are compared entry by entry, scaled by the largest of the row;
-singular values, scaled by the largest.
+median); a ratio is that of the least times. Results are compared with ours, entry by entry, scaled by the largest of the
+row. Singular values are compared, scaled by the largest, with those that numpy finds for our entries: the peers' after the
+customary scaling of rows to length one; ours, of what the unit rows leave, after the scaling that `palmistry` does, of
+which it is checked that it multiplies rows and columns and does nothing else.
 """
 
 import argparse
@@ -22,7 +24,8 @@ from pathlib import Path
 
 import numpy as np
 
-from model import JOBS
+from model import JOBS, UNSEEN
+from verdict import Assembly
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -85,11 +88,11 @@ def main():
     options = arguments()
     executable = build()
     environment = one_thread()
-    found, wrong = {}, []
+    found, wrong, entries = {}, [], {}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         for job in JOBS:
-            found[job], disagreements = measure(job, executable, environment, folder, options)
+            found[job], disagreements = measure(job, executable, environment, folder, options, entries)
             wrong += disagreements
     report = {"machine": machine(), "states": options.states, "rounds": options.rounds, "seed": options.seed,
               "jobs": {job: {"title": JOBS[job].title, "peers": found[job]} for job in JOBS},
@@ -150,11 +153,12 @@ def draw(model, count, seed):
     return states[:count]
 
 
-def measure(job_name, executable, environment, folder, options):
-    """Times and deviations of all peers on one job, by peer, and who disagrees."""
+def measure(job_name, executable, environment, folder, options, entries):
+    """Times and deviations of all peers on one job, by peer, and who disagrees. `entries` keeps our matrices, by model."""
     job = JOBS[job_name]
     states_file, results_file = folder / f"{job_name}.states", folder / f"{job_name}.results"
-    draw(job.model, options.states, options.seed).tofile(states_file)
+    states = draw(job.model, options.states, options.seed)
+    states.tofile(states_file)
     note(job.title)
     found, workers = {}, {}
     for name, peer in PEERS.items():
@@ -174,24 +178,50 @@ def measure(job_name, executable, environment, folder, options):
     results = {}
     for name, worker in workers.items():
         worker.ask("write", "written")
-        results[name] = np.fromfile(results_file).reshape(options.states, -1, len(job.columns))
+        results[name] = np.fromfile(results_file).reshape(options.states, -1)
         worker.end()
         times = found[name]["rounds_ns"]
         found[name] |= {"least_ns": min(times), "median_ns": statistics.median(times)}
     if OURS not in results:
         sys.exit(f"our own worker failed: {found[OURS]['left_out']}")
+    if not job.singular:
+        entries.setdefault(job.model, results[OURS])
+        expected = results[OURS]
+    else:
+        matrices = entries[job.model].reshape(options.states, len(job.rows), -1)[:, :, list(job.columns)]
+        places = list(np.ndindex(matrices.shape[1:]))
+        expected = Assembly(job, states, places).singular_values(matrices.reshape(options.states, -1))
     wrong = []
     for name, values in results.items():
         found[name]["ratio"] = found[name]["least_ns"] / found[OURS]["least_ns"]
-        found[name]["deviation"] = deviation(values, results[OURS])
+        if name == OURS and job.singular:
+            found[name]["deviation"] = own_deviation(values, entries[job.model])
+        else:
+            found[name]["deviation"] = deviation(values, expected, 1 if job.singular else len(job.rows))
         if not found[name]["deviation"] <= TOLERANCE:
             wrong.append(f"{job.title}: {name} by {found[name]['deviation']:.1e}")
     return found, wrong
 
 
-def deviation(values, reference):
+def deviation(values, reference, rows):
     """The largest difference, each scaled by the largest entry of its row."""
+    values, reference = (matrix.reshape(len(matrix), rows, -1) for matrix in (values, reference))
     return float(np.max(np.abs(values - reference) / np.max(np.abs(reference), axis=2, keepdims=True)))
+
+
+def own_deviation(values, entries):
+    """How far our singular values are from those that numpy finds for the block as we scaled it, and how far this is
+    from a scaling of rows and columns of our entries. `values` hold for every state the block and the singular values.
+    """
+    size = len(UNSEEN)
+    scaled = values[:, : size * size].reshape(-1, size, size)
+    singular = -np.sort(-values[:, size * size :])
+    block = entries.reshape(len(entries), size, -1)[:, :, list(UNSEEN)]
+    # r_i c_j, whose logarithms are a sum of what depends on i and what depends on j
+    factors = np.log(scaled / block)
+    factors -= factors.mean(axis=1, keepdims=True)
+    factors -= factors.mean(axis=2, keepdims=True)
+    return max(deviation(singular, np.linalg.svd(scaled, compute_uv=False), 1), float(np.max(np.abs(factors))))
 
 
 def machine():

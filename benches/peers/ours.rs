@@ -6,7 +6,7 @@
 use palmistry::System;
 use palmistry::expression::{NodeId, Program, Symbol, expand_angles};
 use palmistry::number::Floats;
-use palmistry::observability::{float_inputs, singular_values};
+use palmistry::observability::{Reduction, equilibrate, float_inputs, singular_values};
 use palmistry::system::Value;
 use std::collections::HashMap;
 use std::io::{BufRead, Write};
@@ -30,21 +30,21 @@ fn main() -> Outcome<()> {
     let begin = Instant::now();
     let mut work = Work::prepare(job, &states)?;
     println!("prepared {}", begin.elapsed().as_secs_f64());
-    work.evaluate();
+    work.evaluate()?;
 
     for line in std::io::stdin().lock().lines() {
         match line?.trim() {
             "run" => {
                 let (mut count, begin) = (0, Instant::now());
                 while begin.elapsed() < ENOUGH {
-                    work.evaluate();
+                    work.evaluate()?;
                     count += 1;
                 }
                 println!("took {}", begin.elapsed().as_secs_f64() / f64::from(count));
             }
             "write" => {
                 let mut file = std::io::BufWriter::new(std::fs::File::create(results)?);
-                for value in &work.results {
+                for value in work.checkable()? {
                     file.write_all(&value.to_le_bytes())?;
                 }
                 file.flush()?;
@@ -59,12 +59,12 @@ fn main() -> Outcome<()> {
 /// A job on its states.
 struct Work {
     program: Program,
-    /// For every state, what the program has to be given, but for its sines and cosines: the states in order and then
-    /// the parameters at their default values.
+    /// Where the program's symbols have their values from.
     symbols: HashMap<Symbol, Source>,
     states: Vec<f64>,
     dimension: usize,
-    singular: Option<Singular>,
+    /// For a verdict, the shape of what is left when the unit rows are eliminated.
+    columns: Option<usize>,
     results: Vec<f64>,
 }
 
@@ -74,28 +74,25 @@ enum Source {
     Parameter(f64),
 }
 
-/// The singular values that are asked for.
-#[derive(Clone, Copy)]
-enum Singular {
-    /// Those of what the unit rows leave.
-    Block,
-    /// Those of the square matrix.
-    Whole,
-}
-
 impl Work {
     fn prepare(job: &str, states: &[f64]) -> Outcome<Work> {
         let file = if job == "same_rate" { "same_rate.proof" } else { "general.proof" };
         let mut system =
             System::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(file))?;
-        let singular = match job {
-            "block" => Some(Singular::Block),
-            "whole" => Some(Singular::Whole),
-            _ => None,
+        let dimension = system.states.len();
+        let mut columns = None;
+        let entries = match job {
+            "order8" => order8(&mut system)?,
+            "matrix" | "same_rate" => rows(&system)?[system.outputs.len() * dimension..].to_vec(),
+            "block" | "whole" => {
+                let reduction = Reduction::new(&system.graph, &rows(&system)?, dimension);
+                columns = Some(reduction.columns.len());
+                reduction.entries
+            }
+            _ => return Err(format!("there is no job '{job}'").into()),
         };
-        let rows = if job == "order8" { order8(&mut system)? } else { rows(&system, singular)? };
         let angles = system.angles();
-        let roots = expand_angles(&mut system.graph, &rows, |symbol| angles.contains(&symbol));
+        let roots = expand_angles(&mut system.graph, &entries, |symbol| angles.contains(&symbol));
         let program = Program::new(&system.graph, &roots, |symbol| angles.contains(&symbol), false);
         let mut symbols = HashMap::new();
         for (symbol, info) in system.symbols() {
@@ -106,49 +103,65 @@ impl Work {
         for (place, symbol) in system.states.iter().enumerate() {
             symbols.insert(*symbol, Source::State(place));
         }
-        let dimension = system.states.len();
-        Ok(Work { program, symbols, states: states.to_vec(), dimension, singular, results: Vec::new() })
+        Ok(Work { program, symbols, states: states.to_vec(), dimension, columns, results: Vec::new() })
     }
 
-    fn evaluate(&mut self) {
-        let Ok(loaded) = self.program.load(Floats) else { return };
+    /// Fills `results`: the entries, or for a verdict the singular values, of every state.
+    fn evaluate(&mut self) -> Outcome<()> {
+        let mut results = std::mem::take(&mut self.results);
+        results.clear();
+        self.each(|entries, columns| {
+            match columns {
+                None => results.extend(entries),
+                Some(columns) => {
+                    let spectrum = singular_values(&entries, &vec![0.0; entries.len()], columns);
+                    results.extend(spectrum.ok_or("a value is not finite")?.values);
+                }
+            }
+            Ok(())
+        })?;
+        self.results = results;
+        Ok(())
+    }
+
+    /// The results, and for a verdict with each state's singular values the scaled matrix whose they are.
+    fn checkable(&self) -> Outcome<Vec<f64>> {
+        let Some(columns) = self.columns else { return Ok(self.results.clone()) };
+        let mut all = Vec::new();
+        let mut singular = self.results.chunks_exact(columns);
+        self.each(|mut entries, _| {
+            equilibrate(&mut entries, &mut [0.0; 16], columns);
+            all.extend(entries);
+            all.extend(singular.next().ok_or("singular values are missing")?);
+            Ok(())
+        })?;
+        Ok(all)
+    }
+
+    /// Hands over the entries state by state.
+    fn each(&self, mut take: impl FnMut(Vec<f64>, Option<usize>) -> Outcome<()>) -> Outcome<()> {
+        let loaded = self.program.load(Floats).map_err(|refusal| format!("{refusal:?}"))?;
         let mut registers = Vec::new();
-        self.results.clear();
         for state in self.states.chunks_exact(self.dimension) {
             let inputs = float_inputs(&self.program, |symbol| match self.symbols[&symbol] {
                 Source::State(place) => state[place],
                 Source::Parameter(value) => value,
             });
-            let Ok(entries) = loaded.run(&inputs, &mut registers) else { continue };
-            match self.singular {
-                None => self.results.extend(entries),
-                Some(singular) => {
-                    let columns = if matches!(singular, Singular::Block) { 4 } else { self.dimension };
-                    self.results.extend(
-                        singular_values(&entries, &vec![0.0; entries.len()], columns)
-                            .map_or(vec![], |s| s.values),
-                    );
-                }
-            }
+            take(
+                loaded.run(&inputs, &mut registers).map_err(|failure| format!("{failure:?}"))?,
+                self.columns,
+            )?;
         }
+        Ok(())
     }
 }
 
-/// The rows of the file that are no unit rows, or what is needed of them.
-fn rows(system: &System, singular: Option<Singular>) -> Outcome<Vec<NodeId>> {
-    let Some(Value::Matrix(rows)) = system.definition("rows") else { return Err("there are no rows".into()) };
-    let outputs = system.outputs.len();
-    let seen: Vec<Symbol> =
-        system.outputs.iter().filter_map(|(_, node)| system.graph.as_symbol(*node)).collect();
-    Ok(match singular {
-        Some(Singular::Whole) => rows.entries.clone(),
-        None => rows.entries[outputs * rows.columns..].to_vec(),
-        Some(Singular::Block) => (outputs..rows.rows)
-            .flat_map(|row| (0..rows.columns).map(move |column| (row, column)))
-            .filter(|(_, column)| !seen.contains(&system.states[*column]))
-            .map(|(row, column)| rows.at(row, column))
-            .collect(),
-    })
+/// The entries of the thesis's own rows; its first rows are the outputs.
+fn rows(system: &System) -> Outcome<Vec<NodeId>> {
+    match system.definition("rows") {
+        Some(Value::Matrix(rows)) => Ok(rows.entries.clone()),
+        _ => Err("there are no rows".into()),
+    }
 }
 
 /// The gradient of `L_g1` applied eight times to `s1`.
