@@ -4,9 +4,11 @@
 //! and obeys the lines `run` and `write` on standard input.
 
 use palmistry::System;
-use palmistry::expression::{NodeId, Program, Symbol, expand_angles};
+use palmistry::expression::{NodeId, Program, Symbol, expand_angles, gradient};
 use palmistry::number::Floats;
-use palmistry::observability::{Reduction, equilibrate, float_inputs, singular_values};
+use palmistry::observability::{
+    Reduction, equilibrate, float_inputs, lie_derivative_by_series, singular_values,
+};
 use palmistry::system::Value;
 use std::collections::HashMap;
 use std::io::{BufRead, Write};
@@ -164,12 +166,12 @@ fn rows(system: &System) -> Outcome<Vec<NodeId>> {
     }
 }
 
-/// The gradient of `L_g1` applied eight times to `s1`.
+/// The gradient, by the reverse mode, of `L_g1` applied eight times to `s1`, by series.
 fn order8(system: &mut System) -> Outcome<Vec<NodeId>> {
     let field = system.fields.iter().position(|field| field.name == "g1").ok_or("there is no g1")?;
-    let mut value = system.outputs[0].1;
-    for _ in 0..8 {
-        value = system.lie_derivative(field, value);
-    }
-    Ok(system.differential(value))
+    let output = system.outputs[0].1;
+    let value =
+        lie_derivative_by_series(system, &[field; 8], output).map_err(|failure| format!("{failure:?}"))?;
+    let states = system.states.clone();
+    Ok(gradient(&mut system.graph, value, &states))
 }
