@@ -1,10 +1,19 @@
-//! What an operation costs on each rung of the ladder of numbers, and a whole program over each.
+//! What an operation costs on each rung of the ladder of numbers, and a whole program over each: the rows of the general
+//! regime, 310 operations, at states with rational coordinates.
 //!
-//! `cargo bench --bench numbers`; the counter gives operations (states, in the last group) a second.
+//! `cargo bench --bench numbers`; the counter gives operations (for the rows: states) a second.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use palmistry::number::{DoubleDouble, Function, Interval, Real};
+use palmistry::System;
+use palmistry::expression::{Program, expand_angles};
+use palmistry::number::{
+    Arithmetic, DoubleDouble, Enclosures, Floats, Function, Interval, PrimeField, Rationals, Real,
+};
+use palmistry::observability::{Branch, Locus, OWN_ROWS, State};
+use palmistry::system::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
 
 fn main() {
     divan::main();
@@ -12,9 +21,10 @@ fn main() {
 
 const MANY: usize = 1024;
 
-/// Operands between 0.5 and 2, none of them short.
+/// A number that was computed, so that none of the short ways for round ones is taken; over intervals a little wide.
 fn operands<T: Real>(shift: f64) -> Vec<T> {
-    (0..MANY).map(|i| T::from_f64(0.5 + ((i as f64 * 0.754877666 + shift) % 1.0) * 1.5)).collect()
+    let three = T::from_f64(3.0);
+    (0..MANY).map(|i| T::from_f64(1.5 + ((i as f64 * 0.754877666 + shift) % 1.0) * 4.5) / three).collect()
 }
 
 fn each<T: Real>(bencher: Bencher, operation: impl Fn(T, T) -> T) {
@@ -43,22 +53,57 @@ fn div<T: Real>(bencher: Bencher) {
     each::<T>(bencher, |a, b| a / b);
 }
 
-#[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
-fn sin<T: Real>(bencher: Bencher) {
-    each::<T>(bencher, |a, _| a.function(Function::Sin).unwrap_or(a));
+#[divan::bench(types = [f32, f64, DoubleDouble, Interval], args = [Function::Sin, Function::Sqrt, Function::Exp, Function::Atan])]
+fn apply<T: Real>(bencher: Bencher, function: Function) {
+    each::<T>(bencher, |a, _| a.function(function).unwrap_or(a));
+}
+
+/// The rows as a program, and states.
+fn rows() -> (Program, Vec<State>) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002/general.proof");
+    let mut system = System::read(&file).expect("the file is read");
+    let Some(Value::Matrix(rows)) = system.definition(OWN_ROWS) else { panic!("the file has rows") };
+    let entries = rows.entries.clone();
+    let angles = system.angles();
+    let roots = expand_angles(&mut system.graph, &entries, |symbol| angles.contains(&symbol));
+    let program = Program::new(&system.graph, &roots, |symbol| angles.contains(&symbol), false);
+    let locus =
+        Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &entries).expect("a sample box");
+    let states = (0..64).map(|index| locus.draw(1, index).expect("a state")).collect();
+    (program, states)
+}
+
+fn run<A: Arithmetic>(bencher: Bencher, arithmetic: A) {
+    let (program, states) = rows();
+    let inputs: Vec<_> = states
+        .iter()
+        .map(|state| state.inputs(&program, &arithmetic).expect("every symbol has a value"))
+        .collect();
+    let loaded = program.load(arithmetic).expect("constants have images");
+    let mut registers = Vec::new();
+    bencher.counter(ItemsCount::new(inputs.len())).bench_local(|| {
+        for inputs in &inputs {
+            let _ = black_box(loaded.run(black_box(inputs), &mut registers));
+        }
+    });
 }
 
 #[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
-fn exp<T: Real>(bencher: Bencher) {
-    each::<T>(bencher, |a, _| a.function(Function::Exp).unwrap_or(a));
+fn rows_over_machine_numbers<T: Real>(bencher: Bencher) {
+    run(bencher, Floats::<T>::new());
 }
 
-#[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
-fn atan<T: Real>(bencher: Bencher) {
-    each::<T>(bencher, |a, _| a.function(Function::Atan).unwrap_or(a));
+#[divan::bench]
+fn rows_over_residues(bencher: Bencher) {
+    run(bencher, PrimeField::new((1 << 61) + 15));
 }
 
-#[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
-fn sqrt<T: Real>(bencher: Bencher) {
-    each::<T>(bencher, |a, _| a.function(Function::Sqrt).unwrap_or(a));
+#[divan::bench]
+fn rows_over_rationals(bencher: Bencher) {
+    run(bencher, Rationals::default());
+}
+
+#[divan::bench(args = [53, 106, 212])]
+fn rows_over_enclosures(bencher: Bencher, bits: usize) {
+    run(bencher, Enclosures::new(bits));
 }
