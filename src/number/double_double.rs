@@ -15,6 +15,8 @@ mod functions;
 mod reduction;
 mod tables;
 
+pub(super) use tables::SINE;
+
 use super::error_free::{fast_two_sum, two_product, two_sum};
 use super::{Function, Real, Refusal, rational_from_f64, rational_to_f64, round_to_decimal};
 use dashu::rational::RBig;

@@ -7,6 +7,7 @@
 //! significands are short, a zero or a power of two among them).
 
 mod arithmetic;
+mod circular;
 mod functions;
 mod rounding;
 

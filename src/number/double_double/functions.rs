@@ -50,6 +50,13 @@ impl DoubleDouble {
         }
     }
 
+    /// How many right angles go into a finite angle, rounded down, modulo four.
+    pub(in crate::number) fn quadrant(self) -> i32 {
+        let reduced = reduction::reduce(self);
+        let short = reduced.step == 0 && reduced.rest.hi < 0.0;
+        (reduced.quadrant as i32 - i32::from(short)) & 3
+    }
+
     /// The exponential: infinity above about 709.78, zero below about -745.1.
     ///
     /// `x = k ln 2 / 32 + r`, `|r| <= 0.0109`, where `r` is found to `4u^2 * 0.0109`; `exp r - 1` adds `30u^2` of

@@ -10,7 +10,7 @@ const fn raw(hi: f64, lo: f64) -> DoubleDouble {
 }
 
 /// pi
-pub(crate) const PI: DoubleDouble = raw(3.141592653589793, 1.2246467991473532e-16);
+pub(super) const PI: DoubleDouble = raw(3.141592653589793, 1.2246467991473532e-16);
 /// pi/2
 pub(super) const HALF_PI: DoubleDouble = raw(1.5707963267948966, 6.123233995736766e-17);
 /// pi/64
@@ -54,7 +54,7 @@ pub(super) const INVERSE_ODD: [DoubleDouble; 10] = [
     raw(0.05263157894736842, 2.921639538487254e-18),
 ];
 /// `sin(j pi/64)` for `j` from 0 to 32.
-pub(super) const SINE: [DoubleDouble; 33] = [
+pub(in crate::number) const SINE: [DoubleDouble; 33] = [
     raw(0.0, 0.0),
     raw(0.049067674327418015, -6.79610372051828e-19),
     raw(0.0980171403295606, -1.634582362244256e-18),

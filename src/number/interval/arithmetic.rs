@@ -11,7 +11,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 ///
 /// Doubles of one sign are ordered as their bits are. The step below the least is minus infinity.
 #[inline]
-fn below(x: f64, step: bool) -> f64 {
+pub(super) fn below(x: f64, step: bool) -> f64 {
     let bits = x.to_bits() as i64;
     let sign = 1 | (bits >> 63);
     f64::from_bits(bits.wrapping_sub(sign & -i64::from(step)) as u64)
@@ -19,7 +19,7 @@ fn below(x: f64, step: bool) -> f64 {
 
 /// The next double above, as [`below`].
 #[inline]
-fn above(x: f64, step: bool) -> f64 {
+pub(super) fn above(x: f64, step: bool) -> f64 {
     let bits = x.to_bits() as i64;
     let sign = 1 | (bits >> 63);
     f64::from_bits(bits.wrapping_add(sign & -i64::from(step)) as u64)

@@ -6,6 +6,7 @@
 //! value are found.
 
 use super::Interval;
+use super::circular::circular;
 use super::rounding::{sqrt_down, sqrt_up};
 use crate::number::{DoubleDouble, Function, Real};
 
@@ -51,39 +52,24 @@ impl Interval {
         if self.lo == f64::NEG_INFINITY || self.hi == f64::INFINITY {
             return (RANGE, RANGE);
         }
-        let (sin, cos) = at(self.lo);
+        let low = circular(self.lo);
         if self.is_point() {
-            return (sin, cos);
+            return (low.sin, low.cos);
         }
-        let (sin_high, cos_high) = at(self.hi);
-        let (sin, cos) = (sin.hull(sin_high), cos.hull(cos_high));
-        // between its crests, a whole number of turns from `crest`, and its troughs half a turn on, a wave is monotone;
-        // if in doubt whether there is one between the ends there is
-        let turns = self / (Interval::PI + Interval::PI);
-        let meets = |crest: f64| {
-            let counted = turns - Interval::point(crest);
-            counted.lo.ceil() <= counted.hi
-        };
-        let wave = |ends: Interval, crest: f64| Interval {
-            lo: if meets(crest + 0.5) { -1.0 } else { ends.lo },
+        let high = circular(self.hi);
+        let width = self.width();
+        let meets = |k: i32| low.meets(&high, width, k);
+        // between its crest and its trough a wave is monotone
+        let wave = |ends: Interval, crest: i32, trough: i32| Interval {
+            lo: if meets(trough) { -1.0 } else { ends.lo },
             hi: if meets(crest) { 1.0 } else { ends.hi },
         };
-        (wave(sin, 0.25), wave(cos, 0.0))
+        (wave(low.sin.hull(high.sin), 1, 3), wave(low.cos.hull(high.cos), 0, 2))
     }
-}
-
-/// Sine and cosine of a finite number.
-fn at(x: f64) -> (Interval, Interval) {
-    if x == 0.0 {
-        return (Interval::ZERO, Interval::ONE);
-    }
-    let (sin, cos) = DoubleDouble::from(x).sin_cos();
-    let within = |all: Interval| Interval { lo: all.lo.max(-1.0), hi: all.hi.min(1.0) };
-    (within(around(sin)), within(around(cos)))
 }
 
 /// The doubles around the number of which this is the value of a function, right to `2^-100` of itself.
-fn around(value: DoubleDouble) -> Interval {
+pub(super) fn around(value: DoubleDouble) -> Interval {
     let (hi, lo) = (value.hi(), value.lo());
     if hi.abs() < 1e-270 {
         // here a double-double may have no low part; it is right to a unit in the last place of a double

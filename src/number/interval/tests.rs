@@ -1,7 +1,7 @@
 //! Held against exact rationals, and for the functions against dashu's enclosures of 200 bits.
 
 use super::*;
-use crate::number::{Arithmetic, Enclosures, Floats, Function};
+use crate::number::{Arithmetic, DoubleDouble, Enclosures, Floats, Function};
 use proptest::prelude::*;
 
 /// Doubles of every kind: any bits that are no NaN, small whole numbers, the ends of the range.
@@ -199,4 +199,84 @@ fn halves_meet_in_the_middle() {
     assert_eq!(Interval::new(1.0, 2.0).intersection(Interval::new(3.0, 4.0)), None);
     assert_eq!((Interval::new(1.0, 4.0).mid(), Interval::new(1.0, 4.0).rad()), (2.5, 1.5));
     assert_eq!(Interval::new(-4.0, 1.0).mignitude(), 0.0);
+}
+
+/// Angles of every size, and those next to multiples of a right angle and of a 64th of half a turn.
+fn angle() -> impl Strategy<Value = f64> {
+    use std::f64::consts::PI;
+    let aside = |x: f64, places: i32| {
+        (0..places.abs()).fold(x, |x, _| if places < 0 { x.next_down() } else { x.next_up() })
+    };
+    prop_oneof![
+        3 => -10.0..10.0f64,
+        1 => -65536.0..65536.0f64,
+        1 => -1e-3..1e-3f64,
+        1 => (-40i32..40, 1.0..2.0f64).prop_map(|(e, x)| x * 2f64.powi(e)),
+        1 => (40i32..1020, 1.0..2.0f64).prop_map(|(e, x)| x * 2f64.powi(e)),
+        2 => (-40_000i32..40_000, -3i32..4).prop_map(move |(n, places)| aside(f64::from(n) * (PI / 2.0), places)),
+        2 => (-4_000i32..4_000, -3i32..4).prop_map(move |(n, places)| aside(f64::from(n) * (PI / 128.0), places)),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn sine_and_cosine_of_a_point_are_two_places_wide(x in angle()) {
+        let wide = Enclosures::new(200);
+        let (sin, cos) = Interval::point(x).sin_cos();
+        for (found, function) in [(sin, Function::Sin), (cos, Function::Cos)] {
+            let value = wide.apply(function, &wide.rational(&rational_from_f64(x).unwrap()).unwrap()).unwrap();
+            prop_assert!(holds(found, &value.low()) && holds(found, &value.high()), "{function:?} {x:e} = {found:?}");
+            // the least sines, next to whole right angles, to fifty bits or so
+            let place = found.lo.abs().next_up() - found.lo.abs();
+            prop_assert!(found.hi - found.lo <= (2.0 * place).max(1e-14 * found.lo.abs()).max(2f64.powi(-93)),
+                "{function:?} {x:e} = {found:?}");
+        }
+    }
+
+    #[test]
+    fn sine_and_cosine_of_an_interval_are_its_values(a in angle(), width in prop_oneof![0.0..7.0f64, 0.0..1e-3f64], t in 0.0..1.0f64) {
+        let all = Interval::new(a, a + width);
+        let inner = (all.lo + t * width).clamp(all.lo, all.hi);
+        let ((sin, cos), (s, c)) = (all.sin_cos(), Interval::point(inner).sin_cos());
+        prop_assert!(sin.hi >= s.lo && sin.lo <= s.hi && cos.hi >= c.lo && cos.lo <= c.hi);
+        // no wider than the slope allows, and monotone pieces end where their ends do
+        let width = all.width();
+        prop_assert!(sin.width() <= 1.0001 * width + 1e-15 && cos.width() <= 1.0001 * width + 1e-15);
+        let turns = |shift: f64| ((all.lo / std::f64::consts::PI + shift).floor(), (all.hi / std::f64::consts::PI + shift).floor());
+        let (low, high) = turns(0.5);
+        if low == high && all.lo.abs() < 1e4 {
+            let ends = Interval::point(all.lo).sin_cos().0.hull(Interval::point(all.hi).sin_cos().0);
+            prop_assert!(sin == ends || (sin.hi == 1.0 && ends.hi > 1.0 - 1e-9) || (sin.lo == -1.0 && ends.lo < 1e-9 - 1.0));
+        }
+    }
+}
+
+/// A million points against double-doubles, whose error is below 2^-100.
+#[test]
+fn quick_sines_hold_the_precise_ones() {
+    use rand::{RngExt, SeedableRng};
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(4);
+    for _ in 0..500_000 {
+        let size = 2f64.powi(rng.random_range(-30..16));
+        let x = size * rng.random_range(-1.0..1.0);
+        let (sin, cos) = Interval::point(x).sin_cos();
+        let (s, c) = DoubleDouble::from(x).sin_cos();
+        for (found, value) in [(sin, s), (cos, c)] {
+            let inside = DoubleDouble::from(found.lo) <= value && value <= DoubleDouble::from(found.hi);
+            assert!(inside, "{x:e}: {found:?} {value:?}");
+        }
+    }
+}
+
+#[test]
+fn the_parts_of_pi_are_right() {
+    let wide = Enclosures::new(300);
+    let sum: RBig =
+        circular::PARTS.iter().filter_map(|part| rational_from_f64(*part)).fold(RBig::ZERO, |a, b| a + b);
+    let off = wide.pi().unwrap().low() / RBig::from(64) - sum;
+    assert!(rational_to_f64(&off).abs() < 2f64.powi(-120));
+    // the first two end 22 bits before a double does
+    assert!(circular::PARTS[..2].iter().all(|part| part.to_bits() & ((1 << 22) - 1) == 0));
 }
