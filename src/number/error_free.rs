@@ -27,8 +27,9 @@ pub(super) fn fast_two_sum(x: f64, y: f64) -> (f64, f64) {
 /// `x * y` rounded, and its error; exact where the product is above 2^-960 or zero (lower down the error may itself
 /// be rounded, to a multiple of 2^-1074).
 ///
-/// By one fused multiplication where the compiler may use it; else by Dekker's product of halves, which is as exact
-/// and, as a call of a library's fused multiplication costs more than its seventeen operations, faster.
+/// By one fused multiplication where the compiler may use it; else by Dekker's product of halves, which is as exact. A
+/// call of the library's fused multiplication would cost the same where the library finds the processor's own, and many
+/// times more where it does not.
 #[inline]
 pub(super) fn two_product(x: f64, y: f64) -> (f64, f64) {
     let product = x * y;

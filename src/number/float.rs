@@ -75,3 +75,34 @@ impl<T: Real> Arithmetic for Floats<T> {
         a.power(n)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::DoubleDouble;
+
+    /// What is common to the machine's floats: constants are rounded to nearest, a pole is named, an argument outside
+    /// the domain too, and an overflow runs through.
+    fn behaves_as_a_float<T: Real>(third: T, largest: T) {
+        let all = Floats::<T>::new();
+        let number = |n: i64, d: u64| all.rational(&RBig::from_parts(n.into(), d.into())).unwrap();
+        assert_eq!(number(1, 3), third);
+        assert_eq!(all.div(&number(1, 1), &number(3, 1)), Ok(third));
+        assert_eq!(all.div(&third, &number(0, 1)), Err(Refusal::DivisionByZero));
+        assert_eq!(all.power(&number(0, 1), -2), Err(Refusal::DivisionByZero));
+        assert_eq!(all.power(&number(-2, 1), 5), Ok(number(-32, 1)));
+        assert_eq!(all.power(&number(-2, 1), i32::MIN), all.rational(&RBig::ZERO));
+        assert_eq!(all.apply(Function::Sqrt, &number(-1, 1)), Err(Refusal::OutsideDomain(Function::Sqrt)));
+        assert_eq!(all.apply(Function::Acos, &number(3, 2)), Err(Refusal::OutsideDomain(Function::Acos)));
+        assert!(!all.mul(&largest, &largest).unwrap().is_finite() && largest.is_finite());
+        assert_eq!(all.is_zero(&number(0, 1)), Some(true));
+    }
+
+    #[test]
+    fn floats_round_and_name_their_poles() {
+        behaves_as_a_float(1.0f32 / 3.0, f32::MAX);
+        behaves_as_a_float(1.0f64 / 3.0, f64::MAX);
+        let third = DoubleDouble::ONE / DoubleDouble::from(3.0);
+        behaves_as_a_float(third, DoubleDouble::from(f64::MAX));
+    }
+}
