@@ -5,9 +5,9 @@ use dashu::base::Abs;
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use num_dual::{Dual64, DualNum};
-use palmistry::expression::{Input, Program, Symbol, expand_angles};
+use palmistry::expression::{Program, Symbol, expand_angles};
 use palmistry::number::{
-    Arithmetic, DoubleDouble, Enclosures, Floats, Function, Interval, Rationals, Real, rational_from_f64,
+    Arithmetic, DoubleDouble, Enclosures, Floats, Interval, Rationals, Real, rational_from_f64,
     rational_to_f64,
 };
 use palmistry::observability::{
@@ -44,17 +44,6 @@ fn words(fields: usize, length: usize) -> Vec<Vec<usize>> {
     })
 }
 
-/// The inputs of a program over any number; angles in radians.
-fn inputs_at<T: Real>(program: &Program, point: &HashMap<Symbol, T>) -> Vec<T> {
-    let input = |input: &Input| match input {
-        Input::Plain(symbol) => point[symbol],
-        Input::Sine(symbol) => point[symbol].function(Function::Sin).unwrap(),
-        Input::Cosine(symbol) => point[symbol].function(Function::Cos).unwrap(),
-        Input::Opaque(node) => panic!("{node:?}"),
-    };
-    program.inputs().iter().map(input).collect()
-}
-
 /// Differentials along every word of up to two fields, all regimes, every output, over a number of `bits` bits. What
 /// rounding may do to a value is measured, not guessed: the same program is run in interval arithmetic of as many bits,
 /// and the width of the result bounds what any evaluation of these operations in such numbers may be off by. The graph's
@@ -79,7 +68,7 @@ fn differentials_agree<T: Real + DualNum>(bits: usize, exactly: fn(T) -> RBig) {
                     }
                     let row = system.differential(value);
                     let program = Program::new(&system.graph, &row, |_| false, false);
-                    let inputs = inputs_at(&program, &point);
+                    let inputs = float_inputs(&program, |symbol| point[&symbol]);
                     let graph =
                         program.load(Floats::<T>::new()).unwrap().run(&inputs, &mut Vec::new()).unwrap();
                     let exact: Vec<_> =
@@ -151,7 +140,7 @@ fn intervals_enclose_the_exact_differential() {
                     let inputs = state.inputs(&program, &Rationals::default()).unwrap();
                     let exact =
                         program.load(Rationals::default()).unwrap().run(&inputs, &mut Vec::new()).unwrap();
-                    let inputs = inputs_at(&program, &point);
+                    let inputs = float_inputs(&program, |symbol| point[&symbol]);
                     let graph = program
                         .load(Floats::<Interval>::new())
                         .unwrap()

@@ -1,7 +1,7 @@
 //! A state in exact numbers.
 
 use crate::expression::{Input, Program, Symbol};
-use crate::number::{Arithmetic, Function, Refusal, rational_to_f64};
+use crate::number::{Arithmetic, Function, Real, Refusal, rational_to_f64};
 use crate::system::System;
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
@@ -94,13 +94,15 @@ impl State {
     }
 }
 
-/// A program's inputs at a state given in doubles, angles in radians.
-pub fn float_inputs(program: &Program, value: impl Fn(Symbol) -> f64) -> Vec<f64> {
+/// A program's inputs at a state given in doubles, or in any other number of fixed size; angles in radians.
+pub fn float_inputs<T: Real>(program: &Program, value: impl Fn(Symbol) -> T) -> Vec<T> {
+    let nothing = T::from_f64(f64::NAN);
+    let at = |function, symbol: &Symbol| value(*symbol).function(function).unwrap_or(nothing);
     let input = |input: &Input| match input {
         Input::Plain(symbol) => value(*symbol),
-        Input::Sine(symbol) => value(*symbol).sin(),
-        Input::Cosine(symbol) => value(*symbol).cos(),
-        Input::Opaque(_) => f64::NAN,
+        Input::Sine(symbol) => at(Function::Sin, symbol),
+        Input::Cosine(symbol) => at(Function::Cos, symbol),
+        Input::Opaque(_) => nothing,
     };
     program.inputs().iter().map(input).collect()
 }
