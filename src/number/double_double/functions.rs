@@ -6,11 +6,13 @@
 //! `2u^2`, root `4u^2`; a tabulated constant `u^2`), the relative errors are counted at each function, for the argument
 //! where they are greatest. Terms of the order `u^3`, and truncated series, add less than `u^2/2` each.
 
+use super::arithmetic::{exponent_of, shifted};
 use super::tables::{
     ARC_TANGENT, HALF_PI, INVERSE_FACTORIAL, INVERSE_ODD, LN_2, LN_2_BY_32, MINUS_LOG, POWER_OF_TWO,
     RECIPROCAL, SINE,
 };
-use super::{DoubleDouble, exponent_of, reduction, shifted, two_product};
+use super::{DoubleDouble, reduction};
+use crate::number::error_free::two_product;
 
 impl DoubleDouble {
     /// Sine and cosine; NaN at infinity.

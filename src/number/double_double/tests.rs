@@ -1,5 +1,6 @@
 //! Held against exact rationals and against dashu's enclosures of several hundred bits.
 
+use super::arithmetic::{exponent_of, shifted};
 use super::tables::*;
 use super::*;
 use crate::number::{Arithmetic, Enclosure, Enclosures, Floats};
