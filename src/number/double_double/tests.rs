@@ -44,7 +44,7 @@ const QUOTIENT: f64 = 15.0001;
 const ROOT: f64 = 3.126;
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn operations_keep_their_bounds(a in number(480, 480), b in number(480, 480), near in -60i32..60) {
@@ -124,7 +124,7 @@ fn argument() -> impl Strategy<Value = DoubleDouble> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1_500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// 2^-100 is 64 u^2.
     #[test]
