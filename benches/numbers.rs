@@ -1,5 +1,5 @@
 //! What an operation costs on each rung of the ladder of numbers, and a whole program over each: the rows of the general
-//! regime, 310 operations, at states with rational coordinates.
+//! regime, at states with rational coordinates.
 //!
 //! `cargo bench --bench numbers`; the counter gives operations (for the rows: states) a second.
 
