@@ -7,6 +7,7 @@ mod eval;
 mod output;
 mod prove;
 mod rank;
+mod trade;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -30,6 +31,7 @@ enum Verb {
     Verify(verify::Verify),
     Prove(prove::Prove),
     Rank(rank::Rank),
+    Trade(trade::Trade),
     Eval(eval::Eval),
 }
 
@@ -72,6 +74,7 @@ pub fn run() -> ExitCode {
         Verb::Verify(verb) => (verb.json, verb.run()),
         Verb::Prove(verb) => (verb.json, verb.run()),
         Verb::Rank(verb) => (verb.json, verb.run()),
+        Verb::Trade(verb) => (verb.json, verb.run()),
         Verb::Eval(verb) => (verb.json, verb.run()),
     };
     match result {

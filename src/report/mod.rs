@@ -7,10 +7,14 @@ mod errata;
 mod page;
 mod plot;
 mod ranks;
+mod trade;
+mod trade_plot;
 mod verification;
 
 pub use claims::{claim_json, claim_line, junit};
 pub use errata::errata_markdown;
 pub use page::page;
 pub use ranks::{rank_json, rank_text};
+pub use trade::{TRADE_FRONT_HEADINGS, trade_front_table, trade_json, trade_text};
+pub use trade_plot::trade_plot;
 pub use verification::{printed_value_json, verification_json, verification_text};

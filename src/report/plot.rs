@@ -17,12 +17,12 @@ const SCALE: [(u8, u8, u8); 8] = [
 ];
 /// Where a pole is.
 const POLE: RGBColor = RGBColor(255, 255, 255);
-const INK: RGBColor = RGBColor(40, 44, 52);
+pub(super) const INK: RGBColor = RGBColor(40, 44, 52);
 
-type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Draws into a string. What cannot be drawn is said in its place.
-fn svg(
+pub(super) fn svg(
     size: (u32, u32),
     draw: impl FnOnce(&Drawing<'_>) -> Result<(), Box<dyn std::error::Error>>,
 ) -> String {

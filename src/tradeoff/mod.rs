@@ -8,6 +8,7 @@ mod models;
 mod point_programs;
 mod rounding;
 mod term_by_term;
+mod trade;
 
 pub use differences::{Difference, Differences};
 pub use growth::{Growth, growth_of_lie_derivatives};
@@ -16,3 +17,7 @@ pub use models::{ModelComparison, compare_models};
 pub use point_programs::{LoadedPoints, PointPrograms};
 pub use rounding::{RoundingStudy, study_rounding};
 pub use term_by_term::term_by_term;
+pub use trade::{
+    Combination, Derivative, DerivativeResult, Digits, LeftOut, Number, RankMethod, RankResult, Trade,
+    TradeQuestion, trade,
+};

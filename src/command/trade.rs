@@ -1,0 +1,70 @@
+//! `palmistry trade`: what does accuracy cost?
+
+use super::output::{INTERRUPTED, print_json, print_text, progress, write_whole};
+use super::{Status, Unusable};
+use clap::Args;
+use palmistry::System;
+use palmistry::report::{trade_json, trade_plot, trade_text};
+use palmistry::tradeoff::{TradeQuestion, trade};
+use std::path::PathBuf;
+
+/// Rounds of timing.
+const ROUNDS: usize = 15;
+
+/// Measures speed against accuracy: numbers, ways to a derivative and ways to a rank, on the same states.
+///
+/// Every sensible combination computes the differentials of the file's 'rows' (or of the Lie derivatives that are
+/// needed) and their rank at states drawn from the sample box. Digits and ranks are held against exact arithmetic at
+/// that very state. The Pareto front are the combinations that no other beats in time, digits and verdicts. States of
+/// the sample box keep away from singular sets: what happens on the way into one is another question.
+#[derive(Args)]
+pub(crate) struct Trade {
+    /// The proof file.
+    file: PathBuf,
+    /// How many states are drawn from the sample box.
+    #[arg(long, default_value_t = 1000, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    samples: u64,
+    /// Seed of the sampled states.
+    #[arg(long, default_value_t = 1, value_name = "S")]
+    seed: u64,
+    /// Write the picture to trade.svg, and what was measured to trade.json, in this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print one JSON object with 'derivatives', 'ranks', 'combinations', 'left_out' and more.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Trade {
+    pub fn run(self) -> miette::Result<Status> {
+        let system = System::read(&self.file)?;
+        let bar = progress(0, "measuring");
+        let found = trade(
+            &system,
+            &TradeQuestion {
+                samples: self.samples,
+                seed: self.seed,
+                rounds: ROUNDS,
+                interrupt: &INTERRUPTED,
+                progress: &|done, all| {
+                    bar.set_length(all);
+                    bar.set_position(done);
+                },
+            },
+        );
+        bar.finish_and_clear();
+        let found = found.map_err(|why| Unusable::report(why, ""))?;
+        let json = trade_json(&found);
+        if let Some(folder) = &self.out {
+            write_whole(&folder.join("trade.svg"), &trade_plot(&found))?;
+            let text = serde_json::to_string_pretty(&json).unwrap_or_default();
+            write_whole(&folder.join("trade.json"), &(text + "\n"))?;
+        }
+        if self.json {
+            print_json(&json);
+        } else {
+            print_text(&trade_text(&found));
+        }
+        Ok(if found.interrupted { Status::NotAsExpected } else { Status::AsExpected })
+    }
+}

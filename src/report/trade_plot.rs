@@ -1,0 +1,164 @@
+//! Speed against accuracy, as a picture.
+
+use super::plot::{INK, svg};
+use crate::tradeoff::{Combination, Derivative, Digits, Number, Trade};
+use plotters::coord::CoordTranslate;
+use plotters::prelude::*;
+
+/// All digits are drawn here.
+const ALL_DIGITS: f64 = 36.0;
+/// What is exact modulo a prime, and has no digits, here.
+const NO_DIGITS: f64 = -1.5;
+
+fn colour(number: Number) -> RGBColor {
+    match number {
+        Number::Single => RGBColor(230, 159, 0),
+        Number::Double => RGBColor(0, 114, 178),
+        Number::DoubleDouble => RGBColor(0, 158, 115),
+        Number::Interval => RGBColor(204, 121, 167),
+        Number::Residue => RGBColor(120, 120, 120),
+        Number::Rational => RGBColor(213, 94, 0),
+    }
+}
+
+fn height(combination: &Combination) -> f64 {
+    match combination.digits {
+        Digits::Exact => ALL_DIGITS,
+        Digits::Modular => NO_DIGITS,
+        Digits::Measured { worst, .. } => worst,
+    }
+}
+
+/// Every combination by its time a state (logarithmic) and the digits of its worst state: colours are kinds of numbers,
+/// shapes ways to a derivative; filled where every verdict is right. The line joins those that no other combination
+/// whose every verdict is right beats in time and digits.
+pub fn trade_plot(trade: &Trade) -> String {
+    let timed: Vec<&Combination> = trade.combinations.iter().filter(|c| c.seconds.is_finite()).collect();
+    let ends = |f: fn(f64, f64) -> f64, start| timed.iter().map(|c| c.seconds * 1e9).fold(start, f);
+    let (fastest, slowest) = (ends(f64::min, f64::INFINITY), ends(f64::max, 0.0));
+    if timed.is_empty() {
+        return "<p>nothing was timed</p>".to_owned();
+    }
+    svg((760, 460), |area| {
+        let (plot, legend) = area.split_horizontally(580);
+        let mut chart = ChartBuilder::on(&plot)
+            .caption("what accuracy costs", ("sans-serif", 15).into_font().color(&INK))
+            .margin(8)
+            .x_label_area_size(38)
+            .y_label_area_size(46)
+            .build_cartesian_2d((fastest / 1.5..slowest * 1.5).log_scale(), -3.0..ALL_DIGITS + 2.0)?;
+        chart
+            .configure_mesh()
+            .light_line_style(WHITE)
+            .bold_line_style(RGBColor(225, 228, 232))
+            .x_labels(8)
+            .x_label_formatter(&|v| time_label(*v))
+            .y_labels(8)
+            .y_label_formatter(&|v| if *v > 33.0 { "all".to_owned() } else { format!("{v:.0}") })
+            .x_desc("time a state, derivative and rank")
+            .y_desc("digits at the worst state")
+            .axis_desc_style(("sans-serif", 13))
+            .draw()?;
+        // the front in two criteria, of those that are always right
+        let mut best = f64::NEG_INFINITY;
+        let mut line: Vec<(f64, f64)> = Vec::new();
+        let mut right: Vec<&Combination> = timed.iter().copied().filter(|c| c.not_right() == 0).collect();
+        right.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        for combination in right {
+            if height(combination) > best {
+                best = height(combination);
+                line.push((combination.seconds * 1e9, best));
+            }
+        }
+        chart.draw_series(LineSeries::new(line, INK.stroke_width(1)))?;
+        for combination in &timed {
+            let at = (combination.seconds * 1e9, height(combination));
+            let filled = combination.not_right() == 0;
+            mark(chart.plotting_area(), at, combination.derivative, colour(combination.number), filled)?;
+        }
+        let key = |row: usize| (14, 40 + 20 * row as i32);
+        let words = ("sans-serif", 12).into_font().color(&INK);
+        let numbers: Vec<Number> = distinct(timed.iter().map(|c| c.number));
+        for (row, number) in numbers.iter().enumerate() {
+            let (x, y) = key(row);
+            legend.draw(&Rectangle::new([(x - 5, y - 5), (x + 5, y + 5)], colour(*number).filled()))?;
+            legend.draw(&Text::new(number.name(), (x + 14, y - 6), words.clone()))?;
+        }
+        for (row, derivative) in distinct(timed.iter().map(|c| c.derivative)).into_iter().enumerate() {
+            let (x, y) = key(row + numbers.len() + 1);
+            mark(&legend, (x, y), derivative, INK, true)?;
+            legend.draw(&Text::new(derivative.name(), (x + 14, y - 6), words.clone()))?;
+        }
+        let (x, y) = key(15);
+        legend.draw(&Text::new("hollow: some verdicts", (x - 6, y), words.clone()))?;
+        legend.draw(&Text::new("are not right", (x - 6, y + 14), words))?;
+        Ok(())
+    })
+}
+
+/// The corners of a shape about a point, in pixels.
+fn corners(derivative: Derivative) -> Vec<(i32, i32)> {
+    match derivative {
+        Derivative::Graph => vec![(-2, -5), (2, -5), (5, -2), (5, 2), (2, 5), (-2, 5), (-5, 2), (-5, -2)],
+        Derivative::Blocks => {
+            vec![(0, -7), (2, -2), (7, -2), (3, 1), (5, 6), (0, 3), (-5, 6), (-3, 1), (-7, -2), (-2, -2)]
+        }
+        Derivative::Series => vec![(0, -6), (6, 0), (0, 6), (-6, 0)],
+        Derivative::Duals => vec![(-5, -5), (5, -5), (5, 5), (-5, 5)],
+        Derivative::Forward => vec![(-6, -4), (6, -4), (0, 6)],
+        Derivative::Central => vec![(-6, 4), (6, 4), (0, -6)],
+        Derivative::Expanded => vec![
+            (-2, -6),
+            (2, -6),
+            (2, -2),
+            (6, -2),
+            (6, 2),
+            (2, 2),
+            (2, 6),
+            (-2, 6),
+            (-2, 2),
+            (-6, 2),
+            (-6, -2),
+            (-2, -2),
+        ],
+    }
+}
+
+fn mark<C: CoordTranslate>(
+    area: &DrawingArea<SVGBackend<'_>, C>,
+    at: C::From,
+    derivative: Derivative,
+    colour: RGBColor,
+    filled: bool,
+) -> Result<(), Box<dyn std::error::Error>>
+where
+    C::From: Clone,
+{
+    let corners = corners(derivative);
+    let mut outline = corners.clone();
+    outline.extend(corners.first());
+    let inside = if filled { colour } else { WHITE };
+    area.draw(&(EmptyElement::at(at.clone()) + Polygon::new(corners, inside.filled())))
+        .map_err(|error| error.to_string())?;
+    area.draw(&(EmptyElement::at(at) + PathElement::new(outline, colour)))
+        .map_err(|error| error.to_string())?;
+    Ok(())
+}
+
+fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut found = Vec::new();
+    for item in items {
+        if !found.contains(&item) {
+            found.push(item);
+        }
+    }
+    found
+}
+
+fn time_label(nanoseconds: f64) -> String {
+    match nanoseconds {
+        t if t < 1e3 => format!("{t:.0} ns"),
+        t if t < 1e6 => format!("{:.0} us", t / 1e3),
+        t => format!("{:.0} ms", t / 1e6),
+    }
+}

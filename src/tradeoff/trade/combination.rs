@@ -1,0 +1,291 @@
+//! What is combined, and what came of it.
+
+use std::collections::BTreeMap;
+
+/// A kind of number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Number {
+    Single,
+    Double,
+    DoubleDouble,
+    Interval,
+    Residue,
+    Rational,
+}
+
+impl Number {
+    /// All of them, from the fastest.
+    pub const ALL: [Number; 6] = [
+        Number::Single,
+        Number::Double,
+        Number::DoubleDouble,
+        Number::Interval,
+        Number::Residue,
+        Number::Rational,
+    ];
+
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Number::Single => "f32",
+            Number::Double => "f64",
+            Number::DoubleDouble => "double-double",
+            Number::Interval => "interval",
+            Number::Residue => "residue",
+            Number::Rational => "rational",
+        }
+    }
+}
+
+/// A way to the differentials of Lie derivatives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Derivative {
+    /// The expression graph, differentiated again and again.
+    Graph,
+    /// The same, as a program over blocks of states.
+    Blocks,
+    /// The graph of Taylor series along the fields.
+    Series,
+    /// num-dual's dual numbers, one within the other.
+    Duals,
+    /// Nested forward differences.
+    Forward,
+    /// Nested central differences.
+    Central,
+    /// The multiplied-out form, term by term.
+    Expanded,
+}
+
+impl Derivative {
+    /// All of them.
+    pub const ALL: [Derivative; 7] = [
+        Derivative::Graph,
+        Derivative::Blocks,
+        Derivative::Series,
+        Derivative::Duals,
+        Derivative::Forward,
+        Derivative::Central,
+        Derivative::Expanded,
+    ];
+
+    /// In a few words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Derivative::Graph => "graph",
+            Derivative::Blocks => "graph, blocks",
+            Derivative::Series => "series",
+            Derivative::Duals => "duals",
+            Derivative::Forward => "forward differences",
+            Derivative::Central => "central differences",
+            Derivative::Expanded => "term by term",
+        }
+    }
+}
+
+/// A way to a rank.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum RankMethod {
+    SvdNalgebra,
+    SvdFaer,
+    /// After equilibration, as `palmistry rank` does it.
+    SvdEquilibrated,
+    /// One-sided Jacobi over blocks of states.
+    Jacobi,
+    QrPivoted,
+    LuFullPivoting,
+    /// Elimination with complete pivoting and a threshold.
+    Elimination,
+    ExactElimination,
+    IntervalElimination,
+}
+
+impl RankMethod {
+    /// All of them.
+    pub const ALL: [RankMethod; 9] = [
+        RankMethod::SvdNalgebra,
+        RankMethod::SvdFaer,
+        RankMethod::SvdEquilibrated,
+        RankMethod::Jacobi,
+        RankMethod::QrPivoted,
+        RankMethod::LuFullPivoting,
+        RankMethod::Elimination,
+        RankMethod::ExactElimination,
+        RankMethod::IntervalElimination,
+    ];
+
+    /// In a few words.
+    pub fn name(self) -> &'static str {
+        match self {
+            RankMethod::SvdNalgebra => "SVD (nalgebra)",
+            RankMethod::SvdFaer => "SVD (faer)",
+            RankMethod::SvdEquilibrated => "SVD, equilibrated",
+            RankMethod::Jacobi => "SVD, Jacobi in blocks",
+            RankMethod::QrPivoted => "QR, column pivoting",
+            RankMethod::LuFullPivoting => "LU, full pivoting",
+            RankMethod::Elimination => "elimination",
+            RankMethod::ExactElimination => "exact elimination",
+            RankMethod::IntervalElimination => "interval elimination",
+        }
+    }
+}
+
+/// How many decimal digits of the entries are right: of the least accurate entry at each state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Digits {
+    /// All of them: rational numbers.
+    Exact,
+    /// The values modulo a prime: exact, but no digits.
+    Modular,
+    /// At the median state and at the worst.
+    Measured { median: f64, worst: f64 },
+}
+
+impl Digits {
+    /// Those of the worst state; none where there are only residues.
+    pub fn worst(self) -> f64 {
+        match self {
+            Digits::Exact => f64::INFINITY,
+            Digits::Modular => 0.0,
+            Digits::Measured { worst, .. } => worst,
+        }
+    }
+}
+
+/// A way to a derivative over one kind of number.
+#[derive(Clone, Copy, Debug)]
+pub struct DerivativeResult {
+    pub number: Number,
+    pub derivative: Derivative,
+    /// Seconds a state, the least of all rounds.
+    pub seconds: f64,
+    pub digits: Digits,
+    /// States without a value: an operation was refused, or the value is infinite or not a number.
+    pub failed: u64,
+}
+
+/// A way to a rank over one kind of number.
+#[derive(Clone, Copy, Debug)]
+pub struct RankResult {
+    pub number: Number,
+    pub rank: RankMethod,
+    /// Seconds a state, the least of all rounds, on the matrices of the first way to a derivative.
+    pub seconds: f64,
+}
+
+/// A combination on all states.
+#[derive(Clone, Copy, Debug)]
+pub struct Combination {
+    pub number: Number,
+    pub derivative: Derivative,
+    pub rank: RankMethod,
+    /// Seconds a state: both parts, timed apart and added.
+    pub seconds: f64,
+    pub digits: Digits,
+    /// Verdicts that are not the certified rank.
+    pub wrong: u64,
+    /// States at which it says that it cannot tell.
+    pub undecided: u64,
+    /// States at which there was no matrix, or its decomposition gave up.
+    pub failed: u64,
+    /// Right verdicts that are proofs, and not computed.
+    pub certified: u64,
+    /// No other is as fast, as accurate at its worst state, as often right and as often certain, and better in one of
+    /// these.
+    pub on_front: bool,
+}
+
+impl Combination {
+    /// States without the right verdict.
+    pub fn not_right(&self) -> u64 {
+        self.wrong + self.undecided + self.failed
+    }
+}
+
+/// A combination that makes no sense, or is not possible here; `None` stands for all.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    pub number: Number,
+    pub derivative: Option<Derivative>,
+    pub rank: Option<RankMethod>,
+    pub reason: String,
+}
+
+/// What was measured on one system.
+#[derive(Clone, Debug)]
+pub struct Trade {
+    pub file: String,
+    pub title: String,
+    /// Where the rows come from.
+    pub rows: String,
+    /// The words whose differentials the rows are, where that is known.
+    pub words: Vec<String>,
+    /// Rows and columns of the matrix.
+    pub size: (usize, usize),
+    /// How many of its entries are no constants.
+    pub varying: usize,
+    /// Rows and columns of what remains without unit rows: on it the rank is decided.
+    pub block: (usize, usize),
+    pub seed: u64,
+    /// States on which everything was done.
+    pub states: u64,
+    /// States that were drawn and left out, because nothing is known of them for certain: poles among them.
+    pub without_truth: u64,
+    /// The certified ranks.
+    pub certified_ranks: BTreeMap<usize, u64>,
+    pub derivatives: Vec<DerivativeResult>,
+    pub ranks: Vec<RankResult>,
+    pub combinations: Vec<Combination>,
+    pub left_out: Vec<LeftOut>,
+    /// Rounds of timing, in which all take turns.
+    pub rounds: usize,
+    pub interrupted: bool,
+    pub seconds: f64,
+}
+
+/// Marks the combinations that no other beats in time, digits at the worst state, right verdicts and certain ones.
+pub(super) fn mark_front(combinations: &mut [Combination]) {
+    let beats = |a: &Combination, b: &Combination| {
+        let measures = |c: &Combination| (c.seconds, -c.digits.worst(), c.not_right(), -(c.certified as f64));
+        let (x, y) = (measures(a), measures(b));
+        x.0 <= y.0 && x.1 <= y.1 && x.2 <= y.2 && x.3 <= y.3 && x != y
+    };
+    let all = combinations.to_vec();
+    for combination in combinations {
+        combination.on_front = !all.iter().any(|other| beats(other, combination));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn combination(seconds: f64, worst: f64, wrong: u64) -> Combination {
+        Combination {
+            number: Number::Double,
+            derivative: Derivative::Graph,
+            rank: RankMethod::SvdFaer,
+            seconds,
+            digits: Digits::Measured { median: worst, worst },
+            wrong,
+            undecided: 0,
+            failed: 0,
+            certified: 0,
+            on_front: false,
+        }
+    }
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        let mut all = vec![
+            combination(1.0, 5.0, 3), // the fastest
+            combination(2.0, 5.0, 3), // as the fastest, and slower
+            combination(3.0, 9.0, 3), // more digits
+            combination(4.0, 7.0, 0), // fewer wrong verdicts
+            combination(5.0, 8.0, 1), // beaten in nothing by one alone: more digits than the one before
+            combination(6.0, 8.0, 1), // the same, later
+        ];
+        mark_front(&mut all);
+        let front: Vec<bool> = all.iter().map(|c| c.on_front).collect();
+        assert_eq!(front, [true, false, true, true, true, false]);
+    }
+}

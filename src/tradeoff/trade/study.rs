@@ -1,0 +1,260 @@
+//! One kind of number with all its ways: what they get right, and the jobs that tell how long they take.
+
+use super::combination::{
+    Combination, Derivative, DerivativeResult, Digits, LeftOut, Number, RankMethod, RankResult,
+};
+use super::ranks::{RankWay, Verdict};
+use super::sense::{no_derivative, no_rank};
+use super::timing::{Job, Part};
+use super::truth::{Exact, Truth};
+use super::ways::{Possible, Way};
+use super::work::Work;
+use crate::number::Arithmetic;
+use rayon::prelude::*;
+
+/// States that are evaluated in one go.
+const CHUNK: usize = 32;
+
+/// How accurate a kind of number can be.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Accuracy {
+    /// So many decimal digits, and no more.
+    Digits(f64),
+    Exact,
+    Modular,
+}
+
+/// The relative error of a value; infinite for what is no number, or an enclosure that does not enclose.
+type ErrorOf<'w, N> = Box<dyn Fn(&N, &Exact) -> f64 + Send + Sync + 'w>;
+
+/// One kind of number, and what can be done with it.
+pub(super) struct Setup<'w, A: Arithmetic> {
+    pub number: Number,
+    pub arithmetic: A,
+    pub accuracy: Accuracy,
+    error: ErrorOf<'w, A::Number>,
+    pub ways: Vec<(Derivative, Way<'w, A::Number>)>,
+    pub ranks: Vec<(RankMethod, RankWay<'w, A::Number>)>,
+    /// Ways that would make sense and are not possible here.
+    left_out: Vec<(Derivative, String)>,
+}
+
+impl<'w, A: Arithmetic> Setup<'w, A> {
+    pub fn new(
+        number: Number,
+        arithmetic: A,
+        accuracy: Accuracy,
+        error: impl Fn(&A::Number, &Exact) -> f64 + Send + Sync + 'w,
+    ) -> Self {
+        let error = Box::new(error);
+        Setup {
+            number,
+            arithmetic,
+            accuracy,
+            error,
+            ways: Vec::new(),
+            ranks: Vec::new(),
+            left_out: Vec::new(),
+        }
+    }
+
+    /// Takes a way in, or notes why it is not possible here.
+    pub fn way(&mut self, derivative: Derivative, way: Possible<'w, A::Number>) {
+        match way {
+            Ok(way) => self.ways.push((derivative, way)),
+            Err(reason) => self.left_out.push((derivative, reason)),
+        }
+    }
+
+    /// Everything that is not combined, and why.
+    fn left_out(&self) -> Vec<LeftOut> {
+        let leave_out = |derivative, rank, reason| LeftOut { number: self.number, derivative, rank, reason };
+        let taken = |wanted: &Derivative| self.ways.iter().any(|(derivative, _)| derivative == wanted);
+        let mut found = Vec::new();
+        for derivative in Derivative::ALL.into_iter().filter(|derivative| !taken(derivative)) {
+            let impossible = self.left_out.iter().find(|(other, _)| *other == derivative);
+            let reason = match impossible {
+                Some((_, reason)) => reason.clone(),
+                None => no_derivative(self.number, derivative).to_owned(),
+            };
+            found.push(leave_out(Some(derivative), None, reason));
+        }
+        let taken = |wanted: &RankMethod| self.ranks.iter().any(|(rank, _)| rank == wanted);
+        for rank in RankMethod::ALL.into_iter().filter(|rank| !taken(rank)) {
+            found.push(leave_out(None, Some(rank), no_rank(self.number, rank).to_owned()));
+        }
+        found
+    }
+}
+
+/// What was found so far; seconds come later.
+#[derive(Default)]
+pub(super) struct Findings {
+    pub derivatives: Vec<DerivativeResult>,
+    pub ranks: Vec<RankResult>,
+    pub left_out: Vec<LeftOut>,
+    verdicts: Vec<Combination>,
+}
+
+impl Findings {
+    pub fn set_seconds(&mut self, of: &Part, seconds: f64) {
+        for found in &mut self.derivatives {
+            if *of == Part::Derivative(found.number, found.derivative) {
+                found.seconds = seconds;
+            }
+        }
+        for found in &mut self.ranks {
+            if *of == Part::Rank(found.number, found.rank) {
+                found.seconds = seconds;
+            }
+        }
+    }
+
+    /// All combinations, with the sums of the times of their parts.
+    pub fn combinations(&self) -> Vec<Combination> {
+        let mut all = self.verdicts.clone();
+        for combination in &mut all {
+            let derivative = self.derivatives.iter().find(|found| {
+                (found.number, found.derivative) == (combination.number, combination.derivative)
+            });
+            let rank = self
+                .ranks
+                .iter()
+                .find(|found| (found.number, found.rank) == (combination.number, combination.rank));
+            let seconds = |found: Option<f64>| found.unwrap_or(f64::INFINITY);
+            combination.seconds = seconds(derivative.map(|d| d.seconds)) + seconds(rank.map(|r| r.seconds));
+        }
+        all
+    }
+}
+
+/// Evaluates everything once at all states, on all cores, and leaves the jobs for the timing.
+pub(super) fn study<'s, A: Arithmetic + Sync>(
+    work: &Work,
+    setup: &'s Setup<'_, A>,
+    findings: &mut Findings,
+    jobs: &mut Vec<Job<'s>>,
+) where
+    A::Number: Send + Sync + 's,
+{
+    findings.left_out.extend(setup.left_out());
+    let mut timed = Vec::new();
+    for (derivative, way) in &setup.ways {
+        let entries = evaluate(work, way);
+        let (digits, failed) = digits(work, setup, &entries);
+        let (number, derivative) = (setup.number, *derivative);
+        findings.derivatives.push(DerivativeResult {
+            number,
+            derivative,
+            seconds: f64::INFINITY,
+            digits,
+            failed,
+        });
+        let blocks: Vec<Option<Vec<A::Number>>> = entries
+            .into_par_iter()
+            .map(|values| values.and_then(|values| work.block.entries(&setup.arithmetic, &values)))
+            .collect();
+        for (rank, decide) in &setup.ranks {
+            findings.verdicts.push(Combination {
+                number,
+                derivative,
+                rank: *rank,
+                seconds: f64::INFINITY,
+                digits,
+                wrong: 0,
+                undecided: 0,
+                failed: 0,
+                certified: 0,
+                on_front: false,
+            });
+            if let Some(tally) = findings.verdicts.last_mut() {
+                count(work, tally, &verdicts(&blocks, decide));
+            }
+        }
+        if timed.is_empty() {
+            timed = blocks;
+        }
+        jobs.push(Job::new(Part::Derivative(number, derivative), move |states| {
+            way(0..states, &mut |values| {
+                std::hint::black_box(values);
+            });
+        }));
+    }
+    for (rank, decide) in &setup.ranks {
+        findings.ranks.push(RankResult { number: setup.number, rank: *rank, seconds: f64::INFINITY });
+        let blocks = timed.clone();
+        jobs.push(Job::new(Part::Rank(setup.number, *rank), move |states| {
+            decide(&blocks[..states.min(blocks.len())], &mut |verdict| {
+                std::hint::black_box(verdict);
+            });
+        }));
+    }
+}
+
+fn evaluate<N: Clone + Send>(work: &Work, way: &Way<'_, N>) -> Vec<Option<Vec<N>>> {
+    let count = work.states.len();
+    let chunk = |index: usize| {
+        let mut found = Vec::with_capacity(CHUNK);
+        way(index * CHUNK..((index + 1) * CHUNK).min(count), &mut |values| {
+            found.push(values.map(<[N]>::to_vec))
+        });
+        found
+    };
+    (0..count.div_ceil(CHUNK)).into_par_iter().flat_map_iter(chunk).collect()
+}
+
+/// The digits at the median and at the worst state, and how many states have no value.
+fn digits<A: Arithmetic + Sync>(
+    work: &Work,
+    setup: &Setup<'_, A>,
+    entries: &[Option<Vec<A::Number>>],
+) -> (Digits, u64)
+where
+    A::Number: Sync,
+{
+    let most = if let Accuracy::Digits(most) = setup.accuracy { most } else { f64::INFINITY };
+    let at_a_state = |(values, truth): (&Option<Vec<A::Number>>, &Truth)| {
+        let errors =
+            values.as_ref()?.iter().zip(&truth.values).map(|(value, exact)| (setup.error)(value, exact));
+        let worst = errors.fold(0.0, f64::max);
+        // at worst none are right; and zero is not minus zero
+        worst.is_finite().then(|| (-worst.log10()).min(most).max(0.0) + 0.0)
+    };
+    let mut found: Vec<Option<f64>> = entries.par_iter().zip(&work.truths).map(at_a_state).collect();
+    let failed = found.iter().filter(|digits| digits.is_none()).count() as u64;
+    match setup.accuracy {
+        Accuracy::Exact if failed == 0 => return (Digits::Exact, 0),
+        Accuracy::Modular => return (Digits::Modular, failed),
+        _ => {}
+    }
+    found.sort_by(|a, b| a.unwrap_or(0.0).total_cmp(&b.unwrap_or(0.0)));
+    let at = |place: usize| found.get(place).copied().flatten().unwrap_or(0.0);
+    (Digits::Measured { median: at(found.len() / 2), worst: at(0) }, failed)
+}
+
+fn verdicts<N: Sync>(blocks: &[Option<Vec<N>>], decide: &RankWay<'_, N>) -> Vec<Verdict> {
+    let chunk = |blocks: &[Option<Vec<N>>]| {
+        let mut found = Vec::with_capacity(blocks.len());
+        decide(blocks, &mut |verdict| found.push(verdict));
+        found
+    };
+    blocks.par_chunks(CHUNK).flat_map_iter(chunk).collect()
+}
+
+fn count(work: &Work, tally: &mut Combination, verdicts: &[Verdict]) {
+    for (verdict, truth) in verdicts.iter().zip(&work.truths) {
+        match verdict {
+            Verdict::Rank(rank) if work.block.eliminated + rank != truth.rank => tally.wrong += 1,
+            // a nonzero minor modulo a prime is one for certain; that there is none is not
+            Verdict::Rank(rank) => {
+                tally.certified += u64::from(match tally.number {
+                    Number::Rational | Number::Interval => true,
+                    Number::Residue => *rank == work.block.rows.min(work.block.columns),
+                    Number::Single | Number::Double | Number::DoubleDouble => false,
+                });
+            }
+            Verdict::Undecided => tally.undecided += 1,
+            Verdict::Failed => tally.failed += 1,
+        }
+    }
+}

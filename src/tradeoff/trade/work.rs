@@ -1,0 +1,189 @@
+//! What all combinations have to do.
+
+use super::TradeQuestion;
+use super::programs::Programs;
+use super::rows::Rows;
+use super::truth::{Truth, radians};
+use crate::expression::{Input, NodeId, Program, Symbol, expand_angles};
+use crate::number::{Arithmetic, Refusal};
+use crate::observability::{Branch, Locus, Reduction, State};
+use crate::system::System;
+use dashu::rational::RBig;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Where an entry of the remaining block comes from.
+#[derive(Clone, Debug)]
+enum Slot {
+    /// The place among the entries that vary.
+    Varying(usize),
+    Constant(RBig),
+}
+
+/// The matrix on which the rank is decided: what remains without unit rows.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    pub eliminated: usize,
+    pub rows: usize,
+    pub columns: usize,
+    slots: Vec<Slot>,
+}
+
+impl Block {
+    fn new(system: &System, entries: &[NodeId], varying: &[usize]) -> Block {
+        let columns = system.states.len();
+        let found = Reduction::new(&system.graph, entries, columns);
+        let places = found.rows.iter().flat_map(|r| found.columns.iter().map(move |c| r * columns + c));
+        let slot = |place: usize| match system.graph.constant_value(entries[place]) {
+            Some(value) => Slot::Constant(value.clone()),
+            None => Slot::Varying(varying.partition_point(|other| *other < place)),
+        };
+        Block {
+            eliminated: found.eliminated,
+            rows: found.rows.len(),
+            columns: found.columns.len(),
+            slots: places.map(slot).collect(),
+        }
+    }
+
+    /// Whether nothing remains, so that there is nothing to decide.
+    pub fn is_empty(&self) -> bool {
+        self.slots.is_empty()
+    }
+
+    /// Its entries, one row after the other, from the values of the entries that vary; `None` where a constant has no
+    /// image.
+    pub fn entries<A: Arithmetic>(&self, arithmetic: &A, values: &[A::Number]) -> Option<Vec<A::Number>> {
+        let entry = |slot: &Slot| match slot {
+            Slot::Varying(place) => values.get(*place).cloned(),
+            Slot::Constant(value) => arithmetic.rational(value).ok(),
+        };
+        self.slots.iter().map(entry).collect()
+    }
+
+    /// The same by rows.
+    pub fn rows_of<A: Arithmetic>(
+        &self,
+        arithmetic: &A,
+        values: &[A::Number],
+    ) -> Option<Vec<Vec<A::Number>>> {
+        let entries = self.entries(arithmetic, values)?;
+        Some(entries.chunks(self.columns.max(1)).map(<[A::Number]>::to_vec).collect())
+    }
+}
+
+pub(super) struct Work {
+    pub system: System,
+    /// Where the rows come from, and their words where they are known.
+    pub origin: String,
+    pub words: Vec<String>,
+    pub columns: usize,
+    pub rows: usize,
+    /// The places of the entries that are no constants.
+    pub varying: Vec<usize>,
+    pub block: Block,
+    pub programs: Programs,
+    pub states: Vec<State>,
+    /// The values of the symbols of [`PointPrograms`] at each state as enclosures, angles in radians.
+    ///
+    /// [`PointPrograms`]: crate::tradeoff::PointPrograms
+    pub points: Vec<Vec<(RBig, RBig)>>,
+    pub truths: Vec<Truth>,
+    pub without_truth: u64,
+}
+
+impl Work {
+    pub fn new(mut system: System, question: &TradeQuestion<'_>) -> Result<Work, String> {
+        if system.states.is_empty() || system.outputs.is_empty() {
+            return Err(format!("{} declares no states or no outputs", system.name));
+        }
+        let columns = system.states.len();
+        let rows = Rows::of(&mut system)?;
+        let angles = system.angles();
+        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let entries = expand_angles(&mut system.graph, &rows.entries, is_angle);
+        let constant = |place: &usize| system.graph.constant_value(entries[*place]).is_some();
+        let varying: Vec<usize> = (0..entries.len()).filter(|place| !constant(place)).collect();
+        let block = Block::new(&system, &entries, &varying);
+        // what the fields need is drawn too: dual numbers and differences go through them
+        let mut mentioned = rows.entries;
+        mentioned.extend(system.outputs.iter().map(|(_, node)| *node));
+        let rates = system.fields.iter().flat_map(|field| field.components.iter().map(|(_, node)| *node));
+        mentioned.extend(rates);
+        let locus = Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &mentioned)
+            .map_err(|error| error.to_string())?;
+        let programs = Programs::new(&mut system, &entries, &varying, &rows.words);
+        let words = rows.words.iter().flatten().map(|word| word.text(&system)).collect();
+        let mut work = Work {
+            system,
+            origin: rows.origin,
+            words,
+            columns,
+            rows: entries.len() / columns,
+            varying,
+            block,
+            programs,
+            states: Vec::new(),
+            points: Vec::new(),
+            truths: Vec::new(),
+            without_truth: 0,
+        };
+        work.find_truths(&locus, question)?;
+        Ok(work)
+    }
+
+    fn find_truths(&mut self, locus: &Locus, question: &TradeQuestion<'_>) -> Result<(), String> {
+        let symbols = self.programs.points.symbols();
+        let rows: Vec<usize> = self.varying.iter().map(|place| place / self.columns).collect();
+        let drawn: Vec<Option<(State, Truth, Vec<_>)>> = (0..question.samples)
+            .into_par_iter()
+            .map(|index| {
+                let state = locus.draw(question.seed, index).map_err(|error| error.to_string())?;
+                let truth = Truth::at(&state, &self.programs.graph, &self.block, &rows);
+                let point: Option<Vec<_>> = symbols.iter().map(|symbol| radians(&state, *symbol)).collect();
+                Ok(truth.zip(point).map(|(truth, point)| (state, truth, point)))
+            })
+            .collect::<Result<_, String>>()?;
+        for item in drawn {
+            match item {
+                Some((state, truth, point)) => {
+                    self.states.push(state);
+                    self.points.push(point);
+                    self.truths.push(truth);
+                }
+                None => self.without_truth += 1,
+            }
+        }
+        if self.states.is_empty() {
+            return Err("at no sampled state is the rank of the rows known for certain".to_owned());
+        }
+        Ok(())
+    }
+
+    pub fn rank_histogram(&self) -> BTreeMap<usize, u64> {
+        let mut histogram = BTreeMap::new();
+        for truth in &self.truths {
+            *histogram.entry(truth.rank).or_insert(0) += 1;
+        }
+        histogram
+    }
+}
+
+/// What a program needs at every state, in the numbers of an arithmetic.
+///
+/// # Errors
+/// In words, where a number has no image.
+pub(super) fn inputs<A: Arithmetic>(
+    work: &Work,
+    program: &Program,
+    arithmetic: &A,
+) -> Result<Vec<Vec<A::Number>>, String> {
+    let complain = |refusal: Option<Refusal>| match refusal {
+        Some(refusal) => refusal.to_string(),
+        None => match program.inputs().iter().find(|input| matches!(input, Input::Opaque(_))) {
+            Some(_) => "a function that is treated as an unknown".to_owned(),
+            None => "an angle is met outside sines and cosines".to_owned(),
+        },
+    };
+    work.states.iter().map(|state| state.inputs(program, arithmetic).map_err(complain)).collect()
+}
