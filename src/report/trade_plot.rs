@@ -6,7 +6,7 @@ use plotters::coord::CoordTranslate;
 use plotters::prelude::*;
 
 /// All digits are drawn here.
-const ALL_DIGITS: f64 = 36.0;
+const ALL_DIGITS: f64 = 35.0;
 /// What is exact modulo a prime, and has no digits, here.
 const NO_DIGITS: f64 = -1.5;
 
@@ -30,7 +30,7 @@ fn height(combination: &Combination) -> f64 {
 }
 
 /// Every combination by its time a state (logarithmic) and the digits of its worst state: colours are kinds of numbers,
-/// shapes ways to a derivative; filled where every verdict is right. The line joins those that no other combination
+/// shapes ways to a derivative; filled where every verdict is right, with a dark rim where every one is certain. The line joins those that no other combination
 /// whose every verdict is right beats in time and digits.
 pub fn trade_plot(trade: &Trade) -> String {
     let timed: Vec<&Combination> = trade.combinations.iter().filter(|c| c.seconds.is_finite()).collect();
@@ -42,7 +42,7 @@ pub fn trade_plot(trade: &Trade) -> String {
     svg((760, 460), |area| {
         let (plot, legend) = area.split_horizontally(580);
         let mut chart = ChartBuilder::on(&plot)
-            .caption("what accuracy costs", ("sans-serif", 15).into_font().color(&INK))
+            .caption(&trade.title, ("sans-serif", 15).into_font().color(&INK))
             .margin(8)
             .x_label_area_size(38)
             .y_label_area_size(46)
@@ -54,7 +54,7 @@ pub fn trade_plot(trade: &Trade) -> String {
             .x_labels(8)
             .x_label_formatter(&|v| time_label(*v))
             .y_labels(8)
-            .y_label_formatter(&|v| if *v > 33.0 { "all".to_owned() } else { format!("{v:.0}") })
+            .y_label_formatter(&|v| if *v == ALL_DIGITS { "all".to_owned() } else { format!("{v:.0}") })
             .x_desc("time a state, derivative and rank")
             .y_desc("digits at the worst state")
             .axis_desc_style(("sans-serif", 13))
@@ -73,8 +73,15 @@ pub fn trade_plot(trade: &Trade) -> String {
         chart.draw_series(LineSeries::new(line, INK.stroke_width(1)))?;
         for combination in &timed {
             let at = (combination.seconds * 1e9, height(combination));
-            let filled = combination.not_right() == 0;
-            mark(chart.plotting_area(), at, combination.derivative, colour(combination.number), filled)?;
+            let colour = colour(combination.number);
+            let inside = if combination.not_right() == 0 { colour } else { WHITE };
+            let rim = if combination.certified == trade.states { INK } else { colour };
+            mark(chart.plotting_area(), at, combination.derivative, inside, rim)?;
+        }
+        if timed.iter().any(|c| c.digits == Digits::Modular) {
+            let at = (fastest / 1.3, NO_DIGITS + 0.4);
+            let words = ("sans-serif", 11).into_font().color(&INK);
+            chart.plotting_area().draw(&Text::new("modulo a prime: no digits", at, words))?;
         }
         let key = |row: usize| (14, 40 + 20 * row as i32);
         let words = ("sans-serif", 12).into_font().color(&INK);
@@ -82,16 +89,20 @@ pub fn trade_plot(trade: &Trade) -> String {
         for (row, number) in numbers.iter().enumerate() {
             let (x, y) = key(row);
             legend.draw(&Rectangle::new([(x - 5, y - 5), (x + 5, y + 5)], colour(*number).filled()))?;
-            legend.draw(&Text::new(number.name(), (x + 14, y - 6), words.clone()))?;
+            legend.draw(&Text::new(number.name(), (x + 14, y - 5), words.clone()))?;
         }
         for (row, derivative) in distinct(timed.iter().map(|c| c.derivative)).into_iter().enumerate() {
             let (x, y) = key(row + numbers.len() + 1);
-            mark(&legend, (x, y), derivative, INK, true)?;
-            legend.draw(&Text::new(derivative.name(), (x + 14, y - 6), words.clone()))?;
+            mark(&legend, (x, y), derivative, INK, INK)?;
+            legend.draw(&Text::new(derivative.name(), (x + 14, y - 5), words.clone()))?;
         }
         let (x, y) = key(15);
-        legend.draw(&Text::new("hollow: some verdicts", (x - 6, y), words.clone()))?;
-        legend.draw(&Text::new("are not right", (x - 6, y + 14), words))?;
+        for (row, text) in ["hollow: some verdicts", "are not right", "dark rim: all verdicts", "are certain"]
+            .iter()
+            .enumerate()
+        {
+            legend.draw(&Text::new(*text, (x - 6, y + 15 * row as i32), words.clone()))?;
+        }
         Ok(())
     })
 }
@@ -128,8 +139,8 @@ fn mark<C: CoordTranslate>(
     area: &DrawingArea<SVGBackend<'_>, C>,
     at: C::From,
     derivative: Derivative,
-    colour: RGBColor,
-    filled: bool,
+    inside: RGBColor,
+    rim: RGBColor,
 ) -> Result<(), Box<dyn std::error::Error>>
 where
     C::From: Clone,
@@ -137,11 +148,9 @@ where
     let corners = corners(derivative);
     let mut outline = corners.clone();
     outline.extend(corners.first());
-    let inside = if filled { colour } else { WHITE };
     area.draw(&(EmptyElement::at(at.clone()) + Polygon::new(corners, inside.filled())))
         .map_err(|error| error.to_string())?;
-    area.draw(&(EmptyElement::at(at) + PathElement::new(outline, colour)))
-        .map_err(|error| error.to_string())?;
+    area.draw(&(EmptyElement::at(at) + PathElement::new(outline, rim))).map_err(|error| error.to_string())?;
     Ok(())
 }
 
