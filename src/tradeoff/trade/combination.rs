@@ -85,6 +85,8 @@ impl Derivative {
 /// A way to a rank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RankMethod {
+    /// Of the whole matrix, unit rows and all: what most people do.
+    SvdWhole,
     SvdNalgebra,
     SvdFaer,
     /// After equilibration, as `palmistry rank` does it.
@@ -101,7 +103,8 @@ pub enum RankMethod {
 
 impl RankMethod {
     /// All of them.
-    pub const ALL: [RankMethod; 9] = [
+    pub const ALL: [RankMethod; 10] = [
+        RankMethod::SvdWhole,
         RankMethod::SvdNalgebra,
         RankMethod::SvdFaer,
         RankMethod::SvdEquilibrated,
@@ -116,6 +119,7 @@ impl RankMethod {
     /// In a few words.
     pub fn name(self) -> &'static str {
         match self {
+            RankMethod::SvdWhole => "SVD, whole matrix",
             RankMethod::SvdNalgebra => "SVD (nalgebra)",
             RankMethod::SvdFaer => "SVD (faer)",
             RankMethod::SvdEquilibrated => "SVD, equilibrated",
@@ -126,6 +130,13 @@ impl RankMethod {
             RankMethod::ExactElimination => "exact elimination",
             RankMethod::IntervalElimination => "interval elimination",
         }
+    }
+}
+
+impl RankMethod {
+    /// Whether it takes the whole matrix, and not what remains without unit rows.
+    pub(super) fn keeps_unit_rows(self) -> bool {
+        self == RankMethod::SvdWhole
     }
 }
 
@@ -240,52 +251,4 @@ pub struct Trade {
     pub rounds: usize,
     pub interrupted: bool,
     pub seconds: f64,
-}
-
-/// Marks the combinations that no other beats in time, digits at the worst state, right verdicts and certain ones.
-pub(super) fn mark_front(combinations: &mut [Combination]) {
-    let beats = |a: &Combination, b: &Combination| {
-        let measures = |c: &Combination| (c.seconds, -c.digits.worst(), c.not_right(), -(c.certified as f64));
-        let (x, y) = (measures(a), measures(b));
-        x.0 <= y.0 && x.1 <= y.1 && x.2 <= y.2 && x.3 <= y.3 && x != y
-    };
-    let all = combinations.to_vec();
-    for combination in combinations {
-        combination.on_front = !all.iter().any(|other| beats(other, combination));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn combination(seconds: f64, worst: f64, wrong: u64) -> Combination {
-        Combination {
-            number: Number::Double,
-            derivative: Derivative::Graph,
-            rank: RankMethod::SvdFaer,
-            seconds,
-            digits: Digits::Measured { median: worst, worst },
-            wrong,
-            undecided: 0,
-            failed: 0,
-            certified: 0,
-            on_front: false,
-        }
-    }
-
-    #[test]
-    fn the_front_holds_what_nothing_beats() {
-        let mut all = vec![
-            combination(1.0, 5.0, 3), // the fastest
-            combination(2.0, 5.0, 3), // as the fastest, and slower
-            combination(3.0, 9.0, 3), // more digits
-            combination(4.0, 7.0, 0), // fewer wrong verdicts
-            combination(5.0, 8.0, 1), // beaten in nothing by one alone: more digits than the one before
-            combination(6.0, 8.0, 1), // the same, later
-        ];
-        mark_front(&mut all);
-        let front: Vec<bool> = all.iter().map(|c| c.on_front).collect();
-        assert_eq!(front, [true, false, true, true, true, false]);
-    }
 }

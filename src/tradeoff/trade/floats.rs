@@ -3,7 +3,7 @@
 use super::combination::{Derivative, Number, RankMethod};
 use super::duals::duals;
 use super::ranks::{
-    Float, RankWay, each, elimination, equilibrated, intervals, lu, qr, svd_faer, svd_nalgebra,
+    Float, RankWay, Verdict, each, elimination, equilibrated, intervals, lu, qr, svd_faer, svd_nalgebra,
 };
 use super::study::{Accuracy, Setup};
 use super::truth::Exact;
@@ -64,7 +64,8 @@ fn machine<'w, F: Float + DualNum + Copy>(
 ) -> Setup<'w, Floats<F>> {
     let mut setup = rounded(work, number, spacing, |value: &F, exact| error(Real::to_f64(*value), exact));
     let columns = work.block.columns;
-    let mut add = |method, way: fn(&[F], usize) -> super::ranks::Verdict| {
+    setup.ranks.push((RankMethod::SvdWhole, each(|matrix| svd_nalgebra(matrix, work.columns))));
+    let mut add = |method, way: fn(&[F], usize) -> Verdict| {
         setup.ranks.push((method, nonempty(work, each(move |block| way(block, columns)))));
     };
     add(RankMethod::SvdNalgebra, svd_nalgebra);
@@ -76,7 +77,7 @@ fn machine<'w, F: Float + DualNum + Copy>(
 
 /// A block without rows or columns has the rank zero, whoever is asked.
 pub(super) fn nonempty<'w, N: 'w>(work: &Work, way: RankWay<'w, N>) -> RankWay<'w, N> {
-    if work.block.is_empty() { each(|_| super::ranks::Verdict::Rank(0)) } else { way }
+    if work.block.is_empty() { each(|_| Verdict::Rank(0)) } else { way }
 }
 
 pub(super) fn single(work: &Work) -> Setup<'_, Floats<f32>> {

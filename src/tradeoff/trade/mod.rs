@@ -10,6 +10,7 @@ mod combination;
 mod duals;
 mod exact;
 mod floats;
+mod front;
 mod programs;
 mod ranks;
 mod rows;
@@ -25,7 +26,7 @@ pub use combination::{
 };
 
 use crate::system::System;
-use combination::mark_front;
+use front::mark_front;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use study::Findings;

@@ -8,7 +8,7 @@ use super::sense::{no_derivative, no_rank};
 use super::timing::{Job, Part};
 use super::truth::{Exact, Truth};
 use super::ways::{Possible, Way};
-use super::work::Work;
+use super::work::{Block, Work};
 use crate::number::Arithmetic;
 use rayon::prelude::*;
 
@@ -138,7 +138,7 @@ pub(super) fn study<'s, A: Arithmetic + Sync>(
     A::Number: Send + Sync + 's,
 {
     findings.left_out.extend(setup.left_out());
-    let mut timed = Vec::new();
+    let mut timed = (Vec::new(), Vec::new());
     for (derivative, way) in &setup.ways {
         let entries = evaluate(work, way);
         let (digits, failed) = digits(work, setup, &entries);
@@ -150,10 +150,16 @@ pub(super) fn study<'s, A: Arithmetic + Sync>(
             digits,
             failed,
         });
-        let blocks: Vec<Option<Vec<A::Number>>> = entries
-            .into_par_iter()
-            .map(|values| values.and_then(|values| work.block.entries(&setup.arithmetic, &values)))
-            .collect();
+        let matrices = |block: &Block| -> Vec<Option<Vec<A::Number>>> {
+            let entries = entries.par_iter().map(Option::as_ref);
+            entries.map(|values| block.entries(&setup.arithmetic, values?)).collect()
+        };
+        let blocks = matrices(&work.block);
+        let wholes = if setup.ranks.iter().any(|(rank, _)| rank.keeps_unit_rows()) {
+            matrices(&work.whole)
+        } else {
+            Vec::new()
+        };
         for (rank, decide) in &setup.ranks {
             findings.verdicts.push(Combination {
                 number,
@@ -168,11 +174,13 @@ pub(super) fn study<'s, A: Arithmetic + Sync>(
                 on_front: false,
             });
             if let Some(tally) = findings.verdicts.last_mut() {
-                count(work, tally, &verdicts(&blocks, decide));
+                let (block, matrices) =
+                    if rank.keeps_unit_rows() { (&work.whole, &wholes) } else { (&work.block, &blocks) };
+                count(work, block, tally, &verdicts(matrices, decide));
             }
         }
-        if timed.is_empty() {
-            timed = blocks;
+        if timed.0.is_empty() {
+            timed = (blocks, wholes);
         }
         jobs.push(Job::new(Part::Derivative(number, derivative), move |states| {
             way(0..states, &mut |values| {
@@ -182,7 +190,7 @@ pub(super) fn study<'s, A: Arithmetic + Sync>(
     }
     for (rank, decide) in &setup.ranks {
         findings.ranks.push(RankResult { number: setup.number, rank: *rank, seconds: f64::INFINITY });
-        let blocks = timed.clone();
+        let blocks = if rank.keeps_unit_rows() { timed.1.clone() } else { timed.0.clone() };
         jobs.push(Job::new(Part::Rank(setup.number, *rank), move |states| {
             decide(&blocks[..states.min(blocks.len())], &mut |verdict| {
                 std::hint::black_box(verdict);
@@ -241,15 +249,15 @@ fn verdicts<N: Sync>(blocks: &[Option<Vec<N>>], decide: &RankWay<'_, N>) -> Vec<
     blocks.par_chunks(CHUNK).flat_map_iter(chunk).collect()
 }
 
-fn count(work: &Work, tally: &mut Combination, verdicts: &[Verdict]) {
+fn count(work: &Work, block: &Block, tally: &mut Combination, verdicts: &[Verdict]) {
     for (verdict, truth) in verdicts.iter().zip(&work.truths) {
         match verdict {
-            Verdict::Rank(rank) if work.block.eliminated + rank != truth.rank => tally.wrong += 1,
+            Verdict::Rank(rank) if block.eliminated + rank != truth.rank => tally.wrong += 1,
             // a nonzero minor modulo a prime is one for certain; that there is none is not
             Verdict::Rank(rank) => {
                 tally.certified += u64::from(match tally.number {
                     Number::Rational | Number::Interval => true,
-                    Number::Residue => *rank == work.block.rows.min(work.block.columns),
+                    Number::Residue => *rank == block.rows.min(block.columns),
                     Number::Single | Number::Double | Number::DoubleDouble => false,
                 });
             }

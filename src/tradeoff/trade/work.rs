@@ -20,7 +20,7 @@ enum Slot {
     Constant(RBig),
 }
 
-/// The matrix on which the rank is decided: what remains without unit rows.
+/// A matrix on which the rank is decided: what remains without unit rows, or all.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     pub eliminated: usize,
@@ -34,16 +34,32 @@ impl Block {
         let columns = system.states.len();
         let found = Reduction::new(&system.graph, entries, columns);
         let places = found.rows.iter().flat_map(|r| found.columns.iter().map(move |c| r * columns + c));
-        let slot = |place: usize| match system.graph.constant_value(entries[place]) {
-            Some(value) => Slot::Constant(value.clone()),
-            None => Slot::Varying(varying.partition_point(|other| *other < place)),
-        };
         Block {
             eliminated: found.eliminated,
             rows: found.rows.len(),
             columns: found.columns.len(),
-            slots: places.map(slot).collect(),
+            slots: Self::slots(system, entries, varying, places),
         }
+    }
+
+    /// The whole matrix, nothing eliminated.
+    fn whole(system: &System, entries: &[NodeId], varying: &[usize]) -> Block {
+        let columns = system.states.len();
+        let slots = Self::slots(system, entries, varying, 0..entries.len());
+        Block { eliminated: 0, rows: entries.len() / columns, columns, slots }
+    }
+
+    fn slots(
+        system: &System,
+        entries: &[NodeId],
+        varying: &[usize],
+        places: impl Iterator<Item = usize>,
+    ) -> Vec<Slot> {
+        let slot = |place: usize| match system.graph.constant_value(entries[place]) {
+            Some(value) => Slot::Constant(value.clone()),
+            None => Slot::Varying(varying.partition_point(|other| *other < place)),
+        };
+        places.map(slot).collect()
     }
 
     /// Whether nothing remains, so that there is nothing to decide.
@@ -82,6 +98,8 @@ pub(super) struct Work {
     /// The places of the entries that are no constants.
     pub varying: Vec<usize>,
     pub block: Block,
+    /// The matrix with its unit rows.
+    pub whole: Block,
     pub programs: Programs,
     pub states: Vec<State>,
     /// The values of the symbols of [`PointPrograms`] at each state as enclosures, angles in radians.
@@ -105,6 +123,7 @@ impl Work {
         let constant = |place: &usize| system.graph.constant_value(entries[*place]).is_some();
         let varying: Vec<usize> = (0..entries.len()).filter(|place| !constant(place)).collect();
         let block = Block::new(&system, &entries, &varying);
+        let whole = Block::whole(&system, &entries, &varying);
         // what the fields need is drawn too: dual numbers and differences go through them
         let mut mentioned = rows.entries;
         mentioned.extend(system.outputs.iter().map(|(_, node)| *node));
@@ -122,6 +141,7 @@ impl Work {
             rows: entries.len() / columns,
             varying,
             block,
+            whole,
             programs,
             states: Vec::new(),
             points: Vec::new(),
