@@ -4,6 +4,7 @@
 
 mod claims;
 mod errata;
+mod extremes;
 mod page;
 mod plot;
 mod ranks;

@@ -1,6 +1,7 @@
 //! The page that the main job writes: one file, with its plots and nothing from elsewhere.
 
 use super::claims::{error_bound, witness_line};
+use super::extremes::extremes;
 use super::plot;
 use super::verification::ranks_in_words;
 use crate::claim::{Outcome, Verdict};
@@ -54,6 +55,7 @@ pub fn page(found: &Verification) -> String {
                         }
                         a href="#appendix" { "Appendix A.2" }
                         a href="#derivatives" { "Lie derivatives" }
+                        a href="#extremes" { "Speed against accuracy" }
                         a href="#claims" { "All claims" }
                     }
                 }
@@ -63,6 +65,7 @@ pub fn page(found: &Verification) -> String {
                 @for (i, result) in found.regimes.iter().enumerate() { (regime(i, result)) }
                 @if let Some(values) = &found.appendix { (appendix(values, &found.outcomes)) }
                 (derivatives(found))
+                (extremes(found))
                 (all_claims(&found.outcomes))
             }
         }
@@ -196,8 +199,7 @@ fn regime(index: usize, result: &RegimeResult) -> Markup {
                     "proved among the claims (" code { "reduce.*" } "); numerically the Lie derivatives' differentials agree to "
                     (format!("{:.0e}", c.largest_difference.max(f64::EPSILON))) " relative. One state's matrix and singular values take "
                     b { (format!("{:.1}", c.large_seconds / c.small_seconds)) } " times as long with all ten states ("
-                    (c.large_operations) " operations and a spectrum of " (c.large_states) " against "
-                    (c.small_operations) " and " (c.small_states) ")."
+                    (c.large_operations) " operations against " (c.small_operations) ")."
                 }
             }
             div.scroll { table {
@@ -232,7 +234,8 @@ fn regime(index: usize, result: &RegimeResult) -> Markup {
                     }
                 }
                 figcaption {
-                    "The smallest singular value (rows scaled to length one; computed, not certified) over two coordinates. "
+                    "The smallest singular value (of what remains without unit rows, equilibrated; computed, not certified) over two "
+                    "coordinates. "
                     (result.regime.picture.caption)
                 }
             }

@@ -2,6 +2,7 @@
 
 use super::claims::{claim_json, claim_line};
 use super::ranks::rank_json;
+use super::trade::trade_json;
 use crate::observability::RankAnswer;
 use crate::tradeoff::{Map, Rows, Slope};
 use crate::verification::{PrintedValue, RegimeResult, Verification, equations, in_order_of_the_thesis};
@@ -111,6 +112,7 @@ pub fn verification_json(found: &Verification) -> Value {
                 "order": g.order, "operations": g.operations, "seconds": g.seconds,
             })).collect::<Vec<_>>(),
         },
+        "trade": found.trade.as_ref().map(trade_json),
         "seconds": found.seconds,
     })
 }

@@ -15,7 +15,7 @@ pub use routes::{RouteAgreement, compare_routes};
 
 use crate::claim::{Outcome, decide_all};
 use crate::system::{ReadError, System};
-use crate::tradeoff::{Growth, growth_of_lie_derivatives};
+use crate::tradeoff::{Growth, Trade, TradeQuestion, growth_of_lie_derivatives, trade};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -41,6 +41,8 @@ pub struct Verification {
     pub routes: Vec<RouteAgreement>,
     /// The size of the graph, order by order.
     pub growth: Vec<Growth>,
+    /// Speed against accuracy on the general regime, in short.
+    pub trade: Option<Trade>,
     pub seed: u64,
     /// Whether it was stopped before the end.
     pub interrupted: bool,
@@ -71,6 +73,9 @@ pub enum VerifyError {
 const ROUTE_ORDERS: usize = 7;
 /// The orders of the growth curve.
 const GROWTH_ORDERS: usize = 12;
+/// A short version of `trade`.
+const TRADE_STATES: u64 = 100;
+const TRADE_ROUNDS: usize = 3;
 
 /// The proof files of the folder beside those of the regimes, in order of name.
 fn other_files(folder: &Path) -> Result<Vec<String>, VerifyError> {
@@ -103,7 +108,7 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         systems.push(read(&file)?);
     }
     let claims: usize = systems.iter().map(|system| system.claims.len()).sum();
-    let steps = claims as u64 + REGIMES.iter().map(Regime::steps).sum::<u64>() + 3;
+    let steps = claims as u64 + REGIMES.iter().map(Regime::steps).sum::<u64>() + 4;
     let counter = std::sync::atomic::AtomicU64::new(0);
     let step = |what: &str| {
         let done = counter.fetch_add(1, Ordering::Relaxed) + 1;
@@ -131,6 +136,7 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         appendix: None,
         routes: Vec::new(),
         growth: Vec::new(),
+        trade: None,
         seed: options.seed,
         interrupted: false,
         seconds: 0.0,
@@ -149,6 +155,19 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
     if !stopped() {
         step("the growth of the graph");
         verification.growth = growth_of_lie_derivatives(&systems[1], 0, 0, GROWTH_ORDERS);
+    }
+    if !stopped() {
+        step("speed against accuracy");
+        let question = TradeQuestion {
+            samples: TRADE_STATES,
+            seed: options.seed,
+            rounds: TRADE_ROUNDS,
+            interrupt: options.interrupt,
+            progress: &|_, _| (),
+        };
+        let found = trade(&systems[0], &question);
+        verification.trade =
+            Some(found.map_err(|why| VerifyError::Step { step: "speed against accuracy".to_owned(), why })?);
     }
     verification.interrupted = stopped();
     verification.seconds = begin.elapsed().as_secs_f64();
