@@ -6,6 +6,7 @@
 //! This floor knows nothing of states, outputs or claims.
 
 mod angle;
+mod block;
 mod common_factor;
 mod derivative;
 mod expansion;
@@ -20,6 +21,7 @@ mod zero_test;
 pub(crate) mod parse;
 
 pub use angle::expand_angles;
+pub use block::{BlockProgram, Machine};
 pub use common_factor::share_a_factor;
 pub use derivative::Derivation;
 pub use expansion::{Expansion, expand};

@@ -8,6 +8,7 @@
 //!
 //! This floor knows nothing of expressions, systems or palms.
 
+mod bounded;
 mod decimal;
 mod double_double;
 mod dual;
@@ -17,16 +18,19 @@ mod error_free;
 mod float;
 mod fraction;
 mod interval;
+mod lanes;
 mod laurent;
 pub mod polynomial;
 mod rational;
 mod real;
 mod residue;
 mod rung;
+mod sine;
 mod taylor;
 mod tower;
 pub mod univariate;
 
+pub use bounded::Bounded;
 pub use decimal::{Decimal, Decimals, decimal_to_f64};
 pub use double_double::DoubleDouble;
 pub use dual::{Differentiable, Duals};
@@ -35,6 +39,7 @@ pub(crate) use enclosure::{common_decimal, round_to_decimal};
 pub use float::Floats;
 pub use fraction::{Factors, Fraction, Fractions};
 pub use interval::Interval;
+pub use lanes::{Instructions, Lanes, Task, Vectorised};
 pub use laurent::{Laurent, Series};
 pub use rational::{Rationals, display_rational, parse_decimal, rational_from_f64, rational_to_f64};
 pub use real::Real;
