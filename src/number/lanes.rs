@@ -48,6 +48,13 @@ pub trait Lanes:
         called(task)
     }
 
+    /// Zero where the value is finite, else not a number.
+    #[inline(always)]
+    #[allow(clippy::eq_op)] // infinity less infinity is not a number
+    fn lost(self) -> Self {
+        self - self
+    }
+
     /// The larger one; `other` where one of them is not a number.
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
@@ -133,14 +140,14 @@ macro_rules! eight_operator {
             #[inline(always)]
             fn $method(mut self, other: Self) -> Self {
                 for (a, b) in self.0.iter_mut().zip(other.0) {
-                    *a = *a $operator b;
+                    *a $operator b;
                 }
                 self
             }
         }
     )*};
 }
-eight_operator!(Add add +, Sub sub -, Mul mul *, Div div /);
+eight_operator!(Add add +=, Sub sub -=, Mul mul *=, Div div /=);
 
 impl Neg for Eight {
     type Output = Self;

@@ -277,10 +277,9 @@ fn step<L: Lanes>(i: &Instruction, cells: &[Cell<L>], health: &[Cell<L>], length
 }
 
 /// Infinities survive sums and products, but not a division by them nor every function: so arguments and values of
-/// these are looked at. What is not finite, less itself, is not a number. (The sum of an argument and its value does not
+/// these are looked at. (The sum of an argument and its value does not
 /// overflow by itself: one of them is small where the other is large.)
 #[inline(always)]
 fn check<L: Lanes>(argument: L, value: L, health: &Cell<L>) {
-    let sum = argument + value;
-    health.set(health.get() + (sum - sum));
+    health.set(health.get() + (argument + value).lost());
 }

@@ -159,7 +159,7 @@ impl Vectorised for Evaluation<'_, '_, '_> {
                 let mut health = machine.health(lane);
                 for (place, values) in outputs.iter_mut().enumerate() {
                     let value = machine.output(place, lane);
-                    health = health + (value - value);
+                    health = health + value.lost();
                     if here == L::COUNT {
                         value.store(&mut values[first..]);
                     } else {
