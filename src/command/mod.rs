@@ -7,6 +7,7 @@ mod eval;
 mod output;
 mod prove;
 mod rank;
+mod stress;
 mod trade;
 mod verify;
 
@@ -32,6 +33,7 @@ enum Verb {
     Prove(prove::Prove),
     Rank(rank::Rank),
     Trade(trade::Trade),
+    Stress(stress::Stress),
     Eval(eval::Eval),
 }
 
@@ -75,6 +77,7 @@ pub fn run() -> ExitCode {
         Verb::Prove(verb) => (verb.json, verb.run()),
         Verb::Rank(verb) => (verb.json, verb.run()),
         Verb::Trade(verb) => (verb.json, verb.run()),
+        Verb::Stress(verb) => (verb.json, verb.run()),
         Verb::Eval(verb) => (verb.json, verb.run()),
     };
     match result {

@@ -34,7 +34,7 @@ impl Default for Verify {
 
 impl Verify {
     pub fn run(self) -> miette::Result<Status> {
-        let folder = self.folder()?;
+        let folder = folder_of(&self.proofs)?;
         let bar = progress(1, "verifying");
         let found = verify(&Options {
             folder: &folder,
@@ -64,16 +64,16 @@ impl Verify {
         eprintln!("written: {} and {}", html_file.display(), json_file.display());
         Ok(if found.ok() { Status::AsExpected } else { Status::NotAsExpected })
     }
+}
 
-    /// The files are beside the place where the program is run, or beside its source.
-    fn folder(&self) -> miette::Result<PathBuf> {
-        let beside_source = Path::new(env!("CARGO_MANIFEST_DIR")).join(&self.proofs);
-        for folder in [self.proofs.clone(), beside_source] {
-            if folder.is_dir() {
-                return Ok(folder);
-            }
+/// The files are beside the place where the program is run, or beside its source.
+pub(crate) fn folder_of(proofs: &Path) -> miette::Result<PathBuf> {
+    let beside_source = Path::new(env!("CARGO_MANIFEST_DIR")).join(proofs);
+    for folder in [proofs.to_path_buf(), beside_source] {
+        if folder.is_dir() {
+            return Ok(folder);
         }
-        let message = format!("there is no folder {}", self.proofs.display());
-        Err(Unusable::report(message, "run it where 'proofs' is, or name the folder with --proofs"))
     }
+    let message = format!("there is no folder {}", proofs.display());
+    Err(Unusable::report(message, "run it where 'proofs' is, or name the folder with --proofs"))
 }

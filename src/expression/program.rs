@@ -125,6 +125,11 @@ impl Program {
         self.operations.is_empty()
     }
 
+    /// The node that each operation computes: when a program has run, its registers hold their values in this order.
+    pub fn origins(&self) -> &[NodeId] {
+        &self.origins
+    }
+
     /// What has to be given, in this order.
     pub fn inputs(&self) -> &[Input] {
         &self.inputs

@@ -7,6 +7,7 @@ mod landscape;
 mod models;
 mod point_programs;
 mod rounding;
+pub mod stress;
 mod term_by_term;
 mod trade;
 

@@ -4,14 +4,18 @@
 //! This is the one place beside `proofs/` (and the mechanics to come) that knows that there are palms.
 
 mod appendix;
+mod dimensions;
 mod equations;
 mod regimes;
 mod routes;
+mod stress;
 
 pub use appendix::{Appendix, PrintedValue, printed_values};
+pub use dimensions::{DIMENSIONS, UNIT_SYSTEMS, dimension};
 pub use equations::{Equation, NUMBERED, equations, in_order_of_the_thesis};
 pub use regimes::{Picture, REGIMES, Regime, RegimeResult, SingularSet};
 pub use routes::{RouteAgreement, compare_routes};
+pub use stress::{prepare_regimes, short_stress};
 
 use crate::claim::{Outcome, decide_all};
 use crate::system::{ReadError, System};

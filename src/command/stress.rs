@@ -1,0 +1,126 @@
+//! `palmistry stress`: the extremes.
+
+use super::output::{INTERRUPTED, print_json, print_text, progress, write_whole};
+use super::{Status, Unusable};
+use clap::{Args, ValueEnum};
+use palmistry::System;
+use palmistry::report::{stress_json, stress_pictures, stress_text};
+use palmistry::tradeoff::Rows;
+use palmistry::tradeoff::stress::{Stress as Prepared, StressOptions, Study};
+use palmistry::verification::{REGIMES, prepare_regimes};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Takes numbers to the extremes: how near to a singular set, and how large, before a rank is misreported.
+///
+/// Lines approach every singular set down to a distance of 1e-15 (two rates equal, a rate at zero, the palms in line, a
+/// contact at the joint, a determinant's zero). At each point, an exact rational state, the rank is decided in single
+/// precision, in doubles with the customary threshold, in doubles after equilibration, with the errors that intervals
+/// know, by intervals alone, and in double-doubles; beside them stands the certified rank. For each the table has the
+/// distance at which it first reports another rank, and at which an entry first loses more than half of its digits.
+///
+/// Then every quantity is scaled from 1e-150 to 1e150, and the states are looked at in other units, which should change
+/// no verdict. Where numbers overflow or are divided by zero, what did so is named.
+///
+/// Without FILE these are the thesis's regimes. With it, the sets are what the file says to avoid, the divisors of its
+/// rows, and each quantity of its sample at zero.
+///
+/// Example: palmistry stress --out stress
+#[derive(Args)]
+pub(crate) struct Stress {
+    /// A proof file; without one, the thesis's regimes.
+    file: Option<PathBuf>,
+    /// Which rows: the file's own matrix 'rows' where it defines one, or the full codistribution.
+    #[arg(long, value_enum, default_value_t = Which::Own, value_name = "WHICH")]
+    rows: Which,
+    /// States on each set from which lines go; the worst is reported.
+    #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    states: u64,
+    /// States of the sample box that are looked at in other units.
+    #[arg(long, default_value_t = 200, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    samples: u64,
+    /// Seed of the states.
+    #[arg(long, default_value_t = 1, value_name = "S")]
+    seed: u64,
+    /// Write the pictures (SVG) and stress.json into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// The folder that holds the thesis's proof files.
+    #[arg(long, value_name = "DIR", default_value = "proofs/moll2002")]
+    proofs: PathBuf,
+    /// Print one JSON object with 'studies': for each its 'lines', 'scalings', 'units' and 'conditioning'.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Which {
+    Own,
+    Full,
+}
+
+/// States on each set that are looked at in other units.
+const SAMPLES_ON_SETS: u64 = 6;
+
+impl Stress {
+    pub fn run(self) -> miette::Result<Status> {
+        let bar = progress(1, "to the extremes");
+        let done = AtomicU64::new(0);
+        let step = || bar.set_position(done.fetch_add(1, Ordering::Relaxed) + 1);
+        let options = StressOptions {
+            seed: self.seed,
+            states: self.states,
+            step: 1,
+            samples: self.samples,
+            samples_on_sets: SAMPLES_ON_SETS,
+            interrupt: &INTERRUPTED,
+            progress: &step,
+        };
+        let rows = match self.rows {
+            Which::Own => Rows::Own,
+            Which::Full => Rows::Full,
+        };
+        let prepared: Result<Vec<Prepared>, String> = match &self.file {
+            Some(file) => {
+                let mut system = System::read(file)?;
+                Prepared::of_file(&mut system, rows, &options).map(|one| vec![one])
+            }
+            None => {
+                let folder = super::verify::folder_of(&self.proofs)?;
+                let read = |file: &str| System::read(&folder.join(file));
+                let systems =
+                    REGIMES.iter().map(|regime| read(regime.file)).collect::<Result<Vec<_>, _>>()?;
+                prepare_regimes(&systems, rows, &options)
+            }
+        };
+        let prepared = prepared.map_err(|why| Unusable::report(why, ""))?;
+        bar.set_length(prepared.iter().map(|one| one.steps(&options)).sum());
+        let studies: Vec<Study> = prepared.iter().map(|one| one.run(&options)).collect();
+        bar.finish_and_clear();
+        let json = stress_json(&studies, self.seed);
+        if let Some(folder) = &self.out {
+            write_files(folder, &studies, &json)?;
+        }
+        if self.json {
+            print_json(&json);
+        } else {
+            print_text(&stress_text(&studies));
+        }
+        let whole = studies.iter().all(|study| !study.interrupted);
+        Ok(if whole { Status::AsExpected } else { Status::NotAsExpected })
+    }
+}
+
+fn write_files(folder: &Path, studies: &[Study], json: &serde_json::Value) -> miette::Result<()> {
+    for study in studies {
+        for (name, svg) in stress_pictures(study) {
+            let path = folder.join(format!("{name}.svg"));
+            write_whole(&path, &svg)?;
+            eprintln!("written: {}", path.display());
+        }
+    }
+    write_whole(
+        &folder.join("stress.json"),
+        &format!("{}\n", serde_json::to_string(json).unwrap_or_default()),
+    )
+}

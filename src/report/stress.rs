@@ -1,0 +1,274 @@
+//! The extremes, as JSON and as tables.
+
+use super::stress_plot::{conditioning_picture, lines_picture, ranks_text, scalings_picture};
+use crate::tradeoff::stress::{End, First, Line, Scaling, Study, UnitsRow, Way};
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+fn first_json(first: &Option<First>) -> Value {
+    first.as_ref().map_or(Value::Null, |first| json!({ "distance": first.distance, "said": first.said }))
+}
+
+/// An object with a field for each way.
+fn by_way(of: impl Fn(Way) -> Value) -> Value {
+    Way::ALL.iter().map(|way| (way.name().to_owned(), of(*way))).collect::<Map<_, _>>().into()
+}
+
+fn line_json(line: &Line) -> Value {
+    let end = match &line.end {
+        End::Ranks { ranks, certified } => json!({ "ranks": ranks, "certified": certified }),
+        End::Pole(why) => json!({ "pole": why }),
+        End::Infinity => json!({ "infinity": true }),
+    };
+    json!({
+        "title": line.title,
+        "solved": line.steps,
+        "states": line.states,
+        "distances": line.distances,
+        "true_ranks": line.ranks,
+        "certified": line.certified,
+        "poles": line.poles,
+        "on_the_set": end,
+        "ways": by_way(|way| {
+            let found = &line.ways[way.place()];
+            json!({
+                "first_wrong": first_json(&found.wrong),
+                "first_lost_half_its_digits": first_json(&found.lost),
+                "first_cannot_tell": first_json(&found.open),
+                "first_refused": first_json(&found.refused),
+                "marks": found.marks.iter().map(|mark| mark.map(|m| m.name())).collect::<Vec<_>>(),
+                "digits": found.digits,
+            })
+        }),
+    })
+}
+
+fn scaling_json(scaling: &Scaling) -> Value {
+    json!({
+        "quantity": scaling.quantity,
+        "exponents": scaling.exponents,
+        "ways": by_way(|way| {
+            let found = &scaling.ways[way.place()];
+            json!({
+                "right": found.right.map(|(low, high)| [low, high]),
+                "below": found.below,
+                "above": found.above,
+                "marks": found.marks.iter().map(|mark| mark.map(|m| m.name())).collect::<Vec<_>>(),
+            })
+        }),
+    })
+}
+
+fn units_json(row: &UnitsRow) -> Value {
+    json!({
+        "units": row.name,
+        "states": row.states,
+        "ways": by_way(|way| {
+            let found = row.ways[way.place()];
+            json!({
+                "wrong": found.wrong,
+                "cannot_tell": found.open,
+                "refused": found.refused,
+                "changed": found.changed,
+            })
+        }),
+    })
+}
+
+fn histogram_json(histogram: &BTreeMap<i32, usize>) -> Value {
+    let name = |decade: i32| if decade == i32::MAX { "infinite".to_owned() } else { format!("1e{decade}") };
+    histogram.iter().map(|(decade, count)| (name(*decade), json!(count))).collect::<Map<_, _>>().into()
+}
+
+fn study_json(study: &Study) -> Value {
+    json!({
+        "file": study.file,
+        "title": study.title,
+        "rows": study.rows,
+        "dimension": study.dimension,
+        "remaining": [study.remaining.0, study.remaining.1],
+        "lines": study.lines.iter().map(line_json).collect::<Vec<_>>(),
+        "skipped": study.skipped.iter().map(|(title, why)| json!({ "title": title, "why": why })).collect::<Vec<_>>(),
+        "scalings": study.scalings.iter().map(scaling_json).collect::<Vec<_>>(),
+        "units": study.units.iter().map(units_json).collect::<Vec<_>>(),
+        "conditioning": {
+            "states": study.conditioning.states,
+            "old_scaling": histogram_json(&study.conditioning.old),
+            "equilibrated": histogram_json(&study.conditioning.new),
+            "fixed_thresholds": study.conditioning.thresholds.iter().map(|(threshold, old, new)| json!({
+                "part_of_the_largest": threshold,
+                "wrong_old_scaling": old,
+                "wrong_equilibrated": new,
+            })).collect::<Vec<_>>(),
+        },
+        "interrupted": study.interrupted,
+    })
+}
+
+/// What was found of some systems, as one object.
+pub fn stress_json(studies: &[Study], seed: u64) -> Value {
+    json!({
+        "seed": seed,
+        "studies": studies.iter().map(study_json).collect::<Vec<_>>(),
+        "interrupted": studies.iter().any(|study| study.interrupted),
+    })
+}
+
+/// From which distances on what happens, each with its letter (see [`stress_text`]); `-` where nothing does.
+fn cell(line: &Line, way: Way) -> String {
+    let found = &line.ways[way.place()];
+    let firsts = [('w', &found.wrong), ('d', &found.lost), ('?', &found.open), ('!', &found.refused)];
+    let words =
+        firsts.iter().filter_map(|(letter, first)| Some(format!("{letter}{:.0e}", first.as_ref()?.distance)));
+    let words: Vec<String> = words.collect();
+    if words.is_empty() { "-".to_owned() } else { words.join(" ") }
+}
+
+fn table(head: &str, columns: &[&str], rows: Vec<(String, Vec<String>)>, out: &mut String) {
+    let first =
+        rows.iter().map(|(name, _)| name.chars().count()).chain([head.chars().count()]).max().unwrap_or(0);
+    let widths: Vec<usize> = columns
+        .iter()
+        .enumerate()
+        .map(|(i, name)| rows.iter().map(|(_, cells)| cells[i].len()).chain([name.len()]).max().unwrap_or(0))
+        .collect();
+    let line = |name: &str, cells: &mut dyn Iterator<Item = &str>, out: &mut String| {
+        let _ = write!(out, "  {name:first$}");
+        for (cell, width) in cells.zip(&widths) {
+            let _ = write!(out, "  {cell:>width$}");
+        }
+        out.push('\n');
+    };
+    line(head, &mut columns.iter().copied(), out);
+    for (name, cells) in &rows {
+        line(name, &mut cells.iter().map(String::as_str), out);
+    }
+}
+
+fn lines_text(study: &Study, out: &mut String) {
+    let mut columns = vec!["rank", "on it"];
+    columns.extend(Way::ALL.map(Way::name));
+    let rows = study.lines.iter().map(|line| {
+        let end = match &line.end {
+            End::Ranks { ranks, .. } => ranks_text(ranks.iter()),
+            End::Pole(_) => "pole".to_owned(),
+            End::Infinity => "infinite".to_owned(),
+        };
+        let mut cells = vec![ranks_text(line.ranks.iter()), end];
+        cells.extend(Way::ALL.map(|way| cell(line, way)));
+        (line.title.chars().take(64).collect(), cells)
+    });
+    table("into", &columns, rows.collect(), out);
+    for (title, why) in &study.skipped {
+        let _ = writeln!(out, "  no line: {title}: {why}");
+    }
+    if !study.lines.iter().all(|line| line.certified) {
+        let _ =
+            writeln!(out, "  not every true rank is certified: there is no exact arithmetic for these rows");
+    }
+}
+
+fn scalings_text(study: &Study, out: &mut String) {
+    let rows = study.scalings.iter().map(|scaling| {
+        let range = |way: Way| match scaling.ways[way.place()].right {
+            Some((low, high)) => format!("{low}..{high}"),
+            None => "nowhere".to_owned(),
+        };
+        (scaling.quantity.clone(), Way::ALL.map(range).to_vec())
+    });
+    table("exponents of ten", &Way::ALL.map(Way::name), rows.collect(), out);
+    for scaling in &study.scalings {
+        for way in [Way::Double, Way::DoubleDouble] {
+            let found = &scaling.ways[way.place()];
+            for (side, said) in [("below", &found.below), ("above", &found.above)] {
+                // that rounding has mixed up the sizes needs no line of its own; the JSON has it
+                if let Some(said) = said.as_ref().filter(|said| !said.ends_with("rounding")) {
+                    let _ = writeln!(out, "  {} {side} that, {}: {said}", scaling.quantity, way.name());
+                }
+            }
+        }
+    }
+}
+
+fn units_text(study: &Study, out: &mut String) {
+    let rows = study.units.iter().map(|row| {
+        let count = |way: Way| {
+            let found = row.ways[way.place()];
+            let mut text = format!("{} ~{}", found.wrong, found.changed);
+            if found.open + found.refused > 0 {
+                let _ = write!(text, " ({})", found.open + found.refused);
+            }
+            text
+        };
+        (row.name.clone(), Way::ALL.map(count).to_vec())
+    });
+    table("units", &Way::ALL.map(Way::name), rows.collect(), out);
+    let found = &study.conditioning;
+    let decades = |histogram: &BTreeMap<i32, usize>| {
+        let words = histogram.iter().map(|(decade, count)| match *decade {
+            i32::MAX => format!("infinite: {count}"),
+            decade => format!("1e{decade}: {count}"),
+        });
+        words.collect::<Vec<_>>().join(", ")
+    };
+    let _ = writeln!(out, "  condition numbers, rows of length one: {}", decades(&found.old));
+    let _ = writeln!(out, "  condition numbers, equilibrated:       {}", decades(&found.new));
+    let _ = writeln!(
+        out,
+        "  ranks of {} states of the box, on the sets and near them, by a fixed part of the largest singular value",
+        found.states
+    );
+    for (threshold, old, new) in &found.thresholds {
+        let _ = writeln!(
+            out,
+            "    {threshold:.0e}: {old} wrong (rows of length one), {new} wrong (equilibrated)"
+        );
+    }
+}
+
+/// What was found, as tables.
+pub fn stress_text(studies: &[Study]) -> String {
+    let mut out = String::from(
+        "Lines: the distance at which a way first reports a wrong rank (w), has lost more than half of an entry's\n\
+         digits (d), says that it cannot tell (?), refuses and names why (!); '-' none of it down to 9e-16.\n\
+         Scaling: the exponents of ten within which the rank is right.\n\
+         Units: wrong ranks; ~ verdicts that differ from those in the file's units; (n) of no rank, but not wrong.\n",
+    );
+    for study in studies {
+        let (rows, columns) = study.remaining;
+        let _ = writeln!(
+            out,
+            "\n{} ({}): {} states, {}, {rows} by {columns} without unit rows",
+            study.title, study.file, study.dimension, study.rows
+        );
+        lines_text(study, &mut out);
+        out.push('\n');
+        scalings_text(study, &mut out);
+        let states = study.units.first().map_or(0, |row| row.states);
+        let _ = writeln!(out, "\n  at {states} states of the box and of the sets");
+        units_text(study, &mut out);
+        if study.interrupted {
+            let _ = writeln!(out, "  interrupted: this is what was finished until then");
+        }
+    }
+    out.trim_end().to_owned()
+}
+
+/// The pictures of a system: a name for the file, and the SVG.
+pub fn stress_pictures(study: &Study) -> Vec<(String, String)> {
+    let path = std::path::Path::new(&study.file);
+    let stem = path.file_stem().map_or_else(|| "system".into(), |stem| stem.to_string_lossy().into_owned());
+    let mut found = Vec::new();
+    if !study.lines.is_empty() {
+        found.push((format!("{stem}-lines"), lines_picture(study)));
+    }
+    if !study.scalings.is_empty() {
+        found.push((format!("{stem}-scaling"), scalings_picture(study)));
+    }
+    if study.conditioning.states > 0 {
+        let title = format!("{}: conditioning", study.title);
+        found.push((format!("{stem}-conditioning"), conditioning_picture(&study.conditioning, &title)));
+    }
+    found
+}

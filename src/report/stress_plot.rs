@@ -1,0 +1,231 @@
+//! Pictures of the extremes: for every set and every way a bar from far to near, coloured by what its verdict is worth.
+
+use super::plot::{INK, svg};
+use crate::tradeoff::stress::{Conditioning, End, Mark, Study, Way};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Told apart by all eyes: from blue over yellow to red, greys for what is not said.
+fn colour(mark: Option<Mark>) -> RGBColor {
+    match mark {
+        Some(Mark::Right) => RGBColor(120, 170, 220),
+        Some(Mark::Lost) => RGBColor(250, 215, 90),
+        Some(Mark::Open) => RGBColor(222, 226, 231),
+        Some(Mark::Refused) => RGBColor(120, 126, 135),
+        Some(Mark::Wrong) => RGBColor(200, 40, 60),
+        None => WHITE,
+    }
+}
+
+const LEGEND: [(Mark, &str); 5] = [
+    (Mark::Right, "right"),
+    (Mark::Lost, "right, half of the digits lost"),
+    (Mark::Open, "cannot tell"),
+    (Mark::Refused, "refused, and named"),
+    (Mark::Wrong, "wrong rank"),
+];
+
+/// A row of the chart: its title, what is below it, and the marks of each way.
+struct Bars<'a> {
+    title: String,
+    below: Vec<String>,
+    marks: Vec<&'a [Option<Mark>]>,
+}
+
+impl Bars<'_> {
+    /// Nothing happens to any way: one bar says it.
+    fn is_calm(&self) -> bool {
+        self.marks.iter().all(|marks| marks.iter().all(|mark| matches!(mark, Some(Mark::Right))))
+    }
+
+    fn ways(&self) -> Vec<(&'static str, &[Option<Mark>])> {
+        let all: Vec<_> = Way::ALL.iter().zip(&self.marks).map(|(way, marks)| (way.name(), *marks)).collect();
+        if self.is_calm() {
+            all.first().map(|(_, marks)| vec![("all of them", *marks)]).unwrap_or_default()
+        } else {
+            all
+        }
+    }
+
+    fn height(&self) -> i32 {
+        if self.is_calm() { BAR + 10 } else { BAR * Way::ALL.len() as i32 + 10 }
+    }
+}
+
+const BAR: i32 = 11;
+const LEFT: i32 = 400;
+const WIDTH: i32 = 990;
+const TOP: i32 = 74;
+
+/// The chart of some rows; `ticks` are texts at parts of the width between zero and one.
+fn bars(title: &str, axis: &str, ticks: &[(f64, String)], rows: &[Bars<'_>]) -> String {
+    let bottom = TOP + rows.iter().map(Bars::height).sum::<i32>();
+    let height = bottom + 44;
+    let right = WIDTH - 24;
+    svg((WIDTH as u32, height as u32), |area| {
+        area.fill(&WHITE)?;
+        let text = |size: i32| ("sans-serif", size).into_font().color(&INK);
+        let anchored = |size: i32, h: HPos| text(size).pos(Pos::new(h, VPos::Center));
+        area.draw(&Text::new(title.to_owned(), (12, 10), text(16)))?;
+        let mut x = 12;
+        for (mark, words) in LEGEND {
+            area.draw(&Rectangle::new([(x, 42), (x + 16, 54)], colour(Some(mark)).filled()))?;
+            area.draw(&Text::new(words, (x + 22, 48), anchored(12, HPos::Left)))?;
+            x += 40 + 7 * words.len() as i32;
+        }
+        for (part, label) in ticks {
+            let x = LEFT + (f64::from(right - LEFT) * part).round() as i32;
+            area.draw(&PathElement::new([(x, TOP - 4), (x, bottom)], RGBColor(225, 228, 232)))?;
+            area.draw(&Text::new(label.clone(), (x, bottom + 10), anchored(11, HPos::Center)))?;
+        }
+        area.draw(&Text::new(
+            axis.to_owned(),
+            ((LEFT + right) / 2, bottom + 30),
+            anchored(12, HPos::Center),
+        ))?;
+        let mut next = TOP;
+        for row in rows {
+            let top = next;
+            next += row.height();
+            area.draw(&Text::new(cut(&row.title, 48), (12, top), text(12)))?;
+            for (line, below) in row.below.iter().enumerate().filter(|_| !row.is_calm()) {
+                let style = ("sans-serif", 11).into_font().color(&RGBColor(95, 100, 110));
+                area.draw(&Text::new(cut(below, 48), (12, top + 18 + 15 * line as i32), style))?;
+            }
+            for (place, (way, marks)) in row.ways().into_iter().enumerate() {
+                let (high, low) = (top + BAR * place as i32, top + BAR * (place as i32 + 1) - 1);
+                area.draw(&Text::new(way, (LEFT - 6, (high + low) / 2), anchored(10, HPos::Right)))?;
+                let at = |i: usize| LEFT + (right - LEFT) * i as i32 / marks.len().max(1) as i32;
+                let mut start = 0;
+                while start < marks.len() {
+                    // neighbours of one colour are one rectangle
+                    let length = marks[start..].iter().take_while(|mark| **mark == marks[start]).count();
+                    let corners = [(at(start), high), (at(start + length), low)];
+                    area.draw(&Rectangle::new(corners, colour(marks[start]).filled()))?;
+                    start += length;
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+fn cut(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        text.to_owned()
+    } else {
+        text.chars().take(most - 3).chain("...".chars()).collect()
+    }
+}
+
+/// The bars from far to near.
+pub fn lines_picture(study: &Study) -> String {
+    let rows: Vec<Bars<'_>> = study
+        .lines
+        .iter()
+        .map(|line| {
+            let end = match &line.end {
+                End::Ranks { ranks, .. } => format!("on the set: rank {}", ranks_text(ranks.iter())),
+                End::Pole(why) => why.clone(),
+                End::Infinity => "the set is at infinity".to_owned(),
+            };
+            let near = format!("true rank on the way: {}", ranks_text(line.ranks.iter()));
+            Bars {
+                title: line.title.clone(),
+                below: vec![near, end],
+                marks: line.ways.iter().map(|way| way.marks.as_slice()).collect(),
+            }
+        })
+        .collect();
+    let distances = study.lines.first().map_or(&[][..], |line| &line.distances);
+    let count = distances.len().max(1) as f64;
+    let last = distances.last().copied().unwrap_or(1.0).log10();
+    // the middle of a point's part of the bar is its place
+    let place = |log: i32| ((f64::from(log) / last) * (count - 1.0) + 0.5) / count;
+    let ticks: Vec<(f64, String)> = (0..=5).map(|i| -3 * i).map(|log| (place(log), power(log))).collect();
+    bars(&format!("{}: into every singular set", study.title), "distance from the set", &ticks, &rows)
+}
+
+fn power(exponent: i32) -> String {
+    if exponent == 0 { "1".to_owned() } else { format!("1e{exponent}") }
+}
+
+/// Ranks, in words.
+pub(super) fn ranks_text<'a>(ranks: impl Iterator<Item = &'a usize>) -> String {
+    ranks.map(ToString::to_string).collect::<Vec<_>>().join(" or ")
+}
+
+/// The bars from small to large.
+pub fn scalings_picture(study: &Study) -> String {
+    let rows: Vec<Bars<'_>> = study
+        .scalings
+        .iter()
+        .map(|scaling| Bars {
+            title: scaling.quantity.clone(),
+            below: Vec::new(),
+            marks: scaling.ways.iter().map(|way| way.marks.as_slice()).collect(),
+        })
+        .collect();
+    let exponents = study.scalings.first().map_or(&[][..], |scaling| &scaling.exponents);
+    let count = exponents.len().max(1) as f64;
+    let ticks: Vec<(f64, String)> = exponents
+        .iter()
+        .enumerate()
+        .filter(|(_, exponent)| **exponent % 50 == 0)
+        .map(|(i, exponent)| ((i as f64 + 0.5) / count, power(*exponent)))
+        .collect();
+    bars(&format!("{}: every quantity scaled", study.title), "times the quantity's value", &ticks, &rows)
+}
+
+/// How the states are conditioned in the old and in the new scaling.
+pub fn conditioning_picture(found: &Conditioning, title: &str) -> String {
+    let decades = || found.old.keys().chain(found.new.keys()).filter(|decade| **decade < i32::MAX).copied();
+    let (Some(least), Some(most)) = (decades().min(), decades().max()) else {
+        return String::new();
+    };
+    let tallest = found.old.values().chain(found.new.values()).copied().max().unwrap_or(1) as f64 * 2.0;
+    let (from, to) = (f64::from(least), f64::from(most) + 1.0);
+    svg((560, 320), |area| {
+        area.fill(&WHITE)?;
+        let mut chart = ChartBuilder::on(area)
+            .caption(title, ("sans-serif", 14).into_font().color(&INK))
+            .margin(10)
+            .x_label_area_size(38)
+            .y_label_area_size(48)
+            .build_cartesian_2d(from..to, (0.7..tallest).log_scale())?;
+        chart
+            .configure_mesh()
+            .disable_x_mesh()
+            .light_line_style(WHITE)
+            .bold_line_style(RGBColor(225, 228, 232))
+            .x_labels((most - least + 2).clamp(2, 12) as usize)
+            .x_label_formatter(&|v| format!("1e{v:.0}"))
+            .y_label_formatter(&|v| format!("{v:.0}"))
+            .x_desc("condition number of the state")
+            .y_desc("states")
+            .axis_desc_style(("sans-serif", 12))
+            .draw()?;
+        let mut draw = |histogram: &BTreeMap<i32, usize>, part: Range<f64>, mark: Mark, name: &str| {
+            let style = colour(Some(mark)).filled();
+            let finite = histogram.iter().filter(|(decade, _)| **decade < i32::MAX);
+            let drawn = chart.draw_series(finite.map(|(decade, count)| {
+                let left = f64::from(*decade);
+                Rectangle::new([(left + part.start, 0.7), (left + part.end, *count as f64)], style)
+            }));
+            drawn.map(|series| {
+                series.label(name).legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 14, y + 5)], style));
+            })
+        };
+        draw(&found.old, 0.06..0.5, Mark::Lost, "rows scaled to length one")?;
+        draw(&found.new, 0.5..0.94, Mark::Right, "equilibrated, without unit rows")?;
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .background_style(WHITE)
+            .label_font(("sans-serif", 12))
+            .draw()?;
+        Ok(())
+    })
+}

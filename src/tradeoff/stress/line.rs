@@ -1,0 +1,198 @@
+//! Lines into a set: exact states at distances 1, 1/2, 1/4, ... from states on the set, and what each way finds at them.
+
+use super::approach::Prepared;
+use super::finding::Finding;
+use super::subject::Subject;
+use super::{Mark, Verdict, Way};
+use crate::number::DoubleDouble;
+use crate::observability::{Coordinate, State};
+use dashu::rational::RBig;
+use std::collections::BTreeSet;
+
+/// What is at the end of a line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The ranks at the states on the set, all certified or not.
+    Ranks { ranks: BTreeSet<usize>, certified: bool },
+    /// There is no rank on the set: a divisor vanishes there, or nothing is certain.
+    Pole(String),
+    /// The set is at infinity.
+    Infinity,
+}
+
+/// Where something first happens on the way into the set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct First {
+    /// The largest distance at which it happens, at any of the base states.
+    pub distance: f64,
+    /// What is said there instead of the truth.
+    pub said: String,
+}
+
+/// What one way makes of a line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WayOnLine {
+    pub way: Way,
+    /// The worst of the base states at each distance; `None` where there is no truth to compare with.
+    pub marks: Vec<Option<Mark>>,
+    /// The digits of the worst entry at each distance, at the worst base state.
+    pub digits: Vec<Option<f64>>,
+    /// Where the rank is first misreported.
+    pub wrong: Option<First>,
+    /// Where more than half of the digits are first lost.
+    pub lost: Option<First>,
+    /// Where it first says that it cannot tell.
+    pub open: Option<First>,
+    /// Where it first refuses, and what it names.
+    pub refused: Option<First>,
+}
+
+/// Lines into one set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    pub title: String,
+    /// How the set's conditions were solved, in words: the coordinates that move.
+    pub steps: Vec<String>,
+    /// From how many states on the set.
+    pub states: usize,
+    /// The distances, from the largest. For an angle: twice the tangent of half the angle that it lies away.
+    pub distances: Vec<f64>,
+    /// The true ranks at all points of the lines, and whether each is certified.
+    pub ranks: BTreeSet<usize>,
+    pub certified: bool,
+    /// Points at which there is no truth, since another divisor vanishes.
+    pub poles: usize,
+    pub end: End,
+    /// In the order of [`Way::ALL`].
+    pub ways: Vec<WayOnLine>,
+}
+
+/// At each distance the true rank, whether it is certified, and what every way finds; `None` where there is no truth.
+pub(super) type Walk = Vec<Option<(usize, bool, Vec<(Finding, Mark)>)>>;
+
+impl Prepared {
+    /// The state at a distance of `2^-halvings` from a base state.
+    pub fn at(&self, base: &State, halvings: usize) -> State {
+        let distance = RBig::ONE / RBig::from(1u64 << halvings);
+        let mut state = base.clone();
+        for symbol in &self.moving {
+            let Some(value) = state.values.get_mut(symbol) else { continue };
+            *value = match &*value {
+                Coordinate::Number(_) if self.to_infinity => Coordinate::Number(RBig::ONE / &distance),
+                Coordinate::Number(number) => Coordinate::Number(number + &distance),
+                Coordinate::Angle { sine, cosine } => {
+                    match Coordinate::from_half_tangent(&(&distance / RBig::from(2))) {
+                        Coordinate::Angle { sine: s, cosine: c } => Coordinate::Angle {
+                            sine: sine * &c + cosine * &s,
+                            cosine: cosine * &c - sine * &s,
+                        },
+                        number => number,
+                    }
+                }
+            };
+        }
+        state
+    }
+
+    /// What all ways find from one base state, at each distance.
+    pub fn walk(&self, subject: &Subject, base: &State, halvings: &[usize]) -> Walk {
+        halvings
+            .iter()
+            .map(|halvings| {
+                let state = self.at(base, *halvings);
+                let truth = subject.truth(&state).ok()?;
+                let findings = subject.findings(&state, &truth, None);
+                let marked = findings.into_iter().zip(Way::ALL).map(|(finding, way)| {
+                    let mark = finding.mark(way, &truth);
+                    (finding, mark)
+                });
+                Some((truth.rank, truth.certified, marked.collect()))
+            })
+            .collect()
+    }
+
+    /// The walks from all base states as one line.
+    pub fn line(&self, subject: &Subject, states: usize, halvings: &[usize], walks: &[Walk]) -> Line {
+        let distances: Vec<f64> = halvings.iter().map(|k| 0.5f64.powi(*k as i32)).collect();
+        let truths = || walks.iter().flatten().flatten();
+        let ways = Way::ALL.iter().map(|way| {
+            // for each distance the findings of this way at all base states
+            let at = |place: usize| {
+                walks.iter().filter_map(move |walk| walk[place].as_ref().map(|(_, _, all)| &all[way.place()]))
+            };
+            let first = |wanted: Mark| {
+                (0..distances.len()).find_map(|place| {
+                    let (finding, _) = at(place).find(|(_, mark)| *mark == wanted)?;
+                    Some(First { distance: distances[place], said: finding.said() })
+                })
+            };
+            // a rank may be wrong and the digits lost at once, so that digits are asked for themselves
+            let lost = (0..distances.len()).find_map(|place| {
+                let digits = at(place).filter_map(|(finding, _)| finding.digits).reduce(f64::min)?;
+                (digits < way.digits() / 2.0)
+                    .then(|| First { distance: distances[place], said: format!("{digits:.1} digits") })
+            });
+            WayOnLine {
+                way: *way,
+                marks: (0..distances.len()).map(|place| at(place).map(|(_, mark)| *mark).max()).collect(),
+                digits: (0..distances.len())
+                    .map(|place| at(place).filter_map(|(finding, _)| finding.digits).reduce(f64::min))
+                    .collect(),
+                wrong: first(Mark::Wrong),
+                lost,
+                open: first(Mark::Open),
+                refused: first(Mark::Refused),
+            }
+        });
+        Line {
+            title: self.title.clone(),
+            steps: self.steps.clone(),
+            states,
+            ranks: truths().map(|(rank, _, _)| *rank).collect(),
+            certified: truths().all(|(_, certified, _)| *certified),
+            poles: walks.iter().flatten().filter(|truth| truth.is_none()).count(),
+            end: self.end(subject, states),
+            ways: ways.collect(),
+            distances,
+        }
+    }
+
+    fn end(&self, subject: &Subject, states: usize) -> End {
+        if self.to_infinity {
+            return End::Infinity;
+        }
+        let mut ranks = BTreeSet::new();
+        let mut certified = true;
+        for base in self.bases.iter().take(states) {
+            match subject.truth(base) {
+                Ok(truth) => {
+                    ranks.insert(truth.rank);
+                    certified &= truth.certified;
+                }
+                Err(pole) => return End::Pole(pole),
+            }
+        }
+        End::Ranks { ranks, certified }
+    }
+}
+
+impl Finding {
+    /// The verdict in words.
+    pub fn said(&self) -> String {
+        match &self.verdict {
+            Verdict::Rank(rank) => format!("rank {rank}"),
+            Verdict::AtLeast(least) => format!("at least {least}"),
+            Verdict::Refused(why) => why.clone(),
+        }
+    }
+
+    /// What is rounded to zero on the way to a wrong rank, if anything is.
+    pub(super) fn rounded(subject: &Subject, state: &State, way: Way) -> Option<String> {
+        match way {
+            Way::Single => subject.rounded_to_zero::<f32>(state),
+            Way::Customary | Way::Double => subject.rounded_to_zero::<f64>(state),
+            Way::DoubleDouble => subject.rounded_to_zero::<DoubleDouble>(state),
+            Way::Radii | Way::Interval => None,
+        }
+    }
+}

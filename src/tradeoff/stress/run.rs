@@ -1,0 +1,244 @@
+//! A system prepared for the extremes, and taken to them.
+
+use super::super::landscape::Rows;
+use super::approach::{Approach, Prepared, approaches_of};
+use super::line::{Line, Walk};
+use super::scaling::{Quantity, Scaling};
+use super::subject::Subject;
+use super::units::{Conditioning, Rescaling, Seen, UnitsRow, conditioning, in_units};
+use crate::expression::NodeId;
+use crate::observability::{Branch, Codistribution, Length, Locus, OWN_ROWS, State};
+use crate::system::{Assignment, System, Value};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Distances are `2^-k` for `k` from 0 to this: down to 8.9e-16.
+const MOST_HALVINGS: usize = 50;
+
+/// Distances from the sets, in halvings, at which it is asked how states are conditioned: 1e-3, 1e-6, 1e-9.
+const NEAR: [usize; 3] = [10, 20, 30];
+/// For the conditioning so many times the states of the box are drawn: a spectrum costs little.
+const MORE_FOR_CONDITIONING: u64 = 20;
+
+/// How far to go into it.
+#[derive(Clone, Copy)]
+pub struct StressOptions<'a> {
+    pub seed: u64,
+    /// Base states on each set, from which lines go.
+    pub states: u64,
+    /// Every so many halvings of the distance a point; one is 3.3 points a decade.
+    pub step: usize,
+    /// States of the sample box for the units and the conditioning.
+    pub samples: u64,
+    /// States on each set for the same.
+    pub samples_on_sets: u64,
+    /// Set from outside to stop early; what was finished is kept.
+    pub interrupt: &'a AtomicBool,
+    /// Called with every step that is done.
+    pub progress: &'a (dyn Fn() + Sync),
+}
+
+/// What was found of one system.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    pub file: String,
+    pub title: String,
+    /// Which rows were taken, in words.
+    pub rows: String,
+    pub dimension: usize,
+    /// Rows and columns that remain without unit rows.
+    pub remaining: (usize, usize),
+    pub lines: Vec<Line>,
+    /// Sets to which there are no lines, and why.
+    pub skipped: Vec<(String, String)>,
+    pub scalings: Vec<Scaling>,
+    /// In the file's own units first.
+    pub units: Vec<UnitsRow>,
+    pub conditioning: Conditioning,
+    pub interrupted: bool,
+}
+
+/// A system with its rows and the sets to walk into, states on them drawn.
+pub struct Stress {
+    subject: Subject,
+    rows: String,
+    lines: Vec<Prepared>,
+    skipped: Vec<(String, String)>,
+    quantities: Vec<Quantity>,
+    units: Vec<(String, Rescaling)>,
+    box_states: Locus,
+}
+
+/// The name and the entries of a system's rows: its own choice, if it defines one and it is wanted, or else the
+/// differentials of its outputs and of their Lie derivatives.
+///
+/// # Errors
+/// In words: no states or outputs, a pole everywhere.
+pub fn rows_of(system: &mut System, wanted: Rows) -> Result<(String, Vec<NodeId>), String> {
+    if system.states.is_empty() || system.outputs.is_empty() {
+        return Err(format!("{} declares no states or no outputs", system.name));
+    }
+    match system.definition(OWN_ROWS) {
+        Some(Value::Matrix(matrix)) if wanted == Rows::Own && matrix.columns == system.states.len() => {
+            Ok((format!("the file's own '{OWN_ROWS}'"), matrix.entries.clone()))
+        }
+        _ => {
+            let words = Codistribution::new(system, &Assignment::new(), Length::UntilItStops)?;
+            Ok(("the full codistribution".to_owned(), words.entries()))
+        }
+    }
+}
+
+impl Stress {
+    /// Prepares a system of which nothing is known but its file: see [`approaches_of`]. Each state in turn is measured in
+    /// units 2^20 and 2^40 times smaller.
+    ///
+    /// # Errors
+    /// As [`rows_of`] and [`Stress::prepare`].
+    pub fn of_file(system: &mut System, wanted: Rows, options: &StressOptions<'_>) -> Result<Stress, String> {
+        let (name, rows) = rows_of(system, wanted)?;
+        let approaches = approaches_of(system, &rows);
+        let mut units = Vec::new();
+        for power in [20, 40] {
+            for (place, state) in system.states.iter().enumerate() {
+                let name = format!("{} in units 2^{power} times smaller", system.symbol_name(*state));
+                units.push((name, Rescaling::Column { place, power }));
+            }
+        }
+        Stress::prepare(system, (&name, &rows), &approaches, Vec::new(), units, options)
+    }
+
+    /// Prepares some rows of a system (their name and their entries) for approaches. Besides each quantity by itself
+    /// `quantities` are scaled; `units` are other units to look at the states in.
+    ///
+    /// # Errors
+    /// In words: rows that cannot be evaluated, a sample box from which nothing can be drawn.
+    pub fn prepare(
+        system: &mut System,
+        (rows_name, rows): (&str, &[NodeId]),
+        approaches: &[Approach],
+        quantities: Vec<Quantity>,
+        units: Vec<(String, Rescaling)>,
+        options: &StressOptions<'_>,
+    ) -> Result<Stress, String> {
+        let box_states =
+            Locus::new(system, &Branch::default(), &BTreeMap::new(), rows).map_err(|e| e.to_string())?;
+        let (mut lines, mut skipped) = (Vec::new(), Vec::new());
+        let mut met = std::collections::HashSet::new();
+        for approach in approaches {
+            match approach.prepare(system, rows, options.states.max(options.samples_on_sets), options.seed) {
+                // two ways to write one set
+                Ok(found) => lines.extend(
+                    found.into_iter().filter(|line| line.to_infinity || met.insert(line.steps.clone())),
+                ),
+                Err(why) => skipped.push((approach.title().to_owned(), why)),
+            }
+        }
+        let subject = Subject::new(system, rows)?;
+        let state = box_states.draw(options.seed, 0).map_err(|e| e.to_string())?;
+        let mut all = Quantity::all(&subject, &state);
+        all.extend(quantities);
+        Ok(Stress { subject, rows: rows_name.to_owned(), lines, skipped, quantities: all, units, box_states })
+    }
+
+    /// How often [`Stress::run`] calls its progress.
+    pub fn steps(&self, options: &StressOptions<'_>) -> u64 {
+        self.lines.len() as u64 * options.states + self.quantities.len() as u64 + self.units.len() as u64 + 1
+    }
+
+    /// Goes to the extremes. The same whatever the number of threads.
+    pub fn run(&self, options: &StressOptions<'_>) -> Study {
+        let stopped = || options.interrupt.load(Ordering::Relaxed);
+        let subject = &self.subject;
+        let halvings: Vec<usize> = (0..=MOST_HALVINGS).step_by(options.step.max(1)).collect();
+        let states = options.states as usize;
+        let tasks: Vec<(usize, usize)> =
+            (0..self.lines.len()).flat_map(|line| (0..states).map(move |base| (line, base))).collect();
+        let walks: Vec<Option<Walk>> = tasks
+            .par_iter()
+            .map(|(line, base)| {
+                if stopped() {
+                    return None;
+                }
+                let prepared = &self.lines[*line];
+                let walk = prepared.walk(subject, &prepared.bases[*base], &halvings);
+                (options.progress)();
+                Some(walk)
+            })
+            .collect();
+        let lines = self.lines.iter().zip(walks.chunks(states.max(1))).filter_map(|(prepared, walks)| {
+            // a line with a base state missing would look better than it is
+            let walks = walks.iter().cloned().collect::<Option<Vec<Walk>>>()?;
+            Some(prepared.line(subject, states, &halvings, &walks))
+        });
+        let lines: Vec<Line> = lines.collect();
+        let base = self.box_states.draw(options.seed, 0).ok();
+        let scalings: Vec<Option<Scaling>> = self
+            .quantities
+            .par_iter()
+            .map(|quantity| {
+                let base = base.as_ref().filter(|_| !stopped())?;
+                let found = quantity.scale(subject, base);
+                (options.progress)();
+                Some(found)
+            })
+            .collect();
+        let seen = if stopped() { Vec::new() } else { self.seen(options) };
+        (options.progress)();
+        let mut units = vec![in_units(subject, &seen, "the file's own", None)];
+        let others: Vec<Option<UnitsRow>> = self
+            .units
+            .par_iter()
+            .map(|(name, other)| {
+                let found = (!stopped()).then(|| in_units(subject, &seen, name, Some(other)));
+                (options.progress)();
+                found
+            })
+            .collect();
+        units.extend(others.into_iter().flatten());
+        let states = if stopped() { Vec::new() } else { self.states_near_and_far(options) };
+        Study {
+            file: subject.system.name.clone(),
+            title: subject.system.title.clone(),
+            rows: self.rows.clone(),
+            dimension: subject.system.states.len(),
+            remaining: subject.remaining(),
+            lines,
+            skipped: self.skipped.clone(),
+            scalings: scalings.into_iter().flatten().collect(),
+            conditioning: conditioning(subject, states),
+            units,
+            interrupted: stopped(),
+        }
+    }
+
+    fn of_box(&self, options: &StressOptions<'_>, count: u64) -> Vec<State> {
+        (0..count).filter_map(|index| self.box_states.draw(options.seed, index).ok()).collect()
+    }
+
+    fn bases(&self, options: &StressOptions<'_>) -> impl Iterator<Item = (&Prepared, &State)> {
+        let count = options.samples_on_sets as usize;
+        let lines = self.lines.iter().filter(|line| !line.to_infinity);
+        lines.flat_map(move |line| line.bases.iter().take(count).map(move |base| (line, base)))
+    }
+
+    /// Many states of the box, states on the sets, and at some distances from them.
+    fn states_near_and_far(&self, options: &StressOptions<'_>) -> Vec<State> {
+        let mut states = self.of_box(options, options.samples * MORE_FOR_CONDITIONING);
+        for (line, base) in self.bases(options) {
+            states.push(base.clone());
+            states.extend(NEAR.iter().map(|halvings| line.at(base, *halvings)));
+        }
+        states
+    }
+
+    /// States of the box and of the sets, but poles.
+    fn seen(&self, options: &StressOptions<'_>) -> Vec<Seen> {
+        let mut states = self.of_box(options, options.samples);
+        states.extend(self.bases(options).map(|(_, base)| base.clone()));
+        let seen: Vec<Option<Seen>> =
+            states.into_par_iter().map(|state| Seen::new(&self.subject, state)).collect();
+        seen.into_iter().flatten().collect()
+    }
+}

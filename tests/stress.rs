@@ -1,0 +1,226 @@
+//! The extremes: what is known of toy systems, and what must hold for every system.
+
+mod common;
+
+use common::{folder, json, palmistry, with_threads, write};
+use palmistry::System;
+use palmistry::report::stress_pictures;
+use palmistry::tradeoff::Rows;
+use palmistry::tradeoff::stress::{End, Line, Mark, Stress, StressOptions, Study, Way};
+use palmistry::verification::{REGIMES, short_stress};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// Two rows that become one where x vanishes; what a matrix loses there no scaling brings back.
+const EQUAL_ROWS: &str = r#"
+system "Two rows that become one"
+state x, y
+field f
+  x' = 1
+  others' = 0
+output y
+sample
+  x in [0.5, 1]
+  y in [0.5, 1]
+  avoid x
+let rows = [1, 1; 1, 1 + x]
+"#;
+
+/// A divisor that is a difference of two coordinates, and a high power.
+const DIVISOR: &str = r#"
+system "A divisor and a power"
+state x, y
+field f
+  x' = 1
+  others' = 0
+output y
+sample
+  x in [0.5, 1]
+  y in [2, 3]
+let rows = [1/(x - y), x^4; 1, 2]
+"#;
+
+fn study(text: &str, interrupt: bool) -> Study {
+    let mut system = System::parse("toy.proof", text, Path::new("")).unwrap();
+    let options = StressOptions {
+        seed: 3,
+        states: 3,
+        step: 1,
+        samples: 20,
+        samples_on_sets: 3,
+        interrupt: &AtomicBool::new(interrupt),
+        progress: &|| (),
+    };
+    Stress::of_file(&mut system, Rows::Own, &options).unwrap().run(&options)
+}
+
+fn line<'a>(study: &'a Study, title: &str) -> &'a Line {
+    study.lines.iter().find(|line| line.title.contains(title)).unwrap_or_else(|| panic!("{:?}", study.lines))
+}
+
+fn wrong(line: &Line, way: Way) -> Option<f64> {
+    line.ways[way.place()].wrong.as_ref().map(|first| first.distance)
+}
+
+/// With rows of length one the matrix has the determinant x/2 and the largest singular value sqrt 2, so that the smallest
+/// one, x/(2 sqrt 2), falls below 2 * 2^-52 * sqrt 2 at x = 2^-49; in single precision below 2 * 2^-23 * sqrt 2 at 2^-20.
+#[test]
+fn the_distance_of_the_first_wrong_rank_is_known() {
+    let study = study(EQUAL_ROWS, false);
+    let line = line(&study, "x to zero");
+    assert_eq!((line.ranks.clone(), line.certified), (BTreeSet::from([2]), true));
+    assert_eq!(line.end, End::Ranks { ranks: BTreeSet::from([1]), certified: true });
+    // a comparison of two numbers that are equal but for rounding may go either way
+    let near = |found: Option<f64>, power: i32| {
+        let expected = 2f64.powi(power);
+        found.is_some_and(|distance| distance == expected || distance == expected / 2.0)
+    };
+    for way in [Way::Customary, Way::Double, Way::Radii] {
+        assert!(near(wrong(line, way), -49), "{way:?} {:?}", wrong(line, way));
+    }
+    assert!(near(wrong(line, Way::Single), -20), "{:?}", wrong(line, Way::Single));
+    assert_eq!(wrong(line, Way::DoubleDouble), None);
+    // 1 + x is a double as long as x is at least 2^-52, and intervals know which sums are exact
+    let intervals = &line.ways[Way::Interval.place()];
+    assert!(intervals.marks.iter().all(|mark| *mark == Some(Mark::Right)), "{intervals:?}");
+}
+
+/// y is drawn on a grid of 2^-16 below 4: single precision cannot hold y + 2^-k from k = 24 on, and then divides by zero.
+#[test]
+fn a_division_by_zero_is_named() {
+    let study = study(DIVISOR, false);
+    let line = line(&study, "divisor x - y");
+    assert!(matches!(&line.end, End::Pole(why) if why.contains("x - y = 0")), "{:?}", line.end);
+    let single = line.ways[Way::Single.place()].refused.clone().unwrap();
+    assert_eq!(single.said, "division by zero: x - y = 0");
+    assert!((2f64.powi(-25)..=2f64.powi(-22)).contains(&single.distance), "{single:?}");
+    // a double holds all of these states
+    assert_eq!(line.ways[Way::Double.place()].refused, None);
+}
+
+/// The fourth power of 1e80 has no double, and neither has that of 1e-90; single precision ends at 1e10.
+#[test]
+fn an_overflow_is_named() {
+    let study = study(DIVISOR, false);
+    let scaling = study.scalings.iter().find(|scaling| scaling.quantity == "x").unwrap();
+    for (way, highest) in [(Way::Single, 0), (Way::Double, 70), (Way::DoubleDouble, 70)] {
+        let found = &scaling.ways[way.place()];
+        // before it overflows, a double may have mixed up the sizes; then it says so
+        let above = found.above.clone().unwrap();
+        let overflows = found.marks.last().unwrap();
+        assert_eq!(*overflows, Some(Mark::Refused), "{way:?}");
+        assert!(found.right.unwrap().1 <= highest, "{way:?} {found:?}");
+        assert!(above.contains("x^4") || above.contains("instead of 2"), "{above}");
+    }
+}
+
+#[test]
+fn what_was_stopped_says_so() {
+    let study = study(EQUAL_ROWS, true);
+    assert!(study.interrupted && study.lines.is_empty() && study.scalings.is_empty());
+}
+
+fn studies(arguments: &[&str]) -> Value {
+    let output = palmistry(&[&["stress", "--json"], arguments].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    json(&output)
+}
+
+/// All four regimes: intervals never report a wrong rank, nothing is refused without a name, every true rank is
+/// certified, and neither the errors that intervals know nor their pivots let a verdict depend on units.
+#[test]
+fn what_holds_for_the_thesis() {
+    let found = studies(&["--states", "1", "--samples", "20"]);
+    let studies = found["studies"].as_array().unwrap();
+    assert_eq!(studies.len(), 4);
+    for study in studies {
+        let file = &study["file"];
+        assert_eq!(study["skipped"], Value::Array(Vec::new()), "{file}");
+        for line in study["lines"].as_array().unwrap() {
+            let title = &line["title"];
+            assert_eq!(line["certified"], true, "{file} {title}");
+            assert_eq!(line["distances"].as_array().unwrap().len(), 51);
+            assert_eq!(line["distances"][50], 2f64.powi(-50));
+            assert_eq!(line["ways"]["intervals"]["first_wrong"], Value::Null, "{file} {title}");
+            for way in line["ways"].as_object().unwrap().values() {
+                let refused = &way["first_refused"];
+                assert!(refused.is_null() || refused["said"].as_str().unwrap().len() > 10, "{file} {title}");
+            }
+        }
+        for scaling in study["scalings"].as_array().unwrap() {
+            for (name, way) in scaling["ways"].as_object().unwrap() {
+                let (right, marks) = (&way["right"], way["marks"].as_array().unwrap());
+                assert!(right.is_array(), "{file} {} {name}", scaling["quantity"]);
+                // where the right range ends, something says why
+                assert!(right[0] == -150 || way["below"].is_string(), "{file} {name}");
+                assert!(right[1] == 150 || way["above"].is_string(), "{file} {name}");
+                assert_eq!(name == "intervals" && marks.iter().any(|mark| mark == "wrong"), false, "{file}");
+            }
+        }
+        for units in study["units"].as_array().unwrap() {
+            for way in ["intervals", "f64 with radii"] {
+                assert_eq!(units["ways"][way]["changed"], 0, "{file} {} {way}", units["units"]);
+                assert_eq!(units["ways"][way]["wrong"], 0, "{file} {} {way}", units["units"]);
+            }
+        }
+    }
+}
+
+#[test]
+fn threads_make_no_difference() {
+    let arguments =
+        ["stress", "proofs/moll2002/same_rate.proof", "--json", "--states", "2", "--samples", "10"];
+    let (one, three) = (with_threads(&arguments, Some("1")), with_threads(&arguments, Some("3")));
+    assert!(one.status.success());
+    assert_eq!(one.stdout, three.stdout);
+}
+
+#[test]
+fn pictures_are_written() {
+    let folder = folder();
+    let file = write(&folder, "toy.proof", EQUAL_ROWS);
+    let out = folder.path().join("out");
+    let output =
+        palmistry(&["stress", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--samples", "5"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for name in ["toy-lines.svg", "toy-scaling.svg", "toy-conditioning.svg", "stress.json"] {
+        let text = std::fs::read_to_string(out.join(name)).unwrap();
+        assert!(!text.contains("could not be drawn") && text.len() > 500, "{name}");
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_used_is_said_to_be_so() {
+    let folder = folder();
+    for (text, expected) in [
+        ("system \"nothing is seen\"\nstate x\nfield f\n  x' = 1\n", "no states or no outputs"),
+        (
+            "system \"nowhere\"\nstate x, y\nfield f\n  x' = y^2\n  others' = 0\noutput x*y\n",
+            "nothing says where",
+        ),
+        ("sistem", "line 1"),
+    ] {
+        let file = write(&folder, "bad.proof", text);
+        let output = palmistry(&["stress", file.to_str().unwrap(), "--json"]);
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        let error = json(&output)["error"].clone();
+        let message = error["message"].as_str().unwrap();
+        assert!(message.contains(expected) || error["line"] == 1, "{message}");
+    }
+}
+
+/// What the page shows: the same lines with fewer points, and pictures of each.
+#[test]
+fn the_short_version_has_every_line() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002");
+    let systems: Vec<System> =
+        REGIMES.iter().map(|regime| System::read(&folder.join(regime.file)).unwrap()).collect();
+    let studies = short_stress(&systems, 1, &AtomicBool::new(false)).unwrap();
+    for (study, regime) in studies.iter().zip(&REGIMES) {
+        assert!(study.lines.len() >= regime.sets.len(), "{}", regime.file);
+        assert!(study.lines.iter().all(|line| line.distances.len() == 11 && line.certified));
+        assert_eq!(stress_pictures(study).len(), 3);
+    }
+}
