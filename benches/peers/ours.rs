@@ -1,16 +1,12 @@
 //! Our side of `benches/compare`: one job on given states, in the protocol of `benches/peers/worker.py`.
 //!
-//! `ours JOB STATES RESULTS` prepares (from the text of the proof file to a program that is ready to run), says `prepared SECONDS`,
-//! and obeys the lines `run` and `write` on standard input.
+//! `ours JOB STATES RESULTS` prepares (from the text of the proof file to a program that is ready to run), says
+//! `prepared SECONDS`, and obeys the lines `run` and `write` on standard input.
 
 use palmistry::System;
-use palmistry::expression::{NodeId, Program, Symbol, expand_angles, gradient};
-use palmistry::number::Floats;
-use palmistry::observability::{
-    Reduction, equilibrate, float_inputs, lie_derivative_by_series, singular_values,
-};
+use palmistry::expression::{BlockProgram, Input, NodeId, expand_angles, gradient};
+use palmistry::observability::{Reduction, equilibrate, lie_derivative_by_series, singular_values};
 use palmistry::system::Value;
-use std::collections::HashMap;
 use std::io::{BufRead, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -46,7 +42,7 @@ fn main() -> Outcome<()> {
             }
             "write" => {
                 let mut file = std::io::BufWriter::new(std::fs::File::create(results)?);
-                for value in work.checkable()? {
+                for value in work.checkable() {
                     file.write_all(&value.to_le_bytes())?;
                 }
                 file.flush()?;
@@ -60,20 +56,15 @@ fn main() -> Outcome<()> {
 
 /// A job on its states.
 struct Work {
-    program: Program,
-    /// Where the program's symbols have their values from.
-    symbols: HashMap<Symbol, Source>,
-    states: Vec<f64>,
-    dimension: usize,
-    /// For a verdict, the shape of what is left when the unit rows are eliminated.
+    program: BlockProgram,
+    /// For every input of the program, its values at all states.
+    inputs: Vec<Vec<f64>>,
+    /// For every entry, its values at all states.
+    entries: Vec<Vec<f64>>,
+    /// For a verdict, the number of columns of what is left when the unit rows are eliminated, and the singular values,
+    /// state by state.
     columns: Option<usize>,
-    results: Vec<f64>,
-}
-
-#[derive(Clone, Copy)]
-enum Source {
-    State(usize),
-    Parameter(f64),
+    singular: Vec<f64>,
 }
 
 impl Work {
@@ -95,66 +86,58 @@ impl Work {
         };
         let angles = system.angles();
         let roots = expand_angles(&mut system.graph, &entries, |symbol| angles.contains(&symbol));
-        let program = Program::new(&system.graph, &roots, |symbol| angles.contains(&symbol), false);
-        let mut symbols = HashMap::new();
-        for (symbol, info) in system.symbols() {
-            if let Some(default) = &info.default {
-                symbols.insert(symbol, Source::Parameter(default.to_f64().value()));
-            }
+        let default = |input| match input {
+            Input::Plain(symbol) => system.symbol_info(symbol).and_then(|info| info.default.clone()),
+            _ => None,
+        };
+        let program = BlockProgram::new(&system.graph, &roots, &[], |_| false, default);
+        let mut inputs = Vec::new();
+        for input in program.inputs() {
+            let Input::Plain(symbol) = input else { return Err("sines are computed".into()) };
+            let place = system.states.iter().position(|state| state == symbol).ok_or("not a state")?;
+            inputs.push(states.iter().skip(place).step_by(dimension).copied().collect());
         }
-        for (place, symbol) in system.states.iter().enumerate() {
-            symbols.insert(*symbol, Source::State(place));
-        }
-        Ok(Work { program, symbols, states: states.to_vec(), dimension, columns, results: Vec::new() })
+        let count = states.len() / dimension;
+        let entries = vec![vec![0.0; count]; roots.len()];
+        Ok(Work { program, inputs, entries, columns, singular: Vec::new() })
     }
 
-    /// Fills `results`: the entries, or for a verdict the singular values, of every state.
+    /// The entries, and for a verdict the singular values, of every state.
     fn evaluate(&mut self) -> Outcome<()> {
-        let mut results = std::mem::take(&mut self.results);
-        results.clear();
-        self.each(|entries, columns| {
-            match columns {
-                None => results.extend(entries),
-                Some(columns) => {
-                    let spectrum = singular_values(&entries, &vec![0.0; entries.len()], columns);
-                    results.extend(spectrum.ok_or("a value is not finite")?.values);
-                }
+        let inputs: Vec<&[f64]> = self.inputs.iter().map(Vec::as_slice).collect();
+        let mut entries: Vec<&mut [f64]> = self.entries.iter_mut().map(Vec::as_mut_slice).collect();
+        if !self.program.evaluate(&inputs, &mut entries).is_empty() {
+            return Err("a value is not finite".into());
+        }
+        if let Some(columns) = self.columns {
+            self.singular.clear();
+            for state in 0..self.entries[0].len() {
+                let matrix = self.at(state);
+                let spectrum = singular_values(&matrix, &vec![0.0; matrix.len()], columns);
+                self.singular.extend(spectrum.ok_or("a value is not finite")?.values);
             }
-            Ok(())
-        })?;
-        self.results = results;
+        }
         Ok(())
+    }
+
+    /// The entries of one state.
+    fn at(&self, state: usize) -> Vec<f64> {
+        self.entries.iter().map(|values| values[state]).collect()
     }
 
     /// The results, and for a verdict with each state's singular values the scaled matrix whose they are.
-    fn checkable(&self) -> Outcome<Vec<f64>> {
-        let Some(columns) = self.columns else { return Ok(self.results.clone()) };
+    fn checkable(&self) -> Vec<f64> {
         let mut all = Vec::new();
-        let mut singular = self.results.chunks_exact(columns);
-        self.each(|mut entries, _| {
-            equilibrate(&mut entries, &mut [0.0; 16], columns);
+        for state in 0..self.entries[0].len() {
+            let mut entries = self.at(state);
+            if let Some(columns) = self.columns {
+                let mut errors = vec![0.0; entries.len()];
+                equilibrate(&mut entries, &mut errors, columns);
+                entries.extend(&self.singular[state * columns..][..columns]);
+            }
             all.extend(entries);
-            all.extend(singular.next().ok_or("singular values are missing")?);
-            Ok(())
-        })?;
-        Ok(all)
-    }
-
-    /// Hands over the entries state by state.
-    fn each(&self, mut take: impl FnMut(Vec<f64>, Option<usize>) -> Outcome<()>) -> Outcome<()> {
-        let loaded = self.program.load(Floats).map_err(|refusal| format!("{refusal:?}"))?;
-        let mut registers = Vec::new();
-        for state in self.states.chunks_exact(self.dimension) {
-            let inputs = float_inputs(&self.program, |symbol| match self.symbols[&symbol] {
-                Source::State(place) => state[place],
-                Source::Parameter(value) => value,
-            });
-            take(
-                loaded.run(&inputs, &mut registers).map_err(|failure| format!("{failure:?}"))?,
-                self.columns,
-            )?;
         }
-        Ok(())
+        all
     }
 }
 
