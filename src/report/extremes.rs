@@ -1,8 +1,10 @@
 //! The part of the page that is about speed, accuracy and the extremes.
 
+use super::stress::stress_pictures;
 use super::trade::{TRADE_FRONT_HEADINGS, trade_front_table};
 use super::trade_plot::trade_plot;
 use crate::tradeoff::Trade;
+use crate::tradeoff::stress::Study;
 use crate::verification::Verification;
 use maud::{Markup, PreEscaped, html};
 
@@ -12,6 +14,25 @@ pub(super) fn extremes(found: &Verification) -> Markup {
         section #extremes {
             h2 { "Speed against accuracy" }
             @if let Some(trade) = &found.trade { (traded(trade)) }
+            @if !found.stress.is_empty() { (stressed(&found.stress)) }
+        }
+    }
+}
+
+fn stressed(studies: &[Study]) -> Markup {
+    html! {
+        h3 { "The extremes" }
+        p {
+            "Lines into every singular set of every regime down to a distance of 1e-15, and every quantity scaled from 1e-150 to "
+            "1e150: where each kind of number first misreports the rank of the thesis's own rows, loses more than half of its "
+            "digits, or refuses, beside the certified rank at the very state. A short version; " code { "palmistry stress" }
+            " has more states and prints every distance."
+        }
+        @for study in studies {
+            details open[study.file.ends_with("general.proof")] {
+                summary { (study.title) }
+                @for (_, picture) in stress_pictures(study) { figure { (PreEscaped(picture)) } }
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::claims::{claim_json, claim_line};
 use super::ranks::rank_json;
+use super::stress::stress_json;
 use super::trade::trade_json;
 use crate::observability::RankAnswer;
 use crate::tradeoff::{Map, Rows, Slope};
@@ -113,6 +114,7 @@ pub fn verification_json(found: &Verification) -> Value {
             })).collect::<Vec<_>>(),
         },
         "trade": found.trade.as_ref().map(trade_json),
+        "stress": stress_json(&found.stress, found.seed),
         "seconds": found.seconds,
     })
 }

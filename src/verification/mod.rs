@@ -19,6 +19,7 @@ pub use stress::{prepare_regimes, short_stress};
 
 use crate::claim::{Outcome, decide_all};
 use crate::system::{ReadError, System};
+use crate::tradeoff::stress::Study;
 use crate::tradeoff::{Growth, Trade, TradeQuestion, growth_of_lie_derivatives, trade};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -47,6 +48,8 @@ pub struct Verification {
     pub growth: Vec<Growth>,
     /// Speed against accuracy on the general regime, in short.
     pub trade: Option<Trade>,
+    /// The extremes, in short: one study a regime.
+    pub stress: Vec<Study>,
     pub seed: u64,
     /// Whether it was stopped before the end.
     pub interrupted: bool,
@@ -112,7 +115,7 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         systems.push(read(&file)?);
     }
     let claims: usize = systems.iter().map(|system| system.claims.len()).sum();
-    let steps = claims as u64 + REGIMES.iter().map(Regime::steps).sum::<u64>() + 4;
+    let steps = claims as u64 + REGIMES.iter().map(Regime::steps).sum::<u64>() + 5;
     let counter = std::sync::atomic::AtomicU64::new(0);
     let step = |what: &str| {
         let done = counter.fetch_add(1, Ordering::Relaxed) + 1;
@@ -141,6 +144,7 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         routes: Vec::new(),
         growth: Vec::new(),
         trade: None,
+        stress: Vec::new(),
         seed: options.seed,
         interrupted: false,
         seconds: 0.0,
@@ -172,6 +176,11 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         let found = trade(&systems[0], &question);
         verification.trade =
             Some(found.map_err(|why| VerifyError::Step { step: "speed against accuracy".to_owned(), why })?);
+    }
+    if !stopped() {
+        step("the extremes");
+        verification.stress = short_stress(&systems[..REGIMES.len()], options.seed, options.interrupt)
+            .map_err(|why| VerifyError::Step { step: "the extremes".to_owned(), why })?;
     }
     verification.interrupted = stopped();
     verification.seconds = begin.elapsed().as_secs_f64();
