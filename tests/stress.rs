@@ -144,12 +144,16 @@ fn what_holds_for_the_thesis() {
             assert_eq!(line["distances"].as_array().unwrap().len(), 51);
             assert_eq!(line["distances"][50], 2f64.powi(-50));
             assert_eq!(line["ways"]["intervals"]["first_wrong"], Value::Null, "{file} {title}");
+            // the ladder climbs until it is certain, however near the set
+            let ladder = line["ways"]["the ladder"]["marks"].as_array().unwrap();
+            assert!(ladder.iter().all(|mark| mark == "right"), "{file} {title}");
             for way in line["ways"].as_object().unwrap().values() {
                 let refused = &way["first_refused"];
                 assert!(refused.is_null() || refused["said"].as_str().unwrap().len() > 10, "{file} {title}");
             }
         }
         for scaling in study["scalings"].as_array().unwrap() {
+            assert_eq!(scaling["ways"]["the ladder"]["right"], serde_json::json!([-150, 150]), "{file}");
             for (name, way) in scaling["ways"].as_object().unwrap() {
                 let (right, marks) = (&way["right"], way["marks"].as_array().unwrap());
                 assert!(right.is_array(), "{file} {} {name}", scaling["quantity"]);
@@ -160,7 +164,7 @@ fn what_holds_for_the_thesis() {
             }
         }
         for units in study["units"].as_array().unwrap() {
-            for way in ["intervals", "f64 with radii"] {
+            for way in ["intervals", "f64 with radii", "the ladder"] {
                 assert_eq!(units["ways"][way]["changed"], 0, "{file} {} {way}", units["units"]);
                 assert_eq!(units["ways"][way]["wrong"], 0, "{file} {} {way}", units["units"]);
             }

@@ -16,7 +16,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Lines approach every singular set down to a distance of 1e-15 (two rates equal, a rate at zero, the palms in line, a
 /// contact at the joint, a determinant's zero). At each point, an exact rational state, the rank is decided in single
 /// precision, in doubles with the customary threshold, in doubles after equilibration, with the errors that intervals
-/// know, by intervals alone, and in double-doubles; beside them stands the certified rank. For each the table has the
+/// know, by intervals alone, in double-doubles, and by the ladder that 'palmistry rank' climbs; beside them stands the
+/// certified rank. For each the table has the
 /// distance at which it first reports another rank, and at which an entry first loses more than half of its digits.
 ///
 /// Then every quantity is scaled from 1e-150 to 1e150, and the states are looked at in other units, which should change

@@ -1,7 +1,7 @@
 //! The extremes, as JSON and as tables.
 
 use super::stress_plot::{conditioning_picture, lines_picture, ranks_text, scalings_picture};
-use crate::tradeoff::stress::{End, First, Line, Scaling, Study, UnitsRow, Way};
+use crate::tradeoff::stress::{Conditioning, End, First, Line, Scaling, Study, UnitsRow, Way};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -81,6 +81,19 @@ fn histogram_json(histogram: &BTreeMap<i32, usize>) -> Value {
     histogram.iter().map(|(decade, count)| (name(*decade), json!(count))).collect::<Map<_, _>>().into()
 }
 
+fn conditioning_json(found: &Conditioning) -> Value {
+    json!({
+        "states": found.states,
+        "old_scaling": histogram_json(&found.old),
+        "equilibrated": histogram_json(&found.new),
+        "fixed_thresholds": found.thresholds.iter().map(|(threshold, old, new)| json!({
+            "part_of_the_largest": threshold,
+            "wrong_old_scaling": old,
+            "wrong_equilibrated": new,
+        })).collect::<Vec<_>>(),
+    })
+}
+
 fn study_json(study: &Study) -> Value {
     json!({
         "file": study.file,
@@ -92,16 +105,8 @@ fn study_json(study: &Study) -> Value {
         "skipped": study.skipped.iter().map(|(title, why)| json!({ "title": title, "why": why })).collect::<Vec<_>>(),
         "scalings": study.scalings.iter().map(scaling_json).collect::<Vec<_>>(),
         "units": study.units.iter().map(units_json).collect::<Vec<_>>(),
-        "conditioning": {
-            "states": study.conditioning.states,
-            "old_scaling": histogram_json(&study.conditioning.old),
-            "equilibrated": histogram_json(&study.conditioning.new),
-            "fixed_thresholds": study.conditioning.thresholds.iter().map(|(threshold, old, new)| json!({
-                "part_of_the_largest": threshold,
-                "wrong_old_scaling": old,
-                "wrong_equilibrated": new,
-            })).collect::<Vec<_>>(),
-        },
+        "conditioning": conditioning_json(&study.conditioning),
+        "conditioning_near_the_sets": conditioning_json(&study.conditioning_near),
         "interrupted": study.interrupted,
     })
 }
@@ -204,7 +209,15 @@ fn units_text(study: &Study, out: &mut String) {
         (row.name.clone(), Way::ALL.map(count).to_vec())
     });
     table("units", &Way::ALL.map(Way::name), rows.collect(), out);
-    let found = &study.conditioning;
+    for (states, found) in [
+        ("states of the box", &study.conditioning),
+        ("states on the sets and near them", &study.conditioning_near),
+    ] {
+        conditioning_text(states, found, out);
+    }
+}
+
+fn conditioning_text(states: &str, found: &Conditioning, out: &mut String) {
     let decades = |histogram: &BTreeMap<i32, usize>| {
         let words = histogram.iter().map(|(decade, count)| match *decade {
             i32::MAX => format!("infinite: {count}"),
@@ -212,19 +225,19 @@ fn units_text(study: &Study, out: &mut String) {
         });
         words.collect::<Vec<_>>().join(", ")
     };
-    let _ = writeln!(out, "  condition numbers, rows of length one: {}", decades(&found.old));
-    let _ = writeln!(out, "  condition numbers, equilibrated:       {}", decades(&found.new));
+    let _ = writeln!(out, "  {} {states}; the condition numbers of those of full rank", found.states);
+    let _ = writeln!(out, "    rows of length one: {}", decades(&found.old));
+    let _ = writeln!(out, "    equilibrated:       {}", decades(&found.new));
+    let wrong: Vec<String> = found
+        .thresholds
+        .iter()
+        .map(|(threshold, old, new)| format!("{threshold:.0e}: {old} / {new}"))
+        .collect();
     let _ = writeln!(
         out,
-        "  ranks of {} states of the box, on the sets and near them, by a fixed part of the largest singular value",
-        found.states
+        "    wrong ranks by a fixed part of the largest singular value (rows of length one / equilibrated): {}",
+        wrong.join(", ")
     );
-    for (threshold, old, new) in &found.thresholds {
-        let _ = writeln!(
-            out,
-            "    {threshold:.0e}: {old} wrong (rows of length one), {new} wrong (equilibrated)"
-        );
-    }
 }
 
 /// What was found, as tables.
@@ -268,7 +281,7 @@ pub fn stress_pictures(study: &Study) -> Vec<(String, String)> {
     }
     if study.conditioning.states > 0 {
         let title = format!("{}: conditioning", study.title);
-        found.push((format!("{stem}-conditioning"), conditioning_picture(&study.conditioning, &title)));
+        found.push((format!("{stem}-conditioning"), conditioning_picture(study, &title)));
     }
     found
 }

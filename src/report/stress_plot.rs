@@ -1,7 +1,7 @@
 //! Pictures of the extremes: for every set and every way a bar from far to near, coloured by what its verdict is worth.
 
 use super::plot::{INK, svg};
-use crate::tradeoff::stress::{Conditioning, End, Mark, Study, Way};
+use crate::tradeoff::stress::{End, Mark, Study, Way};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::collections::BTreeMap;
@@ -179,8 +179,16 @@ pub fn scalings_picture(study: &Study) -> String {
     bars(&format!("{}: every quantity scaled", study.title), "times the quantity's value", &ticks, &rows)
 }
 
-/// How the states are conditioned in the old and in the new scaling.
-pub fn conditioning_picture(found: &Conditioning, title: &str) -> String {
+/// How the states (of the box, on the sets and near them) are conditioned in the old and in the new scaling.
+pub fn conditioning_picture(study: &Study, title: &str) -> String {
+    let mut found = study.conditioning.clone();
+    for (all, near) in
+        [(&mut found.old, &study.conditioning_near.old), (&mut found.new, &study.conditioning_near.new)]
+    {
+        for (decade, count) in near {
+            *all.entry(*decade).or_insert(0) += count;
+        }
+    }
     let decades = || found.old.keys().chain(found.new.keys()).filter(|decade| **decade < i32::MAX).copied();
     let (Some(least), Some(most)) = (decades().min(), decades().max()) else {
         return String::new();

@@ -3,7 +3,9 @@
 use super::subject::{Subject, Truth};
 use super::{Mark, Verdict, Way, jacobi};
 use crate::number::{DoubleDouble, Floats, Interval, Real, rational_to_f64};
-use crate::observability::{Spectrum, State, certain_rank, customary_singular_values, singular_values};
+use crate::observability::{
+    Judge, Judged, Spectrum, State, certain_rank, customary_singular_values, singular_values,
+};
 use dashu::rational::RBig;
 
 /// What one way finds at a state.
@@ -35,7 +37,13 @@ impl Finding {
 impl Subject {
     /// What every way of [`Way::ALL`] finds at a state. `column`, if given, is measured in units so many times smaller
     /// (a power of two, so that nothing is rounded).
-    pub fn findings(&self, state: &State, truth: &Truth, column: Option<(usize, f64)>) -> Vec<Finding> {
+    pub fn findings(
+        &self,
+        judge: &Judge<'_>,
+        state: &State,
+        truth: &Truth,
+        column: Option<(usize, f64)>,
+    ) -> Vec<Finding> {
         let singles = self.scaled(self.entries::<f32>(state), column);
         let doubles = self.scaled(self.entries::<f64>(state), column);
         let intervals = self.scaled(self.entries::<Interval>(state), column);
@@ -76,6 +84,7 @@ impl Subject {
                     let worst = self.worst(&picked, truth, column, relative_error);
                     (self.by_jacobi(picked, 2f64.powi(-104)), worst)
                 }),
+                Way::Ladder => Finding { verdict: self.by_ladder(judge, state, &intervals), digits: None },
             })
             .collect()
     }
@@ -150,6 +159,26 @@ impl Subject {
 
     fn by_radii(&self, middles: &[f64], radii: &[f64]) -> Verdict {
         by_spectrum(singular_values(middles, radii, self.reduction.columns.len()), self.reduction.eliminated)
+    }
+
+    /// Intervals, in whatever units, if they prove the full rank; else what the ladder's other rungs find, which are exact,
+    /// so that units (which multiply a column) say nothing to them.
+    fn by_ladder(
+        &self,
+        judge: &Judge<'_>,
+        state: &State,
+        intervals: &Result<Vec<Interval>, String>,
+    ) -> Verdict {
+        if let Ok(intervals) = intervals
+            && let Verdict::Rank(rank) = self.by_pivots(&self.pick(intervals))
+            && rank == self.columns
+        {
+            return Verdict::Rank(rank);
+        }
+        match judge.decide(state) {
+            Judged::Report(report) => Verdict::Rank(report.rank),
+            Judged::Pole(why) => Verdict::Refused(why),
+        }
     }
 
     fn by_pivots(&self, remaining: &[Interval]) -> Verdict {

@@ -96,12 +96,13 @@ impl Prepared {
 
     /// What all ways find from one base state, at each distance.
     pub fn walk(&self, subject: &Subject, base: &State, halvings: &[usize]) -> Walk {
+        let judge = subject.judge();
         halvings
             .iter()
             .map(|halvings| {
                 let state = self.at(base, *halvings);
                 let truth = subject.truth(&state).ok()?;
-                let findings = subject.findings(&state, &truth, None);
+                let findings = subject.findings(&judge, &state, &truth, None);
                 let marked = findings.into_iter().zip(Way::ALL).map(|(finding, way)| {
                     let mark = finding.mark(way, &truth);
                     (finding, mark)
@@ -192,7 +193,7 @@ impl Finding {
             Way::Single => subject.rounded_to_zero::<f32>(state),
             Way::Customary | Way::Double => subject.rounded_to_zero::<f64>(state),
             Way::DoubleDouble => subject.rounded_to_zero::<DoubleDouble>(state),
-            Way::Radii | Way::Interval => None,
+            Way::Radii | Way::Interval | Way::Ladder => None,
         }
     }
 }

@@ -39,12 +39,14 @@ pub enum Way {
     Interval,
     /// Double-doubles throughout: singular values as for single precision.
     DoubleDouble,
+    /// The ladder of [`Judge`](crate::observability::Judge), certified: intervals, residues, exact numbers, enclosures.
+    Ladder,
 }
 
 impl Way {
-    /// All, from the cheapest.
-    pub const ALL: [Way; 6] =
-        [Way::Single, Way::Customary, Way::Double, Way::Radii, Way::Interval, Way::DoubleDouble];
+    /// All, from the cheapest; at last what `palmistry rank` does.
+    pub const ALL: [Way; 7] =
+        [Way::Single, Way::Customary, Way::Double, Way::Radii, Way::Interval, Way::DoubleDouble, Way::Ladder];
 
     /// The place in [`Way::ALL`].
     pub fn place(self) -> usize {
@@ -60,6 +62,7 @@ impl Way {
             Way::Radii => "f64 with radii",
             Way::Interval => "intervals",
             Way::DoubleDouble => "double-double",
+            Way::Ladder => "the ladder",
         }
     }
 

@@ -55,7 +55,9 @@ pub struct Study {
     pub scalings: Vec<Scaling>,
     /// In the file's own units first.
     pub units: Vec<UnitsRow>,
+    /// Of states of the box, and of states on the sets and near them.
     pub conditioning: Conditioning,
+    pub conditioning_near: Conditioning,
     pub interrupted: bool,
 }
 
@@ -197,7 +199,10 @@ impl Stress {
             })
             .collect();
         units.extend(others.into_iter().flatten());
-        let states = if stopped() { Vec::new() } else { self.states_near_and_far(options) };
+        let (of_box, near) = match stopped() {
+            true => (Vec::new(), Vec::new()),
+            false => (self.of_box(options, options.samples * MORE_FOR_CONDITIONING), self.near(options)),
+        };
         Study {
             file: subject.system.name.clone(),
             title: subject.system.title.clone(),
@@ -207,7 +212,8 @@ impl Stress {
             lines,
             skipped: self.skipped.clone(),
             scalings: scalings.into_iter().flatten().collect(),
-            conditioning: conditioning(subject, states),
+            conditioning: conditioning(subject, of_box),
+            conditioning_near: conditioning(subject, near),
             units,
             interrupted: stopped(),
         }
@@ -223,9 +229,9 @@ impl Stress {
         lines.flat_map(move |line| line.bases.iter().take(count).map(move |base| (line, base)))
     }
 
-    /// Many states of the box, states on the sets, and at some distances from them.
-    fn states_near_and_far(&self, options: &StressOptions<'_>) -> Vec<State> {
-        let mut states = self.of_box(options, options.samples * MORE_FOR_CONDITIONING);
+    /// States on the sets, and at some distances from them.
+    fn near(&self, options: &StressOptions<'_>) -> Vec<State> {
+        let mut states = Vec::new();
         for (line, base) in self.bases(options) {
             states.push(base.clone());
             states.extend(NEAR.iter().map(|halvings| line.at(base, *halvings)));
@@ -235,10 +241,11 @@ impl Stress {
 
     /// States of the box and of the sets, but poles.
     fn seen(&self, options: &StressOptions<'_>) -> Vec<Seen> {
+        let judge = self.subject.judge();
         let mut states = self.of_box(options, options.samples);
         states.extend(self.bases(options).map(|(_, base)| base.clone()));
         let seen: Vec<Option<Seen>> =
-            states.into_par_iter().map(|state| Seen::new(&self.subject, state)).collect();
+            states.into_par_iter().map(|state| Seen::new(&self.subject, &judge, state)).collect();
         seen.into_iter().flatten().collect()
     }
 }

@@ -3,7 +3,8 @@
 use crate::expression::{Failure, NodeId, Program, expand_angles};
 use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, PrimeField, Rationals, Real, Refusal};
 use crate::observability::{
-    Reduction, Spectrum, State, certain_rank, customary_singular_values, rank, singular_values,
+    Certainty, Judge, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank,
+    singular_values,
 };
 use crate::system::System;
 use dashu::rational::RBig;
@@ -23,6 +24,8 @@ type Evaluated<N> = Result<(Vec<N>, Vec<N>), String>;
 /// Some rows of a system.
 pub struct Subject {
     pub system: System,
+    /// All entries, sines and cosines of sums of angles expanded.
+    expanded: Vec<NodeId>,
     program: Program,
     pub(super) reduction: Reduction,
     /// Where the entries that remain without unit rows are among all.
@@ -73,7 +76,15 @@ impl Subject {
             .collect();
         // any fixed field: what it proves does not depend on which
         let field = PrimeField::random(&mut ChaCha8Rng::seed_from_u64(0x73_7472_6573));
-        Ok(Subject { system: system.clone(), program, reduction, remaining, columns, field })
+        Ok(Subject { system: system.clone(), expanded, program, reduction, remaining, columns, field })
+    }
+
+    /// The ladder for these rows, certified.
+    pub(super) fn judge(&self) -> Judge<'_> {
+        let rows: &[NodeId] = &self.expanded;
+        let is_angle = |symbol| self.system.is_angle(symbol);
+        let wanted = (self.field, Certainty::Certified);
+        Judge::new(&self.system.graph, &[], (rows, rows), self.columns, is_angle, wanted)
     }
 
     /// The rows that remain without unit rows, and their columns.
