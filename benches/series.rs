@@ -5,10 +5,10 @@
 
 use divan::{Bencher, black_box};
 use palmistry::System;
-use palmistry::expression::{Derivation, NodeId, Program, Symbol, gradient};
+use palmistry::expression::{BlockProgram, Derivation, Input, NodeId, Program, Symbol, gradient};
 use palmistry::number::Floats;
 use palmistry::observability::{
-    Branch, Flow, Locus, differential_by_duals, float_inputs, lie_derivative_by_duals,
+    Branch, Coordinate, Flow, Locus, differential_by_duals, float_inputs, lie_derivative_by_duals,
     lie_derivative_by_series,
 };
 use std::collections::{BTreeMap, HashMap};
@@ -28,13 +28,30 @@ fn general() -> (System, usize, NodeId) {
     (system, field, output)
 }
 
+const STATES: u64 = 1000;
+
 /// The first state that the sample box gives.
 fn point(system: &mut System) -> HashMap<Symbol, f64> {
+    points(system, 1).remove(0)
+}
+
+/// States of the sample box.
+fn points(system: &mut System, count: u64) -> Vec<HashMap<Symbol, f64>> {
     let everything: Vec<NodeId> =
         system.fields.iter().flat_map(|field| field.components.iter().map(|(_, node)| *node)).collect();
     let locus = Locus::new(system, &Branch::default(), &BTreeMap::new(), &everything).expect("it has ranges");
-    let state = locus.draw(1, 0).expect("the box is not empty");
-    state.values.into_iter().map(|(symbol, value)| (symbol, value.to_f64())).collect()
+    let state = |index| locus.draw(1, index).expect("the box is not empty").values;
+    let number = |(symbol, value): (Symbol, Coordinate)| (symbol, value.to_f64());
+    (0..count).map(|index| state(index).into_iter().map(number).collect()).collect()
+}
+
+fn value_of(input: &Input, state: &HashMap<Symbol, f64>) -> f64 {
+    match input {
+        Input::Plain(symbol) => state[symbol],
+        Input::Sine(symbol) => state[symbol].sin(),
+        Input::Cosine(symbol) => state[symbol].cos(),
+        Input::Opaque(_) => f64::NAN,
+    }
 }
 
 fn by_derivation(system: &mut System, field: usize, h: NodeId, order: usize) -> NodeId {
@@ -99,6 +116,17 @@ mod prepare {
         });
     }
 
+    /// The file read, series, gradient, and the block program: everything before the first state.
+    #[divan::bench(args = ORDERS)]
+    fn everything_for_a_gradient_in_blocks(bencher: Bencher, order: usize) {
+        bencher.bench_local(|| {
+            let (mut system, field, h) = general();
+            let value = by_series(&mut system, field, h, order);
+            let roots = at_once(&mut system, value);
+            BlockProgram::new(&system.graph, &roots, &[], |symbol| system.is_angle(symbol), |_| None)
+        });
+    }
+
     #[divan::bench(args = ORDERS)]
     fn gradient_by_series_and_reverse_mode(bencher: Bencher, order: usize) {
         prepared(bencher, |system, field, h| {
@@ -128,11 +156,7 @@ mod value {
         let (mut system, field, h) = general();
         let point = point(&mut system);
         let flow = Flow::new(&system.graph, &system.fields[field].components, &[h], |_| false);
-        let value = |input: &palmistry::expression::Input| match input {
-            palmistry::expression::Input::Plain(symbol) => point[symbol],
-            _ => f64::NAN,
-        };
-        let inputs: Vec<f64> = flow.inputs().iter().map(value).collect();
+        let inputs: Vec<f64> = flow.inputs().iter().map(|input| value_of(input, &point)).collect();
         bencher.bench_local(|| flow.lie_derivatives(&Floats::default(), black_box(&inputs), order));
     }
 
@@ -171,6 +195,28 @@ mod gradients {
             let value = by_series(system, field, h, order);
             at_once(system, value)
         });
+    }
+
+    /// A block program at a thousand states; the counter gives states a second.
+    #[divan::bench(args = ORDERS)]
+    fn of_the_series_in_blocks(bencher: Bencher, order: usize) {
+        let (mut system, field, h) = general();
+        let value = by_series(&mut system, field, h, order);
+        let roots = at_once(&mut system, value);
+        let program =
+            BlockProgram::new(&system.graph, &roots, &[], |symbol| system.is_angle(symbol), |_| None);
+        let states = points(&mut system, STATES);
+        let inputs: Vec<Vec<f64>> = program
+            .inputs()
+            .iter()
+            .map(|input| states.iter().map(|state| value_of(input, state)).collect())
+            .collect();
+        let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+        let mut results = vec![vec![0.0; states.len()]; roots.len()];
+        let mut outputs: Vec<&mut [f64]> = results.iter_mut().map(Vec::as_mut_slice).collect();
+        bencher
+            .counter(divan::counter::ItemsCount::new(states.len()))
+            .bench_local(|| program.evaluate(black_box(&inputs), &mut outputs));
     }
 
     #[divan::bench(args = [1, 2, 4, 6], sample_count = 20)]

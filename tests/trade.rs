@@ -50,6 +50,9 @@ fn digits_are_what_the_numbers_have() {
         let interval = of(Number::Interval);
         assert!(interval.0 < double.0 && interval.0 > 10.0, "{derivative:?} {interval:?}");
     }
+    // the same algebra in another order
+    let blocks = digits(&found, Number::Double, Derivative::Blocks);
+    assert!((13.5..16.0).contains(&blocks.0), "{blocks:?}");
     for (number, forward, central) in
         [(Number::Double, 2.0..4.5, 4.0..7.0), (Number::DoubleDouble, 5.5..8.0, 9.5..13.0)]
     {

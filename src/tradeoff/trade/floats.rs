@@ -1,5 +1,6 @@
 //! The kinds of numbers that round: f32, f64, double-double, and intervals of doubles.
 
+use super::blocks::{Blocks, timer, way};
 use super::combination::{Derivative, Number, RankMethod};
 use super::duals::duals;
 use super::ranks::{
@@ -13,6 +14,7 @@ use crate::number::{DoubleDouble, Floats, Interval, Real};
 use crate::tradeoff::differences::Difference;
 use dashu::rational::RBig;
 use num_dual::DualNum;
+use std::sync::Arc;
 
 /// The distance between one and the next double-double that every operation can tell apart (its error bound).
 const DOUBLE_DOUBLE_SPACING: f64 = 1.0 / (1u128 << 102) as f64;
@@ -86,9 +88,14 @@ pub(super) fn single(work: &Work) -> Setup<'_, Floats<f32>> {
 
 pub(super) fn double(work: &Work) -> Setup<'_, Floats> {
     let mut setup = machine(work, Number::Double, f64::EPSILON);
+    let blocks = Blocks::new(work).map(Arc::new);
+    if let Ok(blocks) = &blocks {
+        setup.timers.push((Derivative::Blocks, timer(blocks.clone())));
+    }
+    setup.way(Derivative::Blocks, blocks.map(way));
     let columns = work.block.columns;
-    let way = each(move |block| equilibrated(block, columns));
-    setup.ranks.push((RankMethod::SvdEquilibrated, nonempty(work, way)));
+    let decide = each(move |block| equilibrated(block, columns));
+    setup.ranks.push((RankMethod::SvdEquilibrated, nonempty(work, decide)));
     setup
 }
 

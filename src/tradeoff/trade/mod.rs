@@ -6,6 +6,7 @@
 //! [`trade`] tells how many digits of the entries each way gets right, how often each combination misreports the rank,
 //! and what a state costs; [`Combination::on_front`] marks those that no other beats.
 
+mod blocks;
 mod combination;
 mod duals;
 mod exact;
@@ -79,7 +80,10 @@ pub fn trade(system: &System, question: &TradeQuestion<'_>) -> Result<Trade, Str
     for job in &jobs {
         findings.set_seconds(&job.of, job.seconds);
     }
+    findings.derivatives.sort_by_key(|found| (found.number, found.derivative));
+    findings.ranks.sort_by_key(|found| (found.number, found.rank));
     let mut combinations = findings.combinations();
+    combinations.sort_by_key(|c| (c.number, c.derivative, c.rank));
     mark_front(&mut combinations);
     Ok(Trade {
         file: work.system.name.clone(),

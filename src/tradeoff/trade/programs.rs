@@ -1,6 +1,6 @@
 //! The programs that the ways to a derivative run.
 
-use crate::expression::{NodeId, Program, Symbol, expand_angles, gradient};
+use crate::expression::{BlockProgram, NodeId, Program, Symbol, expand_angles, gradient};
 use crate::observability::{Word, lie_derivative_by_series};
 use crate::system::System;
 use crate::tradeoff::point_programs::PointPrograms;
@@ -21,6 +21,8 @@ pub(super) struct RowPlan {
 pub(super) struct Programs {
     /// The entries that vary, as they were derived.
     pub graph: Program,
+    /// The same over blocks of states.
+    pub blocks: BlockProgram,
     /// By Taylor series; or why not.
     pub series: Result<Program, String>,
     /// Multiplied out; or why not.
@@ -47,6 +49,7 @@ impl Programs {
         let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
         Programs {
             graph: compile(&roots),
+            blocks: BlockProgram::new(&system.graph, &roots, &[], is_angle, |_| None),
             series: by_series.map(|roots| compile(&roots)),
             expanded: expanded.map(|roots| compile(&roots)),
             points: PointPrograms::new(system, &outputs),

@@ -27,6 +27,9 @@ pub(super) enum Accuracy {
 /// The relative error of a value; infinite for what is no number, or an enclosure that does not enclose.
 type ErrorOf<'w, N> = Box<dyn Fn(&N, &Exact) -> f64 + Send + Sync + 'w>;
 
+/// Does the first so many states.
+pub(super) type Timer<'w> = Box<dyn Fn(usize) + Send + Sync + 'w>;
+
 /// One kind of number, and what can be done with it.
 pub(super) struct Setup<'w, A: Arithmetic> {
     pub number: Number,
@@ -35,6 +38,8 @@ pub(super) struct Setup<'w, A: Arithmetic> {
     error: ErrorOf<'w, A::Number>,
     pub ways: Vec<(Derivative, Way<'w, A::Number>)>,
     pub ranks: Vec<(RankMethod, RankWay<'w, A::Number>)>,
+    /// What is timed where it is not the way itself, because a way hands its results over state by state.
+    pub timers: Vec<(Derivative, Timer<'w>)>,
     /// Ways that would make sense and are not possible here.
     left_out: Vec<(Derivative, String)>,
 }
@@ -54,6 +59,7 @@ impl<'w, A: Arithmetic> Setup<'w, A> {
             error,
             ways: Vec::new(),
             ranks: Vec::new(),
+            timers: Vec::new(),
             left_out: Vec::new(),
         }
     }
@@ -182,10 +188,12 @@ pub(super) fn study<'s, A: Arithmetic + Sync>(
         if timed.0.is_empty() {
             timed = (blocks, wholes);
         }
-        jobs.push(Job::new(Part::Derivative(number, derivative), move |states| {
-            way(0..states, &mut |values| {
+        let timer = setup.timers.iter().find(|(other, _)| *other == derivative);
+        jobs.push(Job::new(Part::Derivative(number, derivative), move |states| match timer {
+            Some((_, timer)) => timer(states),
+            None => way(0..states, &mut |values| {
                 std::hint::black_box(values);
-            });
+            }),
         }));
     }
     for (rank, decide) in &setup.ranks {
