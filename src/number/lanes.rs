@@ -48,6 +48,13 @@ pub trait Lanes:
         called(task)
     }
 
+    /// Zero; not a number where bounds on errors are kept and the one on this value, that of a function of the standard
+    /// library, is believed and not proved.
+    #[inline(always)]
+    fn believed(self) -> Self {
+        self.splat(0.0)
+    }
+
     /// Zero where the value is finite, else not a number.
     #[inline(always)]
     #[allow(clippy::eq_op)] // infinity less infinity is not a number

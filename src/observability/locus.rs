@@ -4,7 +4,7 @@ use super::conditions::Branch;
 use super::state::{Coordinate, State};
 use crate::expression::{NodeId, Program, Symbol, expand_angles};
 use crate::number::{Floats, Function, Rationals, Refusal, rational_from_f64, rational_to_f64};
-use crate::system::{Kind, System};
+use crate::system::{Assignment, Kind, System};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use rand::{RngExt, SeedableRng};
@@ -17,7 +17,7 @@ pub const AVOIDED: f64 = 0.05;
 /// Coordinates are drawn on a grid of this many binary places, so that exact arithmetic has short numbers to work on.
 const GRID_BITS: usize = 16;
 
-const ATTEMPTS: usize = 2000;
+pub(super) const ATTEMPTS: usize = 2000;
 
 /// Why states cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -34,7 +34,7 @@ pub enum LocusError {
 
 /// Where one symbol comes from.
 #[derive(Clone, Debug)]
-enum Source {
+pub(super) enum Source {
     Fixed(Coordinate),
     Between(RBig, RBig),
     /// An angle in radians.
@@ -44,7 +44,11 @@ enum Source {
 /// A set of states that can be drawn from.
 #[derive(Clone, Debug)]
 pub struct Locus {
-    sources: BTreeMap<Symbol, Source>,
+    pub(super) sources: BTreeMap<Symbol, Source>,
+    /// What the conditions give, as expressions of the rest.
+    pub(super) values: Assignment,
+    /// What is avoided, as expressions of what is drawn.
+    pub(super) avoided: Vec<NodeId>,
     /// Solved symbols: value, or sine and cosine.
     dependent: Vec<(Symbol, bool)>,
     dependent_program: Program,
@@ -101,10 +105,12 @@ impl Locus {
             .extend(fixed.iter().map(|(symbol, value)| format!("{} = {value}", system.symbol_name(*symbol))));
         Ok(Locus {
             sources,
+            values: branch.values.clone(),
             dependent,
             dependent_program: Program::new(&system.graph, &values, is_angle, false),
             avoid,
             avoid_program: Program::new(&system.graph, &avoid_nodes, is_angle, false),
+            avoided: avoid_nodes,
             conditions,
         })
     }
@@ -137,7 +143,7 @@ impl Locus {
     }
 
     /// Adds the symbols that the conditions give.
-    fn complete(&self, state: &mut State) -> Result<(), Refusal> {
+    pub(super) fn complete(&self, state: &mut State) -> Result<(), Refusal> {
         let exact = Rationals::default();
         let inputs =
             state.inputs(&self.dependent_program, &exact).map_err(|r| r.unwrap_or(Refusal::NotFinite))?;

@@ -1,10 +1,11 @@
 //! The rank of a set of rows at many sampled states.
 
 use super::codistribution::Codistribution;
-use super::ladder::{Certainty, Judge, Judged};
+use super::ladder::{Certainty, Judge, Judged, StateReport};
 use super::locus::{Locus, LocusError};
 use super::singular::Spectrum;
 use super::state::{State, StateInWords};
+use super::stream::{Stream, StreamOptions};
 use crate::expression::{NodeId, Symbol, expand_angles};
 use crate::number::{PrimeField, Rung, rational_to_f64};
 use crate::system::System;
@@ -110,29 +111,111 @@ pub fn sweep(
     let graph = system.graph.clone();
     let judge =
         Judge::new(&graph, &outputs, (&quick, &all), system.states.len(), is_angle, (field, options.wanted));
+    // a stream decides full ranks only; where the quick rows cannot have it, there is nothing to stream
+    let stream = Stream::new(system, locus, &quick)
+        .filter(|stream| stream.full_rank() == system.states.len() && stream.remaining() != (0, 0));
+    let mut report = match stream {
+        Some(stream) => streamed(system, &stream, &judge, options)?,
+        None => one_by_one(system, locus, &judge, options)?,
+    };
+    report.seconds = begin.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+/// Every state by itself.
+fn one_by_one(
+    system: &System,
+    locus: &Locus,
+    judge: &Judge<'_>,
+    options: SweepOptions<'_>,
+) -> Result<SweepReport, LocusError> {
     let mut tally = Tally::default();
     let mut done = 0;
     while done < options.samples && !options.interrupt.load(Ordering::Relaxed) {
         let end = (done + BLOCK).min(options.samples);
-        let block: Vec<Result<(State, Judged), LocusError>> = (done..end)
-            .into_par_iter()
-            .map(|index| {
-                let state = locus.draw(options.seed, index)?;
-                let judged = judge.decide(&state);
-                Ok((state, judged))
-            })
-            .collect();
-        for (index, item) in (done..end).zip(block) {
-            let (state, judged) = item?;
-            tally.add(system, index, state, judged);
-        }
+        let indices: Vec<u64> = (done..end).collect();
+        judge_all(system, judge, &mut tally, &indices, |index| locus.draw(options.seed, index))?;
         done = end;
         (options.progress)(done);
     }
-    let interrupted = done < options.samples;
-    let mut report = tally.finish(system, interrupted, begin.elapsed().as_secs_f64());
+    let mut report = tally.finish(system, done < options.samples);
     report.remaining = judge.remaining();
     Ok(report)
+}
+
+/// A stream of states; those that it leaves are judged one by one.
+fn streamed(
+    system: &System,
+    stream: &Stream,
+    judge: &Judge<'_>,
+    options: SweepOptions<'_>,
+) -> Result<SweepReport, LocusError> {
+    let mut tally = Tally::default();
+    let mut trouble = None;
+    let mut skipped = false;
+    let state = |index| stream.state(options.seed, index);
+    let mut left = |indices: &[u64]| {
+        for block in indices.chunks(BLOCK as usize) {
+            skipped |= options.interrupt.load(Ordering::Relaxed);
+            if skipped || trouble.is_some() {
+                return;
+            }
+            trouble = judge_all(system, judge, &mut tally, block, state).err();
+        }
+    };
+    let SweepOptions { samples: states, seed, wanted, interrupt, progress } = options;
+    let found = stream.run(&StreamOptions { states, seed, wanted, interrupt, progress }, &mut left)?;
+    if let Some(error) = trouble {
+        return Err(error);
+    }
+    let full = system.states.len();
+    let decided = found.states - found.left;
+    if decided > 0 {
+        tally.samples += decided;
+        tally.certified += found.certified;
+        *tally.ranks.entry(full).or_insert(0) += decided;
+        *tally.rungs.entry(Rung::Doubles).or_insert(0) += decided;
+        *tally.computed.entry(full).or_insert(0) += decided - found.denied;
+        tally.disagreements += found.denied;
+    }
+    if let Some(gap) = found.smallest_gap {
+        tally.smallest_gap = Some(tally.smallest_gap.map_or(gap, |least| least.min(gap)));
+    }
+    if let Some((index, condition)) = found.worst
+        && tally.worst.as_ref().is_none_or(|(_, worst)| condition > worst.condition())
+    {
+        let state = state(index)?;
+        if let Judged::Report(StateReport { spectrum: Some(spectrum), .. }) = judge.decide(&state) {
+            tally.worst = Some((state, spectrum));
+        }
+    }
+    let mut report = tally.finish(system, found.interrupted || skipped);
+    report.first = Rung::Doubles;
+    report.remaining = found.remaining;
+    Ok(report)
+}
+
+/// Judges some states at once and adds them up in their order.
+fn judge_all(
+    system: &System,
+    judge: &Judge<'_>,
+    tally: &mut Tally,
+    indices: &[u64],
+    state: impl Fn(u64) -> Result<State, LocusError> + Sync,
+) -> Result<(), LocusError> {
+    let block: Vec<Result<(State, Judged), LocusError>> = indices
+        .par_iter()
+        .map(|index| {
+            let state = state(*index)?;
+            let judged = judge.decide(&state);
+            Ok((state, judged))
+        })
+        .collect();
+    for (index, item) in indices.iter().zip(block) {
+        let (state, judged) = item?;
+        tally.add(system, *index, state, judged);
+    }
+    Ok(())
 }
 
 #[derive(Default)]
@@ -191,7 +274,7 @@ impl Tally {
         entry.count += 1;
     }
 
-    fn finish(self, system: &System, interrupted: bool, seconds: f64) -> SweepReport {
+    fn finish(self, system: &System, interrupted: bool) -> SweepReport {
         SweepReport {
             samples: self.samples,
             rank_histogram: self.ranks,
@@ -206,7 +289,7 @@ impl Tally {
             unseen: self.unseen.into_values().collect(),
             smallest_gap: self.smallest_gap.unwrap_or(f64::INFINITY),
             interrupted,
-            seconds,
+            seconds: 0.0,
         }
     }
 }

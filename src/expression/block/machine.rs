@@ -23,14 +23,20 @@ pub struct Machine<'t, L> {
 const CACHE: usize = 64 << 10;
 /// A block has at least and at most so many lanes: less, and most time goes into finding the next instruction.
 const SHORTEST: usize = 4;
-const LONGEST: usize = 16;
+const LONGEST: usize = 16; // both even
 
 impl<'t, L: Lanes> Machine<'t, L> {
     /// A machine over the numbers of which `zero` is one.
     #[inline(always)]
     pub(super) fn new(tape: &'t Tape, zero: L) -> Self {
         let fitting = CACHE / (size_of::<L>() * (tape.registers + 1));
-        let length = fitting.saturating_sub(1).clamp(SHORTEST, LONGEST) & !1;
+        Self::with_lanes(tape, zero, fitting.saturating_sub(1).clamp(SHORTEST, LONGEST))
+    }
+
+    /// The same for blocks of a given length, or one more.
+    #[inline(always)]
+    pub(super) fn with_lanes(tape: &'t Tape, zero: L, lanes: usize) -> Self {
+        let length = lanes.next_multiple_of(2);
         let mut registers = vec![zero; (tape.registers + 1) * (length + 1)];
         for (constant, register) in tape.constants.iter().zip(registers.chunks_mut(length + 1)) {
             register.fill(zero.splat_within(constant.value, constant.units));
@@ -66,7 +72,7 @@ impl<'t, L: Lanes> Machine<'t, L> {
     }
 
     /// Zero in each lane where nothing went wrong, and not a number where a divisor was zero or infinite or a function
-    /// had no finite value.
+    /// had no finite value. Where bounds on errors are kept, its own is not a number where a bound is none.
     #[inline(always)]
     pub fn health(&self, lane: usize) -> L {
         self.health[lane]
@@ -271,6 +277,9 @@ fn step<L: Lanes>(i: &Instruction, cells: &[Cell<L>], health: &[Cell<L>], length
                 let value = if function == Function::Sqrt { x.sqrt() } else { x.apply(function) };
                 target[k].set(value);
                 check(x, value, &health[k]);
+                if function != Function::Sqrt {
+                    health[k].set(health[k].get() + value.believed());
+                }
             }
         }
     }

@@ -66,6 +66,11 @@ impl BlockProgram {
         &self.inputs
     }
 
+    /// Whether an input has any influence on the results and on what is checked.
+    pub fn is_used(&self, place: usize) -> bool {
+        self.tape.inputs.get(place).is_some_and(Option::is_some)
+    }
+
     /// How many results there are.
     pub fn outputs(&self) -> usize {
         self.tape.outputs.len()
@@ -96,6 +101,12 @@ impl BlockProgram {
     #[inline(always)]
     pub fn machine<L: Lanes>(&self, zero: L) -> Machine<'_, L> {
         Machine::new(&self.tape, zero)
+    }
+
+    /// The same for blocks of a given length, or one more.
+    #[inline(always)]
+    pub fn machine_of<L: Lanes>(&self, zero: L, lanes: usize) -> Machine<'_, L> {
+        Machine::with_lanes(&self.tape, zero, lanes)
     }
 
     /// The results at many states: one slice per input, in the order of [`BlockProgram::inputs`], and one per output, all

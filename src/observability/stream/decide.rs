@@ -1,0 +1,133 @@
+//! The rank of one lane's matrices, from entries with bounds on their errors.
+
+use super::certain::Elimination;
+use super::equilibrate::Equilibrium;
+use super::jacobi::Jacobi;
+use crate::number::{Bounded, Lanes};
+use crate::observability::equilibrate::WEIGHT_OF_ERRORS;
+use crate::observability::singular::SEPARATED;
+
+/// What was found in each lane; `COUNT` of the eight places are used.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Found {
+    /// How many singular values exceed what errors may make of zero.
+    pub rank: [f64; 8],
+    /// The smallest over the largest singular value.
+    pub ratio: [f64; 8],
+    /// The gap on which the rank rests.
+    pub gap: [f64; 8],
+    /// One where all singular values count and the smallest leaves half of the digits.
+    pub separated: [f64; 8],
+    /// Zero where all entries are finite.
+    pub finite: [f64; 8],
+    /// One where elimination with error bounds proves the full rank.
+    pub certain: [f64; 8],
+}
+
+/// Room for deciding matrices of one shape.
+pub(super) struct Decider<L> {
+    rows: usize,
+    columns: usize,
+    zero: L,
+    entries: Vec<Bounded<L>>,
+    equilibrium: Equilibrium<L>,
+    jacobi: Jacobi<L>,
+    elimination: Elimination<L>,
+}
+
+impl<L: Lanes> Decider<L> {
+    #[inline(always)]
+    pub fn new(rows: usize, columns: usize, zero: L) -> Self {
+        Decider {
+            rows,
+            columns,
+            zero,
+            entries: vec![Bounded::exact(zero); rows * columns],
+            equilibrium: Equilibrium::new(rows, columns, zero),
+            jacobi: Jacobi::new(rows, columns, zero),
+            elimination: Elimination::new(rows, columns, zero),
+        }
+    }
+
+    /// Sets an entry.
+    #[inline(always)]
+    pub fn set(&mut self, place: usize, entry: Bounded<L>) {
+        self.entries[place] = entry;
+    }
+
+    /// Decides. Where an entry or its bound is not finite, nothing is separated and nothing certain.
+    #[inline(always)]
+    pub fn decide(&mut self) -> Found {
+        let (zero, one) = (self.zero, self.zero.splat(1.0));
+        if self.rows == 0 || self.columns == 0 {
+            // nothing is left to decide
+            let all = [1.0; 8];
+            return Found {
+                ratio: all,
+                gap: [f64::INFINITY; 8],
+                separated: all,
+                certain: all,
+                ..Found::default()
+            };
+        }
+        let heavy = zero.splat(WEIGHT_OF_ERRORS);
+        let (mut spoiled, mut infinite) = (zero, zero);
+        for i in 0..self.rows {
+            for j in 0..self.columns {
+                let entry = self.entries[i * self.columns + j];
+                let weight = entry.value.abs() + heavy * entry.error();
+                self.equilibrium.set(i, j, weight);
+                self.elimination.set(i, j, entry);
+                spoiled = spoiled + weight.lost();
+                infinite = infinite + entry.value.lost();
+            }
+        }
+        self.equilibrium.solve();
+        let mut noise = zero;
+        for i in 0..self.rows {
+            let row = self.equilibrium.row_factor(i);
+            self.elimination.set_weight(true, i, row);
+            for j in 0..self.columns {
+                let column = self.equilibrium.column_factor(j);
+                let entry = self.entries[i * self.columns + j];
+                self.jacobi.set(i, j, entry.value * row * column);
+                let error = entry.error() * row * column;
+                noise = noise + error * error;
+            }
+        }
+        for j in 0..self.columns {
+            self.elimination.set_weight(false, j, self.equilibrium.column_factor(j));
+        }
+        let certain = self.elimination.is_full(one);
+
+        let (values, converged) = self.jacobi.singular_values();
+        let (mut smallest, mut largest) = (values[0], values[0]);
+        for value in &values[1..] {
+            smallest = smallest.smaller(*value);
+            largest = largest.larger(*value);
+        }
+        // by H. Weyl no singular value is moved by more than the norm of what the matrix is changed by
+        let rounding = zero.splat(self.rows.max(self.columns) as f64 * f64::EPSILON);
+        let tolerance = noise.sqrt() + rounding * largest;
+        let (mut rank, mut least, mut below) = (zero, zero.splat(f64::INFINITY), tolerance);
+        for value in values {
+            rank = rank + tolerance.where_less(*value, one, zero);
+            least = tolerance.where_less(*value, least.smaller(*value), least);
+            below = tolerance.where_less(*value, below, value.larger(below));
+        }
+        let all = zero.splat(values.len() as f64 - 0.5);
+        let unclear = smallest.where_less(zero.splat(SEPARATED) * largest, zero, one);
+        // a sum with what is not a number is no less than anything
+        let separated = all.where_less(rank + spoiled, unclear, zero);
+        let mut found = Found::default();
+        rank.store(&mut found.rank);
+        (smallest / largest).store(&mut found.ratio);
+        (least / below).store(&mut found.gap);
+        infinite.store(&mut found.finite);
+        if converged {
+            separated.store(&mut found.separated);
+        }
+        zero.where_less(certain + spoiled, certain, zero).store(&mut found.certain);
+        found
+    }
+}

@@ -1,0 +1,253 @@
+//! States drawn by the block: uniformly from a sample box, away from what is to be avoided.
+//!
+//! A state is exact: every coordinate is a double, and an angle is given by the double that is the tangent of its half,
+//! so that its sine and cosine are rational numbers.
+
+use super::random::{threefry, unit};
+use crate::expression::{BlockProgram, Input, Machine, Symbol};
+use crate::number::{Bounded, Lanes, rational_from_f64, rational_to_f64};
+use crate::observability::locus::{ATTEMPTS, AVOIDED, Source};
+use dashu::rational::RBig;
+
+/// One coordinate that is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis {
+    pub symbol: Symbol,
+    low: f64,
+    high: f64,
+    /// Whether it is an angle, in radians here, and then drawn as the tangent of its half.
+    pub is_turn: bool,
+}
+
+impl Axis {
+    /// `None` where a source says one value only, or where no double lies within its range.
+    pub fn new(symbol: Symbol, source: &Source) -> Option<Axis> {
+        let (low, high, is_turn) = match source {
+            Source::Fixed(_) => return None,
+            Source::Turn(low, high) => (*low, *high, true),
+            Source::Between(low, high) => (inside(low, f64::next_up), inside(high, f64::next_down), false),
+        };
+        (low < high).then_some(Axis { symbol, low, high, is_turn })
+    }
+
+    /// The coordinate at parts of the range between zero and one.
+    #[inline(always)]
+    fn at<L: Lanes>(self, part: L) -> L {
+        let high = part.splat(self.high);
+        let value = (part.splat(self.low) + part.splat(self.high - self.low) * part).smaller(high);
+        if !self.is_turn {
+            return value;
+        }
+        let (sine, cosine) = (part.splat(0.5) * value).sin_cos();
+        sine / cosine
+    }
+}
+
+/// The double nearest to a rational, or the next one if that lies on the wrong side.
+fn inside(bound: &RBig, next: fn(f64) -> f64) -> f64 {
+    let nearest = rational_to_f64(bound);
+    let beyond = next(nearest);
+    let outside = rational_from_f64(nearest)
+        .is_some_and(|double| if beyond > nearest { double < *bound } else { double > *bound });
+    if outside { beyond } else { nearest }
+}
+
+/// What a program wants of a state.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Wish {
+    Plain(usize),
+    Sine(usize),
+    Cosine(usize),
+}
+
+/// What a program wants, by places among its inputs; `None` where it wants something that is not drawn.
+pub(super) fn wishes(program: &BlockProgram, axes: &[Axis]) -> Option<Vec<(usize, Wish)>> {
+    let place = |symbol: &Symbol| axes.iter().position(|axis| axis.symbol == *symbol);
+    program
+        .inputs()
+        .iter()
+        .enumerate()
+        .filter(|(at, _)| program.is_used(*at))
+        .map(|(at, input)| {
+            let wish = match input {
+                Input::Plain(symbol) => place(symbol).filter(|axis| !axes[*axis].is_turn).map(Wish::Plain),
+                Input::Sine(symbol) => place(symbol).filter(|axis| axes[*axis].is_turn).map(Wish::Sine),
+                Input::Cosine(symbol) => place(symbol).filter(|axis| axes[*axis].is_turn).map(Wish::Cosine),
+                Input::Opaque(_) => None,
+            };
+            Some((at, wish?))
+        })
+        .collect()
+}
+
+/// A block of drawn states, structure of arrays.
+pub(super) struct Drawer<'a, L> {
+    axes: &'a [Axis],
+    seed: u64,
+    zero: L,
+    /// By axes, as many values each as there are states in the block.
+    values: Vec<f64>,
+    states: usize,
+    avoid: Machine<'a, L>,
+    avoided: usize,
+    avoid_wishes: &'a [(usize, Wish)],
+}
+
+impl<'a, L: Lanes> Drawer<'a, L> {
+    #[inline(always)]
+    pub fn new(
+        axes: &'a [Axis],
+        (avoid, avoid_wishes): (&'a BlockProgram, &'a [(usize, Wish)]),
+        seed: u64,
+        (zero, lanes): (L, usize),
+    ) -> Self {
+        let states = (lanes * L::COUNT).next_multiple_of(8);
+        Drawer {
+            axes,
+            seed,
+            zero,
+            values: vec![0.0; axes.len() * states],
+            states,
+            avoid: avoid.machine_of(zero, states / L::COUNT),
+            avoided: avoid.outputs(),
+            avoid_wishes,
+        }
+    }
+
+    /// Draws the states from `first` on. The place in the block of one for which nothing was found, if there is one.
+    #[inline(always)]
+    pub fn draw(&mut self, first: u64) -> Result<(), usize> {
+        for start in (0..self.states).step_by(8) {
+            self.draw_eight(first, start, 0, None);
+        }
+        for attempt in 1..=ATTEMPTS as u64 {
+            let Some(rejected) = self.rejected() else { return Ok(()) };
+            if attempt == ATTEMPTS as u64 {
+                return Err(rejected[0]);
+            }
+            for place in rejected {
+                self.draw_eight(first, place / 8 * 8, attempt, Some(place));
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws eight states, or replaces one of them.
+    #[inline(always)]
+    fn draw_eight(&mut self, first: u64, start: usize, attempt: u64, only: Option<usize>) {
+        let mut counters = [0; 8];
+        for (lane, counter) in counters.iter_mut().enumerate() {
+            *counter = first.wrapping_add((start + lane) as u64);
+        }
+        for pair in 0..self.axes.len().div_ceil(2) {
+            // which attempt, and which coordinates
+            let which = attempt << 32 | pair as u64;
+            let (left, right) = threefry(counters, [which; 8], [self.seed, 0]);
+            for (side, words) in [left, right].into_iter().enumerate() {
+                let place = 2 * pair + side;
+                let Some(axis) = self.axes.get(place) else { break };
+                let parts = unit(words);
+                let row = &mut self.values[place * self.states..][..self.states];
+                match only {
+                    Some(state) => row[state] = axis.at(parts[state % 8]),
+                    None => {
+                        for lane in (0..8).step_by(L::COUNT) {
+                            axis.at(self.zero.load(&parts[lane..])).store(&mut row[start + lane..]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The states that come too near to what is avoided; `None` where none does.
+    #[inline(always)]
+    fn rejected(&mut self) -> Option<Vec<usize>> {
+        if self.avoided == 0 {
+            return None;
+        }
+        let lanes = self.avoid.lanes();
+        for (place, wish) in self.avoid_wishes {
+            for lane in 0..lanes {
+                let value = plain(self.values(lane), *wish, self.zero);
+                if let Some(room) = self.avoid.input(*place) {
+                    room[lane] = value;
+                }
+            }
+        }
+        self.avoid.run();
+        let mut rejected = Vec::new();
+        let (bound, one) = (self.zero.splat(AVOIDED), self.zero.splat(1.0));
+        for lane in 0..lanes.min(self.states / L::COUNT) {
+            // zero where nothing is too near to zero or undefined
+            let mut bad = self.avoid.health(lane);
+            for place in 0..self.avoided {
+                let value = self.avoid.output(place, lane);
+                bad = bad + value.lost() + value.abs().where_less(bound, one, self.zero);
+            }
+            let mut marks = [0.0; 8];
+            bad.store(&mut marks);
+            rejected.extend((0..L::COUNT).filter(|i| marks[*i] != 0.0).map(|i| lane * L::COUNT + i));
+        }
+        (!rejected.is_empty()).then_some(rejected)
+    }
+
+    /// All coordinates of the states in one lane.
+    #[inline(always)]
+    fn values(&self, lane: usize) -> Lane<'_> {
+        // the avoid program's block may be one lane longer
+        let at = (lane * L::COUNT).min(self.states - L::COUNT);
+        Lane { values: &self.values, states: self.states, at }
+    }
+
+    /// What a wish comes to in one lane, with a bound on its error.
+    #[inline(always)]
+    pub fn grant(&self, wish: Wish, lane: usize) -> Bounded<L> {
+        let at = self.values(lane);
+        match wish {
+            Wish::Plain(place) => Bounded::exact(self.zero.load(at.row(place))),
+            Wish::Sine(place) => sine(Bounded::exact(self.zero.load(at.row(place)))),
+            Wish::Cosine(place) => cosine(Bounded::exact(self.zero.load(at.row(place)))),
+        }
+    }
+
+    /// The coordinates of one state of the block.
+    pub fn coordinates(&self, state: usize) -> Vec<f64> {
+        (0..self.axes.len()).map(|place| self.values[place * self.states + state]).collect()
+    }
+}
+
+struct Lane<'v> {
+    values: &'v [f64],
+    states: usize,
+    at: usize,
+}
+
+impl<'v> Lane<'v> {
+    #[inline(always)]
+    fn row(&self, place: usize) -> &'v [f64] {
+        &self.values[place * self.states + self.at..]
+    }
+}
+
+#[inline(always)]
+fn plain<L: Lanes>(values: Lane<'_>, wish: Wish, zero: L) -> L {
+    match wish {
+        Wish::Plain(place) => zero.load(values.row(place)),
+        Wish::Sine(place) => sine(zero.load(values.row(place))),
+        Wish::Cosine(place) => cosine(zero.load(values.row(place))),
+    }
+}
+
+/// `2t / (1 + t^2)`
+#[inline(always)]
+fn sine<L: Lanes>(t: L) -> L {
+    (t + t) / (t.splat(1.0) + t * t)
+}
+
+/// `(1 - t)(1 + t) / (1 + t^2)`
+#[inline(always)]
+fn cosine<L: Lanes>(t: L) -> L {
+    let one = t.splat(1.0);
+    (one - t) * (one + t) / (one + t * t)
+}

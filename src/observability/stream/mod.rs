@@ -1,0 +1,282 @@
+//! A stream of states: a hundred million of them, drawn, evaluated and decided by the block, in a memory that does not
+//! grow.
+//!
+//! Each state gets a verdict from doubles that know their errors: the entries of the matrix come with rigorous bounds
+//! ([`Bounded`]), elimination with these bounds proves a full rank (*certified*), and singular values after equilibration
+//! tell how far the state is from a lower one (*computed*, where half of the digits are left). What neither decides is
+//! left to slower numbers: its index is handed over, and [`Stream::state`] draws it again, exactly.
+//!
+//! The states are other ones than those of [`Locus::draw`]: they lie on a finer grid.
+
+mod certain;
+mod decide;
+mod draw;
+mod equilibrate;
+mod jacobi;
+mod random;
+mod report;
+
+use super::ladder::Certainty;
+use super::locus::{Locus, LocusError, Source};
+use super::reduction::Reduction;
+use super::state::{Coordinate, State};
+use crate::expression::{BlockProgram, Input, NodeId, Symbol, expand_angles};
+use crate::number::{Bounded, Instructions, Lanes, Vectorised, rational_from_f64};
+use crate::system::System;
+use dashu::rational::RBig;
+use decide::Decider;
+use draw::{Axis, Drawer, Wish, wishes};
+use rayon::prelude::*;
+pub use report::{DECADES, StreamReport};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// States that one thread takes at a time.
+const CHUNK: u64 = 4096;
+/// Chunks between two looks at the interrupt.
+const CHUNKS: u64 = 32;
+
+/// How to stream.
+#[derive(Clone, Copy)]
+pub struct StreamOptions<'a> {
+    pub states: u64,
+    pub seed: u64,
+    /// Whether a rank that is merely computed will do.
+    pub wanted: Certainty,
+    /// Set from outside to stop early; what was found is kept.
+    pub interrupt: &'a AtomicBool,
+    /// Called now and then with the number of states done.
+    pub progress: &'a (dyn Fn(u64) + Sync),
+}
+
+/// Rows whose rank is decided at the states of a locus.
+#[derive(Clone, Debug)]
+pub struct Stream {
+    locus: Locus,
+    axes: Vec<Axis>,
+    reduction: Reduction,
+    matrix: BlockProgram,
+    matrix_wishes: Vec<(usize, Wish)>,
+    avoid: BlockProgram,
+    avoid_wishes: Vec<(usize, Wish)>,
+    instructions: Instructions,
+}
+
+impl Stream {
+    /// Prepares the rows, by entries of as many columns as the system has states. `None` where something is needed that
+    /// is not drawn: an angle outside of sines and cosines.
+    pub fn new(system: &mut System, locus: &Locus, rows: &[NodeId]) -> Option<Stream> {
+        let angles = system.angles();
+        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let axes: Vec<Axis> =
+            locus.sources.iter().filter_map(|(symbol, source)| Axis::new(*symbol, source)).collect();
+        // what has one value is put in, before unit rows are looked for
+        let mut values = locus.values.clone();
+        for (symbol, source) in &locus.sources {
+            if let Some(value) = held(source) {
+                values.insert(*symbol, system.graph.rational(value));
+            }
+        }
+        let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
+        let mut put_in = |nodes: &[NodeId]| {
+            let nodes = system.graph.substitute(nodes, &values);
+            // once more: what the conditions give may mention what has one value
+            let nodes = system.graph.substitute(&nodes, &values);
+            expand_angles(&mut system.graph, &nodes, is_angle)
+        };
+        let (entries, avoided) = (put_in(rows), put_in(&locus.avoided));
+        let mut watched = put_in(&outputs);
+        let reduction = Reduction::new(&system.graph, &entries, system.states.len());
+        watched.extend(&entries);
+        let known = |input: Input| match (input, locus.sources.get(&symbol_of(input)?)?) {
+            (Input::Sine(_), Source::Fixed(Coordinate::Angle { sine, .. })) => Some(sine.clone()),
+            (Input::Cosine(_), Source::Fixed(Coordinate::Angle { cosine, .. })) => Some(cosine.clone()),
+            _ => None,
+        };
+        let matrix = BlockProgram::new(&system.graph, &reduction.entries, &watched, is_angle, known);
+        let avoid = BlockProgram::new(&system.graph, &avoided, &[], is_angle, known);
+        Some(Stream {
+            locus: locus.clone(),
+            matrix_wishes: wishes(&matrix, &axes)?,
+            avoid_wishes: wishes(&avoid, &axes)?,
+            axes,
+            reduction,
+            matrix,
+            avoid,
+            instructions: Instructions::detect(),
+        })
+    }
+
+    /// The same with chosen instructions, which change nothing but the time it takes.
+    pub fn with(self, instructions: Instructions) -> Stream {
+        Stream { instructions, ..self }
+    }
+
+    /// The state of an index in exact numbers: the very one that [`Stream::run`] looks at.
+    ///
+    /// # Errors
+    /// Where nothing is found that keeps clear of what is avoided, or where the conditions have no solution there.
+    pub fn state(&self, seed: u64, index: u64) -> Result<State, LocusError> {
+        let mut drawer = Drawer::new(&self.axes, (&self.avoid, &self.avoid_wishes), seed, (0.0f64, 8));
+        drawer.draw(index).map_err(|_| self.empty())?;
+        let mut state = State::default();
+        for (symbol, source) in &self.locus.sources {
+            if let Source::Fixed(value) = source {
+                state.values.insert(*symbol, value.clone());
+            } else if let Some(value) = held(source) {
+                state.values.insert(*symbol, Coordinate::Number(value));
+            }
+        }
+        for (axis, value) in self.axes.iter().zip(drawer.coordinates(0)) {
+            let value = rational_from_f64(value).ok_or_else(|| self.empty())?;
+            let coordinate =
+                if axis.is_turn { Coordinate::from_half_tangent(&value) } else { Coordinate::Number(value) };
+            state.values.insert(axis.symbol, coordinate);
+        }
+        self.locus.complete(&mut state).map_err(|why| LocusError::Empty(why.to_string()))?;
+        Ok(state)
+    }
+
+    /// The largest rank that the shape of the rows allows.
+    pub fn full_rank(&self) -> usize {
+        self.nothing().full()
+    }
+
+    /// Rows and columns of what remains without unit rows.
+    pub fn remaining(&self) -> (usize, usize) {
+        (self.reduction.rows.len(), self.reduction.columns.len())
+    }
+
+    fn empty(&self) -> LocusError {
+        LocusError::Empty("what is to be avoided leaves nothing".to_owned())
+    }
+
+    /// Decides all states. The indices of those that are left for slower numbers go to `left`, in ascending order, as
+    /// many as come up between two calls of `progress`.
+    ///
+    /// The same seed gives the same result bit for bit, on any number of threads and on any processor.
+    ///
+    /// # Errors
+    /// Where states cannot be drawn.
+    pub fn run(
+        &self,
+        options: &StreamOptions<'_>,
+        left: &mut dyn FnMut(&[u64]),
+    ) -> Result<StreamReport, LocusError> {
+        let mut report = self.nothing();
+        let mut done = 0;
+        while done < options.states && !options.interrupt.load(Ordering::Relaxed) {
+            let chunks = options.states.saturating_sub(done).div_ceil(CHUNK).min(CHUNKS);
+            let found: Vec<Result<(StreamReport, Vec<u64>), LocusError>> = (0..chunks)
+                .into_par_iter()
+                .map(|chunk| {
+                    let first = done + chunk * CHUNK;
+                    let count = CHUNK.min(options.states - first);
+                    self.instructions.run(Chunk { stream: self, options, first, count })
+                })
+                .collect();
+            for part in found {
+                let (part, indices) = part?;
+                report.append(&part);
+                if !indices.is_empty() {
+                    left(&indices);
+                }
+            }
+            done = report.states;
+            (options.progress)(done);
+        }
+        report.interrupted = done < options.states;
+        Ok(report)
+    }
+
+    fn nothing(&self) -> StreamReport {
+        StreamReport {
+            eliminated: self.reduction.eliminated,
+            remaining: (self.reduction.rows.len(), self.reduction.columns.len()),
+            ..StreamReport::default()
+        }
+    }
+}
+
+fn symbol_of(input: Input) -> Option<Symbol> {
+    match input {
+        Input::Plain(symbol) | Input::Sine(symbol) | Input::Cosine(symbol) => Some(symbol),
+        Input::Opaque(_) => None,
+    }
+}
+
+/// The one value of a plain coordinate, where there is only one.
+fn held(source: &Source) -> Option<RBig> {
+    match source {
+        Source::Fixed(Coordinate::Number(value)) => Some(value.clone()),
+        Source::Between(low, high) if low == high => Some(low.clone()),
+        _ => None,
+    }
+}
+
+/// Some states in a row, on one thread.
+struct Chunk<'a, 'o> {
+    stream: &'a Stream,
+    options: &'a StreamOptions<'o>,
+    first: u64,
+    count: u64,
+}
+
+impl Vectorised for Chunk<'_, '_> {
+    type Output = Result<(StreamReport, Vec<u64>), LocusError>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, zero: L) -> Self::Output {
+        let Chunk { stream, options, first, count } = self;
+        let mut report = stream.nothing();
+        let mut left = Vec::new();
+        let mut machine = stream.matrix.machine(Bounded::exact(zero));
+        let lanes = machine.lanes();
+        let avoid = (&stream.avoid, &stream.avoid_wishes[..]);
+        let mut drawer = Drawer::new(&stream.axes, avoid, options.seed, (zero, lanes));
+        let (rows, columns) = report.remaining;
+        let mut decider = Decider::new(rows, columns, zero);
+        let mut done = 0;
+        while done < count {
+            // a state beyond the last one is drawn too, and may fail without harm
+            if let Err(place) = drawer.draw(first + done)
+                && done + (place as u64) < count
+            {
+                return Err(stream.empty());
+            }
+            for (place, wish) in &stream.matrix_wishes {
+                let Some(room) = machine.input(*place) else { continue };
+                for (lane, value) in room.iter_mut().enumerate() {
+                    *value = drawer.grant(*wish, lane);
+                }
+            }
+            machine.run();
+            for lane in 0..lanes {
+                let here = done + (lane * L::COUNT) as u64;
+                if here >= count {
+                    break;
+                }
+                for place in 0..rows * columns {
+                    decider.set(place, machine.output(place, lane));
+                }
+                let mut found = decider.decide();
+                let health = machine.health(lane);
+                let (mut finite, mut bounds) = ([0.0; 8], [0.0; 8]);
+                health.value.store(&mut finite);
+                health.error().store(&mut bounds);
+                for i in 0..L::COUNT.min((count - here) as usize) {
+                    // a divisor that is not known well enough is no ground to stand on
+                    if !bounds[i].is_finite() {
+                        found.certain[i] = 0.0;
+                    }
+                    let finite = finite[i] == 0.0 && found.finite[i] == 0.0 && !stream.matrix.is_undefined();
+                    let index = first + here + i as u64;
+                    if report.add(index, &found, i, finite, options.wanted) {
+                        left.push(index);
+                    }
+                }
+            }
+            done += machine.states() as u64;
+        }
+        Ok((report, left))
+    }
+}
