@@ -135,6 +135,11 @@ impl Program {
         &self.inputs
     }
 
+    /// The nodes that it computes, in the order of its registers.
+    pub fn nodes(&self) -> &[NodeId] {
+        &self.origins
+    }
+
     /// An angle that is met outside sines and cosines, and so has no exact value.
     pub fn bare_angle(&self) -> Option<Symbol> {
         self.bare_angle

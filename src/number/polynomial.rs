@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 /// The most variables that a polynomial may have.
 pub const LARGEST_ARITY: usize = 16;
 
+/// Products of more pairs of monomials than this are not multiplied out.
+const MOST_PAIRS: usize = 1 << 24;
+
 /// The exponents of a monomial, one for each variable.
 pub type Exponents = [u8; LARGEST_ARITY];
 
@@ -41,6 +44,13 @@ impl Polynomial {
         Polynomial { terms: BTreeMap::from([(exponents, IBig::ONE)]) }
     }
 
+    /// One monomial with its coefficient.
+    pub fn term(exponents: Exponents, coefficient: IBig) -> Self {
+        let mut polynomial = Polynomial::default();
+        polynomial.insert(exponents, coefficient);
+        polynomial
+    }
+
     /// The monomials and their coefficients, in the order of their exponents.
     pub fn terms(&self) -> impl DoubleEndedIterator<Item = (&Exponents, &IBig)> {
         self.terms.iter()
@@ -54,6 +64,11 @@ impl Polynomial {
     /// Whether it is zero.
     pub fn is_empty(&self) -> bool {
         self.terms.is_empty()
+    }
+
+    /// The total degree; zero for zero.
+    pub fn degree(&self) -> u32 {
+        self.terms.keys().map(|exponents| exponents.iter().map(|e| u32::from(*e)).sum()).max().unwrap_or(0)
     }
 
     /// The greatest common divisor of the coefficients, with the sign of the leading one.
@@ -91,21 +106,62 @@ impl Polynomial {
         Some(total)
     }
 
+    /// The highest power of a variable.
+    pub fn degree_in(&self, variable: usize) -> u8 {
+        self.terms.keys().map(|exponents| exponents[variable]).max().unwrap_or(0)
+    }
+
+    /// The polynomial as one in a single variable: its coefficients, which are free of that variable, by their power.
+    pub fn coefficients_in(&self, variable: usize) -> BTreeMap<u8, Polynomial> {
+        let mut parts: BTreeMap<u8, Polynomial> = BTreeMap::new();
+        for (exponents, coefficient) in &self.terms {
+            let mut rest = *exponents;
+            let power = std::mem::take(&mut rest[variable]);
+            parts.entry(power).or_default().terms.insert(rest, coefficient.clone());
+        }
+        parts
+    }
+
+    /// The greatest monomial that divides it.
+    pub fn common_monomial(&self) -> Exponents {
+        let mut common = [u8::MAX; LARGEST_ARITY];
+        for exponents in self.terms.keys() {
+            for (least, exponent) in common.iter_mut().zip(exponents) {
+                *least = (*least).min(*exponent);
+            }
+        }
+        if self.terms.is_empty() { Exponents::default() } else { common }
+    }
+
     /// The quotient by a divisor that divides it without remainder; `None` if it does not.
     pub fn divide_exactly(&self, divisor: &Polynomial) -> Option<Polynomial> {
-        let (lead, lead_coefficient) = divisor.terms.iter().next_back()?;
-        let (mut rest, mut quotient) = (self.clone(), Polynomial::default());
-        while let Some((exponents, coefficient)) = rest.terms.iter().next_back() {
+        let quotient_of = |a: &Exponents, b: &Exponents| -> Option<Exponents> {
             let mut difference = Exponents::default();
-            for (d, (a, b)) in difference.iter_mut().zip(exponents.iter().zip(lead)) {
+            for (d, (a, b)) in difference.iter_mut().zip(a.iter().zip(b)) {
                 *d = a.checked_sub(*b)?;
             }
+            Some(difference)
+        };
+        let (lead, lead_coefficient) = divisor.terms.iter().next_back()?;
+        let (least, _) = divisor.terms.iter().next()?;
+        if let Some((exponents, _)) = self.terms.iter().next() {
+            // the last terms divide one another, as the first ones do
+            quotient_of(exponents, least)?;
+        }
+        let (mut rest, mut quotient) = (self.clone(), Polynomial::default());
+        while let Some((exponents, coefficient)) = rest.terms.iter().next_back() {
+            let difference = quotient_of(exponents, lead)?;
             let factor = coefficient / lead_coefficient;
             if &(&factor * lead_coefficient) != coefficient {
                 return None;
             }
-            let step = Polynomial { terms: BTreeMap::from([(difference, factor.clone())]) };
-            rest = rest.add(&divisor.mul(&step)?.neg());
+            for (exponents, coefficient) in &divisor.terms {
+                let mut product = Exponents::default();
+                for (e, (x, y)) in product.iter_mut().zip(exponents.iter().zip(&difference)) {
+                    *e = x.checked_add(*y)?;
+                }
+                rest.insert(product, -(coefficient * &factor));
+            }
             quotient.insert(difference, factor);
         }
         Some(quotient)
@@ -129,6 +185,9 @@ impl Ring for Polynomial {
     }
 
     fn mul(&self, other: &Self) -> Option<Self> {
+        if self.len().saturating_mul(other.len()) > MOST_PAIRS {
+            return None;
+        }
         let mut product = std::collections::HashMap::new();
         for (left, a) in &self.terms {
             for (right, b) in &other.terms {
