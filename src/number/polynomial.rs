@@ -4,6 +4,7 @@
 use dashu::base::{Gcd, Sign};
 use dashu::integer::{IBig, UBig};
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// The most variables that a polynomial may have.
 pub const LARGEST_ARITY: usize = 16;
@@ -31,7 +32,7 @@ pub trait Ring: Clone {
 }
 
 /// A sum of monomials, none of them zero.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Polynomial {
     terms: BTreeMap<Exponents, IBig>,
 }
@@ -82,9 +83,17 @@ impl Polynomial {
     }
 
     fn insert(&mut self, exponents: Exponents, coefficient: IBig) {
-        let sum = self.terms.remove(&exponents).unwrap_or(IBig::ZERO) + coefficient;
-        if !sum.is_zero() {
-            self.terms.insert(exponents, sum);
+        match self.terms.entry(exponents) {
+            Entry::Vacant(place) if !coefficient.is_zero() => {
+                place.insert(coefficient);
+            }
+            Entry::Vacant(_) => {}
+            Entry::Occupied(mut place) => {
+                *place.get_mut() += coefficient;
+                if place.get().is_zero() {
+                    place.remove();
+                }
+            }
         }
     }
 

@@ -1,0 +1,317 @@
+//! Boxes that come of halving a box again and again: each side is a dyadic part of the whole range, so that volumes are
+//! sums of powers of two and exact.
+
+use super::tape::{Slot, Slots, Wave};
+use crate::expression::Symbol;
+use crate::number::{Function, Interval, Real, rational_to_f64};
+use dashu::integer::{IBig, UBig};
+use dashu::rational::RBig;
+
+/// No side is halved more often than this.
+pub(super) const DEEPEST: u8 = 30;
+
+/// The part from `index / 2^depth` to `(index + 1) / 2^depth` of a range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) struct Side {
+    pub index: u32,
+    pub depth: u8,
+}
+
+impl Side {
+    pub const WHOLE: Side = Side { index: 0, depth: 0 };
+
+    pub fn halves(self) -> [Side; 2] {
+        [0, 1].map(|bit| Side { index: 2 * self.index + bit, depth: self.depth + 1 })
+    }
+
+    /// Its ends as parts of the range, which doubles hold exactly.
+    pub fn ends(self) -> (f64, f64) {
+        let scale = f64::from(1u32 << self.depth);
+        (f64::from(self.index) / scale, (f64::from(self.index) + 1.0) / scale)
+    }
+
+    /// Whether a part of the range that is no end of any side lies in it.
+    pub fn meets(self, part: f64) -> bool {
+        let (low, high) = self.ends();
+        low < part && part < high
+    }
+}
+
+/// A coordinate of the box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeCoordinate {
+    pub symbol: Symbol,
+    pub name: String,
+    pub low: RBig,
+    pub high: RBig,
+}
+
+impl FreeCoordinate {
+    /// The point at a part of the range, as a double near it.
+    pub(super) fn middle_of(&self, part: f64) -> f64 {
+        let (low, high) = self.ends(Side::WHOLE);
+        low + (high - low) * part
+    }
+
+    /// The ends of a side, as doubles near them.
+    pub(super) fn ends(&self, side: Side) -> (f64, f64) {
+        let (low, high) = (rational_to_f64(&self.low), rational_to_f64(&self.high));
+        let (a, b) = side.ends();
+        (low + (high - low) * a, low + (high - low) * b)
+    }
+}
+
+/// Where in a side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    All,
+    Low,
+    High,
+    Middle,
+}
+
+const PLACES: usize = 4;
+
+/// What a slot is on a side, at all four places.
+type SideValues = [Interval; PLACES];
+
+/// Sine and cosine at a point.
+type Pair = (Interval, Interval);
+
+/// The values of all slots on the sides of boxes.
+pub(super) struct Chart {
+    coordinates: Vec<FreeCoordinate>,
+    lows: Vec<Interval>,
+    widths: Vec<Interval>,
+    slots: Slots,
+    /// Sines and cosines for each coordinate, and for its half, where there is a slot of such.
+    pairs: Vec<[Option<Pairs>; 2]>,
+}
+
+/// Sines and cosines at the points of a grid, by the addition theorem: a point is one of a coarser grid and a step of
+/// its own. Each level adds roundings, and nothing more.
+struct Pairs {
+    /// At all points of the grid of [`TABLE`] halvings.
+    table: Vec<Pair>,
+    /// Of the steps, by the number of halvings.
+    steps: Vec<Pair>,
+}
+
+/// Halvings of the grid that is kept.
+const TABLE: u8 = 10;
+
+impl Pairs {
+    /// For angles from `low` to `low + width`.
+    fn new(low: Interval, width: Interval) -> Self {
+        let mut pairs = Pairs { table: vec![pair_at(low)], steps: Vec::new() };
+        for depth in 0..=DEEPEST + 1 {
+            pairs.steps.push(pair_at(width * Interval::point(1.0 / f64::from(1u32 << depth))));
+        }
+        // from the low end to both ends, and from each grid to the one with half the steps
+        pairs.table.push(turned(pairs.table[0], pairs.steps[0]));
+        for depth in 1..=TABLE {
+            let step = pairs.steps[usize::from(depth)];
+            let last = pairs.table.len() - 1;
+            let coarse = std::mem::take(&mut pairs.table);
+            for (place, pair) in coarse.into_iter().enumerate() {
+                pairs.table.push(pair);
+                if place < last {
+                    pairs.table.push(turned(pair, step));
+                }
+            }
+        }
+        pairs
+    }
+
+    /// At `index / 2^depth`.
+    fn at(&self, mut index: u32, mut depth: u8) -> Pair {
+        while depth > 0 && index.is_multiple_of(2) {
+            (index, depth) = (index / 2, depth - 1);
+        }
+        if depth <= TABLE {
+            return self.table[(index as usize) << (TABLE - depth)];
+        }
+        turned(self.at(index - 1, depth), self.steps[usize::from(depth)])
+    }
+}
+
+/// Sine and cosine of an enclosed angle, no wider than the angle is.
+fn pair_at(angle: Interval) -> Pair {
+    // no slope is greater than one
+    let middle = Interval::point(angle.mid());
+    let slack = Interval::new(-angle.rad(), angle.rad());
+    let at = |function| middle.function(function).map_or(UNIT, |value| within_unit(value + slack));
+    (at(Function::Sin), at(Function::Cos))
+}
+
+/// Sine and cosine of a sum.
+fn turned(a: Pair, b: Pair) -> Pair {
+    (within_unit(a.0 * b.1 + a.1 * b.0), within_unit(a.1 * b.1 - a.0 * b.0))
+}
+
+fn within_unit(value: Interval) -> Interval {
+    value.intersection(UNIT).unwrap_or(UNIT)
+}
+
+/// The slots of a box, at all four places.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SlotValues {
+    values: [Vec<Interval>; PLACES],
+    /// How far a coordinate may lie from the middle of its side, either way.
+    distances: Vec<Interval>,
+    /// Half the width of each coordinate, and doubles near the values in the middle.
+    pub radii: Vec<f64>,
+    pub middle: Vec<f64>,
+}
+
+impl SlotValues {
+    pub fn at(&self, place: Place) -> &[Interval] {
+        &self.values[place as usize]
+    }
+
+    pub fn distance(&self, coordinate: usize) -> Interval {
+        self.distances[coordinate]
+    }
+}
+
+impl Chart {
+    pub fn new(coordinates: Vec<FreeCoordinate>, slots: Slots) -> Self {
+        let lows: Vec<Interval> = coordinates.iter().map(|c| Interval::from_rational(&c.low)).collect();
+        let widths: Vec<Interval> =
+            coordinates.iter().map(|c| Interval::from_rational(&(&c.high - &c.low))).collect();
+        let pairs = |place: usize| {
+            let has = |wave| slots.iter().any(|slot| slot == Slot { coordinate: place, wave });
+            let half = Interval::point(0.5);
+            [
+                has(Wave::Sine).then(|| Pairs::new(lows[place], widths[place])),
+                has(Wave::HalfSine).then(|| Pairs::new(lows[place] * half, widths[place] * half)),
+            ]
+        };
+        Chart { pairs: (0..coordinates.len()).map(pairs).collect(), lows, widths, coordinates, slots }
+    }
+
+    pub fn slots(&self) -> &Slots {
+        &self.slots
+    }
+
+    pub fn coordinates(&self) -> &[FreeCoordinate] {
+        &self.coordinates
+    }
+
+    /// The point at a part of a coordinate's range.
+    fn point(&self, coordinate: usize, part: f64) -> Interval {
+        self.lows[coordinate] + self.widths[coordinate] * Interval::point(part)
+    }
+
+    /// What a slot is on a side.
+    fn slot(&self, coordinate: usize, wave: Wave, side: Side) -> SideValues {
+        let (low, high) = side.ends();
+        let parts = [low, high, 0.5 * (low + high)];
+        let (is_sine, halved) = match wave {
+            Wave::Itself => {
+                let [first, last, middle] = parts.map(|part| self.point(coordinate, part));
+                return [first.hull(last), first, last, middle];
+            }
+            Wave::Sine => (true, false),
+            Wave::Cosine => (false, false),
+            Wave::HalfSine => (true, true),
+            Wave::HalfCosine => (false, true),
+        };
+        let Some(pairs) = &self.pairs[coordinate][usize::from(halved)] else { return [UNIT; PLACES] };
+        let at = |index: u32, depth: u8| pairs.at(index, depth);
+        let pairs = [
+            at(side.index, side.depth),
+            at(side.index + 1, side.depth),
+            at(2 * side.index + 1, side.depth + 1),
+        ];
+        let [first, last, middle] = pairs.map(|(sine, cosine)| if is_sine { sine } else { cosine });
+        let [from, to, _] = pairs.map(|(sine, cosine)| if is_sine { cosine } else { -sine });
+        let all = self.point(coordinate, low).hull(self.point(coordinate, high));
+        let all = if halved { all * Interval::point(0.5) } else { all };
+        let range = if all.width() < std::f64::consts::PI {
+            // the slope, which is `from` at the low end and `to` at the high one, changes its sign at most once
+            let mut range = first.hull(last);
+            if from.high() >= 0.0 && to.low() <= 0.0 {
+                range = range.hull(Interval::ONE);
+            }
+            if from.low() <= 0.0 && to.high() >= 0.0 {
+                range = range.hull(-Interval::ONE);
+            }
+            range
+        } else {
+            UNIT
+        };
+        [range, first, last, middle]
+    }
+
+    /// The values of all slots on a box.
+    pub fn fill(&self, sides: &[Side], found: &mut SlotValues) {
+        found.values.iter_mut().for_each(Vec::clear);
+        found.middle.clear();
+        found.radii.clear();
+        found.distances.clear();
+        for slot in self.slots.iter() {
+            let values = self.slot(slot.coordinate, slot.wave, sides[slot.coordinate]);
+            for (list, value) in found.values.iter_mut().zip(values) {
+                list.push(value);
+            }
+            found.middle.push(values[Place::Middle as usize].mid());
+        }
+        for (width, side) in self.widths.iter().zip(sides) {
+            let half = 0.5 / f64::from(1u32 << side.depth); // a power of two: exact
+            found.radii.push(width.mid() * half);
+            found.distances.push(*width * Interval::new(-half, half));
+        }
+    }
+}
+
+/// All values of a sine.
+const UNIT: Interval = Interval::new(-1.0, 1.0);
+
+/// A sum of powers of one half: how many boxes of each depth (the number of halvings that led to it).
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Volume {
+    counts: Vec<u64>,
+}
+
+impl Volume {
+    pub fn add(&mut self, depth: usize) {
+        if self.counts.len() <= depth {
+            self.counts.resize(depth + 1, 0);
+        }
+        self.counts[depth] += 1;
+    }
+
+    pub fn boxes(&self) -> u64 {
+        self.counts.iter().sum()
+    }
+
+    pub fn counts(&self) -> &[u64] {
+        &self.counts
+    }
+
+    pub fn from_counts(counts: Vec<u64>) -> Self {
+        Volume { counts }
+    }
+
+    pub fn merge(&mut self, other: &Volume) {
+        self.counts.resize(self.counts.len().max(other.counts.len()), 0);
+        for (sum, count) in self.counts.iter_mut().zip(&other.counts) {
+            *sum += count;
+        }
+    }
+
+    /// The part of the whole, exactly.
+    pub fn exact(&self) -> RBig {
+        let depth = self.counts.len();
+        let top = self.counts.iter().enumerate().fold(UBig::ZERO, |sum, (at, count)| {
+            sum + (UBig::from(*count) << (depth - at))
+        });
+        RBig::from_parts(IBig::from(top), UBig::ONE << depth)
+    }
+
+    /// The part of the whole, rounded down.
+    pub fn at_least(&self) -> f64 {
+        Interval::from_rational(&self.exact()).low().max(0.0)
+    }
+}

@@ -1,0 +1,121 @@
+//! A region, and how far the proof has come.
+
+use super::boxes::FreeCoordinate;
+use super::problem::{Problem, RegionRows};
+use super::progress::{Limits, Progress, Searches};
+use super::search::Plane;
+use crate::expression::Symbol;
+use crate::system::System;
+use dashu::rational::RBig;
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+
+/// The question whether some rows of a system have full rank all over a box, and what is known of the answer.
+pub struct Region {
+    pub(super) problem: Problem,
+    pub(super) searches: Searches,
+    /// The coordinates of the map, by their places among the ranges.
+    pub(super) map: Option<(usize, usize)>,
+}
+
+impl Region {
+    /// The question for the sample box of a system, with some ranges replaced; `map` are the coordinates of which a map is
+    /// drawn, two that matter if none are named. Nothing is proved yet.
+    ///
+    /// # Errors
+    /// In words: no states or outputs, a pole everywhere, no rows of its own, a symbol without a range, a map of a
+    /// coordinate on which nothing depends.
+    pub fn new(
+        system: &mut System,
+        rows: RegionRows,
+        ranges: &BTreeMap<Symbol, (RBig, RBig)>,
+        map: Option<(Symbol, Symbol)>,
+    ) -> Result<Region, String> {
+        let problem = Problem::new(system, rows, ranges)?;
+        let map = match map {
+            Some((x, y)) => {
+                let place = |symbol: Symbol| {
+                    let matters = |place: &usize| problem.ranges[*place].symbol == symbol && problem.matters(*place);
+                    (0..problem.ranges.len()).find(matters).ok_or_else(|| {
+                        let known = (0..problem.ranges.len()).filter(|place| problem.matters(*place));
+                        let known: Vec<&str> = known.map(|place| problem.ranges[place].name.as_str()).collect();
+                        format!(
+                            "no map of '{}': the minors that are used depend on {}",
+                            system.symbol_name(symbol),
+                            known.join(", ")
+                        )
+                    })
+                };
+                Some((place(x)?, place(y)?))
+            }
+            None => problem.coordinates_that_matter_most(),
+        };
+        let mut searches = Searches::new(&problem.parts);
+        for (search, part) in searches.searches.iter_mut().zip(&problem.parts) {
+            let local = |place: usize| {
+                let symbol = problem.ranges[place].symbol;
+                part.chart.coordinates().iter().position(|coordinate| coordinate.symbol == symbol)
+            };
+            if let Some((x, y)) = map {
+                search.plane = Plane { x: local(x), y: local(y) };
+            }
+        }
+        Ok(Region { problem, searches, map })
+    }
+
+    /// Goes on until a limit is reached, nothing is left to do, or an interrupt comes. `progress` is called every few
+    /// milliseconds. What comes out for a number of boxes depends neither on threads nor on interruptions; for a time it
+    /// depends on the machine.
+    pub fn run(&mut self, limits: Limits, interrupt: &AtomicBool, progress: &(dyn Fn(Progress) + Sync)) {
+        if !self.problem.minors.is_empty() {
+            self.searches.run(&self.problem.parts, limits, interrupt, progress);
+        }
+    }
+
+    /// The proved fraction of the volume, rounded down.
+    pub fn proved(&self) -> f64 {
+        self.searches.proved()
+    }
+
+    /// The number of boxes that were looked at.
+    pub fn boxes(&self) -> u64 {
+        self.searches.boxes()
+    }
+
+    /// Whether nothing is left to do: no box is open, or nothing can be proved at all.
+    pub fn is_finished(&self) -> bool {
+        self.problem.minors.is_empty() || self.searches.is_finished()
+    }
+
+    /// The sides of the box.
+    pub fn ranges(&self) -> &[FreeCoordinate] {
+        &self.problem.ranges
+    }
+}
+
+impl Problem {
+    /// Whether anything depends on a side of the box.
+    pub(super) fn matters(&self, place: usize) -> bool {
+        let symbol = self.ranges[place].symbol;
+        self.parts.iter().any(|part| part.chart.coordinates().iter().any(|c| c.symbol == symbol))
+    }
+
+    /// Two coordinates of the part with the most factors, those that most of them depend on; where no part has two, of two
+    /// parts.
+    fn coordinates_that_matter_most(&self) -> Option<(usize, usize)> {
+        let mut counted: Vec<(usize, usize, usize)> = Vec::new();
+        for part in &self.parts {
+            let size = part.chart.coordinates().len();
+            for (local, coordinate) in part.chart.coordinates().iter().enumerate() {
+                let uses = part.factors.iter().filter(|f| f.tape.coordinates.contains(&local)).count();
+                let place = self.ranges.iter().position(|range| range.symbol == coordinate.symbol)?;
+                counted.push((size.min(2), uses, place));
+            }
+        }
+        counted.sort_by(|a, b| (b.0, b.1).cmp(&(a.0, a.1))); // stable
+        match counted.as_slice() {
+            [first, second, ..] => Some((first.2.min(second.2), first.2.max(second.2))),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! A search as text, to be taken up again.
+//!
+//! The first line names the format, the second the question; then come the tally and the open boxes, a line each, and
+//! last the number of lines and a checksum, so that a file that was cut or changed is noticed. A box is written as the
+//! index and the depth of each of its sides and the factors that are known to vanish nowhere in it.
+
+use super::boxes::{DEEPEST, Side, Volume};
+use super::certificate::Region;
+use super::progress::{Progress, Searches};
+use super::search::{Cell, Search, Turn};
+use std::collections::{BTreeMap, VecDeque};
+use std::fmt::Write;
+
+const FORMAT: &str = "palmistry region 1";
+
+/// The 64-bit hash of Fowler, Noll and Vo (variant 1a): the same everywhere and for ever.
+#[derive(Clone, Copy)]
+struct Hash(u64);
+
+impl Hash {
+    fn new() -> Self {
+        Hash(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn add(&mut self, text: &str) {
+        for byte in text.bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+}
+
+impl Region {
+    /// What the boxes mean: all sides, tapes and lists, to the last bit.
+    fn fingerprint(&self) -> u64 {
+        let mut hash = Hash::new();
+        hash.add(env!("CARGO_PKG_VERSION"));
+        for part in &self.problem.parts {
+            for coordinate in part.chart.coordinates() {
+                hash.add(&format!("{} {} {};", coordinate.name, coordinate.low, coordinate.high));
+            }
+            for factor in &part.factors {
+                hash.add(&format!("{:?} {:?} {};", factor.tape, factor.witnesses, factor.positive));
+            }
+            hash.add(&format!("{:?} {:?} {:?}", part.guards, part.common, part.alternatives));
+        }
+        hash.add(&format!("{:?}", self.map));
+        hash.0
+    }
+
+    /// Where the search stands, as text.
+    pub fn saved(&self) -> String {
+        let searches = &self.searches;
+        let mut text = format!("{FORMAT}\nquestion {:016x}\nseconds {}\n", self.fingerprint(), searches.seconds);
+        if let Some((part, turn)) = &searches.turn {
+            let _ = writeln!(text, "turn {part} {} {}", turn.depth, turn.boxes);
+        }
+        for point in &searches.curve {
+            let _ = writeln!(text, "curve {} {} {}", point.boxes, point.seconds, point.proved);
+        }
+        for search in &searches.searches {
+            let _ = write!(text, "part {} proved", search.boxes);
+            for count in search.proved.counts() {
+                let _ = write!(text, " {count}");
+            }
+            text.push('\n');
+            for [x, y] in &search.sections {
+                let _ = writeln!(text, "section {}/{} {}/{}", x.index, x.depth, y.index, y.depth);
+            }
+            for (word, cells) in [("left", search.left.iter().collect::<Vec<_>>()), ("open", open(search))] {
+                for cell in cells {
+                    let _ = write!(text, "{word} {:x}", cell.known);
+                    for side in &cell.sides {
+                        let _ = write!(text, " {}/{}", side.index, side.depth);
+                    }
+                    text.push('\n');
+                }
+            }
+        }
+        let mut hash = Hash::new();
+        hash.add(&text);
+        let lines = text.lines().count();
+        let _ = writeln!(text, "end {lines} {:016x}", hash.0);
+        text
+    }
+
+    /// Takes up a search where a text says that it stood.
+    ///
+    /// # Errors
+    /// In words: the text is no saved search, is damaged, or belongs to another question.
+    pub fn resume(&mut self, text: &str) -> Result<(), String> {
+        if text.lines().next() != Some(FORMAT) {
+            return Err("this is no saved search of 'certify' (its first line is another)".to_owned());
+        }
+        let damaged = |line: usize| format!("the saved search is damaged at line {line}: it was cut or changed");
+        let body = text.trim_end_matches('\n');
+        let (body, end) = body.rsplit_once('\n').ok_or_else(|| damaged(1))?;
+        let body = &text[..body.len() + 1];
+        let lines = body.lines().count();
+        let mut hash = Hash::new();
+        hash.add(body);
+        if end != format!("end {lines} {:016x}", hash.0) {
+            return Err(damaged(lines + 1));
+        }
+        if body.lines().nth(1) != Some(format!("question {:016x}", self.fingerprint()).as_str()) {
+            return Err("the saved search belongs to another question: another file, box, choice of rows or map, \
+                        or another version of this program"
+                .to_owned());
+        }
+        let mut reader = Reader { region: self, found: Searches::new(&[]) };
+        for (number, line) in body.lines().enumerate().skip(2) {
+            reader.line(line).ok_or_else(|| damaged(number + 1))?;
+        }
+        let found = reader.found;
+        let fits = found.searches.len() == self.searches.searches.len()
+            && found.turn.is_none_or(|(part, _)| part < found.searches.len())
+            && found.searches.iter().all(fills_the_box);
+        if !fits {
+            return Err("the saved search does not cover the box: it was changed".to_owned());
+        }
+        self.searches = found;
+        Ok(())
+    }
+}
+
+fn open(search: &Search) -> Vec<&Cell> {
+    search.open.values().flatten().collect()
+}
+
+/// Whether proved, open and left boxes together have the volume of the box.
+fn fills_the_box(search: &Search) -> bool {
+    let mut volume = search.proved.clone();
+    search.unproved().iter().for_each(|cell| volume.add(cell.depth()));
+    volume.exact().is_one()
+}
+
+/// Reads a saved search, line by line.
+struct Reader<'a> {
+    region: &'a Region,
+    found: Searches,
+}
+
+impl Reader<'_> {
+    fn line(&mut self, line: &str) -> Option<()> {
+        let mut words = line.split(' ');
+        let word = words.next()?;
+        match word {
+            "seconds" => self.found.seconds = words.next()?.parse().ok().filter(|s: &f64| s.is_finite())?,
+            "turn" => {
+                let mut number = || words.next()?.parse::<usize>().ok();
+                self.found.turn = Some((number()?, Turn { depth: number()?, boxes: number()? }));
+            }
+            "curve" => {
+                let boxes = words.next()?.parse().ok()?;
+                let mut number = || words.next()?.parse::<f64>().ok();
+                self.found.curve.push(Progress { boxes, seconds: number()?, proved: number()? });
+            }
+            "part" => {
+                let boxes = words.next()?.parse().ok()?;
+                words.next().filter(|word| *word == "proved")?;
+                let counts: Option<Vec<u64>> = words.by_ref().map(|count| count.parse().ok()).collect();
+                let known = self.region.searches.searches.get(self.found.searches.len())?;
+                self.found.searches.push(Search {
+                    open: BTreeMap::new(),
+                    left: Vec::new(),
+                    proved: Volume::from_counts(counts?),
+                    boxes,
+                    plane: known.plane,
+                    sections: Vec::new(),
+                });
+            }
+            "section" => {
+                let section = [side(words.next()?)?, side(words.next()?)?];
+                self.found.searches.last_mut()?.sections.push(section);
+            }
+            "open" | "left" => {
+                let part = self.region.problem.parts.get(self.found.searches.len().checked_sub(1)?)?;
+                let known = u128::from_str_radix(words.next()?, 16).ok()?;
+                let sides: Option<Box<[Side]>> = words.by_ref().map(side).collect();
+                let cell = Cell { sides: sides?, known };
+                if cell.sides.len() != part.chart.coordinates().len() {
+                    return None;
+                }
+                let search = self.found.searches.last_mut()?;
+                match word {
+                    "open" => search.open.entry(cell.depth()).or_insert_with(VecDeque::new).push_back(cell),
+                    _ => search.left.push(cell),
+                }
+            }
+            _ => return None,
+        }
+        words.next().is_none().then_some(())
+    }
+}
+
+fn side(word: &str) -> Option<Side> {
+    let (index, depth) = word.split_once('/')?;
+    let side = Side { index: index.parse().ok()?, depth: depth.parse().ok()? };
+    (side.depth <= DEEPEST && side.index >> side.depth == 0).then_some(side)
+}

@@ -1,0 +1,245 @@
+//! What is to be proved on a box, from a system, its rows and its ranges.
+
+use super::block::{ClearedRow, clear, without_unit_rows};
+use super::boxes::FreeCoordinate;
+use super::choice::choose;
+use super::collector::{Collector, Ranges};
+use super::domain::{Guard, guards};
+use super::minors::{factors_of, half_cosines, minors as minors_of};
+use super::part::{Minor, Part};
+use crate::expression::{Graph, NodeId, Symbol, expand_angles};
+use crate::number::polynomial::Polynomial;
+use crate::number::{Fraction, Interval, Real, rational_to_f64};
+use crate::observability::{Codistribution, Length, OWN_ROWS, Stop};
+use crate::system::{Assignment, Kind, System, Value};
+use dashu::rational::RBig;
+use std::collections::BTreeMap;
+
+/// Which rows are to have full rank.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RegionRows {
+    /// The full codistribution, with words of so many fields. `None` takes words one field longer than almost all
+    /// states need, if these are not too many: where the minors of the shorter ones vanish together, longer ones see.
+    Codistribution(Option<usize>),
+    /// The file's own choice of rows.
+    Own,
+}
+
+/// A box and what is to be proved on it.
+pub(super) struct Problem {
+    pub file: String,
+    pub title: String,
+    pub dimension: usize,
+    /// The number of columns in which the rows have to be independent, once unit rows are taken out with theirs.
+    pub columns: usize,
+    /// The number of rows, without unit rows.
+    pub rows: usize,
+    /// The length of the longest words.
+    pub order: Option<usize>,
+    /// All sides of the box, whether anything depends on them or not.
+    pub ranges: Vec<FreeCoordinate>,
+    /// The minors that are kept. Without any, nothing can be proved.
+    pub minors: Vec<Minor>,
+    /// The number of minors that were looked at, and whether these were all.
+    pub candidates: usize,
+    pub all_minors: bool,
+    pub parts: Vec<Part>,
+    /// The texts of what sampled states keep away from.
+    pub avoid: Vec<String>,
+    /// What could not be written as a product, and why.
+    pub remarks: Vec<String>,
+}
+
+/// More words than this are not taken unless they are asked for.
+const MOST_WORDS: usize = 80;
+
+impl Problem {
+    /// The question whether some rows of a system have full rank on a box: its sample box, with some ranges replaced.
+    ///
+    /// # Errors
+    /// In words: no states or outputs, a pole everywhere, no rows of its own, a symbol without a range.
+    pub fn new(
+        system: &mut System,
+        rows: RegionRows,
+        given: &BTreeMap<Symbol, (RBig, RBig)>,
+    ) -> Result<Problem, String> {
+        if system.states.is_empty() || system.outputs.is_empty() {
+            return Err(format!("{} declares no states or no outputs", system.name));
+        }
+        let (ranges, values) = ranges_of(system, given);
+        let angles = system.angles();
+        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let dimension = system.states.len();
+        let (names, flat, order) = rows_of(system, rows, &values)?;
+        let flat = system.graph.substitute(&flat, &values);
+        let flat = expand_angles(&mut system.graph, &flat, is_angle);
+        let entries: Vec<Vec<NodeId>> = flat.chunks(dimension).map(<[NodeId]>::to_vec).collect();
+        let block = without_unit_rows(&system.graph, &entries, dimension);
+
+        let mut collector = Collector::default();
+        let mut remarks = Vec::new();
+        let guards = guard_factors(system, &mut collector, &values, is_angle);
+        let mut cleared = Vec::new();
+        for (row, entries) in &block.rows {
+            match clear(&mut collector.products, &system.graph, *row, entries, is_angle) {
+                Ok((row, nodes)) => {
+                    collector.note(&system.graph, &nodes);
+                    cleared.push(row);
+                }
+                Err(why) => remarks.push(format!("{} is left out: {why}", names[*row])),
+            }
+        }
+        let columns = block.columns.len();
+        cleared.sort_by_key(ClearedRow::length); // stable: words of one length stay in order
+        let split = minors_of(&collector.products, &cleared, columns, &mut collector.known);
+        let mut minors = Vec::new();
+        for minor in &split.found {
+            let rows = minor.rows.iter().map(|row| names[cleared[*row].row].clone()).collect();
+            let graph = &mut system.graph;
+            let mut factors: Vec<usize> =
+                minor.factors.iter().map(|factor| collector.polynomial(graph, factor)).collect();
+            let below = minor.below.iter().map(|factor| collector.polynomial(graph, factor)).collect();
+            for place in &minor.half_cosines {
+                let node = collector.products.half_cosine(graph, *place);
+                factors.extend(node.map(|node| collector.expression(node, false)));
+            }
+            minors.push(Minor { rows, factors, below });
+        }
+        let mut avoid = Vec::new();
+        for (text, node) in system.avoid.clone() {
+            let node = system.graph.substitute(&[node], &values);
+            let node = expand_angles(&mut system.graph, &node, is_angle)[0];
+            if !ranges.coordinates_of(&system.graph, node).is_empty() {
+                avoid.push((text, node));
+            }
+        }
+        let (avoid, avoided): (Vec<String>, Vec<NodeId>) = avoid.into_iter().unzip();
+        let candidates = minors.len();
+        let (minors, parts) = choose(&system.graph, &collector, &ranges, &guards, minors, &avoided)?;
+        Ok(Problem {
+            file: system.name.clone(),
+            title: system.title.clone(),
+            dimension,
+            columns,
+            rows: block.rows.len(),
+            order,
+            ranges: ranges.free,
+            minors,
+            candidates,
+            all_minors: split.complete && remarks.is_empty(),
+            parts,
+            avoid,
+            remarks,
+        })
+    }
+}
+
+/// The sides of the box, what the other symbols are, and which of these can be put in exactly.
+fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> (Ranges, Assignment) {
+    let mut found = Ranges { free: Vec::new(), held: Default::default() };
+    let mut values = Vec::new();
+    for (symbol, info) in system.symbols().filter(|(_, info)| info.kind != Kind::Imported) {
+        let range = info.range.as_ref().map(|range| (range.low.clone(), range.high.clone()));
+        let value = info.default.as_ref().map(|value| (value.clone(), value.clone()));
+        let Some((low, high)) = given.get(&symbol).cloned().or(range).or(value) else { continue };
+        let name = system.symbol_name(symbol).to_owned();
+        if low < high {
+            found.free.push(FreeCoordinate { symbol, name, low, high });
+        } else if info.is_angle && !low.is_zero() {
+            found.held.insert(symbol, held_angle(&low));
+        } else {
+            found.held.insert(symbol, Interval::from_rational(&low));
+            values.push((symbol, low));
+        }
+    }
+    let values = values.into_iter().map(|(symbol, value)| (symbol, system.graph.rational(value))).collect();
+    (found, values)
+}
+
+/// An angle that is held, give or take what the exact states of [`Locus`](crate::observability::Locus) differ from it:
+/// they have the double nearest to the tangent of its half.
+fn held_angle(value: &RBig) -> Interval {
+    let slack = 8.0 * f64::EPSILON * rational_to_f64(value).abs().max(1.0);
+    Interval::from_rational(value) + Interval::new(-slack, slack)
+}
+
+type Rows = (Vec<String>, Vec<NodeId>, Option<usize>);
+
+/// Names and entries of the rows, one after the other, and the length of the words.
+fn rows_of(system: &mut System, rows: RegionRows, values: &Assignment) -> Result<Rows, String> {
+    let order = match rows {
+        RegionRows::Own => {
+            return match system.definition(OWN_ROWS) {
+                Some(Value::Matrix(matrix)) if matrix.columns == system.states.len() => {
+                    let names = (1..=matrix.rows).map(|row| format!("row {row}")).collect();
+                    Ok((names, matrix.entries.clone(), None))
+                }
+                _ => Err(format!("{} defines no matrix '{OWN_ROWS}' with a column for each state", system.name)),
+            };
+        }
+        RegionRows::Codistribution(order) => order,
+    };
+    let length = order.map_or(Length::UntilItStops, Length::Exactly);
+    let mut found = Codistribution::new(system, values, length)?;
+    if order.is_none() && found.stop == Stop::Full {
+        let longer = Codistribution::new(system, values, Length::Exactly(found.order + 1))?;
+        if longer.words.len() <= MOST_WORDS {
+            found = longer;
+        }
+    }
+    let names = found.words.iter().map(|word| word.text(system)).collect();
+    Ok((names, found.entries(), Some(found.order)))
+}
+
+/// What keeps the system defined, as factors.
+fn guard_factors(
+    system: &mut System,
+    collector: &mut Collector,
+    values: &Assignment,
+    is_angle: impl Fn(Symbol) -> bool + Copy,
+) -> Vec<usize> {
+    let outputs = system.outputs.iter().map(|(_, node)| *node);
+    let rates = system.fields.iter().flat_map(|field| field.components.iter().map(|(_, node)| *node));
+    let roots: Vec<NodeId> = outputs.chain(rates).collect();
+    let roots = system.graph.substitute(&roots, values);
+    let roots = expand_angles(&mut system.graph, &roots, is_angle);
+    let mut found = Vec::new();
+    for guard in guards(&mut system.graph, &roots) {
+        let graph = &mut system.graph;
+        match guard {
+            Guard::Positive(node) => found.push(collector.expression(node, true)),
+            Guard::NotZero(node) => match collector.products.read(graph, &[node], is_angle) {
+                Ok((value, _)) => found.extend(divisor_factors(graph, collector, &value[0])),
+                Err(_) => found.push(collector.expression(node, false)),
+            },
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// What must not be zero for a divisor not to be.
+fn divisor_factors(graph: &mut Graph, collector: &mut Collector, divisor: &Fraction) -> Vec<usize> {
+    let (circles, mut found) = (collector.products.circles(), Vec::new());
+    let all: Vec<(Polynomial, i64)> = [(&divisor.top, 1), (&divisor.bottom, -1)]
+        .into_iter()
+        .flat_map(|(factors, sign)| factors.iter().map(move |(place, power)| (*place, sign * i64::from(*power))))
+        .map(|(place, power)| (collector.products.fractions().factor(place), power))
+        .collect();
+    for (polynomial, _) in all.iter().filter(|(_, power)| *power > 0) {
+        for (factor, _) in factors_of(polynomial, &mut collector.known) {
+            if !circles.contains(&factor) {
+                found.push(collector.polynomial(graph, &factor));
+            }
+        }
+    }
+    for (place, power) in half_cosines(&collector.products, all.iter().map(|(f, n)| (f, *n))) {
+        if power > 0
+            && let Some(node) = collector.products.half_cosine(graph, place)
+        {
+            found.push(collector.expression(node, false));
+        }
+    }
+    found
+}

@@ -1,0 +1,322 @@
+//! Branch and bound on one part: boxes on which everything is proved are done with, the others are halved, the largest
+//! first.
+
+use super::boxes::{DEEPEST, Place, Side, Volume};
+use super::factor::{Desk, Guess};
+use super::part::{Alternative, Part};
+use crate::observability::locus::AVOIDED;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, VecDeque};
+
+/// A box, and the factors that are known to be zero nowhere in it (the first 128 of them).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Cell {
+    pub sides: Box<[Side]>,
+    pub known: u128,
+}
+
+impl Cell {
+    /// The whole box.
+    pub fn whole(part: &Part) -> Self {
+        Cell { sides: vec![Side::WHOLE; part.chart.coordinates().len()].into_boxed_slice(), known: 0 }
+    }
+
+    /// The number of halvings that led to it: its volume is that power of one half.
+    pub fn depth(&self) -> usize {
+        self.sides.iter().map(|side| usize::from(side.depth)).sum()
+    }
+
+    fn knows(&self, factor: usize) -> bool {
+        factor < 128 && self.known >> factor & 1 == 1
+    }
+
+    fn learn(&mut self, factor: usize) {
+        if factor < 128 {
+            self.known |= 1 << factor;
+        }
+    }
+
+    fn halves(&self, coordinate: usize) -> [Cell; 2] {
+        self.sides[coordinate].halves().map(|side| {
+            let mut half = self.clone();
+            half.sides[coordinate] = side;
+            half
+        })
+    }
+}
+
+/// What has come of a box.
+enum Judged {
+    Proved,
+    Halved([Cell; 2]),
+    /// It cannot be halved any more, or the system is not defined on it.
+    Left,
+}
+
+/// Why nothing is proved on a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Why {
+    /// The system is defined on all of it, and this minor is zero somewhere in it, with this factor.
+    Vanishes { minor: usize, factor: usize },
+    /// What the system divides by is zero somewhere in it.
+    Pole { factor: usize },
+    Undecided,
+}
+
+/// A plane through a box, or what of it lies in one part: two coordinates, the others a third of their ranges from the low
+/// end, where no box ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Plane {
+    pub x: Option<usize>,
+    pub y: Option<usize>,
+}
+
+impl Plane {
+    /// What the other coordinates are, as a part of their ranges.
+    pub const REST: f64 = 1.0 / 3.0;
+
+    /// What a box cuts out of the plane.
+    pub fn section(&self, sides: &[Side]) -> Option<[Side; 2]> {
+        let meets = |(place, side): (usize, &Side)| {
+            Some(place) == self.x || Some(place) == self.y || side.meets(Self::REST)
+        };
+        let side = |place: Option<usize>| place.map_or(Side::WHOLE, |place| sides[place]);
+        sides.iter().enumerate().all(meets).then(|| [side(self.x), side(self.y)])
+    }
+
+    fn is_empty(&self) -> bool {
+        self.x.is_none() && self.y.is_none()
+    }
+}
+
+/// Boxes of one depth that are to be looked at next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Turn {
+    pub depth: usize,
+    /// How many of them.
+    pub boxes: usize,
+}
+
+/// The boxes of a part.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Search {
+    /// Open boxes by depth, each depth in the order of its making.
+    pub open: BTreeMap<usize, VecDeque<Cell>>,
+    /// Boxes that cannot be halved any more.
+    pub left: Vec<Cell>,
+    /// Boxes on which everything is proved.
+    pub proved: Volume,
+    /// The number of boxes that were looked at.
+    pub boxes: u64,
+    /// What the proved boxes cut out of a plane.
+    pub plane: Plane,
+    pub sections: Vec<[Side; 2]>,
+}
+
+/// The boxes of a turn are judged by all threads.
+const LONGEST_TURN: usize = 2048;
+/// A factor is tried where floating point gives it this much of a chance.
+const HOPE: f64 = 0.6;
+/// So many minors are tried on a box.
+const TRIES: usize = 3;
+/// With more open boxes than this the smallest are halved instead of the largest, so that memory is bounded.
+const MOST_OPEN: usize = 4_000_000;
+
+impl Search {
+    /// The whole box, open.
+    pub fn new(part: &Part, plane: Plane) -> Self {
+        Search {
+            open: BTreeMap::from([(0, VecDeque::from([Cell::whole(part)]))]),
+            left: Vec::new(),
+            proved: Volume::default(),
+            boxes: 0,
+            plane,
+            sections: Vec::new(),
+        }
+    }
+
+    pub fn unproved_boxes(&self) -> usize {
+        self.open.values().map(VecDeque::len).sum::<usize>() + self.left.len()
+    }
+
+    /// The boxes to look at next: the largest.
+    pub fn turn(&self) -> Option<Turn> {
+        let crowded = self.unproved_boxes() > MOST_OPEN;
+        let (depth, queue) = if crowded { self.open.last_key_value() } else { self.open.first_key_value() }?;
+        Some(Turn { depth: *depth, boxes: queue.len().min(LONGEST_TURN) })
+    }
+
+    /// Looks at the boxes of a turn, the oldest first, at most so many. Returns what is left of the turn.
+    pub fn step(&mut self, part: &Part, turn: Turn, most: u64) -> Option<Turn> {
+        let Some(queue) = self.open.get_mut(&turn.depth) else { return None };
+        let count = turn.boxes.min(queue.len()).min(usize::try_from(most).unwrap_or(usize::MAX));
+        let block: Vec<Cell> = queue.drain(..count).collect();
+        if queue.is_empty() {
+            self.open.remove(&turn.depth);
+        }
+        let found: Vec<(Cell, Judged)> = block
+            .into_par_iter()
+            .map_init(Desk::default, |desk, mut cell| {
+                let judged = judge(part, &mut cell, desk);
+                (cell, judged)
+            })
+            .collect();
+        for (cell, judged) in found {
+            match judged {
+                Judged::Proved => {
+                    self.proved.add(cell.depth());
+                    if !self.plane.is_empty() {
+                        self.sections.extend(self.plane.section(&cell.sides));
+                    }
+                }
+                Judged::Halved(halves) => self.open.entry(cell.depth() + 1).or_default().extend(halves),
+                Judged::Left => self.left.push(cell),
+            }
+        }
+        self.boxes += count as u64;
+        let rest = Turn { boxes: turn.boxes - count, ..turn };
+        (rest.boxes > 0 && count > 0).then_some(rest)
+    }
+
+    /// All boxes on which nothing is proved, the largest first.
+    pub fn unproved(&self) -> Vec<&Cell> {
+        let mut all: Vec<&Cell> = self.open.values().flatten().chain(&self.left).collect();
+        all.sort_by_key(|cell| cell.depth()); // stable
+        all
+    }
+}
+
+/// Looks at a box.
+fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> Judged {
+    let chart = &part.chart;
+    chart.fill(&cell.sides, &mut desk.slots);
+    let mut guesses: Vec<Option<Guess>> = vec![None; part.factors.len()];
+    let mut least = |cell: &Cell, desk: &mut Desk, list: &mut dyn Iterator<Item = &usize>| -> f64 {
+        let mut least = f64::INFINITY;
+        for factor in list.copied().filter(|factor| !cell.knows(*factor)) {
+            let guess = guesses[factor].get_or_insert_with(|| part.factors[factor].guess(chart, desk));
+            least = least.min(guess.ratio);
+        }
+        least
+    };
+    let required = least(cell, desk, &mut part.guards.iter().chain(&part.common));
+    let mut order: Vec<(f64, Option<&Alternative>)> = Vec::with_capacity(part.alternatives.len().max(1));
+    for alternative in &part.alternatives {
+        order.push((least(cell, desk, &mut alternative.all()).min(required), Some(alternative)));
+    }
+    if order.is_empty() {
+        order.push((required, None));
+    }
+    order.sort_by(|a, b| b.0.total_cmp(&a.0)); // stable
+    let mut worst: Option<(f64, usize)> = None;
+    for (rank, (ratio, own)) in order.into_iter().take(TRIES).enumerate() {
+        if rank > 0 && ratio < HOPE {
+            break;
+        }
+        let mut proved = true;
+        let own = own.into_iter().flat_map(Alternative::all);
+        for factor in part.guards.iter().chain(&part.common).chain(own).copied() {
+            if cell.knows(factor) {
+                continue;
+            }
+            let Some(guess) = guesses[factor] else { continue };
+            let expression = &part.factors[factor];
+            if guess.ratio >= HOPE && expression.excludes_zero(chart, desk, guess.value < 0.0) {
+                cell.learn(factor);
+                continue;
+            }
+            proved = false;
+            if expression.is_nowhere_positive(desk) {
+                return Judged::Left;
+            }
+            if rank == 0 && worst.is_none_or(|(ratio, _)| guess.ratio < ratio) {
+                worst = Some((guess.ratio, factor));
+            }
+        }
+        if proved {
+            return Judged::Proved;
+        }
+    }
+    let Some((_, factor)) = worst else { return Judged::Left };
+    let can = |coordinate: &usize| cell.sides[*coordinate].depth < DEEPEST;
+    let steepest = guesses[factor].and_then(|guess| guess.steepest).filter(can);
+    let coordinate = steepest.or_else(|| {
+        let coordinates = part.factors[factor].tape.coordinates.iter().copied().filter(can);
+        coordinates.min_by_key(|coordinate| cell.sides[*coordinate].depth)
+    });
+    coordinate.map_or(Judged::Left, |coordinate| Judged::Halved(cell.halves(coordinate)))
+}
+
+/// Why nothing is proved on a box, and whether no sampled state lies in it.
+pub(super) fn explain(part: &Part, cell: &Cell, desk: &mut Desk) -> (Why, bool) {
+    let chart = &part.chart;
+    chart.fill(&cell.sides, &mut desk.slots);
+    let all = desk.slots.at(Place::All).to_vec();
+    let mut room = Default::default();
+    let avoided = part.avoid.iter().any(|tape| tape.value(&all, &mut room).magnitude() < JUST_AVOIDED);
+    let excludes = |desk: &mut Desk, factor: usize| {
+        let expression = &part.factors[factor];
+        cell.knows(factor) || {
+            let guess = expression.guess(chart, desk);
+            expression.excludes_zero(chart, desk, guess.value < 0.0)
+        }
+    };
+    for guard in &part.guards {
+        if !excludes(desk, *guard) {
+            let pole = part.factors[*guard].vanishes(chart, desk);
+            return (if pole { Why::Pole { factor: *guard } } else { Why::Undecided }, avoided);
+        }
+    }
+    let vanishing = |desk: &mut Desk, list: &[usize]| {
+        let vanishes = |f: &&usize| !cell.knows(**f) && part.factors[**f].vanishes(chart, desk);
+        list.iter().find(vanishes).copied()
+    };
+    if let Some(factor) = vanishing(desk, &part.common) {
+        return (Why::Vanishes { minor: 0, factor }, avoided); // all minors do
+    }
+    for alternative in &part.alternatives {
+        if alternative.below.iter().all(|factor| excludes(desk, *factor))
+            && let Some(factor) = vanishing(desk, &alternative.factors)
+        {
+            return (Why::Vanishes { minor: alternative.minor, factor }, avoided);
+        }
+    }
+    (Why::Undecided, avoided)
+}
+
+/// Sampled states have a magnitude of at least [`AVOIDED`], as floating point sees it: a little less is surely avoided.
+const JUST_AVOIDED: f64 = AVOIDED * (1.0 - 1e-9);
+/// And a little more is surely not.
+const NOT_AVOIDED: f64 = AVOIDED * (1.0 + 1e-9);
+
+/// A lower bound of the volume in which states are sampled.
+pub(super) fn sampled_volume(part: &Part) -> Volume {
+    let mut sampled = Volume::default();
+    let mut queue = VecDeque::from([Cell::whole(part)]);
+    let mut desk = Desk::default();
+    let mut room = Default::default();
+    for _ in 0..MOST_PAVED {
+        let Some(cell) = queue.pop_front() else { break };
+        part.chart.fill(&cell.sides, &mut desk.slots);
+        let all = desk.slots.at(Place::All);
+        let (mut halved, mut avoided) = (None, false);
+        for tape in &part.avoid {
+            let value = tape.value(all, &mut room);
+            avoided |= value.magnitude() < JUST_AVOIDED;
+            if value.mignitude() < NOT_AVOIDED && halved.is_none() {
+                let can = tape.coordinates.iter().filter(|place| cell.sides[**place].depth < DEEPEST);
+                halved = can.min_by_key(|place| cell.sides[**place].depth).copied();
+                avoided |= halved.is_none();
+            }
+        }
+        match halved {
+            _ if avoided => {}
+            Some(coordinate) => queue.extend(cell.halves(coordinate)),
+            None => sampled.add(cell.depth()),
+        }
+    }
+    sampled
+}
+
+/// So many boxes are looked at to find out which part of the volume is avoided.
+const MOST_PAVED: usize = 20_000;
