@@ -6,7 +6,7 @@ fn main() {
     let t = std::time::Instant::now();
     let mut r = Region::new(&mut s, rows, &Default::default(), None).unwrap();
     println!("{:?}", t.elapsed());
-    r.run(Limits { seconds: Some(args[3].parse().unwrap()), boxes: None }, &false.into(), &|_| ());
+    r.run(Limits { seconds: None, boxes: Some(args[3].parse().unwrap()) }, &false.into(), &|_| ());
     println!("{:?}", t.elapsed());
     let a = r.answer();
     println!("{:?}", t.elapsed());

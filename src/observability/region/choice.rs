@@ -22,8 +22,9 @@ const MOST: usize = 24;
 const LEAST_GAIN: f64 = 0.005;
 /// A state nearer than this to a zero of all minors is given up.
 const NEAREST: f64 = 1e-4;
-/// Boxes of the search by which pools are compared.
-const TRIAL: u64 = 20_000;
+/// Operations of the searches by which pools are compared, if every box needs all factors, and of those of the best two.
+const FIRST_TRIAL: usize = 1 << 22;
+const SECOND_TRIAL: usize = 1 << 24;
 
 /// The minors to keep and the parts that they lead to; none where there are no minors.
 ///
@@ -56,27 +57,47 @@ pub(super) fn choose(
     let mut sizes: Vec<usize> = minors.iter().map(size).collect();
     sizes.sort_unstable();
     sizes.dedup();
-    let mut best: Option<(f64, Vec<Minor>, Vec<Part>)> = None;
-    let alone = sizes.len() == 1;
+    let mut trials: Vec<Trial> = Vec::new();
     for most in sizes {
         let pool: Vec<&Minor> = minors.iter().filter(|minor| size(minor) <= most).collect();
         let logarithms = distances(&pool, &ratios, place);
         let chosen: Vec<Minor> = greedily(&logarithms).into_iter().map(|at| pool[at].clone()).collect();
-        if best.as_ref().is_some_and(|(_, known, _)| *known == chosen) {
-            continue;
-        }
-        let parts = Demand { guards, minors: &chosen, avoid }.parts(graph, collector, ranges)?;
-        let mut searches = Searches::new(&parts);
-        if !alone {
-            let limits = Limits { seconds: None, boxes: Some(TRIAL) };
-            searches.run(&parts, limits, &false.into(), &|_| ());
-        }
-        let proved = searches.proved();
-        if best.as_ref().is_none_or(|(most, _, _)| proved > *most) {
-            best = Some((proved, chosen, parts));
+        for asked_of_all in [0, 1] {
+            let demand = Demand { guards, minors: &chosen, avoid, asked_of_all };
+            let parts = demand.parts(graph, collector, ranges)?;
+            let shape = parts.iter().map(Part::shape).collect();
+            if trials.iter().any(|trial| trial.shape == shape && trial.minors == chosen) {
+                continue;
+            }
+            let mut trial = Trial { minors: chosen.clone(), searches: Searches::new(&parts), parts, shape };
+            trial.run(FIRST_TRIAL);
+            trials.push(trial);
         }
     }
-    Ok(best.map_or((Vec::new(), Vec::new()), |(_, minors, parts)| (minors, parts)))
+    // the two best go on: what is best with few boxes need not be so with many
+    trials.sort_by(|a, b| b.searches.proved().total_cmp(&a.searches.proved())); // stable
+    trials.truncate(2);
+    if trials.len() == 2 {
+        trials.iter_mut().for_each(|trial| trial.run(SECOND_TRIAL));
+    }
+    let best = trials.into_iter().reduce(|a, b| if b.searches.proved() > a.searches.proved() { b } else { a });
+    Ok(best.map_or((Vec::new(), Vec::new()), |trial| (trial.minors, trial.parts)))
+}
+
+/// Some minors and the parts that they lead to, and a short search.
+struct Trial {
+    minors: Vec<Minor>,
+    parts: Vec<Part>,
+    shape: Vec<(usize, usize, usize)>,
+    searches: Searches,
+}
+
+impl Trial {
+    fn run(&mut self, operations: usize) {
+        let each: usize = self.parts.iter().flat_map(|part| &part.factors).map(|f| f.tape.len()).sum();
+        let limits = Limits { seconds: None, boxes: Some((operations / each.max(1)).max(1000) as u64) };
+        self.searches.run(&self.parts, limits, &false.into(), &|_| ());
+    }
 }
 
 /// The places of the minors to keep, best first: each the one that takes most states further from the zeros.

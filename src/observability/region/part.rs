@@ -46,12 +46,20 @@ pub(super) struct Part {
     pub factors: Vec<Factor>,
     /// Factors without which the system, or a row, is not defined.
     pub guards: Vec<usize>,
-    /// Further factors that all minors have.
+    /// Factors that are asked of all minors, and a minor that has each of them.
     pub common: Vec<usize>,
+    pub common_of: Vec<usize>,
     /// Of these, one has to be different from zero; there is no such condition where there are none.
     pub alternatives: Vec<Alternative>,
     /// What sampled states keep away from.
     pub avoid: Vec<Tape>,
+}
+
+impl Part {
+    /// The number of its coordinates, of the factors that are asked of all minors, and of the minors.
+    pub fn shape(&self) -> (usize, usize, usize) {
+        (self.chart.coordinates().len(), self.common.len(), self.alternatives.len())
+    }
 }
 
 /// What has to be different from zero, before it is divided into parts.
@@ -59,20 +67,27 @@ pub(super) struct Demand<'a> {
     pub guards: &'a [usize],
     pub minors: &'a [Minor],
     pub avoid: &'a [NodeId],
+    /// Factors of so many coordinates are asked of all minors, also where only one has them: little is lost, and the others
+    /// can be looked at apart.
+    pub asked_of_all: usize,
 }
 
 impl Demand<'_> {
-    /// What every minor needs to be defined, and the factors that all minors have; what only some need counts as theirs.
-    fn in_common(&self) -> (Vec<usize>, Vec<usize>) {
+    /// What every minor needs to be defined, and the factors that are asked of all.
+    fn in_common(&self, size: impl Fn(usize) -> usize) -> (Vec<usize>, Vec<usize>) {
         let of_all = |list: fn(&Minor) -> &Vec<usize>| -> Vec<usize> {
             let Some((first, rest)) = self.minors.split_first() else { return Vec::new() };
             list(first).iter().copied().filter(|f| rest.iter().all(|minor| list(minor).contains(f))).collect()
         };
         let mut guards = self.guards.to_vec();
         guards.extend(of_all(|minor| &minor.below));
-        guards.sort_unstable();
-        guards.dedup();
         let mut common = of_all(|minor| &minor.factors);
+        let small = self.minors.iter().flat_map(|minor| minor.factors.iter().copied());
+        common.extend(small.filter(|factor| (1..=self.asked_of_all).contains(&size(*factor))));
+        for list in [&mut guards, &mut common] {
+            list.sort_unstable();
+            list.dedup();
+        }
         common.retain(|factor| !guards.contains(factor));
         (guards, common)
     }
@@ -82,7 +97,8 @@ impl Demand<'_> {
     /// # Errors
     /// In words: a symbol has neither range nor value.
     pub fn parts(&self, graph: &Graph, collector: &Collector, ranges: &Ranges) -> Result<Vec<Part>, String> {
-        let (guards, common) = self.in_common();
+        let of_factor = |factor: &usize| ranges.coordinates_of(graph, collector.node(*factor));
+        let (guards, common) = self.in_common(|factor| of_factor(&factor).len());
         let own = |list: &[usize]| -> Vec<usize> {
             list.iter().copied().filter(|f| !guards.contains(f) && !common.contains(f)).collect()
         };
@@ -92,7 +108,6 @@ impl Demand<'_> {
         if alternatives.iter().any(|own| own.all().next().is_none()) {
             alternatives.clear(); // one minor has nothing but what all have
         }
-        let of_factor = |factor: &usize| ranges.coordinates_of(graph, collector.node(*factor));
         let mut groups = Groups::new(ranges.free.len());
         for factor in guards.iter().chain(&common) {
             groups.join(&of_factor(factor));
@@ -142,6 +157,10 @@ impl Demand<'_> {
                 factors,
                 guards: moved(&guards),
                 common: moved(&common),
+                common_of: common
+                    .iter()
+                    .map(|f| self.minors.iter().position(|minor| minor.factors.contains(f)).unwrap_or(0))
+                    .collect(),
                 alternatives: alternatives.iter().map(moved_alternative).collect(),
                 avoid,
             });

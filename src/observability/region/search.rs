@@ -272,7 +272,8 @@ pub(super) fn explain(part: &Part, cell: &Cell, desk: &mut Desk) -> (Why, bool) 
         list.iter().find(vanishes).copied()
     };
     if let Some(factor) = vanishing(desk, &part.common) {
-        return (Why::Vanishes { minor: 0, factor }, avoided); // all minors do
+        let place = part.common.iter().position(|common| *common == factor).unwrap_or(0);
+        return (Why::Vanishes { minor: part.common_of[place], factor }, avoided);
     }
     for alternative in &part.alternatives {
         if alternative.below.iter().all(|factor| excludes(desk, *factor))

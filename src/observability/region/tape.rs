@@ -39,10 +39,6 @@ impl Slots {
         self.slots.iter().copied()
     }
 
-    pub fn len(&self) -> usize {
-        self.slots.len()
-    }
-
     /// The places of the slots of a coordinate.
     pub fn of(&self, coordinate: usize) -> impl Iterator<Item = usize> {
         let is_of = move |(_, slot): &(usize, &Slot)| slot.coordinate == coordinate;
@@ -243,6 +239,11 @@ impl Tape {
             Operation::Apply(function, a) => known(a).map(|a| apply(function, a)),
         };
         value.map_or(operation, |value| self.constant(value))
+    }
+
+    /// The number of operations.
+    pub fn len(&self) -> usize {
+        self.operations.len()
     }
 
     /// The value, from the values of the slots.
