@@ -3,6 +3,7 @@
 //! Results go to standard output (as JSON with `--json`), progress and words to standard error. The exit status is 0
 //! when all is as expected, 1 when something is not, 2 when the input could not be used.
 
+mod certify;
 mod eval;
 mod output;
 mod prove;
@@ -32,6 +33,7 @@ enum Verb {
     Verify(verify::Verify),
     Prove(prove::Prove),
     Rank(rank::Rank),
+    Certify(certify::Certify),
     Trade(trade::Trade),
     Stress(stress::Stress),
     Eval(eval::Eval),
@@ -76,6 +78,7 @@ pub fn run() -> ExitCode {
         Verb::Verify(verb) => (verb.json, verb.run()),
         Verb::Prove(verb) => (verb.json, verb.run()),
         Verb::Rank(verb) => (verb.json, verb.run()),
+        Verb::Certify(verb) => (verb.json, verb.run()),
         Verb::Trade(verb) => (verb.json, verb.run()),
         Verb::Stress(verb) => (verb.json, verb.run()),
         Verb::Eval(verb) => (verb.json, verb.run()),

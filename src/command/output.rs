@@ -59,6 +59,16 @@ pub(crate) fn progress(length: u64, what: &'static str) -> ProgressBar {
     bar
 }
 
+/// A progress bar for a fraction between zero and one, in parts of ten thousand; its message says the rest.
+pub(crate) fn fraction_bar(what: &'static str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(10_000), ProgressDrawTarget::stderr());
+    if let Ok(style) = ProgressStyle::with_template("{prefix:>12} [{bar:40}] {msg} {elapsed}") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.set_prefix(what);
+    bar
+}
+
 /// All proof files that the paths name: files as they are, folders with everything below them, in order of name.
 pub(crate) fn proof_files(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
     let mut files = Vec::new();

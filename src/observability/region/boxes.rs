@@ -1,7 +1,7 @@
 //! Boxes that come of halving a box again and again: each side is a dyadic part of the whole range, so that volumes are
 //! sums of powers of two and exact.
 
-use super::tape::{Slot, Slots, Wave};
+use super::tape::{Slots, Wave};
 use crate::expression::Symbol;
 use crate::number::{Function, Interval, Real, rational_to_f64};
 use dashu::integer::{IBig, UBig};
@@ -84,55 +84,6 @@ pub(super) struct Chart {
     lows: Vec<Interval>,
     widths: Vec<Interval>,
     slots: Slots,
-    /// Sines and cosines for each coordinate, and for its half, where there is a slot of such.
-    pairs: Vec<[Option<Pairs>; 2]>,
-}
-
-/// Sines and cosines at the points of a grid, by the addition theorem: a point is one of a coarser grid and a step of
-/// its own. Each level adds roundings, and nothing more.
-struct Pairs {
-    /// At all points of the grid of [`TABLE`] halvings.
-    table: Vec<Pair>,
-    /// Of the steps, by the number of halvings.
-    steps: Vec<Pair>,
-}
-
-/// Halvings of the grid that is kept.
-const TABLE: u8 = 10;
-
-impl Pairs {
-    /// For angles from `low` to `low + width`.
-    fn new(low: Interval, width: Interval) -> Self {
-        let mut pairs = Pairs { table: vec![pair_at(low)], steps: Vec::new() };
-        for depth in 0..=DEEPEST + 1 {
-            pairs.steps.push(pair_at(width * Interval::point(1.0 / f64::from(1u32 << depth))));
-        }
-        // from the low end to both ends, and from each grid to the one with half the steps
-        pairs.table.push(turned(pairs.table[0], pairs.steps[0]));
-        for depth in 1..=TABLE {
-            let step = pairs.steps[usize::from(depth)];
-            let last = pairs.table.len() - 1;
-            let coarse = std::mem::take(&mut pairs.table);
-            for (place, pair) in coarse.into_iter().enumerate() {
-                pairs.table.push(pair);
-                if place < last {
-                    pairs.table.push(turned(pair, step));
-                }
-            }
-        }
-        pairs
-    }
-
-    /// At `index / 2^depth`.
-    fn at(&self, mut index: u32, mut depth: u8) -> Pair {
-        while depth > 0 && index.is_multiple_of(2) {
-            (index, depth) = (index / 2, depth - 1);
-        }
-        if depth <= TABLE {
-            return self.table[(index as usize) << (TABLE - depth)];
-        }
-        turned(self.at(index - 1, depth), self.steps[usize::from(depth)])
-    }
 }
 
 /// Sine and cosine of an enclosed angle, no wider than the angle is.
@@ -142,11 +93,6 @@ fn pair_at(angle: Interval) -> Pair {
     let slack = Interval::new(-angle.rad(), angle.rad());
     let at = |function| middle.function(function).map_or(UNIT, |value| within_unit(value + slack));
     (at(Function::Sin), at(Function::Cos))
-}
-
-/// Sine and cosine of a sum.
-fn turned(a: Pair, b: Pair) -> Pair {
-    (within_unit(a.0 * b.1 + a.1 * b.0), within_unit(a.1 * b.1 - a.0 * b.0))
 }
 
 fn within_unit(value: Interval) -> Interval {
@@ -179,15 +125,7 @@ impl Chart {
         let lows: Vec<Interval> = coordinates.iter().map(|c| Interval::from_rational(&c.low)).collect();
         let widths: Vec<Interval> =
             coordinates.iter().map(|c| Interval::from_rational(&(&c.high - &c.low))).collect();
-        let pairs = |place: usize| {
-            let has = |wave| slots.iter().any(|slot| slot == Slot { coordinate: place, wave });
-            let half = Interval::point(0.5);
-            [
-                has(Wave::Sine).then(|| Pairs::new(lows[place], widths[place])),
-                has(Wave::HalfSine).then(|| Pairs::new(lows[place] * half, widths[place] * half)),
-            ]
-        };
-        Chart { pairs: (0..coordinates.len()).map(pairs).collect(), lows, widths, coordinates, slots }
+        Chart { lows, widths, coordinates, slots }
     }
 
     pub fn slots(&self) -> &Slots {
@@ -217,17 +155,11 @@ impl Chart {
             Wave::HalfSine => (true, true),
             Wave::HalfCosine => (false, true),
         };
-        let Some(pairs) = &self.pairs[coordinate][usize::from(halved)] else { return [UNIT; PLACES] };
-        let at = |index: u32, depth: u8| pairs.at(index, depth);
-        let pairs = [
-            at(side.index, side.depth),
-            at(side.index + 1, side.depth),
-            at(2 * side.index + 1, side.depth + 1),
-        ];
+        let argument = |x: Interval| if halved { x * Interval::point(0.5) } else { x };
+        let pairs = parts.map(|part| pair_at(argument(self.point(coordinate, part))));
         let [first, last, middle] = pairs.map(|(sine, cosine)| if is_sine { sine } else { cosine });
         let [from, to, _] = pairs.map(|(sine, cosine)| if is_sine { cosine } else { -sine });
-        let all = self.point(coordinate, low).hull(self.point(coordinate, high));
-        let all = if halved { all * Interval::point(0.5) } else { all };
+        let all = argument(self.point(coordinate, low).hull(self.point(coordinate, high)));
         let range = if all.width() < std::f64::consts::PI {
             // the slope, which is `from` at the low end and `to` at the high one, changes its sign at most once
             let mut range = first.hull(last);

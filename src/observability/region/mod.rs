@@ -14,7 +14,7 @@
 //! This module knows nothing of particular systems.
 
 mod answer;
-mod block;
+mod cleared;
 mod boxes;
 mod certificate;
 mod choice;

@@ -1,6 +1,6 @@
 //! What is to be proved on a box, from a system, its rows and its ranges.
 
-use super::block::{ClearedRow, clear, without_unit_rows};
+use super::cleared::{ClearedRow, clear};
 use super::boxes::FreeCoordinate;
 use super::choice::choose;
 use super::collector::{Collector, Ranges};
@@ -10,7 +10,7 @@ use super::part::{Minor, Part};
 use crate::expression::{Graph, NodeId, Symbol, expand_angles};
 use crate::number::polynomial::Polynomial;
 use crate::number::{Fraction, Interval, Real, rational_to_f64};
-use crate::observability::{Codistribution, Length, OWN_ROWS, Stop};
+use crate::observability::{Codistribution, Length, OWN_ROWS, Reduction, Stop};
 use crate::system::{Assignment, Kind, System, Value};
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
@@ -73,14 +73,14 @@ impl Problem {
         let (names, flat, order) = rows_of(system, rows, &values)?;
         let flat = system.graph.substitute(&flat, &values);
         let flat = expand_angles(&mut system.graph, &flat, is_angle);
-        let entries: Vec<Vec<NodeId>> = flat.chunks(dimension).map(<[NodeId]>::to_vec).collect();
-        let block = without_unit_rows(&system.graph, &entries, dimension);
+        let block = Reduction::new(&system.graph, &flat, dimension);
 
         let mut collector = Collector::default();
         let mut remarks = Vec::new();
         let guards = guard_factors(system, &mut collector, &values, is_angle);
         let mut cleared = Vec::new();
-        for (row, entries) in &block.rows {
+        let columns = block.columns.len();
+        for (row, entries) in block.rows.iter().zip(block.entries.chunks(columns.max(1))) {
             match clear(&mut collector.products, &system.graph, *row, entries, is_angle) {
                 Ok((row, nodes)) => {
                     collector.note(&system.graph, &nodes);
@@ -89,7 +89,6 @@ impl Problem {
                 Err(why) => remarks.push(format!("{} is left out: {why}", names[*row])),
             }
         }
-        let columns = block.columns.len();
         cleared.sort_by_key(ClearedRow::length); // stable: words of one length stay in order
         let split = minors_of(&collector.products, &cleared, columns, &mut collector.known);
         let mut minors = Vec::new();

@@ -1,45 +1,8 @@
-//! The rows of a codistribution made ready for minors: rows that are unit vectors (outputs that are themselves states) go
-//! first, each with its column, and what remains is brought to a common denominator row by row.
+//! Rows made ready for minors: each over its common denominator, so that polynomials remain.
 
 use crate::expression::{Graph, NodeId, Products, Symbol};
 use crate::number::polynomial::{Polynomial, Ring};
 use crate::number::{Factors, Fraction};
-
-/// The rows without unit vectors.
-pub(super) struct Block {
-    /// The columns that are left, by their places among the states.
-    pub columns: Vec<usize>,
-    /// The places of the rows that are left, and their entries in these columns.
-    pub rows: Vec<(usize, Vec<NodeId>)>,
-}
-
-/// Takes out unit rows, with their columns.
-pub(super) fn without_unit_rows(graph: &Graph, rows: &[Vec<NodeId>], dimension: usize) -> Block {
-    let is_zero = |id: &NodeId| graph.constant_value(*id).is_some_and(|c| c.is_zero());
-    let mut columns: Vec<usize> = (0..dimension).collect();
-    let mut left: Vec<usize> = (0..rows.len()).collect();
-    loop {
-        // a row with one entry that is not zero in the columns that are left, and that one a constant
-        let found = left.iter().enumerate().find_map(|(at, row)| {
-            let mut filled = columns.iter().filter(|column| !is_zero(&rows[*row][**column]));
-            match (filled.next(), filled.next()) {
-                (Some(column), None) if graph.constant_value(rows[*row][*column]).is_some() => {
-                    Some((at, *column))
-                }
-                _ => None,
-            }
-        });
-        let Some((at, column)) = found else { break };
-        left.remove(at);
-        columns.retain(|c| *c != column);
-    }
-    let rows = left
-        .into_iter()
-        .map(|row| (row, columns.iter().map(|column| rows[row][*column]).collect::<Vec<_>>()))
-        .filter(|(_, entries)| !entries.iter().all(is_zero))
-        .collect();
-    Block { columns, rows }
-}
 
 /// A row over its common denominator.
 pub(super) struct ClearedRow {

@@ -1,0 +1,236 @@
+//! `palmistry certify`: full rank proved on whole regions.
+
+use super::output::{INTERRUPTED, fraction_bar, print_json, print_text, write_whole};
+use super::{Status, Unusable};
+use clap::{Args, ValueEnum};
+use dashu::rational::RBig;
+use indicatif::ProgressBar;
+use palmistry::System;
+use palmistry::expression::Symbol;
+use palmistry::number::parse_decimal;
+use palmistry::observability::region::{Limits, Progress, Region, RegionAnswer, RegionRows};
+use palmistry::report::{percent, region_curve, region_json, region_map, region_text};
+use palmistry::system::Kind;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Proves full rank on boxes of states, and says on which part of the sample box.
+///
+/// Branch and bound with interval arithmetic. The sample box is halved again and again; a box is done with when some
+/// minor of the rows is proved, with outward rounding, to be different from zero at every state in it. The other boxes
+/// are those in which a minor is proved to vanish somewhere, those with a pole, and those that are undecided. The
+/// proved fraction is a lower bound, and grows with the budget. Angles and parameters without a range keep their value;
+/// what the file says to avoid is part of the box, and the fraction is given without it, too.
+///
+/// Example: palmistry certify proofs/moll2002/fixed_palms.proof --box omega0=1/2..3 --budget 30
+#[derive(Args)]
+pub(crate) struct Certify {
+    /// The proof file.
+    file: PathBuf,
+    /// Other ranges than those of the file, for states and parameters; the same number twice holds one fixed.
+    #[arg(long = "box", value_name = "NAME=LOW..HIGH,...", value_delimiter = ',', allow_hyphen_values = true)]
+    ranges: Vec<String>,
+    /// The seconds to work.
+    #[arg(long, default_value_t = 10.0, value_name = "SECONDS", value_parser = seconds)]
+    budget: f64,
+    /// Look at N boxes, however long it takes: the same result on every machine and any number of threads.
+    #[arg(long, value_name = "N", conflicts_with = "budget")]
+    boxes: Option<u64>,
+    /// Which rows are to have full rank.
+    #[arg(long, value_enum, default_value = "codistribution")]
+    rows: Rows,
+    /// Take words of exactly up to K fields; otherwise one more than almost all states need.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=12))]
+    order: Option<u16>,
+    /// Keep the open boxes in this file, and go on from it if it is there.
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// The two coordinates of the map; two that matter if none are named.
+    #[arg(long, value_name = "X,Y", value_delimiter = ',')]
+    map: Vec<String>,
+    /// Write certify.json and the pictures curve.svg and map.svg into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print one JSON object with 'proved_fraction', 'minor_vanishes_fraction', 'rest_fraction', 'curve' and more.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Rows {
+    /// The differentials of all words of Lie derivatives.
+    Codistribution,
+    /// The matrix named 'rows' of the file.
+    Own,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("the budget is a positive number of seconds".to_owned()),
+    }
+}
+
+/// The state is written at least this often.
+const SECONDS_BETWEEN_SAVES: f64 = 30.0;
+
+impl Certify {
+    pub fn run(self) -> miette::Result<Status> {
+        let begin = Instant::now();
+        let mut system = System::read(&self.file)?;
+        let ranges = ranges(&system, &self.ranges)?;
+        let rows = match (self.rows, self.order) {
+            (Rows::Own, Some(_)) => {
+                return Err(Unusable::report(
+                    "the file's own rows have no order",
+                    "leave out --order, or --rows own",
+                ));
+            }
+            (Rows::Own, None) => RegionRows::Own,
+            (Rows::Codistribution, order) => RegionRows::Codistribution(order.map(usize::from)),
+        };
+        let map = self.map_of(&system)?;
+        let mut region =
+            Region::new(&mut system, rows, &ranges, map).map_err(|why| Unusable::report(why, ""))?;
+        if let Some(file) = &self.state {
+            resume(&mut region, file)?;
+        }
+        self.work(&mut region, begin)?;
+        let interrupted = INTERRUPTED.load(Ordering::Relaxed);
+        let answer = region.answer();
+        let mut object = region_json(&answer);
+        object["interrupted"] = json!(interrupted);
+        if let Some(folder) = &self.out {
+            pictures(&answer, folder)?;
+            let text = serde_json::to_string_pretty(&object).unwrap_or_default();
+            write_whole(&folder.join("certify.json"), &format!("{text}\n"))?;
+        }
+        if self.json {
+            print_json(&object);
+        } else {
+            print_text(&region_text(&answer));
+        }
+        Ok(if interrupted { Status::NotAsExpected } else { Status::AsExpected })
+    }
+
+    /// Spends the budget, and keeps the state on the way.
+    fn work(&self, region: &mut Region, begin: Instant) -> miette::Result<()> {
+        let bar = fraction_bar("proving");
+        let mut left = self.boxes;
+        let stop = || INTERRUPTED.load(Ordering::Relaxed);
+        while !stop() && !region.is_finished() {
+            let rest = self.budget - begin.elapsed().as_secs_f64();
+            let slice = if self.state.is_some() { SECONDS_BETWEEN_SAVES } else { f64::INFINITY };
+            let limits = match left {
+                Some(left) => Limits { seconds: Some(slice), boxes: Some(left) },
+                None => Limits { seconds: Some(rest.min(slice)), boxes: None },
+            };
+            if rest <= 0.0 && left.is_none() || left == Some(0) {
+                break;
+            }
+            let before = region.boxes();
+            region.run(limits, &INTERRUPTED, &|now| show(&bar, now));
+            let done = region.boxes() - before;
+            left = left.map(|left| left - done.min(left));
+            if let Some(file) = &self.state {
+                write_whole(file, &region.saved())?;
+            }
+            if done == 0 && self.boxes.is_none() {
+                break; // what is left of the time is for looking at the open boxes
+            }
+        }
+        bar.finish_and_clear();
+        if let Some(file) = &self.state {
+            write_whole(file, &region.saved())?;
+        }
+        Ok(())
+    }
+
+    fn map_of(&self, system: &System) -> miette::Result<Option<(Symbol, Symbol)>> {
+        match self.map.as_slice() {
+            [] => Ok(None),
+            [x, y] if x.trim() != y.trim() => Ok(Some((symbol(system, x)?, symbol(system, y)?))),
+            _ => Err(Unusable::report("a map has two coordinates", "as in --map omega0,r1")),
+        }
+    }
+}
+
+fn show(bar: &ProgressBar, now: Progress) {
+    bar.set_position((now.proved * bar.length().unwrap_or(1) as f64) as u64);
+    bar.set_message(format!("{} proved, {:.1e} boxes", percent(now.proved), now.boxes as f64));
+}
+
+fn pictures(answer: &RegionAnswer, folder: &Path) -> miette::Result<()> {
+    write_whole(&folder.join("curve.svg"), &region_curve(answer, &answer.title))?;
+    if let Some(map) = &answer.map {
+        write_whole(&folder.join("map.svg"), &region_map(map, &answer.title))?;
+    }
+    Ok(())
+}
+
+/// Takes up a search, where there is one.
+fn resume(region: &mut Region, file: &Path) -> miette::Result<()> {
+    let text = match std::fs::read_to_string(file) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => {
+            return Err(Unusable::report(format!("cannot read {}: {error}", file.display()), ""));
+        }
+    };
+    region.resume(&text).map_err(|why| {
+        let message = format!("{} cannot be taken up: {why}", file.display());
+        Unusable::report(message, "name another file with --state, or delete this one to begin anew")
+    })?;
+    if region.is_finished() {
+        eprintln!("{} is finished: no box in it is open any more", file.display());
+    }
+    Ok(())
+}
+
+/// The symbol of a name.
+fn symbol(system: &System, name: &str) -> miette::Result<Symbol> {
+    let name = name.trim();
+    let own = || system.symbols().filter(|(_, info)| info.kind != Kind::Imported).map(|(symbol, _)| symbol);
+    own().find(|symbol| system.symbol_name(*symbol) == name).ok_or_else(|| {
+        let names: Vec<&str> = own().map(|symbol| system.symbol_name(symbol)).collect();
+        Unusable::report(
+            format!("'{name}' is no state or parameter of {}", system.name),
+            format!("these are: {}", names.join(", ")),
+        )
+    })
+}
+
+/// Reads `name=low..high`, for the states and parameters of a system.
+fn ranges(system: &System, texts: &[String]) -> miette::Result<BTreeMap<Symbol, (RBig, RBig)>> {
+    let mut found = BTreeMap::new();
+    for text in texts.iter().filter(|text| !text.trim().is_empty()) {
+        let form = || {
+            Unusable::report(
+                format!("'{text}' is not of the form name=low..high"),
+                "as in --box omega0=1/2..3,r1=-1..1",
+            )
+        };
+        let (name, range) = text.split_once('=').ok_or_else(form)?;
+        let (low, high) = range.split_once("..").ok_or_else(form)?;
+        let symbol = symbol(system, name)?;
+        let number = |text: &str| {
+            parse_decimal(text).ok_or_else(|| {
+                Unusable::report(format!("'{text}' is not a number"), "such as 2, -.5, 1e-3 or 1/3")
+            })
+        };
+        let (low, high) = (number(low)?, number(high)?);
+        if low > high {
+            return Err(Unusable::report(
+                format!("the range of '{}' is empty: {low} is above {high}", name.trim()),
+                "the low end comes first; the same number twice holds it fixed",
+            ));
+        }
+        if found.insert(symbol, (low, high)).is_some() {
+            return Err(Unusable::report(format!("'{}' is given twice", name.trim()), "give it once"));
+        }
+    }
+    Ok(found)
+}
