@@ -31,7 +31,12 @@ pub(crate) struct Certify {
     /// The proof file.
     file: PathBuf,
     /// Other ranges than those of the file, for states and parameters; the same number twice holds one fixed.
-    #[arg(long = "box", value_name = "NAME=LOW..HIGH,...", value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(
+        long = "box",
+        value_name = "NAME=LOW..HIGH,...",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
     ranges: Vec<String>,
     /// The seconds to work.
     #[arg(long, default_value_t = 10.0, value_name = "SECONDS", value_parser = seconds)]

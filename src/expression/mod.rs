@@ -16,6 +16,7 @@ mod nodes;
 mod print;
 mod products;
 mod program;
+mod squares;
 pub mod syntax;
 mod zero_test;
 
@@ -30,6 +31,6 @@ pub use gradient::gradient;
 pub use graph::{Graph, Node, NodeId, Symbol};
 pub use nodes::Nodes;
 pub use parse::{Expected, parse_expression};
-pub use products::{Products, Variable};
+pub use products::{NodeFractions, Products, Variable};
 pub use program::{Failure, Input, Loaded, Program};
 pub use zero_test::{ZeroTest, draw_residues, failure_bound, identically_zero, sizes};

@@ -9,7 +9,7 @@
 use super::graph::{Graph, NodeId, Symbol};
 use super::program::{Input, Program};
 use crate::number::polynomial::{LARGEST_ARITY, Polynomial, Ring};
-use crate::number::{Arithmetic, Factorisation, Fraction, Fractions, Function, split};
+use crate::number::{Arithmetic, Fraction, Fractions, Function};
 use dashu::base::Gcd;
 use dashu::integer::IBig;
 use dashu::rational::RBig;
@@ -26,16 +26,14 @@ pub enum Variable {
     Unknown(NodeId),
 }
 
+/// Nodes as fractions.
+pub type NodeFractions = Vec<(NodeId, Fraction)>;
+
 /// The polynomials that some expressions are made of.
+#[derive(Default)]
 pub struct Products {
     variables: Vec<Variable>,
     fractions: Fractions<Polynomial>,
-}
-
-impl Default for Products {
-    fn default() -> Self {
-        Products { variables: Vec::new(), fractions: Fractions::default() }
-    }
 }
 
 impl Products {
@@ -60,13 +58,14 @@ impl Products {
         graph: &Graph,
         roots: &[NodeId],
         is_angle: impl Fn(Symbol) -> bool,
-    ) -> Result<(Vec<Fraction>, Vec<(NodeId, Fraction)>), String> {
+    ) -> Result<(Vec<Fraction>, NodeFractions), String> {
         let program = Program::new(graph, roots, is_angle, true);
         if let Some(angle) = program.bare_angle() {
             let name = graph.symbol_name(angle);
             return Err(format!("'{name}' is declared as an angle but stands outside sin, cos and tan"));
         }
-        let inputs = program.inputs().iter().map(|input| self.input(*input)).collect::<Result<Vec<_>, _>>()?;
+        let inputs =
+            program.inputs().iter().map(|input| self.input(*input)).collect::<Result<Vec<_>, _>>()?;
         let loaded = program.load(&self.fractions).map_err(|refusal| refusal.to_string())?;
         let mut registers = Vec::new();
         let values = loaded
@@ -123,10 +122,22 @@ impl Products {
         }
     }
 
-    /// A polynomial as the form that it stands for: for each angle of degree `d` it is multiplied by `cos(phi/2)^d`, and
-    /// written in the sine and the cosine of the angle where `d` is even, of half the angle where it is odd. It vanishes
-    /// where the polynomial does, and has a value at a half turn too.
+    /// An expression that vanishes where a polynomial does: a positive multiple of the form that it stands for. For each
+    /// angle of degree `d` that is the polynomial times `cos(phi/2)^d`, written in the sine and the cosine of the angle
+    /// where `d` is even, of half the angle where it is odd; so it has a value at a half turn too.
     pub fn node(&self, graph: &mut Graph, polynomial: &Polynomial) -> NodeId {
+        self.form(graph, polynomial).1
+    }
+
+    /// The form itself.
+    pub(super) fn exactly(&self, graph: &mut Graph, polynomial: &Polynomial) -> NodeId {
+        let (factor, form) = self.form(graph, polynomial);
+        let factor = graph.rational(factor);
+        graph.mul(factor, form)
+    }
+
+    /// The form over a positive factor, and the factor.
+    fn form(&self, graph: &mut Graph, polynomial: &Polynomial) -> (RBig, NodeId) {
         let mut terms: Vec<(Vec<u8>, IBig)> =
             polynomial.terms().map(|(e, c)| (e[..self.variables.len()].to_vec(), c.clone())).collect();
         let mut bases: Vec<NodeId> = Vec::new();
@@ -140,7 +151,7 @@ impl Products {
         for (place, variable) in self.variables.iter().enumerate() {
             let Variable::HalfTangent(symbol) = variable else { continue };
             let degree = polynomial.degree_in(place);
-            let (sine, cosine) = if degree % 2 == 0 {
+            let (sine, cosine) = if degree.is_multiple_of(2) {
                 let angle = graph.symbol(*symbol);
                 (graph.apply(Function::Sin, angle), graph.apply(Function::Cos, angle))
             } else {
@@ -148,7 +159,7 @@ impl Products {
             };
             bases[place] = cosine;
             bases.push(sine);
-            if degree % 2 == 0 {
+            if degree.is_multiple_of(2) {
                 terms = in_whole_angle(&terms, place, degree / 2);
                 halvings += i32::from(degree / 2);
             } else {
@@ -162,97 +173,8 @@ impl Products {
         if !content.is_zero() {
             terms.iter_mut().for_each(|(_, c)| *c /= &content);
         }
-        let factor = graph.rational(RBig::from(content) / RBig::from(IBig::ONE << halvings as usize));
-        let sum = nested(graph, &bases, terms);
-        graph.mul(factor, sum)
-    }
-
-    /// The form of a polynomial as a sum of squares, as far as it is one by completing the square in plain variables: of
-    /// `a x^2 + b x + c` that is `((2 a x + b)^2 - (b^2 - 4 a c)) / 4a`, with the discriminant as a product. `None` where
-    /// no variable is of degree two.
-    pub fn in_squares(&self, graph: &mut Graph, polynomial: &Polynomial) -> Option<NodeId> {
-        self.squares(graph, polynomial, DEEPEST_SQUARE)
-    }
-
-    fn squares(&self, graph: &mut Graph, polynomial: &Polynomial, depth: usize) -> Option<NodeId> {
-        if depth == 0 || polynomial.len() > LONGEST_SQUARE {
-            return None;
-        }
-        // the variable with the shortest discriminant
-        let mut best: Option<(usize, Square)> = None;
-        for (place, variable) in self.variables.iter().enumerate() {
-            if matches!(variable, Variable::Plain(_))
-                && let Some(square) = Square::of(polynomial, place)
-            {
-                let length: usize = square.discriminant.factors.iter().map(|(f, _)| f.len()).sum();
-                if best.as_ref().is_none_or(|(shortest, _)| length < *shortest) {
-                    best = Some((length, square));
-                }
-            }
-        }
-        let (_, square) = best?;
-        // all three over one degree in each angle
-        let slope = self.node(graph, &square.slope);
-        let mut upper = graph.power(slope, 2);
-        let mut lower = graph.rational(RBig::from(square.discriminant.unit.clone()));
-        for (factor, power) in &square.discriminant.factors {
-            let form = if power % 2 == 0 { None } else { self.squares(graph, factor, depth - 1) };
-            let form = match form {
-                Some(form) => form,
-                None => self.node(graph, factor),
-            };
-            let power = graph.power(form, i32::try_from(*power).ok()?);
-            lower = graph.mul(lower, power);
-        }
-        let mut bottom = self.node(graph, &square.four_a);
-        for (place, variable) in self.variables.iter().enumerate() {
-            let Variable::HalfTangent(symbol) = variable else { continue };
-            let of_slope = 2 * i32::from(square.slope.degree_in(place));
-            let factors = &square.discriminant.factors;
-            let of_lower: i32 =
-                factors.iter().map(|(f, n)| i32::from(f.degree_in(place)) * i32::try_from(*n).unwrap_or(0)).sum();
-            let of_bottom = i32::from(square.four_a.degree_in(place));
-            let whole = i32::from(polynomial.degree_in(place)) + of_bottom;
-            let most = whole.max(of_slope).max(of_lower);
-            let cosine = half(graph, *symbol, Function::Cos);
-            for (node, degree) in [(&mut upper, of_slope), (&mut lower, of_lower), (&mut bottom, whole)] {
-                let missing = graph.power(cosine, most - degree);
-                *node = graph.mul(*node, missing);
-            }
-        }
-        let difference = graph.sub(upper, lower);
-        Some(graph.div(difference, bottom))
-    }
-}
-
-/// Squares are completed in so many variables, one after the other.
-const DEEPEST_SQUARE: usize = 3;
-/// And not in longer polynomials.
-const LONGEST_SQUARE: usize = 400;
-
-/// A polynomial of degree two in a variable, `a x^2 + b x + c`.
-struct Square {
-    /// `2 a x + b`
-    slope: Polynomial,
-    /// `b^2 - 4 a c`
-    discriminant: Factorisation,
-    /// `4 a`
-    four_a: Polynomial,
-}
-
-impl Square {
-    fn of(polynomial: &Polynomial, place: usize) -> Option<Square> {
-        let mut coefficients = polynomial.coefficients_in(place);
-        if coefficients.keys().max() != Some(&2) {
-            return None;
-        }
-        let mut take = |power: u8| coefficients.remove(&power).unwrap_or_default();
-        let (a, b, c) = (take(2), take(1), take(0));
-        let two_a = a.add(&a);
-        let four_a = two_a.add(&two_a);
-        let discriminant = b.mul(&b)?.add(&four_a.mul(&c)?.neg());
-        let slope = two_a.mul(&Polynomial::variable(place))?.add(&b);
-        Some(Square { slope, discriminant: split(&discriminant, &[]), four_a })
+        let factor = RBig::from(content) / RBig::from(IBig::ONE << halvings as usize);
+        (factor, nested(graph, &bases, terms))
     }
 }
 
@@ -261,7 +183,7 @@ fn one_plus_square(place: usize) -> Polynomial {
     Polynomial::integer(&IBig::ONE).add(&t.mul(&t).unwrap_or_default())
 }
 
-fn half(graph: &mut Graph, angle: Symbol, function: Function) -> NodeId {
+pub(super) fn half(graph: &mut Graph, angle: Symbol, function: Function) -> NodeId {
     let angle = graph.symbol(angle);
     let factor = graph.rational(RBig::ONE / RBig::from(2));
     let half = graph.mul(factor, angle);
@@ -321,6 +243,10 @@ fn nested(graph: &mut Graph, bases: &[NodeId], terms: Vec<(Vec<u8>, IBig)>) -> N
     if without.is_empty() {
         return product;
     }
+    // a sum that begins with a minus reads better as a difference
+    let negative = without.iter().all(|(_, c)| *c < IBig::ZERO);
+    let without: Vec<_> =
+        if negative { without.into_iter().map(|(e, c)| (e, -c)).collect() } else { without };
     let rest = nested(graph, bases, without);
-    graph.add(product, rest)
+    if negative { graph.sub(product, rest) } else { graph.add(product, rest) }
 }

@@ -47,7 +47,9 @@ pub fn split(polynomial: &Polynomial, known: &[Polynomial]) -> Factorisation {
     }
     if rest.degree() > 0 {
         match square_root(&rest) {
-            Some(root) => split(&root, &[]).factors.into_iter().for_each(|(f, n)| add(&mut factors, f, 2 * n)),
+            Some(root) => {
+                split(&root, &[]).factors.into_iter().for_each(|(f, n)| add(&mut factors, f, 2 * n))
+            }
             None => add(&mut factors, rest, 1),
         }
     }

@@ -1,9 +1,9 @@
 //! Boxes that come of halving a box again and again: each side is a dyadic part of the whole range, so that volumes are
 //! sums of powers of two and exact.
 
-use super::tape::{Slots, Wave};
+use super::slots::{Slot, Slots, Wave};
 use crate::expression::Symbol;
-use crate::number::{Function, Interval, Real, rational_to_f64};
+use crate::number::{Interval, Real, rational_to_f64};
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
 
@@ -72,31 +72,12 @@ pub(super) enum Place {
 
 const PLACES: usize = 4;
 
-/// What a slot is on a side, at all four places.
-type SideValues = [Interval; PLACES];
-
-/// Sine and cosine at a point.
-type Pair = (Interval, Interval);
-
 /// The values of all slots on the sides of boxes.
 pub(super) struct Chart {
     coordinates: Vec<FreeCoordinate>,
     lows: Vec<Interval>,
     widths: Vec<Interval>,
     slots: Slots,
-}
-
-/// Sine and cosine of an enclosed angle, no wider than the angle is.
-fn pair_at(angle: Interval) -> Pair {
-    // no slope is greater than one
-    let middle = Interval::point(angle.mid());
-    let slack = Interval::new(-angle.rad(), angle.rad());
-    let at = |function| middle.function(function).map_or(UNIT, |value| within_unit(value + slack));
-    (at(Function::Sin), at(Function::Cos))
-}
-
-fn within_unit(value: Interval) -> Interval {
-    value.intersection(UNIT).unwrap_or(UNIT)
 }
 
 /// The slots of a box, at all four places.
@@ -117,6 +98,19 @@ impl SlotValues {
 
     pub fn distance(&self, coordinate: usize) -> Interval {
         self.distances[coordinate]
+    }
+
+    fn push(&mut self, places: [Interval; PLACES]) {
+        self.middle.push(places[Place::Middle as usize].mid());
+        for (list, value) in self.values.iter_mut().zip(places) {
+            list.push(value);
+        }
+    }
+
+    /// A sine, and its cosine behind it.
+    fn push_pairs(&mut self, places: [(Interval, Interval); PLACES]) {
+        self.push(places.map(|(sine, _)| sine));
+        self.push(places.map(|(_, cosine)| cosine));
     }
 }
 
@@ -141,39 +135,10 @@ impl Chart {
         self.lows[coordinate] + self.widths[coordinate] * Interval::point(part)
     }
 
-    /// What a slot is on a side.
-    fn slot(&self, coordinate: usize, wave: Wave, side: Side) -> SideValues {
+    /// An enclosure of a side.
+    pub fn side(&self, coordinate: usize, side: Side) -> Interval {
         let (low, high) = side.ends();
-        let parts = [low, high, 0.5 * (low + high)];
-        let (is_sine, halved) = match wave {
-            Wave::Itself => {
-                let [first, last, middle] = parts.map(|part| self.point(coordinate, part));
-                return [first.hull(last), first, last, middle];
-            }
-            Wave::Sine => (true, false),
-            Wave::Cosine => (false, false),
-            Wave::HalfSine => (true, true),
-            Wave::HalfCosine => (false, true),
-        };
-        let argument = |x: Interval| if halved { x * Interval::point(0.5) } else { x };
-        let pairs = parts.map(|part| pair_at(argument(self.point(coordinate, part))));
-        let [first, last, middle] = pairs.map(|(sine, cosine)| if is_sine { sine } else { cosine });
-        let [from, to, _] = pairs.map(|(sine, cosine)| if is_sine { cosine } else { -sine });
-        let all = argument(self.point(coordinate, low).hull(self.point(coordinate, high)));
-        let range = if all.width() < std::f64::consts::PI {
-            // the slope, which is `from` at the low end and `to` at the high one, changes its sign at most once
-            let mut range = first.hull(last);
-            if from.high() >= 0.0 && to.low() <= 0.0 {
-                range = range.hull(Interval::ONE);
-            }
-            if from.low() <= 0.0 && to.high() >= 0.0 {
-                range = range.hull(-Interval::ONE);
-            }
-            range
-        } else {
-            UNIT
-        };
-        [range, first, last, middle]
+        self.point(coordinate, low).hull(self.point(coordinate, high))
     }
 
     /// The values of all slots on a box.
@@ -182,12 +147,19 @@ impl Chart {
         found.middle.clear();
         found.radii.clear();
         found.distances.clear();
-        for slot in self.slots.iter() {
-            let values = self.slot(slot.coordinate, slot.wave, sides[slot.coordinate]);
-            for (list, value) in found.values.iter_mut().zip(values) {
-                list.push(value);
+        for Slot { coordinate, wave } in self.slots.iter() {
+            let (low, high) = sides[coordinate].ends();
+            let [first, last, middle] =
+                [low, high, 0.5 * (low + high)].map(|part| self.point(coordinate, part));
+            let places = [first.hull(last), first, last, middle];
+            match wave {
+                Wave::Itself => found.push(places),
+                Wave::Sine => found.push_pairs(places.map(Interval::sin_cos)),
+                Wave::HalfSine => {
+                    found.push_pairs(places.map(|place| (place * Interval::point(0.5)).sin_cos()));
+                }
+                Wave::Cosine | Wave::HalfCosine => {} // came with its sine
             }
-            found.middle.push(values[Place::Middle as usize].mid());
         }
         for (width, side) in self.widths.iter().zip(sides) {
             let half = 0.5 / f64::from(1u32 << side.depth); // a power of two: exact
@@ -196,9 +168,6 @@ impl Chart {
         }
     }
 }
-
-/// All values of a sine.
-const UNIT: Interval = Interval::new(-1.0, 1.0);
 
 /// A sum of powers of one half: how many boxes of each depth (the number of halvings that led to it).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -236,9 +205,11 @@ impl Volume {
     /// The part of the whole, exactly.
     pub fn exact(&self) -> RBig {
         let depth = self.counts.len();
-        let top = self.counts.iter().enumerate().fold(UBig::ZERO, |sum, (at, count)| {
-            sum + (UBig::from(*count) << (depth - at))
-        });
+        let top = self
+            .counts
+            .iter()
+            .enumerate()
+            .fold(UBig::ZERO, |sum, (at, count)| sum + (UBig::from(*count) << (depth - at)));
         RBig::from_parts(IBig::from(top), UBig::ONE << depth)
     }
 

@@ -1,5 +1,6 @@
 //! A region, and how far the proof has come.
 
+use super::answer::RegionAnswer;
 use super::boxes::FreeCoordinate;
 use super::problem::{Problem, RegionRows};
 use super::progress::{Limits, Progress, Searches};
@@ -35,10 +36,12 @@ impl Region {
         let map = match map {
             Some((x, y)) => {
                 let place = |symbol: Symbol| {
-                    let matters = |place: &usize| problem.ranges[*place].symbol == symbol && problem.matters(*place);
+                    let matters =
+                        |place: &usize| problem.ranges[*place].symbol == symbol && problem.matters(*place);
                     (0..problem.ranges.len()).find(matters).ok_or_else(|| {
                         let known = (0..problem.ranges.len()).filter(|place| problem.matters(*place));
-                        let known: Vec<&str> = known.map(|place| problem.ranges[place].name.as_str()).collect();
+                        let known: Vec<&str> =
+                            known.map(|place| problem.ranges[place].name.as_str()).collect();
                         format!(
                             "no map of '{}': the minors that are used depend on {}",
                             system.symbol_name(symbol),
@@ -93,6 +96,20 @@ impl Region {
     }
 }
 
+/// The sample box of a system after so many boxes: the short version, with the same result on every machine.
+///
+/// # Errors
+/// As [`Region::new`].
+pub fn certify_region(
+    system: &mut System,
+    boxes: u64,
+    interrupt: &AtomicBool,
+) -> Result<RegionAnswer, String> {
+    let mut region = Region::new(system, RegionRows::Codistribution(None), &BTreeMap::new(), None)?;
+    region.run(Limits { seconds: None, boxes: Some(boxes) }, interrupt, &|_| ());
+    Ok(region.answer())
+}
+
 impl Problem {
     /// Whether anything depends on a side of the box.
     pub(super) fn matters(&self, place: usize) -> bool {
@@ -112,7 +129,7 @@ impl Problem {
                 counted.push((size.min(2), uses, place));
             }
         }
-        counted.sort_by(|a, b| (b.0, b.1).cmp(&(a.0, a.1))); // stable
+        counted.sort_by_key(|(size, uses, _)| std::cmp::Reverse((*size, *uses))); // stable
         match counted.as_slice() {
             [first, second, ..] => Some((first.2.min(second.2), first.2.max(second.2))),
             _ => None,

@@ -5,11 +5,11 @@
 //! by the number of coordinates that a factor may have, and short searches decide between them.
 
 use super::boxes::{Chart, Side};
-use super::progress::{Limits, Searches};
 use super::collector::{Collector, Ranges};
 use super::factor::{Desk, Factor};
 use super::part::{Demand, Minor, Part};
-use super::tape::Slots;
+use super::progress::{Limits, Searches};
+use super::slots::Slots;
 use crate::expression::{Graph, NodeId};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -24,7 +24,7 @@ const LEAST_GAIN: f64 = 0.005;
 const NEAREST: f64 = 1e-4;
 /// Operations of the searches by which pools are compared, if every box needs all factors, and of those of the best two.
 const FIRST_TRIAL: usize = 1 << 22;
-const SECOND_TRIAL: usize = 1 << 24;
+const SECOND_TRIAL: usize = 1 << 23;
 
 /// The minors to keep and the parts that they lead to; none where there are no minors.
 ///
@@ -80,7 +80,8 @@ pub(super) fn choose(
     if trials.len() == 2 {
         trials.iter_mut().for_each(|trial| trial.run(SECOND_TRIAL));
     }
-    let best = trials.into_iter().reduce(|a, b| if b.searches.proved() > a.searches.proved() { b } else { a });
+    let best =
+        trials.into_iter().reduce(|a, b| if b.searches.proved() > a.searches.proved() { b } else { a });
     Ok(best.map_or((Vec::new(), Vec::new()), |trial| (trial.minors, trial.parts)))
 }
 

@@ -1,8 +1,8 @@
 //! Rows made ready for minors: each over its common denominator, so that polynomials remain.
 
-use crate::expression::{Graph, NodeId, Products, Symbol};
+use crate::expression::{Graph, NodeFractions, NodeId, Products, Symbol};
+use crate::number::Factors;
 use crate::number::polynomial::{Polynomial, Ring};
-use crate::number::{Factors, Fraction};
 
 /// A row over its common denominator.
 pub(super) struct ClearedRow {
@@ -32,7 +32,7 @@ pub(super) fn clear(
     row: usize,
     entries: &[NodeId],
     is_angle: impl Fn(Symbol) -> bool,
-) -> Result<(ClearedRow, Vec<(NodeId, Fraction)>), String> {
+) -> Result<(ClearedRow, NodeFractions), String> {
     let (values, nodes) = products.read(graph, entries, is_angle)?;
     let fractions = products.fractions();
     let is_zero = |top: &Factors| top.keys().any(|place| fractions.factor(*place).is_zero());

@@ -2,7 +2,8 @@
 
 use super::boxes::FreeCoordinate;
 use super::factor::Factor;
-use super::tape::{Role, Slots, Tape};
+use super::slots::Slots;
+use super::tape::{Role, Tape};
 use crate::expression::{Graph, Node, NodeId, Products, Symbol};
 use crate::number::polynomial::Polynomial;
 use crate::number::{Fraction, Interval};
@@ -31,7 +32,8 @@ impl Ranges {
 
     /// The same with some coordinates only.
     pub fn only(&self, kept: impl Fn(usize) -> bool) -> Ranges {
-        let free = self.free.iter().enumerate().filter(|(place, _)| kept(*place)).map(|(_, c)| c.clone()).collect();
+        let free =
+            self.free.iter().enumerate().filter(|(place, _)| kept(*place)).map(|(_, c)| c.clone()).collect();
         Ranges { free, held: self.held.clone() }
     }
 

@@ -123,7 +123,7 @@ impl Factor {
         for coordinate in &self.tape.coordinates {
             if desk.places[*coordinate] == Place::All {
                 let distance = desk.slots.distance(*coordinate);
-                change = change + desk.slopes[*coordinate] * distance;
+                change += desk.slopes[*coordinate] * distance;
                 put(chart, &desk.slots, *coordinate, Place::Middle, &mut face);
             }
         }
@@ -137,7 +137,8 @@ impl Factor {
         has_sign(value, negative)
     }
 
-    /// Whether the factor is zero somewhere in the box: proved by two corners at which it has opposite signs.
+    /// Whether the factor is zero somewhere in the box: proved by two corners, at one of which it is not negative and at the
+    /// other not positive.
     pub fn vanishes(&self, chart: &Chart, desk: &mut Desk) -> bool {
         self.guess(chart, desk);
         let gradient = std::mem::take(&mut desk.gradient);
@@ -150,7 +151,7 @@ impl Factor {
             }
             self.tape.value(&desk.face, &mut desk.intervals)
         };
-        let found = at(true).low() > 0.0 && at(false).high() < 0.0;
+        let found = at(true).low() >= 0.0 && at(false).high() <= 0.0;
         desk.gradient = gradient;
         found
     }

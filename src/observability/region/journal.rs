@@ -50,7 +50,8 @@ impl Region {
     /// Where the search stands, as text.
     pub fn saved(&self) -> String {
         let searches = &self.searches;
-        let mut text = format!("{FORMAT}\nquestion {:016x}\nseconds {}\n", self.fingerprint(), searches.seconds);
+        let mut text =
+            format!("{FORMAT}\nquestion {:016x}\nseconds {}\n", self.fingerprint(), searches.seconds);
         if let Some((part, turn)) = &searches.turn {
             let _ = writeln!(text, "turn {part} {} {}", turn.depth, turn.boxes);
         }
@@ -91,7 +92,8 @@ impl Region {
         if text.lines().next() != Some(FORMAT) {
             return Err("this is no saved search of 'certify' (its first line is another)".to_owned());
         }
-        let damaged = |line: usize| format!("the saved search is damaged at line {line}: it was cut or changed");
+        let damaged =
+            |line: usize| format!("the saved search is damaged at line {line}: it was cut or changed");
         let body = text.trim_end_matches('\n');
         let (body, end) = body.rsplit_once('\n').ok_or_else(|| damaged(1))?;
         let body = &text[..body.len() + 1];
@@ -102,9 +104,11 @@ impl Region {
             return Err(damaged(lines + 1));
         }
         if body.lines().nth(1) != Some(format!("question {:016x}", self.fingerprint()).as_str()) {
-            return Err("the saved search belongs to another question: another file, box, choice of rows or map, \
+            return Err(
+                "the saved search belongs to another question: another file, box, choice of rows or map, \
                         or another version of this program"
-                .to_owned());
+                    .to_owned(),
+            );
         }
         let mut reader = Reader { region: self, found: Searches::new(&[]) };
         for (number, line) in body.lines().enumerate().skip(2) {

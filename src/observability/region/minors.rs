@@ -212,7 +212,9 @@ impl Builder<'_> {
             for (factor, power) in self.split(&p) {
                 let factor = self.factors[factor].clone();
                 for _ in 0..power {
-                    if let (Some(less_a), Some(less_p)) = (a.divide_exactly(&factor), p.divide_exactly(&factor)) {
+                    if let (Some(less_a), Some(less_p)) =
+                        (a.divide_exactly(&factor), p.divide_exactly(&factor))
+                    {
                         (a, p) = (less_a, less_p);
                     }
                 }
@@ -287,9 +289,8 @@ impl Builder<'_> {
         let list = |numbers: &mut dyn Iterator<Item = usize>| -> Vec<Polynomial> {
             numbers.map(|factor| self.factors[factor].clone()).filter(|f| !circles.contains(f)).collect()
         };
-        let is_above = |(factor, power): (&usize, &i64)| {
-            (*power > 0 && !below.contains_key(factor)).then_some(*factor)
-        };
+        let is_above =
+            |(factor, power): (&usize, &i64)| (*power > 0 && !below.contains_key(factor)).then_some(*factor);
         if total.keys().any(|factor| self.factors[*factor].len() > LONGEST_FACTOR) {
             self.complete = false;
             return;

@@ -14,12 +14,13 @@
 //! This module knows nothing of particular systems.
 
 mod answer;
-mod cleared;
 mod boxes;
 mod certificate;
 mod choice;
+mod cleared;
 mod collector;
 mod domain;
+mod explain;
 mod factor;
 mod journal;
 mod minors;
@@ -27,10 +28,12 @@ mod part;
 mod problem;
 mod progress;
 mod search;
+mod slots;
+mod tally;
 mod tape;
 
 pub use answer::{OpenBox, PartAnswer, Patch, RegionAnswer, RegionMap, RegionMinor, Standing, Vanishing};
 pub use boxes::FreeCoordinate;
-pub use certificate::Region;
+pub use certificate::{Region, certify_region};
 pub use problem::RegionRows;
 pub use progress::{Limits, Progress};

@@ -8,7 +8,8 @@
 use super::boxes::Chart;
 use super::collector::{Collector, Ranges};
 use super::factor::Factor;
-use super::tape::{Slots, Tape};
+use super::slots::Slots;
+use super::tape::Tape;
 use crate::expression::{Graph, NodeId};
 
 /// A minor, as a product of factors.
@@ -112,7 +113,8 @@ impl Demand<'_> {
         for factor in guards.iter().chain(&common) {
             groups.join(&of_factor(factor));
         }
-        let of_alternatives: Vec<usize> = alternatives.iter().flat_map(Alternative::all).flat_map(of_factor).collect();
+        let of_alternatives: Vec<usize> =
+            alternatives.iter().flat_map(Alternative::all).flat_map(of_factor).collect();
         groups.join(&of_alternatives);
         for node in self.avoid {
             groups.join(&ranges.coordinates_of(graph, *node));
@@ -123,6 +125,9 @@ impl Demand<'_> {
         let used = guards.iter().chain(&common).chain(alternatives.iter().flat_map(Alternative::all));
         let mut homes: Vec<Option<usize>> = used.map(|factor| home(&of_factor(factor))).collect();
         homes.extend(self.avoid.iter().map(|node| home(&ranges.coordinates_of(graph, *node))));
+        if homes.is_empty() {
+            homes.push(None); // nothing is asked
+        }
         homes.sort_unstable();
         homes.dedup();
         let mut parts = Vec::new();
@@ -143,10 +148,11 @@ impl Demand<'_> {
             let mut slots = Slots::default();
             let factors = collector.factors(graph, &needed, &ranges, &mut slots)?;
             let avoided = self.avoid.iter().filter(|node| match this {
-                Some(_) => ranges.coordinates_of(graph, **node).len() > 0,
+                Some(_) => !ranges.coordinates_of(graph, **node).is_empty(),
                 None => false,
             });
-            let avoid = avoided.map(|node| ranges.tape(graph, *node, &mut slots)).collect::<Result<_, _>>()?;
+            let avoid =
+                avoided.map(|node| ranges.tape(graph, *node, &mut slots)).collect::<Result<_, _>>()?;
             let moved_alternative = |own: &Alternative| Alternative {
                 minor: own.minor,
                 factors: moved(&own.factors),

@@ -1,8 +1,8 @@
 //! What is to be proved on a box, from a system, its rows and its ranges.
 
-use super::cleared::{ClearedRow, clear};
 use super::boxes::FreeCoordinate;
 use super::choice::choose;
+use super::cleared::{ClearedRow, clear};
 use super::collector::{Collector, Ranges};
 use super::domain::{Guard, guards};
 use super::minors::{factors_of, half_cosines, minors as minors_of};
@@ -173,7 +173,10 @@ fn rows_of(system: &mut System, rows: RegionRows, values: &Assignment) -> Result
                     let names = (1..=matrix.rows).map(|row| format!("row {row}")).collect();
                     Ok((names, matrix.entries.clone(), None))
                 }
-                _ => Err(format!("{} defines no matrix '{OWN_ROWS}' with a column for each state", system.name)),
+                _ => Err(format!(
+                    "{} defines no matrix '{OWN_ROWS}' with a column for each state",
+                    system.name
+                )),
             };
         }
         RegionRows::Codistribution(order) => order,
@@ -223,7 +226,9 @@ fn divisor_factors(graph: &mut Graph, collector: &mut Collector, divisor: &Fract
     let (circles, mut found) = (collector.products.circles(), Vec::new());
     let all: Vec<(Polynomial, i64)> = [(&divisor.top, 1), (&divisor.bottom, -1)]
         .into_iter()
-        .flat_map(|(factors, sign)| factors.iter().map(move |(place, power)| (*place, sign * i64::from(*power))))
+        .flat_map(|(factors, sign)| {
+            factors.iter().map(move |(place, power)| (*place, sign * i64::from(*power)))
+        })
         .map(|(place, power)| (collector.products.fractions().factor(place), power))
         .collect();
     for (polynomial, _) in all.iter().filter(|(_, power)| *power > 0) {

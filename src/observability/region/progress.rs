@@ -85,9 +85,11 @@ impl Searches {
             let proved = search.proved.at_least().max(1e-3);
             (1.0 - proved) / (proved * (search.boxes + 1) as f64)
         };
-        let turns = self.searches.iter().enumerate().filter_map(|(place, search)| {
-            search.turn().map(|turn| (promise(search), (place, turn)))
-        });
+        let turns = self
+            .searches
+            .iter()
+            .enumerate()
+            .filter_map(|(place, search)| search.turn().map(|turn| (promise(search), (place, turn))));
         turns.reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, next)| next)
     }
 

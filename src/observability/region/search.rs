@@ -1,10 +1,9 @@
 //! Branch and bound on one part: boxes on which everything is proved are done with, the others are halved, the largest
 //! first.
 
-use super::boxes::{DEEPEST, Place, Side, Volume};
+use super::boxes::{DEEPEST, Side, Volume};
 use super::factor::{Desk, Guess};
 use super::part::{Alternative, Part};
-use crate::observability::locus::AVOIDED;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
 
@@ -26,7 +25,7 @@ impl Cell {
         self.sides.iter().map(|side| usize::from(side.depth)).sum()
     }
 
-    fn knows(&self, factor: usize) -> bool {
+    pub fn knows(&self, factor: usize) -> bool {
         factor < 128 && self.known >> factor & 1 == 1
     }
 
@@ -36,7 +35,7 @@ impl Cell {
         }
     }
 
-    fn halves(&self, coordinate: usize) -> [Cell; 2] {
+    pub fn halves(&self, coordinate: usize) -> [Cell; 2] {
         self.sides[coordinate].halves().map(|side| {
             let mut half = self.clone();
             half.sides[coordinate] = side;
@@ -51,16 +50,6 @@ enum Judged {
     Halved([Cell; 2]),
     /// It cannot be halved any more, or the system is not defined on it.
     Left,
-}
-
-/// Why nothing is proved on a box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Why {
-    /// The system is defined on all of it, and this minor is zero somewhere in it, with this factor.
-    Vanishes { minor: usize, factor: usize },
-    /// What the system divides by is zero somewhere in it.
-    Pole { factor: usize },
-    Undecided,
 }
 
 /// A plane through a box, or what of it lies in one part: two coordinates, the others a third of their ranges from the low
@@ -148,7 +137,7 @@ impl Search {
 
     /// Looks at the boxes of a turn, the oldest first, at most so many. Returns what is left of the turn.
     pub fn step(&mut self, part: &Part, turn: Turn, most: u64) -> Option<Turn> {
-        let Some(queue) = self.open.get_mut(&turn.depth) else { return None };
+        let queue = self.open.get_mut(&turn.depth)?;
         let count = turn.boxes.min(queue.len()).min(usize::try_from(most).unwrap_or(usize::MAX));
         let block: Vec<Cell> = queue.drain(..count).collect();
         if queue.is_empty() {
@@ -246,78 +235,3 @@ fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> Judged {
     });
     coordinate.map_or(Judged::Left, |coordinate| Judged::Halved(cell.halves(coordinate)))
 }
-
-/// Why nothing is proved on a box, and whether no sampled state lies in it.
-pub(super) fn explain(part: &Part, cell: &Cell, desk: &mut Desk) -> (Why, bool) {
-    let chart = &part.chart;
-    chart.fill(&cell.sides, &mut desk.slots);
-    let all = desk.slots.at(Place::All).to_vec();
-    let mut room = Default::default();
-    let avoided = part.avoid.iter().any(|tape| tape.value(&all, &mut room).magnitude() < JUST_AVOIDED);
-    let excludes = |desk: &mut Desk, factor: usize| {
-        let expression = &part.factors[factor];
-        cell.knows(factor) || {
-            let guess = expression.guess(chart, desk);
-            expression.excludes_zero(chart, desk, guess.value < 0.0)
-        }
-    };
-    for guard in &part.guards {
-        if !excludes(desk, *guard) {
-            let pole = part.factors[*guard].vanishes(chart, desk);
-            return (if pole { Why::Pole { factor: *guard } } else { Why::Undecided }, avoided);
-        }
-    }
-    let vanishing = |desk: &mut Desk, list: &[usize]| {
-        let vanishes = |f: &&usize| !cell.knows(**f) && part.factors[**f].vanishes(chart, desk);
-        list.iter().find(vanishes).copied()
-    };
-    if let Some(factor) = vanishing(desk, &part.common) {
-        let place = part.common.iter().position(|common| *common == factor).unwrap_or(0);
-        return (Why::Vanishes { minor: part.common_of[place], factor }, avoided);
-    }
-    for alternative in &part.alternatives {
-        if alternative.below.iter().all(|factor| excludes(desk, *factor))
-            && let Some(factor) = vanishing(desk, &alternative.factors)
-        {
-            return (Why::Vanishes { minor: alternative.minor, factor }, avoided);
-        }
-    }
-    (Why::Undecided, avoided)
-}
-
-/// Sampled states have a magnitude of at least [`AVOIDED`], as floating point sees it: a little less is surely avoided.
-const JUST_AVOIDED: f64 = AVOIDED * (1.0 - 1e-9);
-/// And a little more is surely not.
-const NOT_AVOIDED: f64 = AVOIDED * (1.0 + 1e-9);
-
-/// A lower bound of the volume in which states are sampled.
-pub(super) fn sampled_volume(part: &Part) -> Volume {
-    let mut sampled = Volume::default();
-    let mut queue = VecDeque::from([Cell::whole(part)]);
-    let mut desk = Desk::default();
-    let mut room = Default::default();
-    for _ in 0..MOST_PAVED {
-        let Some(cell) = queue.pop_front() else { break };
-        part.chart.fill(&cell.sides, &mut desk.slots);
-        let all = desk.slots.at(Place::All);
-        let (mut halved, mut avoided) = (None, false);
-        for tape in &part.avoid {
-            let value = tape.value(all, &mut room);
-            avoided |= value.magnitude() < JUST_AVOIDED;
-            if value.mignitude() < NOT_AVOIDED && halved.is_none() {
-                let can = tape.coordinates.iter().filter(|place| cell.sides[**place].depth < DEEPEST);
-                halved = can.min_by_key(|place| cell.sides[**place].depth).copied();
-                avoided |= halved.is_none();
-            }
-        }
-        match halved {
-            _ if avoided => {}
-            Some(coordinate) => queue.extend(cell.halves(coordinate)),
-            None => sampled.add(cell.depth()),
-        }
-    }
-    sampled
-}
-
-/// So many boxes are looked at to find out which part of the volume is avoided.
-const MOST_PAVED: usize = 20_000;

@@ -4,90 +4,10 @@
 //! What does not depend on a coordinate is folded into constants. The sine and the cosine of a coordinate, or of half of
 //! it, are inputs of their own: the same few are needed by every expression, at the same few places.
 
+use super::slots::{Slots, Wave};
 use crate::expression::{Graph, Node, NodeId, Symbol};
 use crate::number::{Function, Interval, Real};
 use std::collections::HashMap;
-
-/// A function of one coordinate that is given to a tape.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Wave {
-    /// The coordinate itself.
-    Itself,
-    Sine,
-    Cosine,
-    HalfSine,
-    HalfCosine,
-}
-
-/// An input: which coordinate, and what of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Slot {
-    pub coordinate: usize,
-    pub wave: Wave,
-}
-
-/// All inputs of the tapes of one question.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Slots {
-    slots: Vec<Slot>,
-    /// For each slot the one that its derivative is a multiple of (the cosine for the sine), and the factor.
-    slopes: Vec<Option<(usize, f64)>>,
-}
-
-impl Slots {
-    pub fn iter(&self) -> impl Iterator<Item = Slot> {
-        self.slots.iter().copied()
-    }
-
-    /// The places of the slots of a coordinate.
-    pub fn of(&self, coordinate: usize) -> impl Iterator<Item = usize> {
-        let is_of = move |(_, slot): &(usize, &Slot)| slot.coordinate == coordinate;
-        self.slots.iter().enumerate().filter(is_of).map(|(place, _)| place)
-    }
-
-    fn place(&mut self, coordinate: usize, wave: Wave) -> usize {
-        let find = |slots: &[Slot], wave| slots.iter().position(|slot| *slot == Slot { coordinate, wave });
-        if let Some(place) = find(&self.slots, wave) {
-            return place;
-        }
-        // a sine is never without its cosine, which is its slope
-        let pair: &[(Wave, Wave, f64)] = match wave {
-            Wave::Itself => &[],
-            Wave::Sine | Wave::Cosine => {
-                &[(Wave::Sine, Wave::Cosine, 1.0), (Wave::Cosine, Wave::Sine, -1.0)]
-            }
-            Wave::HalfSine | Wave::HalfCosine => {
-                &[(Wave::HalfSine, Wave::HalfCosine, 0.5), (Wave::HalfCosine, Wave::HalfSine, -0.5)]
-            }
-        };
-        let first = self.slots.len();
-        if pair.is_empty() {
-            self.slots.push(Slot { coordinate, wave });
-            self.slopes.push(None);
-        }
-        for (step, (wave, _, factor)) in pair.iter().enumerate() {
-            self.slots.push(Slot { coordinate, wave: *wave });
-            self.slopes.push(Some((first + 1 - step, *factor)));
-        }
-        find(&self.slots, wave).unwrap_or(first)
-    }
-
-    /// What a tape's derivatives by its slots say of the derivatives by the coordinates.
-    pub fn by_coordinates<T: Real>(&self, tape: &Tape, by_slots: &[T], values: &[T], found: &mut [T]) {
-        let zero = T::from_f64(0.0);
-        for coordinate in &tape.coordinates {
-            found[*coordinate] = zero;
-        }
-        for place in &tape.slots {
-            let slope = match self.slopes[*place] {
-                None => by_slots[*place],
-                Some((other, factor)) => by_slots[*place] * values[other] * T::from_f64(factor),
-            };
-            let sum = &mut found[self.slots[*place].coordinate];
-            *sum = *sum + slope;
-        }
-    }
-}
 
 #[derive(Clone, Copy, Debug)]
 enum Operation {
@@ -117,7 +37,8 @@ pub(super) struct Tape {
     operations: Vec<Operation>,
     intervals: Vec<Interval>,
     doubles: Vec<f64>,
-    slots: Vec<usize>,
+    /// The slots that it needs.
+    pub slots: Vec<usize>,
     /// The coordinates that it depends on.
     pub coordinates: Vec<usize>,
 }
@@ -210,7 +131,7 @@ impl Tape {
             place.insert(id, tape.operations.len() as u32);
             tape.operations.push(operation);
         }
-        tape.coordinates = tape.slots.iter().map(|place| slots.slots[*place].coordinate).collect();
+        tape.coordinates = tape.slots.iter().map(|place| slots.at(*place).coordinate).collect();
         tape.coordinates.sort_unstable();
         tape.coordinates.dedup();
         Ok(tape)

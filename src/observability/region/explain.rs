@@ -1,0 +1,98 @@
+//! Why a box is open, and which part of the volume is sampled at all.
+
+use super::boxes::{DEEPEST, Place, Volume};
+use super::factor::Desk;
+use super::part::Part;
+use super::search::Cell;
+use crate::observability::locus::AVOIDED;
+use std::collections::VecDeque;
+
+/// Why nothing is proved on a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Why {
+    /// The system is defined on all of it, and this minor is zero somewhere in it, with this factor.
+    Vanishes {
+        minor: usize,
+        factor: usize,
+    },
+    /// What the system divides by is zero somewhere in it.
+    Pole {
+        factor: usize,
+    },
+    Undecided,
+}
+
+/// Why nothing is proved on a box, and whether no sampled state lies in it.
+pub(super) fn explain(part: &Part, cell: &Cell, desk: &mut Desk) -> (Why, bool) {
+    let chart = &part.chart;
+    chart.fill(&cell.sides, &mut desk.slots);
+    let all = desk.slots.at(Place::All).to_vec();
+    let mut room = Default::default();
+    let avoided = part.avoid.iter().any(|tape| tape.value(&all, &mut room).magnitude() < JUST_AVOIDED);
+    let excludes = |desk: &mut Desk, factor: usize| {
+        let expression = &part.factors[factor];
+        cell.knows(factor) || {
+            let guess = expression.guess(chart, desk);
+            expression.excludes_zero(chart, desk, guess.value < 0.0)
+        }
+    };
+    for guard in &part.guards {
+        if !excludes(desk, *guard) {
+            let pole = part.factors[*guard].vanishes(chart, desk);
+            return (if pole { Why::Pole { factor: *guard } } else { Why::Undecided }, avoided);
+        }
+    }
+    let vanishing = |desk: &mut Desk, list: &[usize]| {
+        let vanishes = |f: &&usize| !cell.knows(**f) && part.factors[**f].vanishes(chart, desk);
+        list.iter().find(vanishes).copied()
+    };
+    if let Some(factor) = vanishing(desk, &part.common) {
+        let place = part.common.iter().position(|common| *common == factor).unwrap_or(0);
+        return (Why::Vanishes { minor: part.common_of[place], factor }, avoided);
+    }
+    for alternative in &part.alternatives {
+        if alternative.below.iter().all(|factor| excludes(desk, *factor))
+            && let Some(factor) = vanishing(desk, &alternative.factors)
+        {
+            return (Why::Vanishes { minor: alternative.minor, factor }, avoided);
+        }
+    }
+    (Why::Undecided, avoided)
+}
+
+/// Sampled states have a magnitude of at least [`AVOIDED`], as floating point sees it: a little less is surely avoided.
+const JUST_AVOIDED: f64 = AVOIDED * (1.0 - 1e-9);
+/// And a little more is surely not.
+const NOT_AVOIDED: f64 = AVOIDED * (1.0 + 1e-9);
+
+/// A lower bound of the volume in which states are sampled.
+pub(super) fn sampled_volume(part: &Part) -> Volume {
+    let mut sampled = Volume::default();
+    let mut queue = VecDeque::from([Cell::whole(part)]);
+    let mut desk = Desk::default();
+    let mut room = Default::default();
+    for _ in 0..MOST_PAVED {
+        let Some(cell) = queue.pop_front() else { break };
+        part.chart.fill(&cell.sides, &mut desk.slots);
+        let all = desk.slots.at(Place::All);
+        let (mut halved, mut avoided) = (None, false);
+        for tape in &part.avoid {
+            let value = tape.value(all, &mut room);
+            avoided |= value.magnitude() < JUST_AVOIDED;
+            if value.mignitude() < NOT_AVOIDED && halved.is_none() {
+                let can = tape.coordinates.iter().filter(|place| cell.sides[**place].depth < DEEPEST);
+                halved = can.min_by_key(|place| cell.sides[**place].depth).copied();
+                avoided |= halved.is_none();
+            }
+        }
+        match halved {
+            _ if avoided => {}
+            Some(coordinate) => queue.extend(cell.halves(coordinate)),
+            None => sampled.add(cell.depth()),
+        }
+    }
+    sampled
+}
+
+/// So many boxes are looked at to find out which part of the volume is avoided.
+const MOST_PAVED: usize = 20_000;
