@@ -21,7 +21,7 @@ fn main() {
 
 const REGIMES: [&str; 4] = ["general", "same_rate", "one_palm_fixed", "fixed_palms"];
 /// As many as fit into the second-level cache with their matrices.
-const BLOCK: usize = 1024;
+const BLOCK: usize = 512;
 
 fn file(regime: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(regime).with_extension("proof")

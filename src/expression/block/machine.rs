@@ -71,6 +71,17 @@ impl<'t, L: Lanes> Machine<'t, L> {
         }
     }
 
+    /// Where a result is found: in a register, or a constant.
+    #[inline(always)]
+    pub(super) fn row(&self, place: usize) -> Result<&[L], L> {
+        match self.tape.outputs[place] {
+            Slot::Register(register) => {
+                Ok(&self.registers[register as usize * (self.length + 1)..][..self.length])
+            }
+            Slot::Constant(value) => Err(self.zero.splat_within(value.value, value.units)),
+        }
+    }
+
     /// Zero in each lane where nothing went wrong, and not a number where a divisor was zero or infinite or a function
     /// had no finite value. Where bounds on errors are kept, its own is not a number where a bound is none.
     #[inline(always)]
@@ -213,7 +224,9 @@ fn apply<L: Lanes>(operator: Operator, [a, c]: Two<L>, [b, d]: Two<L>) -> Two<L>
 #[inline(always)]
 fn step<L: Lanes>(i: &Instruction, cells: &[Cell<L>], health: &[Cell<L>], length: usize) {
     let [p, q, r] = i.operators;
-    let [a, b, c, d] = i.operands.map(|operand| register(cells, operand, length));
+    let [a, b, c, d] = i.operands;
+    let (a, b) = (register(cells, a, length), register(cells, b, length));
+    let (c, d) = (register(cells, c, length), register(cells, d, length));
     let target = register(cells, i.target, length);
     match i.kind {
         Kind::Two if L::SIMPLE => forward!(p, P => two::<L, P>(i, cells, length)),

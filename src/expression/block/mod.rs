@@ -142,6 +142,7 @@ impl Vectorised for Evaluation<'_, '_, '_> {
         let count = outputs.iter().map(|o| o.len()).chain(inputs.iter().map(|i| i.len())).min().unwrap_or(0);
         let mut machine = program.machine(zero);
         let mut lost = Vec::new();
+        let mut health = vec![zero; machine.lanes()];
         let mut buffer = [0.0; 8];
         let mut start = 0;
         while start < count {
@@ -161,25 +162,39 @@ impl Vectorised for Evaluation<'_, '_, '_> {
                 }
             }
             machine.run();
-            for lane in 0..machine.lanes() {
-                let first = start + lane * L::COUNT;
-                if first >= count {
-                    break;
-                }
-                let here = L::COUNT.min(count - first);
-                let mut health = machine.health(lane);
-                for (place, values) in outputs.iter_mut().enumerate() {
-                    let value = machine.output(place, lane);
-                    health = health + value.lost();
-                    if here == L::COUNT {
+            for (lane, health) in health.iter_mut().enumerate() {
+                *health = machine.health(lane);
+            }
+            for (place, values) in outputs.iter_mut().enumerate() {
+                let row = match machine.row(place) {
+                    Ok(row) => row,
+                    Err(constant) if start == 0 => {
+                        constant.store(&mut buffer);
+                        values.fill(buffer[0]);
+                        continue;
+                    }
+                    Err(_) => continue,
+                };
+                for (lane, value) in row.iter().enumerate() {
+                    health[lane] = health[lane] + value.lost();
+                    let first = start + lane * L::COUNT;
+                    if first + L::COUNT <= count {
                         value.store(&mut values[first..]);
-                    } else {
+                    } else if first < count {
                         value.store(&mut buffer);
-                        values[first..first + here].copy_from_slice(&buffer[..here]);
+                        values[first..count].copy_from_slice(&buffer[..count - first]);
                     }
                 }
+            }
+            for (lane, health) in health.iter().enumerate() {
+                let first = start + lane * L::COUNT;
                 health.store(&mut buffer);
-                lost.extend((0..here).filter(|i| program.undefined || buffer[*i] != 0.0).map(|i| first + i));
+                let here = L::COUNT.min(count.saturating_sub(first));
+                if program.undefined || buffer[..here].iter().any(|mark| *mark != 0.0) {
+                    lost.extend(
+                        (0..here).filter(|i| program.undefined || buffer[*i] != 0.0).map(|i| first + i),
+                    );
+                }
             }
             start += machine.states();
         }

@@ -1,6 +1,6 @@
 //! Whether a matrix, known to within bounds, has full rank for certain: elimination with the bounds carried along.
 
-use crate::number::{Bounded, Lanes};
+use crate::number::{Bounded, Lanes, Task};
 
 /// Room for matrices of one shape.
 pub struct Elimination<L> {
@@ -38,13 +38,8 @@ impl<L: Lanes> Elimination<L> {
     }
 
     /// One in each lane where the rank is certainly as large as the smaller side, else zero. The matrix is used up.
-    #[inline(always)]
     pub fn is_full(&mut self, one: L) -> L {
-        match (self.rows, self.columns) {
-            (3, 3) => self.eliminate(3, 3, one),
-            (4, 4) => self.eliminate(4, 4, one),
-            (rows, columns) => self.eliminate(rows, columns, one),
-        }
+        one.apart(Eliminate(self, one))
     }
 
     #[inline(always)]
@@ -74,6 +69,22 @@ impl<L: Lanes> Elimination<L> {
     }
 }
 
+struct Eliminate<'e, L>(&'e mut Elimination<L>, L);
+
+impl<L: Lanes> Task for Eliminate<'_, L> {
+    type Output = L;
+
+    #[inline(always)]
+    fn call(self) -> L {
+        let Eliminate(room, one) = self;
+        match (room.rows, room.columns) {
+            (3, 3) => room.eliminate(3, 3, one),
+            (4, 4) => room.eliminate(4, 4, one),
+            (rows, columns) => room.eliminate(rows, columns, one),
+        }
+    }
+}
+
 /// Exchanges rows `k` and `i` in the lanes where row `i` has the larger pivot.
 #[inline(always)]
 fn bring_up<L: Lanes>(matrix: &mut [Bounded<L>], weights: &mut [L], columns: usize, k: usize, i: usize) {
@@ -94,5 +105,62 @@ fn chosen<L: Lanes>(a: L, b: L, then: Bounded<L>, otherwise: Bounded<L>) -> Boun
     Bounded {
         value: a.where_less(b, then.value, otherwise.value),
         units: a.where_less(b, then.units, otherwise.units),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Rationals;
+    use crate::observability::rank;
+    use dashu::rational::RBig;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn is_full(entries: &[Bounded<f64>], rows: usize, columns: usize) -> bool {
+        let mut room = Elimination::new(rows, columns, 0.0);
+        for (place, entry) in entries.iter().enumerate() {
+            room.set(place / columns, place % columns, *entry);
+        }
+        (0..rows).for_each(|row| room.set_weight(true, row, 1.0));
+        (0..columns).for_each(|column| room.set_weight(false, column, 1.0));
+        room.is_full(1.0) == 1.0
+    }
+
+    #[test]
+    fn full_rank_is_claimed_where_it_is_and_never_where_it_is_not() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let (mut proved, mut full, mut singular) = (0, 0, 0);
+        for _ in 0..4000 {
+            let (rows, columns) = (rng.random_range(1..=5), rng.random_range(1..=5));
+            // small integers, divided by what no double holds; every other time the last row is made the sum of the
+            // others, so that many are singular
+            let mut numbers: Vec<i64> = (0..rows * columns).map(|_| rng.random_range(-2..=2)).collect();
+            if rng.random_range(0..2) == 0 {
+                for column in 0..columns {
+                    let sum = (0..rows - 1).map(|row| numbers[row * columns + column]).sum();
+                    numbers[(rows - 1) * columns + column] = sum;
+                }
+            }
+            let exact =
+                numbers.chunks(columns).map(|row| row.iter().map(|x| RBig::from(*x)).collect()).collect();
+            let is_full_rank = rank(&Rationals::default(), exact) == Ok(rows.min(columns));
+            let third = Bounded::exact(1.0) / Bounded::exact(3.0);
+            let entries: Vec<_> = numbers.iter().map(|x| Bounded::exact(*x as f64) * third).collect();
+            let claimed = is_full(&entries, rows, columns);
+            assert!(is_full_rank || !claimed, "{numbers:?}, {rows} by {columns}");
+            full += u32::from(is_full_rank);
+            singular += u32::from(!is_full_rank);
+            proved += u32::from(claimed);
+        }
+        assert!(singular > 500 && full > 1000 && proved == full, "{proved} of {full}, {singular} singular");
+    }
+
+    #[test]
+    fn an_entry_that_is_not_known_proves_nothing() {
+        let unknown = Bounded { value: 1.0, units: f64::NAN };
+        assert!(!is_full(&[unknown], 1, 1));
+        assert!(!is_full(&[Bounded::exact(f64::NAN)], 1, 1));
+        assert!(is_full(&[Bounded::exact(1e-300)], 1, 1));
     }
 }

@@ -5,7 +5,7 @@
 
 use super::random::{threefry, unit};
 use crate::expression::{BlockProgram, Input, Machine, Symbol};
-use crate::number::{Bounded, Lanes, rational_from_f64, rational_to_f64};
+use crate::number::{Bounded, Lanes, Task, rational_from_f64, rational_to_f64};
 use crate::observability::locus::{ATTEMPTS, AVOIDED, Source};
 use dashu::rational::RBig;
 
@@ -115,8 +115,12 @@ impl<'a, L: Lanes> Drawer<'a, L> {
     }
 
     /// Draws the states from `first` on. The place in the block of one for which nothing was found, if there is one.
-    #[inline(always)]
     pub fn draw(&mut self, first: u64) -> Result<(), usize> {
+        self.zero.apart(Draw(self, first))
+    }
+
+    #[inline(always)]
+    fn draw_block(&mut self, first: u64) -> Result<(), usize> {
         for start in (0..self.states).step_by(8) {
             self.draw_eight(first, start, 0, None);
         }
@@ -214,6 +218,17 @@ impl<'a, L: Lanes> Drawer<'a, L> {
     /// The coordinates of one state of the block.
     pub fn coordinates(&self, state: usize) -> Vec<f64> {
         (0..self.axes.len()).map(|place| self.values[place * self.states + state]).collect()
+    }
+}
+
+struct Draw<'d, 'a, L>(&'d mut Drawer<'a, L>, u64);
+
+impl<L: Lanes> Task for Draw<'_, '_, L> {
+    type Output = Result<(), usize>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        self.0.draw_block(self.1)
     }
 }
 

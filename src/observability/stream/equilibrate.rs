@@ -9,7 +9,7 @@
 //! the same iteration on the squares, with overrelaxation (A. Thibault and others, "Overrelaxed Sinkhorn-Knopp algorithm
 //! for regularized optimal transport", Algorithms 14, 2021) and to fewer digits: lengths agree to half a percent.
 
-use crate::number::Lanes;
+use crate::number::{Lanes, Task};
 
 /// Scaling has converged when the squares of all lengths are as wanted to this part.
 const CONVERGED: f64 = 1e-2;
@@ -71,13 +71,9 @@ impl<L: Lanes> Equilibrium<L> {
     }
 
     /// Finds the factors. A row or a column of zeros has the factor one.
-    #[inline(always)]
     pub fn solve(&mut self) {
-        // common shapes with their sizes known to the compiler
-        match (self.rows, self.columns) {
-            (3, 3) => self.solve_for(3, 3),
-            (4, 4) => self.solve_for(4, 4),
-            (rows, columns) => self.solve_for(rows, columns),
+        if let Some(any) = self.squares.first().copied() {
+            any.apart(Solve(self));
         }
     }
 
@@ -152,6 +148,22 @@ impl<L: Lanes> Equilibrium<L> {
     }
 }
 
+struct Solve<'e, L>(&'e mut Equilibrium<L>);
+
+impl<L: Lanes> Task for Solve<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        // common shapes with their sizes known to the compiler
+        match (self.0.rows, self.0.columns) {
+            (3, 3) => self.0.solve_for(3, 3),
+            (4, 4) => self.0.solve_for(4, 4),
+            (rows, columns) => self.0.solve_for(rows, columns),
+        }
+    }
+}
+
 /// Moves a factor so that it times the sum comes nearer to one. Whether it was far from that. A sum of zero stays.
 #[inline(always)]
 fn step<L: Lanes>(factor: &mut L, sum: L) -> bool {
@@ -165,4 +177,72 @@ fn step<L: Lanes>(factor: &mut L, sum: L) -> bool {
 #[inline(always)]
 fn inverse<L: Lanes>(x: L, one: L) -> L {
     one / x.splat(0.0).where_less(x, x, one)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn scaled(entries: &[f64], rows: usize, columns: usize) -> Vec<f64> {
+        let mut room = Equilibrium::new(rows, columns, 0.0);
+        for (place, entry) in entries.iter().enumerate() {
+            room.set(place / columns, place % columns, entry.abs());
+        }
+        room.solve();
+        let factor = |place: usize| room.row_factor(place / columns) * room.column_factor(place % columns);
+        entries.iter().enumerate().map(|(place, entry)| entry * factor(place)).collect()
+    }
+
+    #[test]
+    fn rows_and_columns_come_to_equal_lengths_whatever_the_units() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        for (rows, columns) in [(2, 2), (3, 3), (4, 4), (4, 7), (6, 3)] {
+            for _ in 0..100 {
+                let entries: Vec<f64> = (0..rows * columns).map(|_| rng.random_range(0.1..1.0)).collect();
+                let units: Vec<f64> =
+                    (0..rows + columns).map(|_| 10f64.powf(rng.random_range(-70.0..70.0))).collect();
+                let other: Vec<f64> = entries
+                    .iter()
+                    .enumerate()
+                    .map(|(place, entry)| entry * units[place / columns] * units[rows + place % columns])
+                    .collect();
+                let (first, second) = (scaled(&entries, rows, columns), scaled(&other, rows, columns));
+                for row in first.chunks(columns) {
+                    let square: f64 = row.iter().map(|x| x * x).sum();
+                    assert!((square * rows as f64 / columns as f64 - 1.0).abs() < 2.0 * CONVERGED);
+                }
+                for column in 0..columns {
+                    let square: f64 = first.iter().skip(column).step_by(columns).map(|x| x * x).sum();
+                    assert!((square - 1.0).abs() < 2.0 * CONVERGED);
+                }
+                for (a, b) in first.iter().zip(&second) {
+                    assert!((a - b).abs() < 4.0 * CONVERGED, "{first:?}, {second:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn it_is_the_scaling_that_single_states_get() {
+        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        for _ in 0..100 {
+            let entries: Vec<f64> = (0..16).map(|_| 10f64.powf(rng.random_range(-1.0..1.0))).collect();
+            let mut other = entries.clone();
+            crate::observability::equilibrate(&mut other, &mut [0.0; 16], 4);
+            for (a, b) in scaled(&entries, 4, 4).iter().zip(&other) {
+                assert!((a - b).abs() < 5.0 * CONVERGED, "{a} and {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn zeros_stay_and_nothing_else_suffers() {
+        assert_eq!(scaled(&[0.0, 0.0, 0.0, 0.0], 2, 2), [0.0; 4]);
+        let found = scaled(&[0.0, 5.0, 0.0, 0.0], 2, 2);
+        assert!((found[1] - 1.0).abs() < 0.01, "{found:?}");
+        // a triangular matrix has no equilibrium; what is reached is finite
+        assert!(scaled(&[1.0, 1.0, 0.0, 1.0], 2, 2).iter().all(|x| x.is_finite() && x.abs() < 1.1));
+    }
 }

@@ -6,7 +6,7 @@
 //! here (J. Demmel and K. Veselic, "Jacobi's method is more accurate than QR", SIAM J. Matrix Anal. Appl. 13, 1992).
 //! All lanes take the same steps, until the last of them is done.
 
-use crate::number::Lanes;
+use crate::number::{Lanes, Task};
 
 /// Two columns are orthogonal when the square of the cosine between them is below this. The sweep in which that is seen
 /// is the last: convergence is quadratic, and that very sweep squares the cosines once more.
@@ -53,18 +53,30 @@ impl<L: Lanes> Jacobi<L> {
 
     /// The singular values, as many as the smaller side of the matrix, in no order; and whether all lanes have converged.
     /// The matrix is used up. A matrix with an entry that is not finite has values that are not numbers.
-    #[inline(always)]
     pub fn singular_values(&mut self) -> (&[L], bool) {
+        let converged = self.matrix.first().copied().is_none_or(|any| any.apart(Decompose(self)));
+        (&self.squares, converged)
+    }
+}
+
+struct Decompose<'j, L>(&'j mut Jacobi<L>);
+
+impl<L: Lanes> Task for Decompose<'_, L> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let Jacobi { rows, columns, pairs, matrix, squares, .. } = self.0;
         // the common shapes with their sizes known to the compiler
-        let converged = match (self.rows, self.columns) {
-            (3, 3) => orthogonalise(&mut self.matrix, &mut self.squares, &self.pairs, 3),
-            (4, 4) => orthogonalise(&mut self.matrix, &mut self.squares, &self.pairs, 4),
-            _ => orthogonalise(&mut self.matrix, &mut self.squares, &self.pairs, self.rows),
+        let converged = match (*rows, *columns) {
+            (3, 3) => orthogonalise(&mut matrix[..9], &mut squares[..3], pairs, 3),
+            (4, 4) => orthogonalise(&mut matrix[..16], &mut squares[..4], pairs, 4),
+            _ => orthogonalise(matrix, squares, pairs, *rows),
         };
-        for (value, column) in self.squares.iter_mut().zip(self.matrix.chunks(self.rows.max(1))) {
+        for (value, column) in squares.iter_mut().zip(matrix.chunks(*rows)) {
             *value = dot(column, column).sqrt();
         }
-        (&self.squares, converged)
+        converged
     }
 }
 
@@ -138,4 +150,129 @@ fn rotate<L: Lanes>(left: &mut [L], right: &mut [L], squares: &mut [L], p: usize
     squares[p] = a - t * product;
     squares[q] = b + t * product;
     rotated
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::{Instructions, Vectorised};
+    use faer::Mat;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// The singular values of eight matrices of one shape, by rows, in descending order.
+    struct All<'a>(&'a [Vec<f64>], usize, usize);
+
+    impl Vectorised for All<'_> {
+        type Output = (Vec<Vec<f64>>, bool);
+
+        #[inline(always)]
+        fn run<L: Lanes>(self, zero: L) -> Self::Output {
+            let All(matrices, rows, columns) = self;
+            let mut jacobi = Jacobi::new(rows, columns, zero);
+            for place in 0..rows * columns {
+                let mut entries = [0.0; 8];
+                for (entry, matrix) in entries.iter_mut().zip(matrices) {
+                    *entry = matrix[place];
+                }
+                jacobi.set(place / columns, place % columns, zero.load(&entries));
+            }
+            let (values, converged) = jacobi.singular_values();
+            let mut found = vec![Vec::new(); 8];
+            for value in values {
+                let mut lanes = [0.0; 8];
+                value.store(&mut lanes);
+                for (found, value) in found.iter_mut().zip(lanes) {
+                    found.push(value);
+                }
+            }
+            for values in &mut found {
+                values.sort_by(|a, b| b.total_cmp(a));
+            }
+            (found, converged)
+        }
+    }
+
+    fn all(matrices: &[Vec<f64>], rows: usize, columns: usize) -> Vec<Vec<f64>> {
+        let (portable, converged) = Instructions::Portable.run(All(matrices, rows, columns));
+        assert!(converged);
+        let (detected, _) = Instructions::detect().run(All(matrices, rows, columns));
+        for (a, b) in portable.iter().flatten().zip(detected.iter().flatten()) {
+            assert_eq!(a.to_bits(), b.to_bits(), "the same bits on every processor");
+        }
+        portable
+    }
+
+    #[test]
+    fn random_matrices_of_all_shapes_agree_with_faer() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        for (rows, columns) in
+            [(1, 1), (2, 2), (3, 3), (4, 4), (5, 5), (10, 10), (7, 3), (3, 8), (1, 6), (13, 4)]
+        {
+            for graded in [0, 1, 3] {
+                let matrices: Vec<Vec<f64>> = (0..8)
+                    .map(|_| {
+                        let entry = |place| {
+                            rng.random_range(-1.0..1.0) * 10f64.powi(-graded * (place % columns) as i32)
+                        };
+                        (0..rows * columns).map(entry).collect()
+                    })
+                    .collect();
+                for (matrix, values) in matrices.iter().zip(all(&matrices, rows, columns)) {
+                    let other = Mat::from_fn(rows, columns, |i, j| matrix[i * columns + j])
+                        .singular_values()
+                        .unwrap();
+                    assert_eq!(values.len(), other.len());
+                    for (a, b) in values.iter().zip(&other) {
+                        // faer's values are backward stable: right to within rounding of the largest
+                        assert!(
+                            (a - b).abs() <= 1e-14 * values[0],
+                            "{rows} by {columns}: {values:?}, {other:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn small_singular_values_are_as_good_as_large_ones() {
+        // a rotation by atan(3/4), its columns scaled: the singular values are the scales, exactly
+        let matrix = vec![0.6, -0.8e-30, 0.8, 0.6e-30];
+        let values = &all(&vec![matrix; 8], 2, 2)[0];
+        assert!((values[0] - 1.0).abs() < 1e-15 && (values[1] / 1e-30 - 1.0).abs() < 1e-15, "{values:?}");
+    }
+
+    #[test]
+    fn singular_and_empty_directions_come_out_as_zero() {
+        let ones = vec![1.0; 9];
+        let zeros = vec![0.0; 9];
+        let two = vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]; // rank two
+        let values =
+            all(&[ones, zeros, two.clone(), two.clone(), two.clone(), two.clone(), two.clone(), two], 3, 3);
+        assert!((values[0][0] - 3.0).abs() < 1e-15 && values[0][1] < 1e-15);
+        assert_eq!(values[1], [0.0; 3]);
+        assert!(values[2][1] > 1.0 && values[2][2] < 1e-14);
+    }
+
+    #[test]
+    fn what_is_not_a_number_does_not_disturb_its_neighbours() {
+        let good = vec![2.0, 0.0, 0.0, 1.0];
+        let mut matrices = vec![good; 8];
+        matrices[3][1] = f64::NAN;
+        let values = all(&matrices, 2, 2);
+        assert_eq!(values[2], [2.0, 1.0]);
+        assert!(values[3].iter().all(|value| value.is_nan()));
+    }
+
+    #[test]
+    fn every_pair_meets_once() {
+        for players in 0..12 {
+            let mut pairs = tournament(players);
+            let count = pairs.len() as u32;
+            pairs.sort_unstable();
+            pairs.dedup();
+            assert_eq!((pairs.len() as u32, count), (count, players * players.saturating_sub(1) / 2));
+        }
+    }
 }
