@@ -53,6 +53,17 @@ fn digits_are_what_the_numbers_have() {
     // the same algebra in another order
     let blocks = digits(&found, Number::Double, Derivative::Blocks);
     assert!((13.5..16.0).contains(&blocks.0), "{blocks:?}");
+    // a bound on the error is no less than the error, and certain where it suffices
+    let bounded = digits(&found, Number::Bounded, Derivative::Blocks);
+    assert!(bounded.0 > 11.0 && bounded.0 < blocks.0 && bounded.1 <= blocks.1, "{bounded:?} {blocks:?}");
+    let certain = found.combinations.iter().find(|c| c.rank == RankMethod::BoundedElimination).unwrap();
+    assert_eq!((certain.wrong, certain.certified + certain.undecided), (0, 200), "{certain:?}");
+    let jacobi = found.combinations.iter().filter(|c| c.rank == RankMethod::Jacobi);
+    let svd =
+        found.combinations.iter().filter(|c| c.rank == RankMethod::SvdNalgebra && c.number == Number::Double);
+    for (a, b) in jacobi.zip(svd) {
+        assert_eq!((a.derivative, a.wrong, a.failed), (b.derivative, b.wrong, b.failed));
+    }
     for (number, forward, central) in
         [(Number::Double, 2.0..4.5, 4.0..7.0), (Number::DoubleDouble, 5.5..8.0, 9.5..13.0)]
     {
@@ -127,6 +138,8 @@ fn a_short_rank_is_taken_for_full_by_noise() {
     let modular = of(Number::Residue, Derivative::Graph, RankMethod::ExactElimination);
     assert_eq!((modular.not_right(), modular.certified), (0, 0)); // right, and no proof
     let unsure = of(Number::Interval, Derivative::Graph, RankMethod::IntervalElimination);
+    assert_eq!((unsure.wrong, unsure.undecided), (0, 100));
+    let unsure = of(Number::Bounded, Derivative::Blocks, RankMethod::BoundedElimination);
     assert_eq!((unsure.wrong, unsure.undecided), (0, 100));
 }
 

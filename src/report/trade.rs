@@ -160,24 +160,24 @@ pub fn trade_text(trade: &Trade) -> String {
     );
     let _ = writeln!(
         out,
-        "\n{:<14} {:<20} {:>9} {:>14} {:>6} {:>7}",
+        "\n{:<16} {:<20} {:>9} {:>14} {:>6} {:>7}",
         "number", "derivative", "a state", "digits: median", "worst", "failed"
     );
     for found in &trade.derivatives {
         let (median, worst) = digits_text(found.digits);
         let _ = writeln!(
             out,
-            "{:<14} {:<20} {:>9} {median:>14} {worst:>6} {:>7}",
+            "{:<16} {:<20} {:>9} {median:>14} {worst:>6} {:>7}",
             found.number.name(),
             found.derivative.name(),
             time(found.seconds),
             found.failed
         );
     }
-    let _ = writeln!(out, "\n{:<14} {:<22} {:>9}", "number", "rank", "a state");
+    let _ = writeln!(out, "\n{:<16} {:<22} {:>9}", "number", "rank", "a state");
     for found in &trade.ranks {
         let _ =
-            writeln!(out, "{:<14} {:<22} {:>9}", found.number.name(), found.rank.name(), time(found.seconds));
+            writeln!(out, "{:<16} {:<22} {:>9}", found.number.name(), found.rank.name(), time(found.seconds));
     }
     let right = trade.combinations.iter().filter(|c| c.not_right() == 0).count();
     let _ = writeln!(
@@ -187,7 +187,7 @@ pub fn trade_text(trade: &Trade) -> String {
     );
     let line = |cells: [&str; 8]| {
         format!(
-            "{:<14} {:<20} {:<22} {:>9} {:>6} {:>6} {:>9} {:>6}",
+            "{:<16} {:<20} {:<22} {:>9} {:>6} {:>6} {:>9} {:>6}",
             cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7]
         )
     };
@@ -201,7 +201,7 @@ pub fn trade_text(trade: &Trade) -> String {
         for c in wrong {
             let _ = writeln!(
                 out,
-                "{:<14} {:<20} {:<22} {} wrong, {} undecided, {} failed",
+                "{:<16} {:<20} {:<22} {} wrong, {} undecided, {} failed",
                 c.number.name(),
                 c.derivative.name(),
                 c.rank.name(),

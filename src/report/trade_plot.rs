@@ -14,6 +14,7 @@ fn colour(number: Number) -> RGBColor {
     match number {
         Number::Single => RGBColor(230, 159, 0),
         Number::Double => RGBColor(0, 114, 178),
+        Number::Bounded => RGBColor(86, 180, 233),
         Number::DoubleDouble => RGBColor(0, 158, 115),
         Number::Interval => RGBColor(204, 121, 167),
         Number::Residue => RGBColor(120, 120, 120),

@@ -1,10 +1,11 @@
 //! The entries that vary by a block program: all states at once, one array for each input and each entry.
 
+use super::lanes::BoundedValues;
 use super::study::Timer;
 use super::ways::Way;
 use super::work::{Work, inputs};
 use crate::expression::BlockProgram;
-use crate::number::Floats;
+use crate::number::{Bounded, Floats, Instructions};
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
@@ -66,6 +67,39 @@ pub(super) fn way<'w>(blocks: Arc<Blocks<'w>>) -> Way<'w, f64> {
                 *entry = values[state];
             }
             sink((!lost.contains(&state)).then_some(row.as_slice()));
+        }
+    })
+}
+
+impl Blocks<'_> {
+    fn evaluate_bounded(&self, states: Range<usize>, results: &mut Vec<Bounded<f64>>) {
+        let inputs: Vec<&[f64]> = self.inputs.iter().map(|values| &values[states.clone()]).collect();
+        let (program, states) = (self.program, states.len());
+        Instructions::detect().run(BoundedValues { program, inputs: &inputs, states, results });
+    }
+}
+
+/// The same with bounds on the errors.
+pub(super) fn bounded_timer<'w>(blocks: Arc<Blocks<'w>>) -> Timer<'w> {
+    let room = Mutex::new(Vec::new());
+    Box::new(move |states| {
+        let Ok(mut room) = room.lock() else { return };
+        for start in (0..states).step_by(AT_ONCE) {
+            blocks.evaluate_bounded(start..(start + AT_ONCE).min(states), &mut room);
+            std::hint::black_box(&mut room);
+        }
+    })
+}
+
+/// The same with bounds on the errors, state after state.
+pub(super) fn bounded_way<'w>(blocks: Arc<Blocks<'w>>) -> Way<'w, Bounded<f64>> {
+    Box::new(move |states, sink| {
+        let (count, outputs) = (states.len(), blocks.program.outputs());
+        let mut results = Vec::new();
+        blocks.evaluate_bounded(states, &mut results);
+        for state in 0..count {
+            let row = &results[state * outputs..][..outputs];
+            sink(row.iter().all(|entry| !entry.value.is_nan()).then_some(row));
         }
     })
 }

@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 pub enum Number {
     Single,
     Double,
+    /// A double with a bound on its error.
+    Bounded,
     DoubleDouble,
     Interval,
     Residue,
@@ -14,10 +16,11 @@ pub enum Number {
 }
 
 impl Number {
-    /// All of them, from the fastest.
-    pub const ALL: [Number; 6] = [
+    /// All of them.
+    pub const ALL: [Number; 7] = [
         Number::Single,
         Number::Double,
+        Number::Bounded,
         Number::DoubleDouble,
         Number::Interval,
         Number::Residue,
@@ -29,6 +32,7 @@ impl Number {
         match self {
             Number::Single => "f32",
             Number::Double => "f64",
+            Number::Bounded => "f64 with bounds",
             Number::DoubleDouble => "double-double",
             Number::Interval => "interval",
             Number::Residue => "residue",
@@ -99,11 +103,13 @@ pub enum RankMethod {
     Elimination,
     ExactElimination,
     IntervalElimination,
+    /// Elimination with error bounds, over blocks of states.
+    BoundedElimination,
 }
 
 impl RankMethod {
     /// All of them.
-    pub const ALL: [RankMethod; 10] = [
+    pub const ALL: [RankMethod; 11] = [
         RankMethod::SvdWhole,
         RankMethod::SvdNalgebra,
         RankMethod::SvdFaer,
@@ -114,6 +120,7 @@ impl RankMethod {
         RankMethod::Elimination,
         RankMethod::ExactElimination,
         RankMethod::IntervalElimination,
+        RankMethod::BoundedElimination,
     ];
 
     /// In a few words.
@@ -129,6 +136,7 @@ impl RankMethod {
             RankMethod::Elimination => "elimination",
             RankMethod::ExactElimination => "exact elimination",
             RankMethod::IntervalElimination => "interval elimination",
+            RankMethod::BoundedElimination => "bounds, in blocks",
         }
     }
 }

@@ -8,17 +8,18 @@ use super::truth::Exact;
 use super::ways::programs;
 use super::work::Work;
 use crate::number::{Arithmetic, PrimeField, Rationals};
+use dashu::rational::RBig;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-pub(super) fn residue(work: &Work, seed: u64) -> Setup<'_, PrimeField> {
+pub(super) fn residue(work: &Work, seed: u64) -> Setup<'_, u64> {
     let field = PrimeField::random(&mut ChaCha8Rng::seed_from_u64(seed));
     build(work, Number::Residue, field, Accuracy::Modular, move |value, exact| {
         field.rational(&exact.value).is_ok_and(|truth| truth == *value)
     })
 }
 
-pub(super) fn rational(work: &Work) -> Setup<'_, Rationals> {
+pub(super) fn rational(work: &Work) -> Setup<'_, RBig> {
     build(work, Number::Rational, Rationals::default(), Accuracy::Exact, |value, exact| *value == exact.value)
 }
 
@@ -28,13 +29,13 @@ fn build<'w, A>(
     arithmetic: A,
     accuracy: Accuracy,
     right: impl Fn(&A::Number, &Exact) -> bool + Send + Sync + 'w,
-) -> Setup<'w, A>
+) -> Setup<'w, A::Number>
 where
     A: Arithmetic + Copy + Send + Sync + 'w,
     A::Number: Send + Sync + 'w,
 {
     let error = move |value: &A::Number, exact: &Exact| if right(value, exact) { 0.0 } else { f64::INFINITY };
-    let mut setup = Setup::new(number, arithmetic, accuracy, error);
+    let mut setup = Setup::new(number, accuracy, move |value| arithmetic.rational(value).ok(), error);
     for (derivative, way) in programs(work, arithmetic) {
         setup.way(derivative, way);
     }

@@ -1,8 +1,9 @@
 //! The kinds of numbers that round: f32, f64, double-double, and intervals of doubles.
 
-use super::blocks::{Blocks, timer, way};
+use super::blocks::{Blocks, bounded_timer, bounded_way, timer, way};
 use super::combination::{Derivative, Number, RankMethod};
 use super::duals::duals;
+use super::lanes::{certain, jacobi};
 use super::ranks::{
     Float, RankWay, Verdict, each, elimination, equilibrated, intervals, lu, qr, svd_faer, svd_nalgebra,
 };
@@ -10,7 +11,7 @@ use super::study::{Accuracy, Setup};
 use super::truth::Exact;
 use super::ways::{differences, programs};
 use super::work::Work;
-use crate::number::{DoubleDouble, Floats, Interval, Real};
+use crate::number::{Bounded, DoubleDouble, Floats, Interval, Real, rational_from_f64};
 use crate::tradeoff::differences::Difference;
 use dashu::rational::RBig;
 use num_dual::DualNum;
@@ -41,14 +42,25 @@ fn error(value: f64, exact: &Exact) -> f64 {
     }
 }
 
+/// The relative error of the end of an enclosure that is further from the truth; what does not contain it encloses
+/// nothing.
+fn enclosed(low: f64, high: f64, exact: &Exact) -> f64 {
+    let distance = |end: f64| (end - exact.parts[0]) - exact.parts[1];
+    if distance(low) > 0.0 || distance(high) < 0.0 {
+        return f64::INFINITY;
+    }
+    error(low, exact).max(error(high, exact))
+}
+
 /// What every kind of number can do that stands for one real number.
 fn rounded<'w, T: Real + DualNum>(
     work: &'w Work,
     number: Number,
     spacing: f64,
     error: impl Fn(&T, &Exact) -> f64 + Send + Sync + 'w,
-) -> Setup<'w, Floats<T>> {
-    let mut setup = Setup::new(number, Floats::new(), Accuracy::Digits(digits(spacing)), error);
+) -> Setup<'w, T> {
+    let mut setup =
+        Setup::new(number, Accuracy::Digits(digits(spacing)), |value| Some(T::from_rational(value)), error);
     for (derivative, way) in programs(work, Floats::<T>::new()) {
         setup.way(derivative, way);
     }
@@ -59,11 +71,7 @@ fn rounded<'w, T: Real + DualNum>(
 }
 
 /// A machine float with everything that the libraries offer.
-fn machine<'w, F: Float + DualNum + Copy>(
-    work: &'w Work,
-    number: Number,
-    spacing: f64,
-) -> Setup<'w, Floats<F>> {
+fn machine<'w, F: Float + DualNum + Copy>(work: &'w Work, number: Number, spacing: f64) -> Setup<'w, F> {
     let mut setup = rounded(work, number, spacing, |value: &F, exact| error(Real::to_f64(*value), exact));
     let columns = work.block.columns;
     setup.ranks.push((RankMethod::SvdWhole, each(|matrix| svd_nalgebra(matrix, work.columns))));
@@ -82,11 +90,11 @@ pub(super) fn nonempty<'w, N: 'w>(work: &Work, way: RankWay<'w, N>) -> RankWay<'
     if work.block.is_empty() { each(|_| Verdict::Rank(0)) } else { way }
 }
 
-pub(super) fn single(work: &Work) -> Setup<'_, Floats<f32>> {
+pub(super) fn single(work: &Work) -> Setup<'_, f32> {
     machine(work, Number::Single, f64::from(f32::EPSILON))
 }
 
-pub(super) fn double(work: &Work) -> Setup<'_, Floats> {
+pub(super) fn double(work: &Work) -> Setup<'_, f64> {
     let mut setup = machine(work, Number::Double, f64::EPSILON);
     let blocks = Blocks::new(work).map(Arc::new);
     if let Ok(blocks) = &blocks {
@@ -96,10 +104,32 @@ pub(super) fn double(work: &Work) -> Setup<'_, Floats> {
     let columns = work.block.columns;
     let decide = each(move |block| equilibrated(block, columns));
     setup.ranks.push((RankMethod::SvdEquilibrated, nonempty(work, decide)));
+    setup.ranks.push((RankMethod::Jacobi, nonempty(work, jacobi(&work.block))));
     setup
 }
 
-pub(super) fn double_double(work: &Work) -> Setup<'_, Floats<DoubleDouble>> {
+/// Doubles with bounds on their errors.
+pub(super) fn bounded(work: &Work) -> Setup<'_, Bounded<f64>> {
+    let error = |value: &Bounded<f64>, exact: &Exact| {
+        let (low, high) = (value.value - value.error(), value.value + value.error());
+        enclosed(low.next_down(), high.next_up(), exact)
+    };
+    let constant = |value: &RBig| {
+        let image = f64::from_rational(value);
+        let units = if rational_from_f64(image).as_ref() == Some(value) { 0.0 } else { image.abs() };
+        image.is_finite().then_some(Bounded { value: image, units })
+    };
+    let mut setup = Setup::new(Number::Bounded, Accuracy::Digits(digits(f64::EPSILON)), constant, error);
+    let blocks = Blocks::new(work).map(Arc::new);
+    if let Ok(blocks) = &blocks {
+        setup.timers.push((Derivative::Blocks, bounded_timer(blocks.clone())));
+    }
+    setup.way(Derivative::Blocks, blocks.map(bounded_way));
+    setup.ranks.push((RankMethod::BoundedElimination, nonempty(work, certain(&work.block))));
+    setup
+}
+
+pub(super) fn double_double(work: &Work) -> Setup<'_, DoubleDouble> {
     let spacing = DOUBLE_DOUBLE_SPACING;
     let error = |value: &DoubleDouble, exact: &Exact| {
         let truth = DoubleDouble::new(exact.parts[0], exact.parts[1]);
@@ -117,22 +147,16 @@ pub(super) fn double_double(work: &Work) -> Setup<'_, Floats<DoubleDouble>> {
     setup
 }
 
-pub(super) fn interval(work: &Work) -> Setup<'_, Floats<Interval>> {
-    // the end that is further from the truth; an interval that does not contain it is no enclosure
-    let error = |value: &Interval, exact: &Exact| {
-        let distance = |end: f64| (end - exact.parts[0]) - exact.parts[1];
-        if distance(value.low()) > 0.0 || distance(value.high()) < 0.0 {
-            return f64::INFINITY;
-        }
-        error(value.low(), exact).max(error(value.high(), exact))
-    };
+pub(super) fn interval(work: &Work) -> Setup<'_, Interval> {
+    let error = |value: &Interval, exact: &Exact| enclosed(value.low(), value.high(), exact);
     let accuracy = Accuracy::Digits(digits(f64::EPSILON));
-    let mut setup = Setup::new(Number::Interval, Floats::<Interval>::new(), accuracy, error);
+    let mut setup =
+        Setup::new(Number::Interval, accuracy, |value| Some(Interval::from_rational(value)), error);
     for (derivative, way) in programs(work, Floats::<Interval>::new()) {
         setup.way(derivative, way);
     }
-    let enclosed = |low: &RBig, high: &RBig| Interval::from_rational(low).hull(Interval::from_rational(high));
-    setup.way(Derivative::Duals, duals(work, enclosed));
+    let hull = |low: &RBig, high: &RBig| Interval::from_rational(low).hull(Interval::from_rational(high));
+    setup.way(Derivative::Duals, duals(work, hull));
     let columns = work.block.columns;
     let way = each(move |block| intervals(block, columns));
     setup.ranks.push((RankMethod::IntervalElimination, nonempty(work, way)));

@@ -12,6 +12,7 @@ mod duals;
 mod exact;
 mod floats;
 mod front;
+mod lanes;
 mod programs;
 mod ranks;
 mod rows;
@@ -57,6 +58,7 @@ pub fn trade(system: &System, question: &TradeQuestion<'_>) -> Result<Trade, Str
     let mut findings = Findings::default();
     let singles = floats::single(&work);
     let doubles = floats::double(&work);
+    let bounded = floats::bounded(&work);
     let double_doubles = floats::double_double(&work);
     let intervals = floats::interval(&work);
     let residues = exact::residue(&work, question.seed);
@@ -73,7 +75,7 @@ pub fn trade(system: &System, question: &TradeQuestion<'_>) -> Result<Trade, Str
             }
         )*};
     }
-    study!(singles doubles double_doubles intervals residues rationals);
+    study!(singles doubles bounded double_doubles intervals residues rationals);
     let rounds = timing::time(&mut jobs, question.rounds, work.states.len(), &stopped, &|round| {
         (question.progress)(done + round as u64, steps);
     });

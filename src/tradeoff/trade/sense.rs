@@ -5,6 +5,7 @@ use super::combination::{Derivative, Number, RankMethod};
 /// Why a way to a derivative is not taken with a kind of number.
 pub(super) fn no_derivative(number: Number, derivative: Derivative) -> &'static str {
     match (derivative, number) {
+        (_, Number::Bounded) => "only block programs carry bounds along",
         (Derivative::Forward | Derivative::Central, Number::Interval) => {
             "an enclosure of a difference quotient does not enclose the derivative"
         }
@@ -23,6 +24,8 @@ pub(super) fn no_rank(number: Number, rank: RankMethod) -> &'static str {
     let exact = matches!(number, Number::Residue | Number::Rational);
     match rank {
         RankMethod::ExactElimination => "numbers that round do not know whether they are zero",
+        RankMethod::BoundedElimination => "only doubles with bounds know their own error in blocks",
+        _ if number == Number::Bounded => "it would not look at the bounds",
         RankMethod::IntervalElimination => "only intervals know their own error",
         RankMethod::Elimination if exact => "exact numbers need no threshold",
         RankMethod::Elimination if number == Number::Interval => "intervals need no threshold",

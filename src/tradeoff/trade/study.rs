@@ -9,7 +9,7 @@ use super::timing::{Job, Part};
 use super::truth::{Exact, Truth};
 use super::ways::{Possible, Way};
 use super::work::{Block, Work};
-use crate::number::Arithmetic;
+use dashu::rational::RBig;
 use rayon::prelude::*;
 
 /// States that are evaluated in one go.
@@ -24,6 +24,9 @@ pub(super) enum Accuracy {
     Modular,
 }
 
+/// The image of a constant, where it has one.
+type ConstantOf<'w, N> = Box<dyn Fn(&RBig) -> Option<N> + Send + Sync + 'w>;
+
 /// The relative error of a value; infinite for what is no number, or an enclosure that does not enclose.
 type ErrorOf<'w, N> = Box<dyn Fn(&N, &Exact) -> f64 + Send + Sync + 'w>;
 
@@ -31,31 +34,32 @@ type ErrorOf<'w, N> = Box<dyn Fn(&N, &Exact) -> f64 + Send + Sync + 'w>;
 pub(super) type Timer<'w> = Box<dyn Fn(usize) + Send + Sync + 'w>;
 
 /// One kind of number, and what can be done with it.
-pub(super) struct Setup<'w, A: Arithmetic> {
+pub(super) struct Setup<'w, N> {
     pub number: Number,
-    pub arithmetic: A,
-    pub accuracy: Accuracy,
-    error: ErrorOf<'w, A::Number>,
-    pub ways: Vec<(Derivative, Way<'w, A::Number>)>,
-    pub ranks: Vec<(RankMethod, RankWay<'w, A::Number>)>,
+    accuracy: Accuracy,
+    constant: ConstantOf<'w, N>,
+    error: ErrorOf<'w, N>,
+    pub ways: Vec<(Derivative, Way<'w, N>)>,
+    pub ranks: Vec<(RankMethod, RankWay<'w, N>)>,
     /// What is timed where it is not the way itself, because a way hands its results over state by state.
     pub timers: Vec<(Derivative, Timer<'w>)>,
     /// Ways that would make sense and are not possible here.
     left_out: Vec<(Derivative, String)>,
 }
 
-impl<'w, A: Arithmetic> Setup<'w, A> {
+impl<'w, N> Setup<'w, N> {
     pub fn new(
         number: Number,
-        arithmetic: A,
         accuracy: Accuracy,
-        error: impl Fn(&A::Number, &Exact) -> f64 + Send + Sync + 'w,
+        constant: impl Fn(&RBig) -> Option<N> + Send + Sync + 'w,
+        error: impl Fn(&N, &Exact) -> f64 + Send + Sync + 'w,
     ) -> Self {
+        let constant = Box::new(constant);
         let error = Box::new(error);
         Setup {
             number,
-            arithmetic,
             accuracy,
+            constant,
             error,
             ways: Vec::new(),
             ranks: Vec::new(),
@@ -65,7 +69,7 @@ impl<'w, A: Arithmetic> Setup<'w, A> {
     }
 
     /// Takes a way in, or notes why it is not possible here.
-    pub fn way(&mut self, derivative: Derivative, way: Possible<'w, A::Number>) {
+    pub fn way(&mut self, derivative: Derivative, way: Possible<'w, N>) {
         match way {
             Ok(way) => self.ways.push((derivative, way)),
             Err(reason) => self.left_out.push((derivative, reason)),
@@ -135,14 +139,12 @@ impl Findings {
 }
 
 /// Evaluates everything once at all states, on all cores, and leaves the jobs for the timing.
-pub(super) fn study<'s, A: Arithmetic + Sync>(
+pub(super) fn study<'s, N: Clone + Send + Sync + 's>(
     work: &Work,
-    setup: &'s Setup<'_, A>,
+    setup: &'s Setup<'_, N>,
     findings: &mut Findings,
     jobs: &mut Vec<Job<'s>>,
-) where
-    A::Number: Send + Sync + 's,
-{
+) {
     findings.left_out.extend(setup.left_out());
     let mut timed = (Vec::new(), Vec::new());
     for (derivative, way) in &setup.ways {
@@ -156,9 +158,9 @@ pub(super) fn study<'s, A: Arithmetic + Sync>(
             digits,
             failed,
         });
-        let matrices = |block: &Block| -> Vec<Option<Vec<A::Number>>> {
+        let matrices = |block: &Block| -> Vec<Option<Vec<N>>> {
             let entries = entries.par_iter().map(Option::as_ref);
-            entries.map(|values| block.entries(&setup.arithmetic, values?)).collect()
+            entries.map(|values| block.entries(&setup.constant, values?)).collect()
         };
         let blocks = matrices(&work.block);
         let wholes = if setup.ranks.iter().any(|(rank, _)| rank.keeps_unit_rows()) {
@@ -220,16 +222,9 @@ fn evaluate<N: Clone + Send>(work: &Work, way: &Way<'_, N>) -> Vec<Option<Vec<N>
 }
 
 /// The digits at the median and at the worst state, and how many states have no value.
-fn digits<A: Arithmetic + Sync>(
-    work: &Work,
-    setup: &Setup<'_, A>,
-    entries: &[Option<Vec<A::Number>>],
-) -> (Digits, u64)
-where
-    A::Number: Sync,
-{
+fn digits<N: Sync>(work: &Work, setup: &Setup<'_, N>, entries: &[Option<Vec<N>>]) -> (Digits, u64) {
     let most = if let Accuracy::Digits(most) = setup.accuracy { most } else { f64::INFINITY };
-    let at_a_state = |(values, truth): (&Option<Vec<A::Number>>, &Truth)| {
+    let at_a_state = |(values, truth): (&Option<Vec<N>>, &Truth)| {
         let errors =
             values.as_ref()?.iter().zip(&truth.values).map(|(value, exact)| (setup.error)(value, exact));
         let worst = errors.fold(0.0, f64::max);
@@ -264,7 +259,7 @@ fn count(work: &Work, block: &Block, tally: &mut Combination, verdicts: &[Verdic
             // a nonzero minor modulo a prime is one for certain; that there is none is not
             Verdict::Rank(rank) => {
                 tally.certified += u64::from(match tally.number {
-                    Number::Rational | Number::Interval => true,
+                    Number::Rational | Number::Interval | Number::Bounded => true,
                     Number::Residue => *rank == block.rows.min(block.columns),
                     Number::Single | Number::Double | Number::DoubleDouble => false,
                 });

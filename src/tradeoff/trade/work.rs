@@ -69,10 +69,10 @@ impl Block {
 
     /// Its entries, one row after the other, from the values of the entries that vary; `None` where a constant has no
     /// image.
-    pub fn entries<A: Arithmetic>(&self, arithmetic: &A, values: &[A::Number]) -> Option<Vec<A::Number>> {
+    pub fn entries<N: Clone>(&self, constant: impl Fn(&RBig) -> Option<N>, values: &[N]) -> Option<Vec<N>> {
         let entry = |slot: &Slot| match slot {
             Slot::Varying(place) => values.get(*place).cloned(),
-            Slot::Constant(value) => arithmetic.rational(value).ok(),
+            Slot::Constant(value) => constant(value),
         };
         self.slots.iter().map(entry).collect()
     }
@@ -83,7 +83,7 @@ impl Block {
         arithmetic: &A,
         values: &[A::Number],
     ) -> Option<Vec<Vec<A::Number>>> {
-        let entries = self.entries(arithmetic, values)?;
+        let entries = self.entries(|value| arithmetic.rational(value).ok(), values)?;
         Some(entries.chunks(self.columns.max(1)).map(<[A::Number]>::to_vec).collect())
     }
 }
