@@ -1,8 +1,11 @@
 //! The part of the page that is about speed, accuracy and the extremes.
 
+use super::region::region_text;
+use super::region_plot::{region_curve, region_map};
 use super::stress::stress_pictures;
 use super::trade::{TRADE_FRONT_HEADINGS, trade_front_table};
 use super::trade_plot::trade_plot;
+use crate::observability::region::RegionAnswer;
 use crate::tradeoff::Trade;
 use crate::tradeoff::stress::Study;
 use crate::verification::Verification;
@@ -15,6 +18,25 @@ pub(super) fn extremes(found: &Verification) -> Markup {
             h2 { "Speed against accuracy" }
             @if let Some(trade) = &found.trade { (traded(trade)) }
             @if !found.stress.is_empty() { (stressed(&found.stress)) }
+            @if !found.regions.is_empty() { (certified(&found.regions)) }
+        }
+    }
+}
+
+fn certified(regions: &[RegionAnswer]) -> Markup {
+    html! {
+        h3 { "Between the samples" }
+        p {
+            "Full rank proved on whole sub-boxes of the sample box by interval arithmetic, the largest halved first; a short "
+            "version. " code { "palmistry certify" } " goes on for as long as it is given."
+        }
+        @for answer in regions {
+            details {
+                summary { (region_text(answer).lines().take(2).collect::<Vec<_>>().join(": ")) }
+                pre { (region_text(answer)) }
+                figure { (PreEscaped(region_curve(answer, "proved"))) }
+                @if let Some(map) = &answer.map { figure { (PreEscaped(region_map(map, "the box, in two coordinates"))) } }
+            }
         }
     }
 }

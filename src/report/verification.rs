@@ -2,6 +2,7 @@
 
 use super::claims::{claim_json, claim_line};
 use super::ranks::rank_json;
+use super::region::region_json;
 use super::stress::stress_json;
 use super::trade::trade_json;
 use crate::observability::RankAnswer;
@@ -115,6 +116,7 @@ pub fn verification_json(found: &Verification) -> Value {
         },
         "trade": found.trade.as_ref().map(trade_json),
         "stress": stress_json(&found.stress, found.seed),
+        "certificates": found.regions.iter().map(region_json).collect::<Vec<_>>(),
         "seconds": found.seconds,
     })
 }

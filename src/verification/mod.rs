@@ -18,6 +18,7 @@ pub use routes::{RouteAgreement, compare_routes};
 pub use stress::{prepare_regimes, short_stress};
 
 use crate::claim::{Outcome, decide_all};
+use crate::observability::region::{RegionAnswer, certify_region};
 use crate::system::{ReadError, System};
 use crate::tradeoff::stress::Study;
 use crate::tradeoff::{Growth, Trade, TradeQuestion, growth_of_lie_derivatives, trade};
@@ -50,6 +51,8 @@ pub struct Verification {
     pub trade: Option<Trade>,
     /// The extremes, in short: one study a regime.
     pub stress: Vec<Study>,
+    /// Certificates on the sample boxes, after a few thousand sub-boxes: one a regime.
+    pub regions: Vec<RegionAnswer>,
     pub seed: u64,
     /// Whether it was stopped before the end.
     pub interrupted: bool,
@@ -83,6 +86,8 @@ const GROWTH_ORDERS: usize = 12;
 /// A short version of `trade`.
 const TRADE_STATES: u64 = 100;
 const TRADE_ROUNDS: usize = 3;
+/// Sub-boxes that are looked at in each regime.
+const SUB_BOXES: u64 = 4000;
 
 /// The proof files of the folder beside those of the regimes, in order of name.
 fn other_files(folder: &Path) -> Result<Vec<String>, VerifyError> {
@@ -115,7 +120,7 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         systems.push(read(&file)?);
     }
     let claims: usize = systems.iter().map(|system| system.claims.len()).sum();
-    let steps = claims as u64 + REGIMES.iter().map(Regime::steps).sum::<u64>() + 5;
+    let steps = claims as u64 + REGIMES.iter().map(Regime::steps).sum::<u64>() + 6;
     let counter = std::sync::atomic::AtomicU64::new(0);
     let step = |what: &str| {
         let done = counter.fetch_add(1, Ordering::Relaxed) + 1;
@@ -145,6 +150,7 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         growth: Vec::new(),
         trade: None,
         stress: Vec::new(),
+        regions: Vec::new(),
         seed: options.seed,
         interrupted: false,
         seconds: 0.0,
@@ -182,6 +188,13 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         verification.stress = short_stress(&systems[..REGIMES.len()], options.seed, options.interrupt)
             .map_err(|why| VerifyError::Step { step: "the extremes".to_owned(), why })?;
     }
+    for system in systems[..REGIMES.len()].iter_mut().take_while(|_| !stopped()) {
+        let found = certify_region(system, SUB_BOXES, options.interrupt);
+        let found =
+            found.map_err(|why| VerifyError::Step { step: format!("the box of {}", system.name), why })?;
+        verification.regions.push(found);
+    }
+    step("certificates on boxes");
     verification.interrupted = stopped();
     verification.seconds = begin.elapsed().as_secs_f64();
     Ok(verification)
