@@ -2,14 +2,14 @@
 //!
 //! | rung | numbers | what it knows |
 //! |---|---|---|
-//! | doubles | f64, singular values after equilibration | *computed*; for streams of states only (see below) |
+//! | doubles | f64 with running error bounds, elimination (streams of states) | a full rank for *certain*, or *computed* |
 //! | intervals | f64 rounded outward, elimination | a full rank for *certain* |
 //! | residues | modulo a prime of 62 bits | a lower bound for *certain* |
 //! | exact | rational numbers | the rank, and what is not seen |
 //! | enclosures | enclosures of 128 bits and more | a lower bound for *certain*; the rank as *computed* |
 //!
-//! A rung that cannot tell leaves the state to the next one. The ladder begins with intervals, which cost little more than
-//! doubles and know their errors: on a set where a row vanishes doubles see rounding noise of full rank. Where intervals
+//! A rung that cannot tell leaves the state to the next one. A stream begins with doubles that know their errors; a single
+//! state begins with intervals. Doubles that do not are on no rung: where a row vanishes they see noise of full rank. Where intervals
 //! fall short, a computed rank is taken from enclosures, a certified one by exact numbers.
 
 use super::elimination::{certain_rank, kernel, rank};
