@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn percents_are_rounded_down() {
         assert_eq!(percent(0.999_987_654), "99.998%");
-        assert_eq!(percent(0.999_999_999_9), "99.99999999%");
+        assert_eq!(percent(0.999_999_999_923), "99.999999992%");
         assert_eq!(percent(0.5), "50.00%");
         assert_eq!(percent(2.0 / 3.0), "66.66%");
         assert_eq!(percent(1.0), "100%");
