@@ -143,8 +143,8 @@ impl Certify {
             if let Some(file) = &self.state {
                 write_whole(file, &region.saved())?;
             }
-            if done == 0 && self.boxes.is_none() {
-                break; // what is left of the time is for looking at the open boxes
+            if done == 0 {
+                break; // the rest of the time is for explaining the open boxes, or too many of these are open
             }
         }
         bar.finish_and_clear();

@@ -22,7 +22,7 @@ pub(crate) struct Trade {
     /// The proof file.
     file: PathBuf,
     /// How many states are drawn from the sample box.
-    #[arg(long, default_value_t = 1000, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, default_value_t = 1000, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=20_000))]
     samples: u64,
     /// Seed of the sampled states.
     #[arg(long, default_value_t = 1, value_name = "S")]

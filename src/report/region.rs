@@ -1,7 +1,9 @@
 //! Certificates on regions, as JSON and as text.
 
+use crate::number::rational_from_f64;
 use crate::observability::AVOIDED;
 use crate::observability::region::{OpenBox, PartAnswer, RegionAnswer, Standing, Vanishing};
+use dashu::rational::RBig;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -89,12 +91,11 @@ pub fn percent(fraction: f64) -> String {
     }
     let missing = (100.0 * (1.0 - fraction)).log10();
     let digits = (-missing).ceil().clamp(2.0, 12.0) as usize;
-    let scale = 10f64.powi(digits as i32);
-    let mut steps = (fraction * 100.0 * scale).floor();
-    if steps / scale / 100.0 > fraction {
-        steps -= 1.0; // the product was rounded up
-    }
-    format!("{:.digits$}%", steps.max(0.0) / scale)
+    let scale = 10u64.pow(digits as u32);
+    // a double is a rational number: the last digit is decided exactly
+    let whole = rational_from_f64(fraction).unwrap_or(RBig::ZERO) * RBig::from(100) * RBig::from(scale);
+    let steps = whole.floor().to_f64().value().max(0.0);
+    format!("{:.digits$}%", steps / scale as f64)
 }
 
 /// An answer as text.
@@ -191,7 +192,9 @@ mod tests {
     #[test]
     fn percents_are_rounded_down() {
         assert_eq!(percent(0.999_987_654), "99.998%");
-        assert_eq!(percent(0.999_999_999_923), "99.999999992%");
+        // 1 - 2^-20 is 0.99999904632568359375 exactly
+        assert_eq!(percent(1.0 - 2f64.powi(-20)), "99.99990%");
+        assert_eq!(percent(1.0 - 2f64.powi(-29)), "99.9999998%");
         assert_eq!(percent(0.5), "50.00%");
         assert_eq!(percent(2.0 / 3.0), "66.66%");
         assert_eq!(percent(1.0), "100%");

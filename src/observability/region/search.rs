@@ -108,8 +108,8 @@ const LONGEST_TURN: usize = 2048;
 const HOPE: f64 = 0.6;
 /// So many minors are tried on a box.
 const TRIES: usize = 3;
-/// With more open boxes than this the smallest are halved instead of the largest, so that memory is bounded.
-const MOST_OPEN: usize = 4_000_000;
+/// With so many open boxes a search ends: what is left would fill the memory (some 150 bytes each).
+const MOST_OPEN: usize = 6_000_000;
 
 impl Search {
     /// The whole box, open.
@@ -128,10 +128,14 @@ impl Search {
         self.open.values().map(VecDeque::len).sum::<usize>() + self.left.len()
     }
 
-    /// The boxes to look at next: the largest.
+    /// Whether there are as many open boxes as are kept.
+    pub fn is_full(&self) -> bool {
+        self.unproved_boxes() >= MOST_OPEN
+    }
+
+    /// The boxes to look at next: the largest. None where no box is open, or too many are.
     pub fn turn(&self) -> Option<Turn> {
-        let crowded = self.unproved_boxes() > MOST_OPEN;
-        let (depth, queue) = if crowded { self.open.last_key_value() } else { self.open.first_key_value() }?;
+        let (depth, queue) = self.open.first_key_value().filter(|_| !self.is_full())?;
         Some(Turn { depth: *depth, boxes: queue.len().min(LONGEST_TURN) })
     }
 

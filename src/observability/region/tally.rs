@@ -148,8 +148,18 @@ impl Region {
                 .flat_map(|tally| tally.largest.iter().map(|(open, _)| open.clone()))
                 .collect(),
             map: self.map(&tallies),
-            remarks: problem.remarks.clone(),
+            remarks: self.remarks(),
         }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let mut remarks = self.problem.remarks.clone();
+        if self.searches.searches.iter().any(Search::is_full) {
+            remarks.push(
+                "as many boxes are open as are kept in memory; choose a smaller box with --box".to_owned(),
+            );
+        }
+        remarks
     }
 
     fn minors(&self) -> Vec<RegionMinor> {

@@ -28,6 +28,8 @@ pub(super) struct Truth {
 
 /// The bits of enclosures where there is no exact arithmetic.
 const BITS: usize = 320;
+/// The bits of an angle in radians: more than any kind of number here rounds it to.
+const ANGLE_BITS: usize = 144;
 
 impl Truth {
     /// Of the entries that a program computes and the rank of a block of them; `rows` are the rows of the entries. `None`
@@ -92,7 +94,7 @@ pub(super) fn radians(state: &State, symbol: Symbol) -> Option<(RBig, RBig)> {
         Coordinate::Number(value) => return Some((value.clone(), value.clone())),
         Coordinate::Angle { sine, cosine } => (sine, cosine),
     };
-    let fine = Enclosures::new(BITS);
+    let fine = Enclosures::new(ANGLE_BITS);
     // twice the angle whose tangent is sin/(1 + cos); a half turn has none
     let bottom = cosine + RBig::ONE;
     let angle = if bottom.is_zero() {

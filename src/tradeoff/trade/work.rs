@@ -11,6 +11,7 @@ use crate::system::System;
 use dashu::rational::RBig;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::atomic::Ordering;
 
 /// Where an entry of the remaining block comes from.
 #[derive(Clone, Debug)]
@@ -153,11 +154,15 @@ impl Work {
     }
 
     fn find_truths(&mut self, locus: &Locus, question: &TradeQuestion<'_>) -> Result<(), String> {
+        let stopped = || question.interrupt.load(Ordering::Relaxed);
         let symbols = self.programs.points.symbols();
         let rows: Vec<usize> = self.varying.iter().map(|place| place / self.columns).collect();
         let drawn: Vec<Option<(State, Truth, Vec<_>)>> = (0..question.samples)
             .into_par_iter()
             .map(|index| {
+                if stopped() {
+                    return Ok(None);
+                }
                 let state = locus.draw(question.seed, index).map_err(|error| error.to_string())?;
                 let truth = Truth::at(&state, &self.programs.graph, &self.block, &rows);
                 let point: Option<Vec<_>> = symbols.iter().map(|symbol| radians(&state, *symbol)).collect();
@@ -173,6 +178,12 @@ impl Work {
                 }
                 None => self.without_truth += 1,
             }
+        }
+        if stopped() {
+            self.without_truth = 0; // most of these were never looked at
+        }
+        if self.states.is_empty() && stopped() {
+            return Err("interrupted before anything was measured".to_owned());
         }
         if self.states.is_empty() {
             return Err("at no sampled state is the rank of the rows known for certain".to_owned());
