@@ -50,6 +50,9 @@ pub mod claim;
 // real bodies between real palms, a second witness for the physics
 pub mod mechanics;
 
+// states recovered from what is measured
+pub mod observer;
+
 // speed against accuracy, the extremes
 pub mod tradeoff;
 

@@ -11,8 +11,8 @@
 use super::{Arithmetic, Function, Real, Refusal, Tower};
 use dashu::rational::RBig;
 use nalgebra::allocator::Allocator;
-use nalgebra::{DefaultAllocator, Dim};
-use num_dual::{Dual, DualNum, DualVec};
+use nalgebra::{DefaultAllocator, Dim, U1};
+use num_dual::{Dual, Dual2Vec, DualNum, DualVec};
 use std::marker::PhantomData;
 
 /// A number that num-dual differentiates over or with: a plain one, or a dual of such.
@@ -52,6 +52,19 @@ where
     type Base = T::Base;
     fn constant(value: T::Base) -> Self {
         DualVec::from_re(T::constant(value))
+    }
+    fn base(&self) -> T::Base {
+        self.re.base()
+    }
+}
+
+impl<T: Differentiable, D: Dim> Differentiable for Dual2Vec<T, D>
+where
+    DefaultAllocator: Allocator<U1, D> + Allocator<D> + Allocator<D, D>,
+{
+    type Base = T::Base;
+    fn constant(value: T::Base) -> Self {
+        Dual2Vec::from_re(T::constant(value))
     }
     fn base(&self) -> T::Base {
         self.re.base()

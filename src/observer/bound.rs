@@ -1,0 +1,93 @@
+//! How well a window can see the unknowns at all: the bound of Cramér and Rao.
+
+use nalgebra::DMatrix;
+
+/// A singular value below this fraction of the largest is noise of the integration: what it belongs to is not seen.
+const UNSEEN: f64 = 1e-10;
+
+/// The least standard deviations that an unbiased estimate of the unknowns can have, and their covariance.
+///
+/// For independent normal errors of the readings with the standard deviation `sigma` no unbiased estimate has a smaller
+/// covariance than `sigma^2 (J^T J)^-1`, `J` being the derivatives of the readings by the unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bound {
+    /// One an unknown, in its unit; infinite where it is not seen.
+    pub deviations: Vec<f64>,
+    /// The largest singular value of the scaled `J` over the smallest.
+    pub condition: f64,
+    /// The covariance; none where something is not seen.
+    pub covariance: Option<DMatrix<f64>>,
+    /// The combination of unknowns that is seen worst, of length one, in units of the unknowns' sizes.
+    pub weakest: Vec<f64>,
+}
+
+/// The bound from the derivatives of the readings, a row a reading; `sizes` are the magnitudes of the unknowns, by which
+/// they are scaled before anything is decomposed.
+pub fn cramer_rao(slopes: &DMatrix<f64>, sigma: f64, sizes: &[f64]) -> Bound {
+    let p = slopes.ncols();
+    let blind = || Bound {
+        deviations: vec![f64::INFINITY; p],
+        condition: f64::INFINITY,
+        covariance: None,
+        weakest: vec![0.0; p],
+    };
+    if p == 0 || slopes.nrows() < p || slopes.iter().any(|value| !value.is_finite()) {
+        return blind();
+    }
+    let scaled = DMatrix::from_fn(slopes.nrows(), p, |i, j| slopes[(i, j)] * sizes[j]);
+    let Some(svd) = scaled.try_svd(false, true, f64::EPSILON, 10_000) else {
+        return blind();
+    };
+    let (values, Some(directions)) = (&svd.singular_values, &svd.v_t) else {
+        return blind();
+    };
+    let largest = values.max();
+    let (least, smallest) = values.argmin();
+    let weakest = directions.row(least).iter().copied().collect();
+    if largest <= 0.0 {
+        return blind();
+    }
+    let unseen: Vec<usize> = (0..p).filter(|k| values[*k] <= UNSEEN * largest).collect();
+    let entry = |i: usize, j: usize| -> f64 {
+        let terms = (0..p).map(|k| directions[(k, i)] * directions[(k, j)] / (values[k] * values[k]));
+        sigma * sigma * sizes[i] * sizes[j] * terms.sum::<f64>()
+    };
+    let deviation = |i: usize| {
+        // an unknown that has no part in what is not seen is seen all the same
+        let hidden = unseen.iter().any(|k| directions[(*k, i)].abs() > 1e-6);
+        let seen = (0..p).filter(|k| !unseen.contains(k));
+        let square: f64 = seen.map(|k| (directions[(k, i)] / values[k]).powi(2)).sum();
+        if hidden { f64::INFINITY } else { sigma * sizes[i] * square.sqrt() }
+    };
+    Bound {
+        deviations: (0..p).map(deviation).collect(),
+        condition: if smallest > 0.0 { largest / smallest } else { f64::INFINITY },
+        covariance: unseen.is_empty().then(|| DMatrix::from_fn(p, p, entry)),
+        weakest,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A straight line `a + b t` read at the times -1, 0, 1: var a = sigma^2/3, var b = sigma^2/2, by hand.
+    #[test]
+    fn the_bound_of_a_straight_line_is_known() {
+        let slopes = DMatrix::from_row_slice(3, 2, &[1.0, -1.0, 1.0, 0.0, 1.0, 1.0]);
+        let bound = cramer_rao(&slopes, 0.1, &[1.0, 100.0]);
+        assert!((bound.deviations[0] - 0.1 / 3f64.sqrt()).abs() < 1e-15);
+        assert!((bound.deviations[1] - 0.1 / 2f64.sqrt()).abs() < 1e-15);
+        assert!((bound.covariance.unwrap()[(0, 1)]).abs() < 1e-15);
+    }
+
+    /// Two unknowns of which only the sum is read, and a third that is read: the third is seen.
+    #[test]
+    fn what_is_not_seen_has_no_bound() {
+        let slopes = DMatrix::from_row_slice(3, 3, &[1.0, 1.0, 0.0, 2.0, 2.0, 0.0, 0.0, 0.0, 1.0]);
+        let bound = cramer_rao(&slopes, 1.0, &[1.0; 3]);
+        assert_eq!(bound.deviations[..2], [f64::INFINITY; 2]);
+        assert!((bound.deviations[2] - 1.0).abs() < 1e-12);
+        assert_eq!(bound.covariance, None);
+    }
+}

@@ -1,0 +1,221 @@
+//! The flow of a model: its states followed through time, with their first and second derivatives by the unknown parts
+//! of the first state.
+//!
+//! Sensitivities are integrated along: num-dual evaluates the equations on states that carry their derivatives, which is
+//! the right-hand side of the variational equations of that order, and ode_solvers integrates all of it with one step
+//! control (Dormand and Prince, order 8(5,3)). Nothing is differenced.
+
+use super::jet::{Jet, triangle};
+use super::model::{Feed, Formulas};
+use super::{Model, Signals};
+use crate::number::{Duals, Refusal};
+use nalgebra::DMatrix;
+use num_dual::{Dual2SVec64, DualSVec64};
+use ode_solvers::dop_shared::OutputType;
+use ode_solvers::{DVector, Dop853, System};
+use std::cell::{Cell, RefCell};
+
+/// How many derivatives are carried along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Order {
+    Value,
+    First,
+    Second,
+}
+
+/// Where a flow could not be followed, and why.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("at {time:.6} s {why}")]
+pub struct Lost {
+    /// In s.
+    pub time: f64,
+    pub why: String,
+}
+
+/// The model at one time, `p` being the number of unknowns.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// In s.
+    pub time: f64,
+    /// The followed states.
+    pub state: Vec<f64>,
+    /// Their derivatives by the unknowns, a row a state; empty at order zero.
+    pub slopes: DMatrix<f64>,
+    /// The outputs.
+    pub outputs: Vec<f64>,
+    /// Their derivatives, a row an output.
+    pub output_slopes: DMatrix<f64>,
+    /// Their second derivatives, a matrix an output; none below order two.
+    pub output_bends: Vec<DMatrix<f64>>,
+}
+
+/// A model with its signals, ready to be integrated.
+#[derive(Clone, Copy, Debug)]
+pub struct Flow<'a> {
+    pub model: &'a Model,
+    pub signals: &'a Signals,
+    /// The relative and absolute error of a step.
+    pub tolerance: f64,
+}
+
+/// An integration takes no more steps than these between two samples: who needs more has met a pole.
+const MOST_EVALUATIONS: usize = 20_000;
+
+/// The unknowns that one call can carry.
+pub const MOST_UNKNOWNS: usize = 10;
+
+impl Flow<'_> {
+    /// The model at some times, from a state at the first of them; `free` are the places of the states whose first values
+    /// are unknown, in the order of the derivatives.
+    ///
+    /// # Errors
+    /// Where the equations have no value, the integrator finds no step, or more than [`MOST_UNKNOWNS`] are unknown.
+    pub fn follow(
+        &self,
+        start: &[f64],
+        free: &[usize],
+        times: &[f64],
+        order: Order,
+    ) -> Result<Vec<Sample>, Lost> {
+        let p = free.len();
+        // a few sizes for all: what is too large is filled with zeros
+        macro_rules! sized {
+            ($($size:literal)*) => {
+                match order {
+                    Order::Value => self.integrate::<f64>(start, free, times, 0),
+                    $(Order::First if p <= $size => self.integrate::<DualSVec64<$size>>(start, free, times, $size),)*
+                    $(Order::Second if p <= $size => self.integrate::<Dual2SVec64<$size>>(start, free, times, $size),)*
+                    _ => Err(Lost { time: times[0], why: format!("{p} unknowns are more than {MOST_UNKNOWNS}") }),
+                }
+            };
+        }
+        sized!(2 3 4 5 6 8 10)
+    }
+
+    fn integrate<J: Jet>(
+        &self,
+        start: &[f64],
+        free: &[usize],
+        times: &[f64],
+        size: usize,
+    ) -> Result<Vec<Sample>, Lost> {
+        let model = self.model;
+        let refuse =
+            |time: f64, refusal: Refusal| Lost { time, why: format!("the model has no value: {refusal}") };
+        let arithmetic = Duals::<J>::default;
+        let rates = model.rates.program.load(arithmetic()).map_err(|refusal| refuse(times[0], refusal))?;
+        let seen = model.seen.program.load(arithmetic()).map_err(|refusal| refuse(times[0], refusal))?;
+        let registers = RefCell::new(Vec::new());
+        let evaluate =
+            |formulas: &Formulas, loaded: &crate::expression::Loaded<'_, Duals<J>>, time, y: &[f64]| {
+                let mut told = vec![0.0; model.columns.len()];
+                self.signals.at(&model.columns, time, &mut told);
+                let input = |feed: &Feed| match *feed {
+                    Feed::State(place) => J::unpack(&y[place * J::LENGTH..(place + 1) * J::LENGTH]),
+                    Feed::Column(place) | Feed::Rate(place) => J::constant(told[place]),
+                };
+                let inputs: Vec<J> = formulas.feeds.iter().map(input).collect();
+                loaded.run(&inputs, &mut registers.borrow_mut())
+            };
+        let failure: Cell<Option<(f64, Refusal)>> = Cell::new(None);
+        let evaluations = Cell::new(0);
+        let right_hand_side = |time: f64, y: &[f64], dy: &mut [f64]| {
+            evaluations.set(evaluations.get() + 1);
+            match evaluate(&model.rates, &rates, time, y) {
+                Ok(values) if evaluations.get() < MOST_EVALUATIONS => {
+                    for (value, places) in values.iter().zip(dy.chunks_mut(J::LENGTH)) {
+                        value.pack(places);
+                    }
+                }
+                Ok(_) => dy.fill(f64::NAN),
+                Err(error) => {
+                    failure.set(Some((time, error.refusal)));
+                    dy.fill(f64::NAN);
+                }
+            }
+        };
+
+        let mut y = vec![0.0; start.len() * J::LENGTH];
+        for (place, value) in start.iter().enumerate() {
+            y[place * J::LENGTH] = *value;
+        }
+        if size > 0 {
+            for (unknown, place) in free.iter().enumerate() {
+                y[place * J::LENGTH + 1 + unknown] = 1.0;
+            }
+        }
+        let mut samples = Vec::with_capacity(times.len());
+        for (i, time) in times.iter().enumerate() {
+            if i > 0 {
+                evaluations.set(0);
+                failure.set(None);
+                y = advance(&right_hand_side, times[i - 1], *time, &y, self.tolerance).map_err(|lost| {
+                    match failure.get() {
+                        Some((time, refusal)) => refuse(time, refusal),
+                        None => lost,
+                    }
+                })?;
+            }
+            let values =
+                evaluate(&model.seen, &seen, *time, &y).map_err(|error| refuse(*time, error.refusal))?;
+            samples.push(sample(*time, start.len(), free.len(), size, &y, &values));
+        }
+        Ok(samples)
+    }
+}
+
+/// What the integrator stored, as matrices; `size` is the stored number of unknowns, not less than `p`.
+fn sample<J: Jet>(time: f64, states: usize, p: usize, size: usize, y: &[f64], outputs: &[J]) -> Sample {
+    let mut seen = vec![0.0; outputs.len() * J::LENGTH];
+    for (output, places) in outputs.iter().zip(seen.chunks_mut(J::LENGTH)) {
+        output.pack(places);
+    }
+    let p = if size == 0 { 0 } else { p };
+    let values = |rows: &[f64]| rows.iter().step_by(J::LENGTH).copied().collect();
+    let slopes = |rows: &[f64], n: usize| DMatrix::from_fn(n, p, |i, j| rows[i * J::LENGTH + 1 + j]);
+    let bend = |row: &[f64]| DMatrix::from_fn(p, p, |i, j| row[1 + size + triangle(i.max(j), i.min(j))]);
+    let second = J::LENGTH > 1 + size;
+    Sample {
+        time,
+        state: values(y),
+        slopes: slopes(y, states),
+        outputs: values(&seen),
+        output_slopes: slopes(&seen, outputs.len()),
+        output_bends: if second { seen.chunks(J::LENGTH).map(bend).collect() } else { Vec::new() },
+    }
+}
+
+/// Equations with time as their last coordinate.
+///
+/// Dop853 of ode_solvers 0.6.2 takes zero for the twelfth node of the method, which is one: right-hand sides that depend on the
+/// time it hands over are integrated wrongly. A coordinate whose rate is one brings the right time.
+struct Equations<'f>(&'f dyn Fn(f64, &[f64], &mut [f64]));
+
+impl System<f64, DVector<f64>> for Equations<'_> {
+    fn system(&self, _: f64, y: &DVector<f64>, dy: &mut DVector<f64>) {
+        let ([y @ .., time], [dy @ .., time_rate]) = (y.as_slice(), dy.as_mut_slice()) else { return };
+        *time_rate = 1.0;
+        (self.0)(*time, y, dy);
+    }
+}
+
+/// Integrates `y' = f(t, y)` from one time to a later one.
+///
+/// # Errors
+/// Where no step is small enough, as near a pole.
+pub(super) fn advance(
+    f: &dyn Fn(f64, &[f64], &mut [f64]),
+    from: f64,
+    to: f64,
+    y: &[f64],
+    tolerance: f64,
+) -> Result<Vec<f64>, Lost> {
+    let start = DVector::from_iterator(y.len() + 1, y.iter().copied().chain([from]));
+    let mut solver = Dop853::new(Equations(f), 0.0, to - from, to - from, start, tolerance, tolerance);
+    solver.set_output(OutputType::Sparse);
+    let no_step = |why: String| Lost { time: from, why: format!("the integrator finds no step: {why}") };
+    solver.integrate().map_err(|error| no_step(error.to_string()))?;
+    let end = solver.y_out().last().filter(|end| end.iter().all(|value| value.is_finite()));
+    end.map(|end| end.as_slice()[..y.len()].to_vec())
+        .ok_or_else(|| no_step("a number is not finite".to_owned()))
+}

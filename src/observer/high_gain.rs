@@ -1,0 +1,283 @@
+//! The high-gain observer of Gauthier, Hammouri and Othman, which section 6.2 of the thesis names.
+
+use super::flow::advance;
+use super::model::{Feed, Formulas};
+use super::task::{Moment, Observer, Task, Track};
+use super::{Lost, Model};
+use crate::expression::{NodeId, Symbol, gradient};
+use crate::number::{Duals, Refusal};
+use nalgebra::{DMatrix, DVector};
+use std::cell::Cell;
+use std::collections::HashMap;
+
+/// The high-gain observer.
+///
+/// In the coordinates `z = Phi(x)`, the outputs and their derivatives along the motion, the system has the canonical form
+/// 6.1, 6.2: each derivative is the next coordinate. There a copy of the system is corrected by
+/// `-K e`, `e` being the error of an output and `K` the coefficients of `(1 + 1/gain)^l` (the solution of the paper's matrix
+/// equation); in the coordinates of the model the correction is `-(dPhi/dx)^-1 K e`. The form exists where `dPhi/dx` is regular.
+/// How many derivatives each output contributes is chosen at the first guess, as the choice that is conditioned best.
+///
+/// Reference: J. P. Gauthier, H. Hammouri, S. Othman, A simple observer for nonlinear systems, IEEE TAC 37(6), 1992; for
+/// several outputs G. Bornard and H. Hammouri, CDC 1991.
+#[derive(Clone, Copy, Debug)]
+pub struct HighGain {
+    /// In 1/s: errors die out as `exp(-gain t)`, and noise is amplified by powers of it.
+    pub gain: f64,
+}
+
+impl Default for HighGain {
+    fn default() -> Self {
+        HighGain { gain: 60.0 }
+    }
+}
+
+/// A matrix whose scaled condition is worse than this is taken to be singular.
+const SINGULAR: f64 = 1e9;
+
+/// The derivatives of the canonical coordinates by the states: one row a coordinate, output by output.
+struct Canonical {
+    /// For each output how many of its derivatives are coordinates, itself included.
+    lengths: Vec<usize>,
+    /// The rows, and where their inputs come from.
+    rows: Formulas,
+    model: Model,
+}
+
+impl Observer for HighGain {
+    fn name(&self) -> &'static str {
+        "high-gain"
+    }
+
+    fn observe(&self, task: &Task<'_>) -> Track {
+        let mut track = Track::default();
+        let times = task.signals.times();
+        let mut state = task.full_state(&task.guess, 0);
+        let canonical = match Canonical::new(task, &state) {
+            Ok(canonical) => canonical,
+            Err(why) => {
+                track.remarks.push(format!("no canonical form: {why}"));
+                return track;
+            }
+        };
+        let record = |time: f64, state: &[f64], row: usize, track: &mut Track| {
+            // the outputs of the canonical form are states: they are what is read
+            let read = task.readings(row);
+            let seen = task.full.outputs.iter().map(|name| task.full.find(name).map(|place| state[place]));
+            let surprise = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
+            track.moments.push(Moment { time, state: state[..task.sought()].to_vec(), surprise });
+        };
+        record(times[0], &state, 0, &mut track);
+        for row in 1..times.len() {
+            if task.interrupted() {
+                break;
+            }
+            match self.step(task, &canonical, &state, times[row - 1], times[row]) {
+                Ok((there, seen)) => {
+                    state = there;
+                    track.unseen += usize::from(!seen);
+                }
+                Err(lost) => {
+                    if track.unseen == 0 {
+                        track.remarks.push(format!("held, with the outputs as they are read: {lost}"));
+                    }
+                    track.unseen += 1;
+                    let belief = state[..task.sought()].to_vec();
+                    state = task.full_state(&belief, row);
+                }
+            }
+            record(times[row], &state, row, &mut track);
+        }
+        let lengths: Vec<String> = canonical.lengths.iter().map(ToString::to_string).collect();
+        track.remarks.push(format!("canonical form: the outputs with {} derivatives", lengths.join(" and ")));
+        track
+    }
+}
+
+impl HighGain {
+    /// From one sample to the next; whether the canonical form existed on all of the way.
+    fn step(
+        &self,
+        task: &Task<'_>,
+        canonical: &Canonical,
+        state: &[f64],
+        from: f64,
+        to: f64,
+    ) -> Result<(Vec<f64>, bool), Lost> {
+        let model = &canonical.model;
+        let refuse =
+            |refusal: Refusal| Lost { time: from, why: format!("the model has no value: {refusal}") };
+        let rates = model.rates.program.load(Duals::<f64>::default()).map_err(refuse)?;
+        let failure: Cell<Option<Refusal>> = Cell::new(None);
+        let seen = Cell::new(true);
+        let right_hand_side = |time: f64, x: &[f64], dx: &mut [f64]| {
+            match rates.run(&told(task, model, &model.rates, time, x), &mut Vec::new()) {
+                Ok(values) => dx.copy_from_slice(&values),
+                Err(error) => {
+                    failure.set(Some(error.refusal));
+                    return dx.fill(f64::NAN);
+                }
+            }
+            match canonical.correction(task, time, x, self.gain) {
+                Some(correction) => dx.iter_mut().zip(correction.iter()).for_each(|(dx, c)| *dx -= c),
+                None => seen.set(false),
+            }
+        };
+        let end = advance(&right_hand_side, from, to, state, 1e-10);
+        let end = end.map_err(|lost| failure.get().map_or(lost, refuse))?;
+        Ok((end, seen.get()))
+    }
+}
+
+/// The inputs of some formulas at a time and a state.
+fn told(task: &Task<'_>, model: &Model, formulas: &Formulas, time: f64, x: &[f64]) -> Vec<f64> {
+    let mut values = vec![0.0; model.columns.len()];
+    let mut slopes = vec![0.0; model.columns.len()];
+    task.signals.at(&model.columns, time, &mut values);
+    if formulas.feeds.iter().any(|feed| matches!(feed, Feed::Rate(_))) {
+        task.signals.rates_at(&model.columns, time, &mut slopes);
+    }
+    let feed = |feed: &Feed| match *feed {
+        Feed::State(place) => x[place],
+        Feed::Column(place) => values[place],
+        Feed::Rate(place) => slopes[place],
+    };
+    formulas.feeds.iter().map(feed).collect()
+}
+
+impl Canonical {
+    /// The canonical form of a task's model, where it has one at the first guess.
+    fn new(task: &Task<'_>, state: &[f64]) -> Result<Canonical, String> {
+        let mut model = task.full.clone();
+        if model.outputs.iter().any(|output| model.find(output).is_none()) {
+            return Err("an output is not one of the states that are followed".to_owned());
+        }
+        let (n, m) = (model.states.len(), model.outputs.len());
+        let mut best: Option<(f64, Canonical)> = None;
+        for lengths in compositions(n, m) {
+            let longest = lengths.iter().copied().max().unwrap_or(0);
+            // a third derivative would need the second derivatives of the signals
+            if longest > 3 {
+                continue;
+            }
+            let (rows, rates) = coordinate_rows(&mut model, &lengths);
+            let rows = model.formulas(&rows, &rates, task.signals).map_err(|error| error.to_string())?;
+            let canonical = Canonical { lengths, rows, model: model.clone() };
+            let condition =
+                canonical.matrix(task, task.signals.times()[0], state).map(|matrix| condition(&matrix, task));
+            if let Some(condition) = condition.filter(|condition| *condition < SINGULAR)
+                && best.as_ref().is_none_or(|(least, _)| condition < *least)
+            {
+                best = Some((condition, canonical));
+            }
+        }
+        let none = || {
+            format!(
+                "no choice of {n} derivatives of the {m} outputs, at most second ones, is regular at the first guess"
+            )
+        };
+        best.map(|(_, canonical)| canonical).ok_or_else(none)
+    }
+
+    /// `dPhi/dx`.
+    fn matrix(&self, task: &Task<'_>, time: f64, x: &[f64]) -> Option<DMatrix<f64>> {
+        let program = self.rows.program.load(Duals::<f64>::default()).ok()?;
+        let inputs = told(task, &self.model, &self.rows, time, x);
+        let values = program.run(&inputs, &mut Vec::new()).ok()?;
+        let n = self.model.states.len();
+        values.iter().all(|value| value.is_finite()).then(|| DMatrix::from_row_slice(n, n, &values))
+    }
+
+    /// `(dPhi/dx)^-1 K e`.
+    fn correction(&self, task: &Task<'_>, time: f64, x: &[f64], gain: f64) -> Option<DVector<f64>> {
+        let matrix = self.matrix(task, time, x)?;
+        if condition(&matrix, task) > SINGULAR {
+            return None;
+        }
+        let mut read = vec![0.0; self.model.measured.len()];
+        task.signals.at(&self.model.measured, time, &mut read);
+        let mut right = Vec::with_capacity(x.len());
+        for ((length, output), read) in self.lengths.iter().zip(&self.model.outputs).zip(&read) {
+            let error = x[self.model.find(output)?] - read;
+            right.extend((1..=*length).map(|k| binomial(*length, k) * gain.powi(k as i32) * error));
+        }
+        matrix.lu().solve(&DVector::from_vec(right))
+    }
+}
+
+/// The condition of a matrix whose columns are scaled by the sizes of the states and whose rows to length one.
+fn condition(matrix: &DMatrix<f64>, task: &Task<'_>) -> f64 {
+    let mut scaled = matrix.clone();
+    for (j, mut column) in scaled.column_iter_mut().enumerate() {
+        column *= task.sizes.get(j).copied().unwrap_or(1.0);
+    }
+    for mut row in scaled.row_iter_mut() {
+        let length = row.norm();
+        if length > 0.0 {
+            row /= length;
+        }
+    }
+    let Some(svd) = scaled.try_svd(false, false, f64::EPSILON, 10_000) else { return f64::INFINITY };
+    svd.singular_values.max() / svd.singular_values.min()
+}
+
+/// The differentials of the outputs and their derivatives along the motion, and the symbols that stand for the rates of
+/// signals in them.
+fn coordinate_rows(model: &mut Model, lengths: &[usize]) -> (Vec<NodeId>, HashMap<Symbol, Symbol>) {
+    let states = model.symbols.clone();
+    let mut rates = HashMap::new();
+    let mut rows = Vec::new();
+    for (output, length) in model.output_nodes.clone().into_iter().zip(lengths) {
+        let mut coordinate = output;
+        for k in 0..*length {
+            if k > 0 {
+                coordinate = along(model, coordinate, &states, &mut rates);
+            }
+            rows.extend(gradient(&mut model.system.graph, coordinate, &states));
+        }
+    }
+    (rows, rates)
+}
+
+/// The derivative of an expression along the motion: by the states, and by the signals that it depends on.
+fn along(
+    model: &mut Model,
+    expression: NodeId,
+    states: &[Symbol],
+    rates: &mut HashMap<Symbol, Symbol>,
+) -> NodeId {
+    let graph = &mut model.system.graph;
+    let symbols: Vec<Symbol> = graph.symbols_of([expression]);
+    let signals: Vec<Symbol> = symbols.into_iter().filter(|symbol| !states.contains(symbol)).collect();
+    let by_states = gradient(graph, expression, states);
+    let by_signals = gradient(graph, expression, &signals);
+    let mut terms = Vec::new();
+    for (slope, rate) in by_states.into_iter().zip(&model.rate_nodes) {
+        terms.push(graph.mul(slope, *rate));
+    }
+    for (slope, signal) in by_signals.into_iter().zip(signals) {
+        let name = format!("{}'", graph.symbol_name(signal));
+        let rate = graph.intern(&name);
+        rates.insert(rate, signal);
+        let rate = graph.symbol(rate);
+        terms.push(graph.mul(slope, rate));
+    }
+    graph.sum(terms)
+}
+
+/// All ways to write `n` as a sum of `m` positive numbers.
+fn compositions(n: usize, m: usize) -> Vec<Vec<usize>> {
+    if m == 0 || n < m {
+        return Vec::new();
+    }
+    if m == 1 {
+        return vec![vec![n]];
+    }
+    let first = 1..=n - m + 1;
+    let with = |k: usize| compositions(n - k, m - 1).into_iter().map(move |rest| [vec![k], rest].concat());
+    first.flat_map(with).collect()
+}
+
+fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |value, i| value * (n - i) as f64 / (i + 1) as f64)
+}

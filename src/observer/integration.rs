@@ -1,0 +1,37 @@
+//! Pure integration: the equations, from the first guess to the end. What the thesis resorts to where its observer cannot
+//! see, and the line below which no observer should fall.
+
+use super::task::{Moment, Observer, Task, Track};
+
+/// Integrates what is sought with the outputs as they are read, and never compares.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Integration;
+
+impl Observer for Integration {
+    fn name(&self) -> &'static str {
+        "integration"
+    }
+
+    fn observe(&self, task: &Task<'_>) -> Track {
+        let times = task.signals.times();
+        let mut track = Track::default();
+        let mut belief = task.guess.clone();
+        track.moments.push(Moment { time: times[0], state: belief.clone(), surprise: Vec::new() });
+        for row in 1..times.len() {
+            if task.interrupted() {
+                break;
+            }
+            match task.integrate(&belief, row - 1..row + 1) {
+                Ok(states) => belief = states.into_iter().next_back().unwrap_or(belief),
+                Err(lost) => {
+                    if track.unseen == 0 {
+                        track.remarks.push(format!("held from where the equations have no value: {lost}"));
+                    }
+                    track.unseen += 1;
+                }
+            }
+            track.moments.push(Moment { time: times[row], state: belief.clone(), surprise: Vec::new() });
+        }
+        track
+    }
+}

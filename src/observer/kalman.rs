@@ -1,0 +1,123 @@
+//! The extended Kalman filter, the field's usual choice.
+
+use super::task::{Moment, Observer, Task, Track};
+use super::{Lost, Order};
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// The extended Kalman filter with continuous equations and sampled readings.
+///
+/// Between two samples the state follows the model and the covariance `P` becomes `F P F^T + Q dt`, `F` being the exact
+/// derivative of the flow over the step; at a sample state and covariance are corrected by the gain `P H^T (H P H^T + R)^-1`.
+///
+/// Reference: A. Gelb (ed.), Applied Optimal Estimation, 1974, table 6.1-1, with the flow's derivative in place of an Euler step.
+#[derive(Clone, Copy, Debug)]
+pub struct Kalman {
+    /// The standard deviation of the first guess, relative to the sizes of what is sought.
+    pub prior: f64,
+    /// What the equations are believed to miss: standard deviation a second^(1/2), relative to the sizes.
+    pub process_noise: f64,
+    /// The least standard deviation that a reading is believed to have, in its unit: linearised as it is, the filter must
+    /// not believe that anything is exact.
+    pub least_sigma: f64,
+}
+
+impl Default for Kalman {
+    fn default() -> Self {
+        Kalman { prior: 0.1, process_noise: 1e-6, least_sigma: 1e-6 }
+    }
+}
+
+impl Observer for Kalman {
+    fn name(&self) -> &'static str {
+        "kalman"
+    }
+
+    fn observe(&self, task: &Task<'_>) -> Track {
+        let times = task.signals.times();
+        let n = task.full.states.len();
+        let mut track = Track::default();
+        let sigma = task.sigma.max(self.least_sigma);
+        let mut state = DVector::from_vec(task.full_state(&task.guess, 0));
+        let deviation = |i: usize| match task.sizes.get(i) {
+            Some(_) if task.clamped.contains(&i) => 0.0,
+            Some(size) => self.prior * size,
+            None => sigma,
+        };
+        let mut covariance = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| deviation(i).powi(2)));
+        let drive = |i: usize| task.sizes.get(i).map_or(0.0, |size| (self.process_noise * size).powi(2));
+        let record = |time: f64, state: &DVector<f64>, surprise: Vec<f64>, track: &mut Track| {
+            let state = state.as_slice()[..task.sought()].to_vec();
+            track.moments.push(Moment { time, state, surprise });
+        };
+        record(times[0], &state, Vec::new(), &mut track);
+        for row in 1..times.len() {
+            if task.interrupted() {
+                break;
+            }
+            match predict(task, &state, &times[row - 1..=row]) {
+                Ok((there, flow)) => {
+                    state = there;
+                    let step = times[row] - times[row - 1];
+                    covariance = &flow * covariance * flow.transpose();
+                    for i in 0..n {
+                        covariance[(i, i)] += drive(i) * step;
+                    }
+                }
+                Err(lost) => {
+                    if track.unseen == 0 {
+                        track.remarks.push(format!("held, with the outputs as they are read: {lost}"));
+                    }
+                    track.unseen += 1;
+                    let belief = state.as_slice()[..task.sought()].to_vec();
+                    state = DVector::from_vec(task.full_state(&belief, row));
+                    record(times[row], &state, Vec::new(), &mut track);
+                    continue;
+                }
+            }
+            let surprise = correct(task, &mut state, &mut covariance, sigma, row);
+            record(times[row], &state, surprise.unwrap_or_default(), &mut track);
+        }
+        track
+    }
+}
+
+/// The state after a step, and its derivative by the state before.
+fn predict(
+    task: &Task<'_>,
+    state: &DVector<f64>,
+    times: &[f64],
+) -> Result<(DVector<f64>, DMatrix<f64>), Lost> {
+    let free: Vec<usize> = (0..state.len()).collect();
+    let samples = task.full_flow().follow(state.as_slice(), &free, times, Order::First)?;
+    let end = samples.into_iter().next_back();
+    let end = end.ok_or_else(|| Lost { time: times[0], why: "there is no time to follow".to_owned() })?;
+    Ok((DVector::from_vec(end.state), end.slopes))
+}
+
+/// Corrects a state by what is read; gives what was expected minus what was read, or nothing where that cannot be told.
+fn correct(
+    task: &Task<'_>,
+    state: &mut DVector<f64>,
+    covariance: &mut DMatrix<f64>,
+    sigma: f64,
+    row: usize,
+) -> Option<Vec<f64>> {
+    let free: Vec<usize> = (0..state.len()).collect();
+    let here = task
+        .full_flow()
+        .follow(state.as_slice(), &free, &task.signals.times()[row..=row], Order::First)
+        .ok()?;
+    let here = here.first()?;
+    let read = task.readings(row);
+    let surprise = DVector::from_fn(read.len(), |i, _| here.outputs[i] - read[i]);
+    let h = &here.output_slopes;
+    let noise = DMatrix::from_diagonal_element(read.len(), read.len(), sigma * sigma);
+    let innovation = h * &*covariance * h.transpose() + &noise;
+    let gain = Cholesky::new(innovation)?.solve(&(h * &*covariance)).transpose();
+    *state -= &gain * &surprise;
+    // Joseph's form: stays symmetric and positive whatever the rounding
+    let rest = DMatrix::identity(state.len(), state.len()) - &gain * h;
+    let corrected = &rest * &*covariance * rest.transpose() + &gain * noise * gain.transpose();
+    *covariance = (&corrected + corrected.transpose()) * 0.5;
+    Some(surprise.as_slice().to_vec())
+}

@@ -1,0 +1,259 @@
+//! What an observer believes: the equations of some states of a system, everything else being told.
+
+use super::Signals;
+use crate::expression::{Input, NodeId, Program, Symbol};
+use crate::number::{rational_from_f64, rational_to_f64};
+use crate::system::{Kind, System};
+use std::collections::{BTreeMap, HashMap};
+
+/// Why a system gives no model.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ModelError {
+    /// A name is no state of the system.
+    #[error("'{name}' is no state of the system; its states are {states}")]
+    NoState { name: String, states: String },
+    /// A field is unknown.
+    #[error("the system has no field '{name}'; its fields are {fields}")]
+    NoField { name: String, fields: String },
+    /// A symbol is unknown.
+    #[error("the system declares no '{name}'")]
+    NoSymbol { name: String },
+    /// No one tells the value of a symbol.
+    #[error("nothing tells '{name}': estimate it, give it under `known`, or hand over a column of that name")]
+    Untold { name: String },
+    /// A value is infinite or none.
+    #[error("the value of '{name}' is not finite")]
+    NotFinite { name: String },
+    /// No output depends on what is sought.
+    #[error(
+        "no output depends on the states that are followed: there is nothing to compare with the measurements"
+    )]
+    Blind,
+    /// An output is not measured.
+    #[error("the output '{name}' is not among the measured columns ({columns})")]
+    NotMeasured { name: String, columns: String },
+    /// An expression has no value with what is known.
+    #[error("with what is told the rate of '{name}' divides by zero")]
+    Pole { name: String },
+}
+
+/// What a model is made from.
+#[derive(Clone, Debug, Default)]
+pub struct ModelQuestion {
+    /// The states that are followed: their equations are integrated. All others are told.
+    pub followed: Vec<String>,
+    /// Constants that are told, by the names of states or parameters; they come before columns and defaults.
+    pub known: BTreeMap<String, f64>,
+    /// Input fields and the symbols that drive them: `x' = f + sum u_j g_j`, `f` being the system's first field.
+    pub inputs: Vec<(String, String)>,
+}
+
+/// Where an input of a program comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Feed {
+    /// A followed state.
+    State(usize),
+    /// A column of the signals, by its place in [`Model::columns`].
+    Column(usize),
+    /// The rate of change of a column.
+    Rate(usize),
+}
+
+/// Some expressions with the sources of their inputs.
+#[derive(Clone, Debug)]
+pub(super) struct Formulas {
+    pub program: Program,
+    pub feeds: Vec<Feed>,
+}
+
+/// The equations of the followed states, `x' = F(x, t)` and `y = h(x, t)`, with everything else a constant or a signal.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The followed states, in their order.
+    pub states: Vec<String>,
+    /// The outputs that depend on them, as they are written; each is a column of the signals, too.
+    pub outputs: Vec<String>,
+    pub(super) rates: Formulas,
+    pub(super) seen: Formulas,
+    /// The columns of the signals that the formulas need.
+    pub(super) columns: Vec<usize>,
+    /// The columns of the outputs.
+    pub(super) measured: Vec<usize>,
+    /// The system with what is known put in, the rates and the outputs in its graph: for who needs derivatives of them.
+    pub(super) system: System,
+    pub(super) symbols: Vec<Symbol>,
+    pub(super) rate_nodes: Vec<NodeId>,
+    pub(super) output_nodes: Vec<NodeId>,
+}
+
+impl Model {
+    /// The model of a system where these signals are measured.
+    ///
+    /// # Errors
+    /// [`ModelError`].
+    pub fn new(system: &System, question: &ModelQuestion, signals: &Signals) -> Result<Model, ModelError> {
+        let mut system = system.clone();
+        let symbols = symbols_of(&system, &question.followed)?;
+        let (rates, outputs) = totals(&mut system, &symbols, &question.inputs)?;
+        let values = values_of(&mut system, question, &symbols, signals)?;
+        for (rate, name) in rates.iter().zip(&question.followed) {
+            if system.graph.vanishing_divisor(&[*rate], &values).is_some() {
+                return Err(ModelError::Pole { name: name.clone() });
+            }
+        }
+        let rate_nodes = system.graph.substitute(&rates, &values);
+        let nodes: Vec<NodeId> = outputs.iter().map(|(_, node)| *node).collect();
+        let nodes = system.graph.substitute(&nodes, &values);
+        let mut model = Model {
+            states: question.followed.clone(),
+            outputs: Vec::new(),
+            rates: Formulas {
+                program: Program::new(&system.graph, &[], |_| false, false),
+                feeds: Vec::new(),
+            },
+            seen: Formulas { program: Program::new(&system.graph, &[], |_| false, false), feeds: Vec::new() },
+            columns: Vec::new(),
+            measured: Vec::new(),
+            system,
+            symbols,
+            rate_nodes,
+            output_nodes: Vec::new(),
+        };
+        for ((name, _), node) in outputs.iter().zip(nodes) {
+            let depends = model.system.graph.symbols_of([node]);
+            if model.symbols.iter().any(|symbol| depends.contains(symbol)) {
+                let columns = signals.names().join(", ");
+                let missing = || ModelError::NotMeasured { name: name.clone(), columns };
+                model.measured.push(signals.find(name).ok_or_else(missing)?);
+                model.outputs.push(name.clone());
+                model.output_nodes.push(node);
+            }
+        }
+        model.rates = model.formulas(&model.rate_nodes.clone(), &HashMap::new(), signals)?;
+        model.seen = model.formulas(&model.output_nodes.clone(), &HashMap::new(), signals)?;
+        Ok(model)
+    }
+
+    /// Expressions of the model's graph as a program; `rates` are symbols that stand for the rates of others.
+    pub(super) fn formulas(
+        &mut self,
+        nodes: &[NodeId],
+        rates: &HashMap<Symbol, Symbol>,
+        signals: &Signals,
+    ) -> Result<Formulas, ModelError> {
+        let program = Program::new(&self.system.graph, nodes, |_| false, false);
+        let mut feeds = Vec::new();
+        for input in program.inputs() {
+            let (Input::Plain(symbol) | Input::Sine(symbol) | Input::Cosine(symbol)) = *input else {
+                continue; // none is asked for
+            };
+            if let Some(place) = self.symbols.iter().position(|other| *other == symbol) {
+                feeds.push(Feed::State(place));
+                continue;
+            }
+            let whose = rates.get(&symbol).copied();
+            let name = self.system.symbol_name(whose.unwrap_or(symbol));
+            let untold = || ModelError::Untold { name: name.to_owned() };
+            let column = signals.find(name).ok_or_else(untold)?;
+            let place = self.columns.iter().position(|other| *other == column).unwrap_or_else(|| {
+                self.columns.push(column);
+                self.columns.len() - 1
+            });
+            feeds.push(if whose.is_some() { Feed::Rate(place) } else { Feed::Column(place) });
+        }
+        Ok(Formulas { program, feeds })
+    }
+
+    /// The place of a followed state.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.states.iter().position(|other| other == name)
+    }
+
+    /// The column that measures a followed state itself, where there is one.
+    pub fn column_of(&self, state: usize) -> Option<usize> {
+        let place = self.outputs.iter().position(|output| *output == self.states[state])?;
+        Some(self.measured[place])
+    }
+
+    /// The operations of the equations.
+    pub fn operations(&self) -> usize {
+        self.rates.program.len()
+    }
+}
+
+fn symbols_of(system: &System, names: &[String]) -> Result<Vec<Symbol>, ModelError> {
+    let list = || system.states.iter().map(|s| system.symbol_name(*s)).collect::<Vec<_>>().join(", ");
+    let symbol = |name: &String| {
+        let found = system.find_symbol(name).filter(|symbol| system.states.contains(symbol));
+        found.ok_or_else(|| ModelError::NoState { name: name.clone(), states: list() })
+    };
+    names.iter().map(symbol).collect()
+}
+
+type Outputs = Vec<(String, NodeId)>;
+
+/// The rates of some states along the drift and the driven input fields, and the outputs.
+fn totals(
+    system: &mut System,
+    symbols: &[Symbol],
+    inputs: &[(String, String)],
+) -> Result<(Vec<NodeId>, Outputs), ModelError> {
+    let list = || system.fields.iter().map(|field| field.name.as_str()).collect::<Vec<_>>().join(", ");
+    let mut driven = Vec::new();
+    for (field, symbol) in inputs {
+        let place = system.fields.iter().position(|other| other.name == *field);
+        let place = place.ok_or_else(|| ModelError::NoField { name: field.clone(), fields: list() })?;
+        let missing = || ModelError::NoSymbol { name: symbol.clone() };
+        driven.push((place, system.find_symbol(symbol).ok_or_else(missing)?));
+    }
+    let mut rates = Vec::new();
+    for symbol in symbols {
+        let component = |system: &System, field: usize| {
+            let found = system.fields.get(field)?.components.iter().find(|(other, _)| other == symbol)?;
+            Some(found.1)
+        };
+        let drift = component(system, 0);
+        let mut rate = drift.unwrap_or_else(|| system.graph.integer(0));
+        for (field, input) in &driven {
+            if let Some(moved) = component(system, *field) {
+                let input = system.graph.symbol(*input);
+                let term = system.graph.mul(input, moved);
+                rate = system.graph.add(rate, term);
+            }
+        }
+        rates.push(rate);
+    }
+    Ok((rates, system.outputs.clone()))
+}
+
+/// The constants among the symbols: what is known, and the file's own values of parameters that no column gives.
+fn values_of(
+    system: &mut System,
+    question: &ModelQuestion,
+    followed: &[Symbol],
+    signals: &Signals,
+) -> Result<HashMap<Symbol, NodeId>, ModelError> {
+    let mut values = HashMap::new();
+    for (name, value) in &question.known {
+        let missing = || ModelError::NoSymbol { name: name.clone() };
+        let symbol = system.find_symbol(name).ok_or_else(missing)?;
+        let exact = rational_from_f64(*value);
+        let exact = exact.ok_or_else(|| ModelError::NotFinite { name: name.clone() })?;
+        if !followed.contains(&symbol) {
+            values.insert(symbol, system.graph.rational(exact));
+        }
+    }
+    let defaults: Vec<_> = system
+        .symbols()
+        .filter(|(symbol, info)| info.kind == Kind::Parameter && !values.contains_key(symbol))
+        .filter_map(|(symbol, info)| Some((symbol, info.default.clone()?)))
+        .filter(|(symbol, _)| signals.find(system.symbol_name(*symbol)).is_none())
+        .collect();
+    for (symbol, value) in defaults {
+        // the nearest double: what a column would have given
+        let value = rational_from_f64(rational_to_f64(&value)).unwrap_or(value);
+        let value = system.graph.rational(value);
+        values.insert(symbol, value);
+    }
+    Ok(values)
+}

@@ -1,0 +1,264 @@
+//! The observer of section 4.5: after every window of samples some steps towards the state at its beginning that explains
+//! it best, from there on by the equations.
+
+use super::task::{Moment, Observer, Standing, Task, Track, Update};
+use super::window::Window;
+use super::{Newton, Order, TrustRegion, cramer_rao};
+use argmin::core::{Executor, State, TerminationReason, TerminationStatus};
+use nalgebra::DVector;
+use std::time::Instant;
+
+/// How the smallest error of a window is sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// 4.78, with the exact Hessian.
+    Newton,
+    /// Gauss and Newton's method within a region of trust.
+    TrustRegion,
+}
+
+/// What an observer does while it cannot see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WhenBlind {
+    /// Believe what it believed.
+    Hold,
+    /// Integrate the equations with the outputs as they are read.
+    Integrate,
+}
+
+/// The observer by windows.
+#[derive(Clone, Copy, Debug)]
+pub struct MovingWindow {
+    pub method: Method,
+    /// Samples of a window.
+    pub window: usize,
+    /// Steps a window at most.
+    pub steps: u64,
+    /// The relative standard deviation, by the bound of Cramér and Rao, from which on something counts as not seen.
+    pub blind: f64,
+    pub when_blind: WhenBlind,
+}
+
+impl Observer for MovingWindow {
+    fn name(&self) -> &'static str {
+        match self.method {
+            Method::Newton => "newton",
+            Method::TrustRegion => "trust-region",
+        }
+    }
+
+    fn observe(&self, task: &Task<'_>) -> Track {
+        let mut track = Track::default();
+        let samples = task.signals.times().len();
+        let mut belief = task.guess.clone();
+        let mut row = 0;
+        let mut sees = true;
+        while row + 1 < samples && !task.interrupted() {
+            // windows share a sample: where one ends the next begins
+            let rows = row..(row + self.window.max(2)).min(samples - 1) + 1;
+            let clamped: &[usize] = if row == 0 { &task.clamped } else { &[] };
+            // too few samples to compare are only followed, and seen if those before were
+            let update =
+                (rows.len() >= self.window.min(samples)).then(|| self.update(task, &belief, &rows, clamped));
+            if let Some(update) = update {
+                sees = !matches!(update.standing, Standing::Blind { .. } | Standing::Lost(_));
+                belief.clone_from(&update.estimate);
+                track.updates.push(update);
+            }
+            belief = self.follow(task, &belief, &rows, sees, &mut track);
+            row = rows.end - 1;
+        }
+        track
+    }
+}
+
+impl MovingWindow {
+    /// The window of some rows, with the unknowns of this task.
+    pub fn window<'t>(
+        task: &'t Task<'_>,
+        belief: &[f64],
+        rows: &std::ops::Range<usize>,
+        clamped: &[usize],
+    ) -> Window<'t> {
+        let sought = (0..task.sought()).filter(|place| !clamped.contains(place));
+        let read = task.sought()..if task.exact { task.sought() } else { task.full.states.len() };
+        Window {
+            flow: task.full_flow(),
+            times: &task.signals.times()[rows.clone()],
+            measured: rows.clone().map(|row| task.readings(row)).collect(),
+            start: task.full_state(belief, rows.start),
+            free: sought.chain(read).collect(),
+        }
+    }
+
+    /// The magnitudes of a window's unknowns.
+    pub fn sizes(task: &Task<'_>, window: &Window<'_>) -> Vec<f64> {
+        let size = |place: &usize| match task.sizes.get(*place) {
+            Some(size) => *size,
+            None => window.start[*place].abs().max(1e-3),
+        };
+        window.free.iter().map(size).collect()
+    }
+
+    /// One update: what is believed of the state at the first of the rows.
+    pub fn update(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &std::ops::Range<usize>,
+        clamped: &[usize],
+    ) -> Update {
+        let begin = Instant::now();
+        let window = Self::window(task, belief, rows, clamped);
+        let sizes = Self::sizes(task, &window);
+        let mut update = Update {
+            from: window.times[0],
+            to: window.times[window.times.len() - 1],
+            estimate: belief.to_vec(),
+            deviations: vec![f64::INFINITY; task.sought()],
+            condition: f64::INFINITY,
+            cost: f64::INFINITY,
+            steps: 0,
+            troubled: 0,
+            seconds: 0.0,
+            standing: Standing::Stuck,
+        };
+        let guess = window.unknowns(&window.start);
+        update.standing = match window.expand(&guess, Order::First) {
+            Err(lost) => Standing::Lost(lost),
+            Ok(expansion) => {
+                update.cost = expansion.cost;
+                match self.see(task, &window, &expansion.slopes, &sizes, &mut update) {
+                    Some(blind) => blind,
+                    None => self.search(task, &window, guess, &sizes, &mut update),
+                }
+            }
+        };
+        update.seconds = begin.elapsed().as_secs_f64();
+        update
+    }
+
+    /// Sets the bound; says so where something that is sought is not seen.
+    fn see(
+        &self,
+        task: &Task<'_>,
+        window: &Window<'_>,
+        slopes: &nalgebra::DMatrix<f64>,
+        sizes: &[f64],
+        update: &mut Update,
+    ) -> Option<Standing> {
+        let bound = cramer_rao(slopes, task.sigma, sizes);
+        let mut blind = false;
+        update.deviations = vec![0.0; task.sought()];
+        for ((place, deviation), size) in window.free.iter().zip(&bound.deviations).zip(sizes) {
+            if let Some(own) = update.deviations.get_mut(*place) {
+                *own = *deviation;
+                blind |= deviation.is_nan() || *deviation > self.blind * size;
+            }
+        }
+        update.condition = bound.condition;
+        blind.then_some(Standing::Blind { weakest: bound.weakest })
+    }
+
+    fn search(
+        &self,
+        task: &Task<'_>,
+        window: &Window<'_>,
+        guess: DVector<f64>,
+        sizes: &[f64],
+        update: &mut Update,
+    ) -> Standing {
+        macro_rules! run {
+            ($solver:expr) => {
+                Executor::new(window.clone(), $solver)
+                    .configure(|state| state.param(guess).max_iters(self.steps))
+                    .ctrlc(false)
+                    .run()
+            };
+        }
+        let (state, troubled) = match self.method {
+            Method::Newton => match run!(Newton::new(sizes.to_vec())) {
+                Ok(result) => {
+                    let troubled = result.solver.not_convex + result.solver.halved;
+                    (result.state, troubled)
+                }
+                Err(error) => return lost(error, update.from),
+            },
+            Method::TrustRegion => match run!(TrustRegion::new(sizes.to_vec())) {
+                Ok(result) => (result.state, result.solver.refused),
+                Err(error) => return lost(error, update.from),
+            },
+        };
+        update.steps = state.get_iter();
+        update.troubled = troubled;
+        let Some(found) = state.get_param() else { return Standing::Stuck };
+        update.estimate = window.state(found)[..task.sought()].to_vec();
+        update.cost = state.get_cost();
+        // the bound belongs to where one is
+        match window.expand(found, Order::First) {
+            Err(lost) => return Standing::Lost(lost),
+            Ok(expansion) => {
+                update.cost = expansion.cost;
+                if let Some(blind) = self.see(task, window, &expansion.slopes, sizes, update) {
+                    update.estimate = window.start[..task.sought()].to_vec();
+                    return blind;
+                }
+            }
+        }
+        match state.get_termination_status() {
+            TerminationStatus::Terminated(TerminationReason::SolverConverged) => Standing::Converged,
+            TerminationStatus::Terminated(TerminationReason::MaxItersReached) => Standing::StepsSpent,
+            _ => Standing::Stuck,
+        }
+    }
+
+    /// The moments of some rows from a belief at the first of them; gives the belief at the last.
+    fn follow(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &std::ops::Range<usize>,
+        sees: bool,
+        track: &mut Track,
+    ) -> Vec<f64> {
+        let times = &task.signals.times()[rows.clone()];
+        // the sample that two windows share has its moment by now
+        let skipped = usize::from(!track.moments.is_empty());
+        let start = task.full_state(belief, rows.start);
+        let followed =
+            if sees { task.full_flow().follow(&start, &[], times, Order::Value) } else { Ok(Vec::new()) };
+        if let Ok(samples) = &followed
+            && let Some(last) = samples.last()
+        {
+            for (sample, row) in samples.iter().zip(rows.clone()).skip(skipped) {
+                let read = task.readings(row);
+                let surprise = sample.outputs.iter().zip(&read).map(|(seen, read)| seen - read).collect();
+                let state = sample.state[..task.sought()].to_vec();
+                track.moments.push(Moment { time: sample.time, state, surprise });
+            }
+            return last.state[..task.sought()].to_vec();
+        }
+        if let Err(lost) = followed {
+            track.remarks.push(format!("the model could not be followed: {lost}"));
+        }
+        track.unseen += rows.len() - 1;
+        let held = || vec![belief.to_vec(); rows.len()];
+        let states = match self.when_blind {
+            WhenBlind::Hold => held(),
+            WhenBlind::Integrate => task.integrate(belief, rows.clone()).unwrap_or_else(|lost| {
+                track.remarks.push(format!("could not be integrated either, and was held: {lost}"));
+                held()
+            }),
+        };
+        let end = states.last().cloned().unwrap_or_else(|| belief.to_vec());
+        for (state, time) in states.into_iter().zip(times).skip(skipped) {
+            track.moments.push(Moment { time: *time, state, surprise: Vec::new() });
+        }
+        end
+    }
+}
+
+fn lost(error: argmin::core::Error, time: f64) -> Standing {
+    let why = error.to_string();
+    Standing::Lost(error.downcast::<super::Lost>().unwrap_or(super::Lost { time, why }))
+}

@@ -1,0 +1,215 @@
+//! What every observer is given, and what it gives back.
+
+use super::{Flow, Lost, Model, ModelError, ModelQuestion, Order, Signals};
+use crate::system::System;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Signals, models of what made them, and a first guess.
+#[derive(Clone, Debug)]
+pub struct Task<'a> {
+    /// What was measured.
+    pub signals: &'a Signals,
+    /// The model that follows what is sought, first, and then the outputs that are states themselves.
+    pub full: Model,
+    /// The model that follows what is sought alone and takes the outputs from the signals.
+    pub reduced: Model,
+    /// The first guess of what is sought.
+    pub guess: Vec<f64>,
+    /// The magnitudes of what is sought; by custom those of the first guess.
+    pub sizes: Vec<f64>,
+    /// What an observer may not change in its first window, by place among what is sought.
+    pub clamped: Vec<usize>,
+    /// The standard deviation of the readings of the outputs, in their unit; positive.
+    pub sigma: f64,
+    /// Whether the readings are taken as they are for the first values of the outputs, because they have no error.
+    pub exact: bool,
+    /// The tolerance of the integration.
+    pub tolerance: f64,
+    /// Set from outside to stop: what is done by then is given back.
+    pub interrupt: &'a AtomicBool,
+}
+
+/// What is asked for of a system's states.
+#[derive(Clone, Debug, Default)]
+pub struct Sought {
+    /// The states that are sought, and the first guess of each.
+    pub guess: Vec<(String, f64)>,
+    /// Those that are not changed in the first window.
+    pub clamped: Vec<String>,
+    /// Constants that are told.
+    pub known: BTreeMap<String, f64>,
+    /// Input fields and the symbols that drive them.
+    pub inputs: Vec<(String, String)>,
+}
+
+/// The default of [`Task::tolerance`].
+pub const TOLERANCE: f64 = 1e-11;
+
+impl<'a> Task<'a> {
+    /// The task of estimating some states of a system from signals.
+    ///
+    /// # Errors
+    /// [`ModelError`].
+    pub fn new(
+        system: &System,
+        sought: &Sought,
+        signals: &'a Signals,
+        interrupt: &'a AtomicBool,
+    ) -> Result<Task<'a>, ModelError> {
+        let names: Vec<String> = sought.guess.iter().map(|(name, _)| name.clone()).collect();
+        let is_state = |name: &str| system.states.iter().any(|state| system.symbol_name(*state) == name);
+        let outputs = system.outputs.iter().map(|(name, _)| name).filter(|name| is_state(name));
+        let question = |followed: Vec<String>| ModelQuestion {
+            followed,
+            known: sought.known.clone(),
+            inputs: sought.inputs.clone(),
+        };
+        let reduced = Model::new(system, &question(names.clone()), signals)?;
+        // an output is followed where its rate depends on what is sought: the others say nothing
+        let mut followed = names.clone();
+        for name in outputs {
+            if !names.contains(name) && signals.find(name).is_some() && !sought.known.contains_key(name) {
+                let alone = Model::new(system, &question([&names[..], &[name.clone()]].concat()), signals)?;
+                let depends = alone.system.graph.symbols_of([alone.rate_nodes[names.len()]]);
+                if alone.symbols[..names.len()].iter().any(|symbol| depends.contains(symbol)) {
+                    followed.push(name.clone());
+                }
+            }
+        }
+        let full = Model::new(system, &question(followed), signals)?;
+        if full.outputs.is_empty() {
+            return Err(ModelError::Blind);
+        }
+        let guess: Vec<f64> = sought.guess.iter().map(|(_, value)| *value).collect();
+        let largest = guess.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        let size =
+            |value: &f64| if *value == 0.0 { if largest > 0.0 { largest } else { 1.0 } } else { value.abs() };
+        Ok(Task {
+            signals,
+            full,
+            reduced,
+            sizes: guess.iter().map(size).collect(),
+            clamped: (0..names.len()).filter(|i| sought.clamped.contains(&names[*i])).collect(),
+            guess,
+            sigma: 1e-9,
+            exact: true,
+            tolerance: TOLERANCE,
+            interrupt,
+        })
+    }
+
+    /// How many states are sought.
+    pub fn sought(&self) -> usize {
+        self.guess.len()
+    }
+
+    /// Whether someone asked to stop.
+    pub fn interrupted(&self) -> bool {
+        self.interrupt.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn full_flow(&self) -> Flow<'_> {
+        Flow { model: &self.full, signals: self.signals, tolerance: self.tolerance }
+    }
+
+    /// The full state at a sample: what is sought as it is believed, the outputs as they are read there.
+    pub(super) fn full_state(&self, sought: &[f64], row: usize) -> Vec<f64> {
+        let read = |place: usize| self.full.column_of(place).map_or(0.0, |c| self.signals.column(c)[row]);
+        (0..self.full.states.len()).map(|i| if i < sought.len() { sought[i] } else { read(i) }).collect()
+    }
+
+    /// What was read of the outputs at a sample.
+    pub(super) fn readings(&self, row: usize) -> Vec<f64> {
+        self.full.measured.iter().map(|column| self.signals.column(*column)[row]).collect()
+    }
+
+    /// What is sought, from one sample to a later one by the equations alone, with the outputs as they are read.
+    ///
+    /// # Errors
+    /// Where the equations have no value.
+    pub(super) fn integrate(
+        &self,
+        sought: &[f64],
+        rows: std::ops::Range<usize>,
+    ) -> Result<Vec<Vec<f64>>, Lost> {
+        let flow = Flow { model: &self.reduced, signals: self.signals, tolerance: self.tolerance };
+        let samples = flow.follow(sought, &[], &self.signals.times()[rows], Order::Value)?;
+        Ok(samples.into_iter().map(|sample| sample.state).collect())
+    }
+}
+
+/// What an observer believes at a sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// In s.
+    pub time: f64,
+    /// What is sought.
+    pub state: Vec<f64>,
+    /// The outputs that the model expected minus those that were read; empty where the observer compares none.
+    pub surprise: Vec<f64>,
+}
+
+/// How an update ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Standing {
+    /// The last step was too short to matter.
+    Converged,
+    /// All steps that were allowed are done.
+    StepsSpent,
+    /// No step made the error smaller.
+    Stuck,
+    /// The readings cannot tell what is sought; the observer held what it believed, or integrated.
+    Blind { weakest: Vec<f64> },
+    /// The model could not be followed.
+    Lost(Lost),
+}
+
+/// One update from a window of samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Update {
+    /// The first and the last time, in s.
+    pub from: f64,
+    pub to: f64,
+    /// What is believed of the state at the first time, and the least standard deviation that it could have.
+    pub estimate: Vec<f64>,
+    pub deviations: Vec<f64>,
+    /// The condition of the sensitivities, scaled.
+    pub condition: f64,
+    /// The error of the output, `k` of 4.77, there.
+    pub cost: f64,
+    /// Steps that were taken, and those of them that had to be shortened, refused or replaced.
+    pub steps: u64,
+    pub troubled: usize,
+    /// The wall time of the update, in s.
+    pub seconds: f64,
+    pub standing: Standing,
+}
+
+/// What an observer makes of a task.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Track {
+    /// What it believed, sample by sample.
+    pub moments: Vec<Moment>,
+    /// Its updates, where it works by windows.
+    pub updates: Vec<Update>,
+    /// Samples at which it could not see, or not follow its model, and held or integrated instead.
+    pub unseen: usize,
+    /// What else is to be said.
+    pub remarks: Vec<String>,
+}
+
+impl Track {
+    /// What it believed last.
+    pub fn last(&self) -> Option<&Moment> {
+        self.moments.last()
+    }
+}
+
+/// A way to estimate states from what is measured.
+pub trait Observer: Sync {
+    /// Its name.
+    fn name(&self) -> &'static str;
+    /// Works through the signals of a task. Whatever goes wrong on the way is part of the answer.
+    fn observe(&self, task: &Task<'_>) -> Track;
+}

@@ -1,0 +1,109 @@
+//! The error of the output over a window of samples (4.77), as a function of the unknown parts of the first state.
+
+use super::{Flow, Lost, Order, Sample};
+use nalgebra::{DMatrix, DVector};
+
+/// Some samples, and the state at the first of them, of which a part is unknown.
+///
+/// The error is `k = dt/2 sum |h(q(t_i)) - y_i|^2`, the rectangle rule for the integral of 4.77: every sample counts alike,
+/// so that for independent errors of one size the smallest `k` is the most likely state.
+#[derive(Clone, Debug)]
+pub struct Window<'a> {
+    pub flow: Flow<'a>,
+    /// In s; the first is the time of the state.
+    pub times: &'a [f64],
+    /// What was measured: the values of the model's outputs, a row a sample.
+    pub measured: Vec<Vec<f64>>,
+    /// The state at the first time; what is not unknown of it stays.
+    pub start: Vec<f64>,
+    /// The places of what is unknown.
+    pub free: Vec<usize>,
+}
+
+/// The error and its derivatives at one guess, `p` unknowns and `n` differences.
+#[derive(Clone, Debug)]
+pub struct Expansion {
+    /// `k` of 4.77.
+    pub cost: f64,
+    /// The differences `h - y`, sample by sample.
+    pub differences: DVector<f64>,
+    /// Their derivatives, n by p.
+    pub slopes: DMatrix<f64>,
+    /// The derivative of `k`.
+    pub gradient: DVector<f64>,
+    /// The second derivative of `k`: exact at order two, without the second derivatives of the output at order one.
+    pub hessian: DMatrix<f64>,
+    /// The state at the last time.
+    pub end: Vec<f64>,
+    /// The derivatives of the state at the last time.
+    pub end_slopes: DMatrix<f64>,
+}
+
+impl Window<'_> {
+    /// The unknowns of a state.
+    pub fn unknowns(&self, state: &[f64]) -> DVector<f64> {
+        DVector::from_iterator(self.free.len(), self.free.iter().map(|place| state[*place]))
+    }
+
+    /// The first state with these unknowns.
+    pub fn state(&self, unknowns: &DVector<f64>) -> Vec<f64> {
+        let mut state = self.start.clone();
+        for (place, value) in self.free.iter().zip(unknowns.iter()) {
+            state[*place] = *value;
+        }
+        state
+    }
+
+    /// The mean time between two samples, in s.
+    fn step(&self) -> f64 {
+        let steps = self.times.len().saturating_sub(1).max(1);
+        (self.times[self.times.len() - 1] - self.times[0]) / steps as f64
+    }
+
+    /// `k` alone.
+    ///
+    /// # Errors
+    /// Where the model cannot be followed to the end of the window.
+    pub fn cost(&self, unknowns: &DVector<f64>) -> Result<f64, Lost> {
+        let samples = self.flow.follow(&self.state(unknowns), &self.free, self.times, Order::Value)?;
+        Ok(0.5 * self.step() * self.differences(&samples).norm_squared())
+    }
+
+    fn differences(&self, samples: &[Sample]) -> DVector<f64> {
+        let rows = samples.iter().zip(&self.measured);
+        let all =
+            rows.flat_map(|(sample, row)| sample.outputs.iter().zip(row).map(|(seen, read)| seen - read));
+        DVector::from_vec(all.collect())
+    }
+
+    /// `k` with its derivatives.
+    ///
+    /// # Errors
+    /// Where the model cannot be followed to the end of the window.
+    pub fn expand(&self, unknowns: &DVector<f64>, order: Order) -> Result<Expansion, Lost> {
+        let samples = self.flow.follow(&self.state(unknowns), &self.free, self.times, order)?;
+        let p = self.free.len();
+        let differences = self.differences(&samples);
+        let mut slopes = DMatrix::zeros(differences.len(), p);
+        let rows = samples.iter().flat_map(|sample| sample.output_slopes.row_iter());
+        for (i, row) in rows.enumerate() {
+            slopes.set_row(i, &row);
+        }
+        let mut hessian = slopes.tr_mul(&slopes);
+        let bends = samples.iter().flat_map(|sample| &sample.output_bends);
+        for (difference, bend) in differences.iter().zip(bends) {
+            hessian += bend * *difference;
+        }
+        let step = self.step();
+        let end = samples.last();
+        Ok(Expansion {
+            cost: 0.5 * step * differences.norm_squared(),
+            gradient: slopes.tr_mul(&differences) * step,
+            hessian: hessian * step,
+            end: end.map(|sample| sample.state.clone()).unwrap_or_default(),
+            end_slopes: end.map(|sample| sample.slopes.clone()).unwrap_or_default(),
+            differences,
+            slopes,
+        })
+    }
+}
