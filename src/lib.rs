@@ -56,6 +56,9 @@ pub mod observer;
 // speed against accuracy, the extremes
 pub mod tradeoff;
 
+// bodies, sensors and observers together: scenes
+pub mod experiment;
+
 // the main job: the thesis
 pub mod verification;
 

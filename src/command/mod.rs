@@ -5,6 +5,7 @@
 
 mod certify;
 mod eval;
+mod observe;
 mod output;
 mod prove;
 mod rank;
@@ -37,6 +38,7 @@ enum Verb {
     Trade(trade::Trade),
     Stress(stress::Stress),
     Eval(eval::Eval),
+    Observe(observe::Observe),
 }
 
 /// What a command has come to.
@@ -82,6 +84,7 @@ pub fn run() -> ExitCode {
         Verb::Trade(verb) => (verb.json, verb.run()),
         Verb::Stress(verb) => (verb.json, verb.run()),
         Verb::Eval(verb) => (verb.json, verb.run()),
+        Verb::Observe(verb) => (verb.json, verb.run()),
     };
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,

@@ -148,7 +148,7 @@ fn told(task: &Task<'_>, model: &Model, formulas: &Formulas, time: f64, x: &[f64
 impl Canonical {
     /// The canonical form of a task's model, where it has one at the first guess.
     fn new(task: &Task<'_>, state: &[f64]) -> Result<Canonical, String> {
-        let mut model = task.full.clone();
+        let mut model = Model::clone(&task.full);
         if model.outputs.iter().any(|output| model.find(output).is_none()) {
             return Err("an output is not one of the states that are followed".to_owned());
         }

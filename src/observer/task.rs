@@ -3,6 +3,7 @@
 use super::{Flow, Lost, Model, ModelError, ModelQuestion, Order, Signals};
 use crate::system::System;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Signals, models of what made them, and a first guess.
@@ -11,9 +12,9 @@ pub struct Task<'a> {
     /// What was measured.
     pub signals: &'a Signals,
     /// The model that follows what is sought, first, and then the outputs that are states themselves.
-    pub full: Model,
+    pub full: Arc<Model>,
     /// The model that follows what is sought alone and takes the outputs from the signals.
-    pub reduced: Model,
+    pub reduced: Arc<Model>,
     /// The first guess of what is sought.
     pub guess: Vec<f64>,
     /// The magnitudes of what is sought; by custom those of the first guess.
@@ -87,8 +88,8 @@ impl<'a> Task<'a> {
             |value: &f64| if *value == 0.0 { if largest > 0.0 { largest } else { 1.0 } } else { value.abs() };
         Ok(Task {
             signals,
-            full,
-            reduced,
+            full: Arc::new(full),
+            reduced: Arc::new(reduced),
             sizes: guess.iter().map(size).collect(),
             clamped: (0..names.len()).filter(|i| sought.clamped.contains(&names[*i])).collect(),
             guess,
@@ -97,6 +98,14 @@ impl<'a> Task<'a> {
             tolerance: TOLERANCE,
             interrupt,
         })
+    }
+
+    /// The same task with other readings: the columns are those of the signals that it was made for, in their order.
+    pub fn with_signals<'b>(&self, signals: &'b Signals) -> Task<'b>
+    where
+        'a: 'b,
+    {
+        Task { signals, ..self.clone() }
     }
 
     /// How many states are sought.

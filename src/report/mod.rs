@@ -5,6 +5,8 @@
 mod claims;
 mod errata;
 mod extremes;
+mod observe;
+mod observe_page;
 mod page;
 mod plot;
 mod ranks;
@@ -18,6 +20,8 @@ mod verification;
 
 pub use claims::{claim_json, claim_line, junit};
 pub use errata::errata_markdown;
+pub use observe::{Observed, ended_in_words, fault_lines, method_name, observe_json, observe_text};
+pub use observe_page::observe_page;
 pub use page::page;
 pub use ranks::{rank_json, rank_text};
 pub use region::{percent, region_json, region_text};

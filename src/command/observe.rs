@@ -1,0 +1,125 @@
+//! `palmistry observe`: a body in motion, and observers that recover its shape.
+
+use super::output::{INTERRUPTED, print_json, print_text, progress, write_whole};
+use super::{Status, Unusable};
+use clap::Args;
+use indicatif::ProgressBar;
+use palmistry::experiment::{Basin, Experiment, NoiseLevel, Scene, SceneError, basins, noise_study};
+use palmistry::mechanics::moving::Ended;
+use palmistry::observer::Standing;
+use palmistry::report::{Observed, ended_in_words, method_name, observe_json, observe_page, observe_text};
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+/// Moves a body between two palms, hands on what touch sensors and motors tell, and has observers recover its shape and
+/// motion.
+///
+/// SCENE is a TOML file: the body, the palms and how they move, the sensors, and the observers with what they seek, what
+/// they are told and where they begin (the README has all keys). The motion follows from Newton's laws and the
+/// contacts; the observers know only the readings and the equations of the scene's proof file. For each update there are the true and
+/// the recovered states, the error, the bound of Cramér and Rao below which no unbiased estimate can be, steps and time.
+///
+/// With --data the readings come from a CSV or Parquet file with the columns that the model needs (time, s1, s2, phi1, ...);
+/// faulty rows are reported by number and handled as the scene says. With --studies the scene's studies run as well: the
+/// error over many seeds at several levels of noise beside the bound, and the first guesses from which each method arrives.
+///
+/// Example: palmistry observe scenes/section_4_6.toml --out observed
+#[derive(Args)]
+pub(crate) struct Observe {
+    /// The scene.
+    scene: PathBuf,
+    /// Readings from a file (CSV or Parquet) instead of a simulation.
+    #[arg(long, value_name = "FILE")]
+    data: Option<PathBuf>,
+    /// Take this seed and not the scene's.
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// Run the scene's studies, too.
+    #[arg(long)]
+    studies: bool,
+    /// Write a page with pictures (index.html) and observe.json into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write the readings to a file, CSV or Parquet by its extension.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Print one JSON object: 'observers' with their 'updates' and 'end', and the studies.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Observe {
+    pub fn run(self) -> miette::Result<Status> {
+        let mut scene = Scene::read(&self.scene)?;
+        scene.seed = self.seed.unwrap_or(scene.seed);
+        let bar = progress(scene.observer.methods.len() as u64 + 1, "simulating");
+        let experiment = Experiment::new(scene, self.data.as_deref())?;
+        bar.inc(1);
+        if let Some(path) = &self.record {
+            experiment.record.write(path).map_err(|error| {
+                Unusable::report(
+                    error.to_string(),
+                    "name a file that ends in .csv or .parquet, in a folder that can be written",
+                )
+            })?;
+            eprintln!("written: {}", path.display());
+        }
+        bar.set_message("observing");
+        let answers = experiment.run(&INTERRUPTED, &|method| {
+            bar.set_message(method_name(method));
+            bar.inc(1);
+        })?;
+        bar.finish_and_clear();
+        let (noise, basins) = if self.studies { studies(&experiment)? } else { (Vec::new(), Vec::new()) };
+        let interrupted = INTERRUPTED.load(Ordering::Relaxed);
+        let observed = Observed {
+            experiment: &experiment,
+            answers: &answers,
+            noise: &noise,
+            basins: &basins,
+            interrupted,
+        };
+        let json = observe_json(&observed);
+        if let Some(folder) = &self.out {
+            write_whole(&folder.join("index.html"), &observe_page(&observed))?;
+            write_whole(
+                &folder.join("observe.json"),
+                &format!("{}\n", serde_json::to_string_pretty(&json).unwrap_or_default()),
+            )?;
+            eprintln!("written: {}", folder.join("index.html").display());
+        }
+        if let Some(simulation) = &experiment.simulation
+            && *simulation.ended() != Ended::Completed
+        {
+            eprintln!("the motion ended early: {}", ended_in_words(simulation.ended()));
+        }
+        if self.json {
+            print_json(&json);
+        } else {
+            print_text(&observe_text(&observed));
+        }
+        let lost = |standing: &Standing| matches!(standing, Standing::Lost(_));
+        let updates = answers.iter().flat_map(|answer| &answer.track.updates);
+        let as_expected = !interrupted && !updates.into_iter().any(|update| lost(&update.standing));
+        Ok(if as_expected { Status::AsExpected } else { Status::NotAsExpected })
+    }
+}
+
+fn studies(experiment: &Experiment) -> Result<(Vec<NoiseLevel>, Vec<Basin>), SceneError> {
+    let study = &experiment.scene.study;
+    let counted = |length: usize, what: &'static str| -> ProgressBar { progress(length as u64, what) };
+    let mut noise = Vec::new();
+    if let (Some(settings), Some(simulation)) = (&study.noise, &experiment.simulation) {
+        let bar = counted(settings.levels.len() * settings.seeds, "seeds");
+        noise = noise_study(experiment, simulation, settings, &INTERRUPTED, &|| bar.inc(1))?;
+        bar.finish_and_clear();
+    }
+    let mut maps = Vec::new();
+    if let Some(settings) = &study.basin {
+        let guesses = settings.points.pow(2) * experiment.scene.observer.methods.len();
+        let bar = counted(guesses, "first guesses");
+        maps = basins(experiment, settings, &INTERRUPTED, &|| bar.inc(1))?;
+        bar.finish_and_clear();
+    }
+    Ok((noise, maps))
+}

@@ -1,0 +1,266 @@
+//! A scene from beginning to end: bodies or a file, what is read of them, and what the observers make of it.
+
+use super::scene::{self, Guess, Scene, SceneError};
+use super::simulation::{Simulation, TOUCH, deviation};
+use crate::observer::{
+    Fault, HighGain, Integration, Kalman, Method, ModelError, MovingWindow, Observer, Reading, Record,
+    Signals, Sought, Task, Track, WhenBlind,
+};
+use crate::system::{Kind, System};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Readings without error are taken to be good to a nanometre, where a bound asks for a figure.
+pub const NOMINAL: f64 = 1e-9;
+
+/// A scene with its readings.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    pub scene: Scene,
+    pub system: System,
+    /// Absent where the readings come from a file.
+    pub simulation: Option<Simulation>,
+    pub record: Record,
+    /// What was wrong with the rows of a file.
+    pub faults: Vec<Fault>,
+    pub signals: Signals,
+    /// What the observers are asked for.
+    pub sought: Sought,
+}
+
+/// What one observer made of it.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    pub method: scene::Method,
+    pub track: Track,
+    /// In s.
+    pub seconds: f64,
+}
+
+impl Experiment {
+    /// Simulates a scene, or takes its readings from a file: `data`, or else the one that the scene names.
+    ///
+    /// # Errors
+    /// What is wrong with the scene, its model or the file, with the place in the scene.
+    pub fn new(scene: Scene, data: Option<&Path>) -> Result<Experiment, SceneError> {
+        let system = System::read(&scene.model)?;
+        let file = data.or(scene.data.record.as_deref());
+        let simulation = match (&scene.simulated, file) {
+            (Some(simulated), None) => Some(Simulation::of(&scene, simulated)?),
+            _ => None,
+        };
+        let told = told(&scene, &system, simulation.as_ref());
+        let Reading { record, faults, .. } = match (&simulation, file) {
+            (Some(simulation), _) => {
+                let record = simulation.readings(scene.sensor.noise, scene.sensor.resolution, scene.seed);
+                let place = |error: crate::observer::RecordError| {
+                    scene.error_at("sensor", error.to_string(), "these readings", "")
+                };
+                Reading { record: record.map_err(place)?, faults: Vec::new(), left_out: Vec::new() }
+            }
+            (None, Some(file)) => {
+                let needed = needed(&scene, &system, &told);
+                let needed: Vec<&str> = needed.iter().map(String::as_str).collect();
+                Record::read_checked(file, &needed, &scene.fault_rules()).map_err(|error| {
+                    let help = "mend the file, or say on_fault = \"skip\" under [data]";
+                    scene.error_at("data", error.to_string(), "read by these rules", help)
+                })?
+            }
+            (None, None) => {
+                let help =
+                    "describe a body and palms, name a file under [data], or hand one over with --data";
+                return Err(scene.error_at("title", "there is nothing to observe", "this scene", help));
+            }
+        };
+        let columns =
+            record.names().iter().filter_map(|name| Some((name.clone(), record.column(name)?.to_vec())));
+        let signals = Signals::new(record.times().to_vec(), columns.collect());
+        let signals =
+            signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
+        let sought = sought(&scene, simulation.as_ref(), told, &signals)?;
+        let experiment = Experiment { scene, system, simulation, record, faults, signals, sought };
+        // whether the model can be made at all is better known now
+        let never = AtomicBool::new(false);
+        experiment.task(&never)?;
+        Ok(experiment)
+    }
+
+    /// The observers' task.
+    ///
+    /// # Errors
+    /// Where the system gives no model, with the place in the scene.
+    pub fn task<'a>(&'a self, interrupt: &'a AtomicBool) -> Result<Task<'a>, SceneError> {
+        let task = Task::new(&self.system, &self.sought, &self.signals, interrupt);
+        let mut task = task.map_err(|error| {
+            let place = match error {
+                ModelError::NoField { .. } | ModelError::NoSymbol { .. } => "observer.inputs",
+                ModelError::Pole { .. } | ModelError::NotFinite { .. } => "observer.known",
+                _ => "observer.estimate",
+            };
+            let help =
+                "the model and the columns of the readings have to determine the rate of all that is sought";
+            self.scene.error_at(place, error.to_string(), "asked for here", help)
+        })?;
+        let sensor = &self.scene.sensor;
+        let sigma = deviation(sensor.noise, sensor.resolution);
+        task.exact = sigma == 0.0;
+        task.sigma = if task.exact { NOMINAL } else { sigma };
+        Ok(task)
+    }
+
+    /// The observer of a name, with the scene's settings.
+    pub fn observer(&self, method: scene::Method) -> Box<dyn Observer> {
+        let settings = &self.scene.observer;
+        match method {
+            scene::Method::Newton => Box::new(self.window(Method::Newton)),
+            scene::Method::TrustRegion => Box::new(self.window(Method::TrustRegion)),
+            scene::Method::Integration => Box::new(Integration),
+            scene::Method::Kalman => Box::new(Kalman {
+                prior: settings.kalman.prior,
+                process_noise: settings.kalman.process_noise,
+                ..Kalman::default()
+            }),
+            scene::Method::HighGain => Box::new(HighGain { gain: settings.high_gain.gain }),
+        }
+    }
+
+    /// The observer by windows, with the scene's settings.
+    pub fn window(&self, method: Method) -> MovingWindow {
+        let settings = &self.scene.observer;
+        MovingWindow {
+            method,
+            window: settings.window,
+            steps: settings.steps as u64,
+            blind: settings.blind,
+            when_blind: match settings.when_blind {
+                scene::WhenBlind::Hold => WhenBlind::Hold,
+                scene::WhenBlind::Integrate => WhenBlind::Integrate,
+            },
+        }
+    }
+
+    /// What every observer of the scene makes of the readings; `done` is told of each that has finished.
+    ///
+    /// # Errors
+    /// As [`Experiment::task`].
+    pub fn run(
+        &self,
+        interrupt: &AtomicBool,
+        done: &dyn Fn(scene::Method),
+    ) -> Result<Vec<Answer>, SceneError> {
+        let task = self.task(interrupt)?;
+        let mut answers = Vec::new();
+        for &method in &self.scene.observer.methods {
+            let begin = Instant::now();
+            let track = self.observer(method).observe(&task);
+            answers.push(Answer { method, track, seconds: begin.elapsed().as_secs_f64() });
+            done(method);
+            if task.interrupted() {
+                break;
+            }
+        }
+        Ok(answers)
+    }
+
+    /// The names of what is sought.
+    pub fn names(&self) -> Vec<&str> {
+        self.sought.guess.iter().map(|(name, _)| name.as_str()).collect()
+    }
+
+    /// The true values of what is sought at a time: none where the readings come from a file, or the time is no sample's.
+    pub fn truth_at(&self, time: f64) -> Option<Vec<f64>> {
+        let simulation = self.simulation.as_ref()?;
+        let row = self.signals.times().iter().position(|other| *other == time)?;
+        self.names().iter().map(|name| Some(simulation.truth(name)?[row])).collect()
+    }
+}
+
+/// The error of an estimate: relative, or absolute where the truth is less than a millionth.
+pub fn error(estimate: f64, truth: f64) -> f64 {
+    let size = if truth.abs() < 1e-6 { 1.0 } else { truth.abs() };
+    ((estimate - truth) / size).abs()
+}
+
+/// The constants that the observers are told: the scene's own, and those of the bodies that the model knows.
+fn told(scene: &Scene, system: &System, simulation: Option<&Simulation>) -> BTreeMap<String, f64> {
+    let settings = &scene.observer;
+    let mut told = settings.known.clone();
+    let mut tell = |name: &str, value: f64| {
+        if system.find_symbol(name).is_some() && !settings.estimate.iter().any(|other| other == name) {
+            told.entry(name.to_owned()).or_insert(value);
+        }
+    };
+    if let Some(simulation) = simulation {
+        for (name, value) in &simulation.constants {
+            tell(name, *value);
+        }
+    } else if let Some(simulated) = &scene.simulated {
+        // a recording of what the scene describes
+        tell("m", simulated.body.mass);
+        tell("g", simulated.body.gravity);
+        tell("I1", simulated.palms.inertia[0]);
+        tell("I2", simulated.palms.inertia[1]);
+        if let Some(gyration) = simulated.body.radius_of_gyration {
+            tell("rho", gyration);
+        }
+    }
+    told
+}
+
+/// The columns without which the model is not determined.
+fn needed(scene: &Scene, system: &System, told: &BTreeMap<String, f64>) -> Vec<String> {
+    let settings = &scene.observer;
+    let driven: Vec<&String> = settings.inputs.values().collect();
+    let unknown =
+        |name: &str| !told.contains_key(name) && !settings.estimate.iter().any(|other| other == name);
+    let symbols = system.symbols().filter(|(symbol, info)| {
+        let name = system.symbol_name(*symbol);
+        unknown(name)
+            && match info.kind {
+                Kind::State => true,
+                Kind::Parameter => info.default.is_none() || driven.iter().any(|other| *other == name),
+                Kind::Imported => false,
+            }
+    });
+    symbols.map(|(symbol, _)| system.symbol_name(symbol).to_owned()).collect()
+}
+
+fn sought(
+    scene: &Scene,
+    simulation: Option<&Simulation>,
+    mut known: BTreeMap<String, f64>,
+    signals: &Signals,
+) -> Result<Sought, SceneError> {
+    let settings = &scene.observer;
+    // a signal that never changes is a constant: the model then has only what the regime asks for
+    for (place, name) in signals.names().iter().enumerate() {
+        let column = signals.column(place);
+        let steady = column.iter().all(|value| *value == column[0]);
+        if steady && !TOUCH.contains(&name.as_str()) && !settings.estimate.contains(name) {
+            known.entry(name.clone()).or_insert(column[0]);
+        }
+    }
+    let mut guess = Vec::new();
+    for name in &settings.estimate {
+        let truth = simulation.and_then(|simulation| simulation.truth(name)?.first().copied());
+        let value = match (&settings.guess, truth) {
+            (Guess::Values(values), _) => values.get(name).copied(),
+            (Guess::Off(off), Some(truth)) => Some(truth * (1.0 + off)),
+            (Guess::Off(_), None) => None,
+        };
+        let missing = || {
+            let help = "where there is no truth to be off from, give a value for each state under `guess`";
+            scene.error_at(
+                "observer.guess_off",
+                format!("there is no first guess of '{name}'"),
+                "asked for here",
+                help,
+            )
+        };
+        guess.push((name.clone(), value.ok_or_else(missing)?));
+    }
+    let inputs = settings.inputs.iter().map(|(field, symbol)| (field.clone(), symbol.clone())).collect();
+    Ok(Sought { guess, clamped: settings.clamp.clone(), known, inputs })
+}

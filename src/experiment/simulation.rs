@@ -1,0 +1,182 @@
+//! The body of a scene set in motion, and what sensors and motors tell of it.
+
+use super::scene::{self, Scene, SceneError, Simulated};
+use crate::mechanics::moving::{
+    CentreOfMass, Course, DEFAULT_TOLERANCE, Drive, Ended, Form, FormError, Knots, Oscillation, PushedPalm,
+    Scene as Bodies, SceneError as Refused, Shape, SplineDraws, Trajectory, simulate as follow,
+};
+use crate::observer::{Record, RecordError};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeMap;
+
+/// The columns that are read by touch; only they have noise.
+pub const TOUCH: [&str; 2] = ["s1", "s2"];
+
+/// A scene's body in motion.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    pub shape: Shape,
+    pub trajectory: Trajectory,
+    /// Constants of the bodies by the names that the thesis gives them: `m`, `rho`, `I1`, `I2`, `g`.
+    pub constants: BTreeMap<String, f64>,
+    /// How many splines were drawn until one was convex, where the body is random.
+    pub draws: Option<usize>,
+}
+
+impl Simulation {
+    /// Moves the body of a scene.
+    ///
+    /// # Errors
+    /// Where the body is not convex or the palms cannot hold it, with the place in the scene.
+    pub fn of(scene: &Scene, simulated: &Simulated) -> Result<Simulation, SceneError> {
+        let (shape, draws) = body(simulated).map_err(|error| {
+            let help = "a body has to be smooth and strictly convex, with its centre of mass inside";
+            scene.error_at("body.shape", error.to_string(), "this body", help)
+        })?;
+        let gyration = simulated.body.radius_of_gyration.unwrap_or_else(|| shape.gyration());
+        let bodies = Bodies {
+            mass: simulated.body.mass,
+            gyration,
+            orientation: simulated.body.orientation,
+            rate: simulated.body.rate,
+            gravity: simulated.body.gravity,
+            palm_inertia: simulated.palms.inertia,
+            palm_lengths: [f64::INFINITY; 2],
+            drive: drive(&simulated.palms.drive),
+            tolerance: DEFAULT_TOLERANCE,
+            shape,
+        };
+        let times = simulated.times(scene.sensor.jitter, scene.seed);
+        let trajectory = follow(&bodies, &times).map_err(|error| {
+            let place = match error {
+                Refused::NotHeld { .. } | Refused::Start(_) => "palms",
+                _ => "body",
+            };
+            scene.error_at(
+                place,
+                error.to_string(),
+                "here",
+                "the body has to touch both palms at the start, and be pushed by both",
+            )
+        })?;
+        let inertia = simulated.palms.inertia;
+        let constants = [
+            ("m", bodies.mass),
+            ("rho", gyration),
+            ("I1", inertia[0]),
+            ("I2", inertia[1]),
+            ("g", bodies.gravity),
+        ];
+        let constants = constants.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+        Ok(Simulation { shape: bodies.shape, trajectory, constants, draws })
+    }
+
+    /// How far the motion went.
+    pub fn ended(&self) -> &Ended {
+        &self.trajectory.ended
+    }
+
+    /// The true values of a state of chapter 4, sample by sample.
+    pub fn truth(&self, name: &str) -> Option<Vec<f64>> {
+        let moments = &self.trajectory.moments;
+        let of =
+            |value: fn(&crate::mechanics::moving::Moment) -> f64| Some(moments.iter().map(value).collect());
+        match name {
+            "r1" => of(|moment| moment.palms[0].r),
+            "r2" => of(|moment| moment.palms[1].r),
+            "phi0" => of(|moment| moment.phi0),
+            "omega0" => of(|moment| moment.omega0),
+            "s1" => of(|moment| moment.palms[0].s),
+            "s2" => of(|moment| moment.palms[1].s),
+            "phi1" => of(|moment| moment.palms[0].angle),
+            "phi2" => of(|moment| moment.palms[1].angle),
+            "omega1" => of(|moment| moment.palms[0].rate),
+            "omega2" => of(|moment| moment.palms[1].rate),
+            "alpha1" => of(|moment| moment.palms[0].acceleration),
+            "alpha2" => of(|moment| moment.palms[1].acceleration),
+            "tau1" => of(|moment| moment.palms[0].torque),
+            "tau2" => of(|moment| moment.palms[1].torque),
+            _ => self.constants.get(name).map(|value| vec![*value; moments.len()]),
+        }
+    }
+
+    /// What sensors and motors tell: the contacts along the palms with normal errors of the standard deviation `noise`,
+    /// rounded to multiples of `resolution` (both in m), and the palms' angles, rates, accelerations and torques as they are.
+    /// The same seed gives the same errors, whatever their size.
+    ///
+    /// # Errors
+    /// None that a simulation could bring about.
+    pub fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
+        let times: Vec<f64> = self.trajectory.moments.iter().map(|moment| moment.time).collect();
+        let names = ["s1", "s2", "phi1", "phi2", "omega1", "omega2", "alpha1", "alpha2", "tau1", "tau2"];
+        let mut columns: Vec<(String, Vec<f64>)> =
+            names.iter().filter_map(|name| Some(((*name).to_owned(), self.truth(name)?))).collect();
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        for (_, values) in columns.iter_mut().filter(|(name, _)| TOUCH.contains(&name.as_str())) {
+            for value in values {
+                *value += noise * normal(&mut random);
+                if resolution > 0.0 {
+                    *value = (*value / resolution).round() * resolution;
+                }
+            }
+        }
+        Record::new(times, columns)
+    }
+}
+
+/// The standard deviation of a reading's error: noise, and the rounding to multiples of the resolution, which is even
+/// over a width of one resolution.
+pub fn deviation(noise: f64, resolution: f64) -> f64 {
+    (noise * noise + resolution * resolution / 12.0).sqrt()
+}
+
+/// A number from the normal distribution with mean zero and standard deviation one, by G. Box and M. Muller's method.
+fn normal(random: &mut ChaCha8Rng) -> f64 {
+    use rand::RngExt;
+    let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt();
+    radius * (std::f64::consts::TAU * random.random::<f64>()).cos()
+}
+
+fn body(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {
+    let centre = simulated.body.centre_of_mass.map_or(CentreOfMass::Uniform, CentreOfMass::At);
+    let form = match &simulated.body.shape {
+        scene::Shape::Harmonics { mean, harmonics } => {
+            Form::Harmonics { mean: *mean, harmonics: harmonics.clone() }
+        }
+        scene::Shape::Ellipse { semi_axes } => Form::Ellipse { semi_axes: *semi_axes },
+        scene::Shape::Superellipse { semi_axes, exponent, rounding } => {
+            Form::Superellipse { semi_axes: *semi_axes, exponent: *exponent as u32, rounding: *rounding }
+        }
+        scene::Shape::Spline { radii } => Form::Spline { radii: *radii, knots: Knots::Uniform },
+        scene::Shape::RandomSpline { seed } => {
+            let drawn = SplineDraws::new(*seed, Knots::Uniform).until_convex()?;
+            return match centre {
+                CentreOfMass::Uniform => Ok((drawn.shape, Some(drawn.draws))),
+                CentreOfMass::At(_) => Ok((Shape::new(&drawn.form, centre)?, Some(drawn.draws))),
+            };
+        }
+    };
+    Ok((Shape::new(&form, centre)?, None))
+}
+
+fn drive(drive: &scene::Drive) -> Drive {
+    let swings = |swings: &[scene::Swing]| -> Vec<Oscillation> {
+        let one =
+            |s: &scene::Swing| Oscillation { amplitude: s.amplitude, frequency: s.frequency, phase: s.phase };
+        swings.iter().map(one).collect()
+    };
+    match drive {
+        scene::Drive::Prescribed(palms) => Drive::Prescribed(palms.each_ref().map(|p| Course {
+            start: p.start,
+            rate: p.rate,
+            swings: swings(&p.swings),
+        })),
+        scene::Drive::Torques(palms) => Drive::Torques(palms.each_ref().map(|p| PushedPalm {
+            angle: p.angle,
+            rate: p.rate,
+            torque: p.torque,
+            swings: swings(&p.swings),
+        })),
+    }
+}

@@ -1,0 +1,197 @@
+//! An experiment many times over: with other errors of the readings, and from other first guesses.
+
+use super::run::{Experiment, error};
+use super::scene::{self, BasinStudy, NoiseStudy, SceneError};
+use super::simulation::Simulation;
+use crate::observer::{Method, MovingWindow, Order, Signals, Standing, Task, cramer_rao};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The error over many seeds at one level of noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoiseLevel {
+    /// The standard deviation of the readings, in m.
+    pub noise: f64,
+    /// Estimates that converged, of how many seeds.
+    pub converged: usize,
+    pub seeds: usize,
+    /// The root of the mean square error of what is sought at the first sample, over the seeds that converged.
+    pub errors: Vec<f64>,
+    /// The bound of Cramér and Rao there, at the truth.
+    pub bounds: Vec<f64>,
+}
+
+/// The first guesses from which one method arrives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Basin {
+    pub method: scene::Method,
+    /// The states that span the grid, and their values along each side.
+    pub names: [String; 2],
+    pub values: [Vec<f64>; 2],
+    /// Whether it arrives, rows by the second state; none where it was interrupted before.
+    pub arrives: Vec<Option<bool>>,
+}
+
+impl Basin {
+    /// The part of the guesses that were tried from which it arrives.
+    pub fn fraction(&self) -> f64 {
+        let tried = self.arrives.iter().flatten().count();
+        self.arrives.iter().flatten().filter(|arrives| **arrives).count() as f64 / tried.max(1) as f64
+    }
+}
+
+/// An estimate has arrived that is within one percent of the truth.
+pub const ARRIVED: f64 = 0.01;
+
+/// The error of the first window's estimate at the levels of a study, by least squares. Seeds run side by side; the result is the
+/// same on any number of threads. `done` is called once a seed.
+///
+/// # Errors
+/// As [`Experiment::task`].
+pub fn noise_study(
+    experiment: &Experiment,
+    simulation: &Simulation,
+    study: &NoiseStudy,
+    interrupt: &AtomicBool,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<NoiseLevel>, SceneError> {
+    let task = experiment.task(interrupt)?;
+    let observer = MovingWindow { steps: 50, blind: f64::INFINITY, ..experiment.window(Method::TrustRegion) };
+    let mut levels = Vec::new();
+    for &noise in &study.levels {
+        if task.interrupted() {
+            break;
+        }
+        let one = |seed: u64| -> Option<Option<Vec<f64>>> {
+            if interrupt.load(Ordering::Relaxed) {
+                return None;
+            }
+            let estimate = (|| {
+                let seed = experiment.scene.seed.wrapping_add(1 + seed);
+                let signals = noisy(experiment, simulation, noise, seed)?;
+                let mut task = task.with_signals(&signals);
+                (task.exact, task.sigma) = (false, noise);
+                let rows = first_window(&task, &observer);
+                let update = observer.update(&task, &task.guess, &rows, &task.clamped);
+                matches!(update.standing, Standing::Converged | Standing::Stuck).then_some(update.estimate)
+            })();
+            done();
+            Some(estimate)
+        };
+        let estimates: Vec<Option<Vec<f64>>> =
+            (0..study.seeds as u64).into_par_iter().filter_map(one).collect();
+        let Some(truth) = experiment.truth_at(task.signals.times()[0]) else { break };
+        let arrived: Vec<&Vec<f64>> = estimates.iter().flatten().collect();
+        let error = |i: usize| {
+            let square: f64 = arrived.iter().map(|estimate| (estimate[i] - truth[i]).powi(2)).sum();
+            (square / arrived.len() as f64).sqrt()
+        };
+        levels.push(NoiseLevel {
+            noise,
+            converged: arrived.len(),
+            seeds: estimates.len(),
+            errors: (0..truth.len()).map(error).collect(),
+            bounds: bounds(&task, &observer, &truth, noise),
+        });
+    }
+    Ok(levels)
+}
+
+/// The signals of an experiment with other errors.
+fn noisy(experiment: &Experiment, simulation: &Simulation, noise: f64, seed: u64) -> Option<Signals> {
+    let record = simulation.readings(noise, experiment.scene.sensor.resolution, seed).ok()?;
+    let columns =
+        record.names().iter().filter_map(|name| Some((name.clone(), record.column(name)?.to_vec())));
+    Signals::new(record.times().to_vec(), columns.collect()).ok()
+}
+
+fn first_window(task: &Task<'_>, observer: &MovingWindow) -> std::ops::Range<usize> {
+    0..(observer.window.max(2) + 1).min(task.signals.times().len())
+}
+
+/// The bound of Cramér and Rao for what is sought at the first sample, at the truth.
+fn bounds(task: &Task<'_>, observer: &MovingWindow, truth: &[f64], noise: f64) -> Vec<f64> {
+    let mut task = task.clone();
+    (task.exact, task.sigma) = (false, noise);
+    let window = MovingWindow::window(&task, truth, &first_window(&task, observer), &task.clamped);
+    let sizes = MovingWindow::sizes(&task, &window);
+    let mut bounds = vec![0.0; truth.len()];
+    let bound = match window.expand(&window.unknowns(&window.start), Order::First) {
+        Ok(expansion) => cramer_rao(&expansion.slopes, noise, &sizes).deviations,
+        Err(_) => vec![f64::INFINITY; window.free.len()],
+    };
+    for (place, deviation) in window.free.iter().zip(bound) {
+        if let Some(own) = bounds.get_mut(*place) {
+            *own = deviation;
+        }
+    }
+    bounds
+}
+
+/// From which first guesses of two states each method of the scene arrives: within [`ARRIVED`] of the truth, after their first
+/// window for methods that work by windows and at the last sample for the others. `done` is called once a guess.
+///
+/// # Errors
+/// As [`Experiment::task`], or where the study does not span two states that are sought.
+pub fn basins(
+    experiment: &Experiment,
+    study: &BasinStudy,
+    interrupt: &AtomicBool,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<Basin>, SceneError> {
+    let task = experiment.task(interrupt)?;
+    let names: Vec<&str> = experiment.names();
+    let mut spanned = study.ranges.iter().filter_map(|(name, range)| {
+        Some((names.iter().position(|other| other == name)?, name.clone(), *range))
+    });
+    let (Some(first), Some(second), None) = (spanned.next(), spanned.next(), spanned.next()) else {
+        let help = "give the ranges of two states that are estimated";
+        let message = format!("a map needs two of the states {}", names.join(", "));
+        return Err(experiment.scene.error_at("study.basin", message, "here", help));
+    };
+    let values = [first.2, second.2].map(|[low, high]| -> Vec<f64> {
+        let last = study.points.max(2) - 1;
+        (0..=last).map(|i| low + (high - low) * i as f64 / last as f64).collect()
+    });
+    let mut basins = Vec::new();
+    for &method in &experiment.scene.observer.methods {
+        let width = values[0].len();
+        let one = |index: usize| -> Option<bool> {
+            if interrupt.load(Ordering::Relaxed) {
+                return None;
+            }
+            let mut task = task.clone();
+            task.guess[first.0] = values[0][index % width];
+            task.guess[second.0] = values[1][index / width];
+            let arrives = arrives(experiment, &task, method);
+            done();
+            Some(arrives.unwrap_or(false))
+        };
+        let arrives = (0..width * values[1].len()).into_par_iter().map(one).collect();
+        basins.push(Basin {
+            method,
+            names: [first.1.clone(), second.1.clone()],
+            values: values.clone(),
+            arrives,
+        });
+    }
+    Ok(basins)
+}
+
+fn arrives(experiment: &Experiment, task: &Task<'_>, method: scene::Method) -> Option<bool> {
+    let (time, state) = match method {
+        scene::Method::Newton | scene::Method::TrustRegion => {
+            let by = if method == scene::Method::Newton { Method::Newton } else { Method::TrustRegion };
+            let observer = experiment.window(by);
+            let update = observer.update(task, &task.guess, &first_window(task, &observer), &task.clamped);
+            (update.from, update.estimate)
+        }
+        _ => {
+            let track = experiment.observer(method).observe(task);
+            let last = track.last()?;
+            (last.time, last.state.clone())
+        }
+    };
+    let truth = experiment.truth_at(time)?;
+    Some(state.iter().zip(&truth).all(|(state, truth)| error(*state, *truth) < ARRIVED))
+}

@@ -1,0 +1,272 @@
+//! What observers made of an experiment, as JSON and as text.
+
+use crate::experiment::{Answer, Basin, Experiment, Method, NoiseLevel, error};
+use crate::mechanics::moving::Ended;
+use crate::observer::{Fault, Standing, Update};
+use serde_json::{Map, Value, json};
+use std::fmt::Write;
+
+/// An experiment with all that was found: what the page and the JSON are made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Observed<'a> {
+    pub experiment: &'a Experiment,
+    pub answers: &'a [Answer],
+    /// The error over noise, where it was studied.
+    pub noise: &'a [NoiseLevel],
+    /// From where each method arrives, where it was studied.
+    pub basins: &'a [Basin],
+    /// Whether it was stopped before the end.
+    pub interrupted: bool,
+}
+
+/// A method's name, as a scene writes it.
+pub fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::Newton => "newton",
+        Method::TrustRegion => "trust-region",
+        Method::Integration => "integration",
+        Method::Kalman => "kalman",
+        Method::HighGain => "high-gain",
+    }
+}
+
+fn standing_name(standing: &Standing) -> String {
+    match standing {
+        Standing::Converged => "converged".to_owned(),
+        Standing::StepsSpent => "all steps spent".to_owned(),
+        Standing::Stuck => "no step lowers the error".to_owned(),
+        Standing::Blind { .. } => "cannot see".to_owned(),
+        Standing::Lost(lost) => format!("lost: {lost}"),
+    }
+}
+
+/// How a simulation ended, in words.
+pub fn ended_in_words(ended: &Ended) -> String {
+    match ended {
+        Ended::Completed => "completed".to_owned(),
+        Ended::ContactLost { palm, time } => {
+            format!("contact with palm {palm} lost at {time:.6} s: its force is zero")
+        }
+        Ended::PalmsParallel { time } => format!("palms parallel at {time:.6} s"),
+        Ended::ContactAtJoint { palm, time } => {
+            format!("contact on palm {palm} reached the joint at {time:.6} s")
+        }
+        Ended::OutOfPalm { palm, time } => format!("contact ran off palm {palm} at {time:.6} s"),
+        Ended::Failed { time, why } => format!("failed at {time:.6} s: {why}"),
+    }
+}
+
+/// The faults of a file, as lines.
+pub fn fault_lines(faults: &[Fault]) -> Vec<String> {
+    faults.iter().map(ToString::to_string).collect()
+}
+
+/// An infinite bound has no number in JSON.
+fn finite(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { Value::Null }
+}
+
+/// States with what was recovered, what is true, the error and the bound, by name.
+fn states(observed: &Observed<'_>, time: f64, recovered: &[f64], bounds: Option<&[f64]>) -> Value {
+    let truth = observed.experiment.truth_at(time);
+    let mut states = Map::new();
+    for (i, name) in observed.experiment.names().into_iter().enumerate() {
+        let mut state = json!({ "recovered": finite(recovered[i]) });
+        if let Some(truth) = &truth {
+            state["true"] = json!(truth[i]);
+            state["error"] = finite(error(recovered[i], truth[i]));
+        }
+        if let Some(bounds) = bounds {
+            state["bound"] = finite(bounds[i]);
+        }
+        states.insert(name.to_owned(), state);
+    }
+    Value::Object(states)
+}
+
+fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
+    let mut found = json!({
+        "from": update.from,
+        "to": update.to,
+        "standing": standing_name(&update.standing),
+        "iterations": update.steps,
+        "troubled": update.troubled,
+        "seconds": update.seconds,
+        "condition": finite(update.condition),
+        "cost": finite(update.cost),
+        "states": states(observed, update.from, &update.estimate, Some(&update.deviations)),
+    });
+    if let Standing::Blind { weakest } = &update.standing {
+        found["unseen"] = json!(weakest);
+    }
+    found
+}
+
+/// An experiment as JSON: true and recovered states, errors, the bound of Cramér and Rao, iterations and time.
+///
+/// An `error` is relative, or absolute where the truth is less than a millionth; a `bound` is a standard deviation in the unit of its
+/// state, for the readings' own errors or, where they have none, for errors of a nanometre; what is not seen has none.
+pub fn observe_json(observed: &Observed<'_>) -> Value {
+    let experiment = observed.experiment;
+    let times = experiment.signals.times();
+    let answers = observed.answers.iter().map(|answer| {
+        let updates = answer.track.updates.iter().map(|update| update_json(observed, update));
+        let end = answer.track.last().map(
+            |last| json!({ "time": last.time, "states": states(observed, last.time, &last.state, None) }),
+        );
+        json!({
+            "method": method_name(answer.method),
+            "seconds": answer.seconds,
+            "unseen_samples": answer.track.unseen,
+            "remarks": answer.track.remarks,
+            "updates": updates.collect::<Vec<_>>(),
+            "end": end,
+        })
+    });
+    let guess: Map<String, Value> =
+        experiment.sought.guess.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+    let mut found = json!({
+        "scene": experiment.scene.title,
+        "model": experiment.system.title,
+        "seed": experiment.scene.seed,
+        "samples": times.len(),
+        "duration": times.last(),
+        "sensor": { "noise": experiment.scene.sensor.noise, "resolution": experiment.scene.sensor.resolution },
+        "first_guess": guess,
+        "clamped": experiment.sought.clamped,
+        "told": experiment.sought.known,
+        "faults": fault_lines(&experiment.faults),
+        "observers": answers.collect::<Vec<_>>(),
+        "interrupted": observed.interrupted,
+    });
+    if let Some(simulation) = &experiment.simulation {
+        found["simulation"] = json!({
+            "ended": ended_in_words(simulation.ended()),
+            "energy_drift": simulation.trajectory.energy_drift(),
+            "draws": simulation.draws,
+        });
+    }
+    if !observed.noise.is_empty() {
+        let names = experiment.names();
+        let level = |level: &NoiseLevel| {
+            let by_name = |values: &[f64]| -> Map<String, Value> {
+                names.iter().zip(values).map(|(name, value)| ((*name).to_owned(), finite(*value))).collect()
+            };
+            json!({
+                "noise": level.noise,
+                "seeds": level.seeds,
+                "converged": level.converged,
+                "root_mean_square_error": by_name(&level.errors),
+                "bound": by_name(&level.bounds),
+            })
+        };
+        found["noise"] = json!(observed.noise.iter().map(level).collect::<Vec<_>>());
+    }
+    if !observed.basins.is_empty() {
+        let basin = |basin: &Basin| {
+            json!({
+                "method": method_name(basin.method),
+                "states": basin.names,
+                "values": basin.values,
+                "arrives": basin.arrives,
+                "fraction": basin.fraction(),
+            })
+        };
+        found["basins"] = json!(observed.basins.iter().map(basin).collect::<Vec<_>>());
+    }
+    found
+}
+
+/// An experiment as text.
+pub fn observe_text(observed: &Observed<'_>) -> String {
+    let experiment = observed.experiment;
+    let names = experiment.names();
+    let mut text = String::new();
+    let samples = experiment.signals.times().len();
+    let _ = writeln!(text, "{}", experiment.scene.title);
+    if let Some(simulation) = &experiment.simulation {
+        let _ = writeln!(
+            text,
+            "{samples} samples; {}; energy kept to {:.1e} J",
+            ended_in_words(simulation.ended()),
+            simulation.trajectory.energy_drift()
+        );
+    } else {
+        let _ = writeln!(text, "{samples} samples from a file, {} faults", experiment.faults.len());
+    }
+    for line in fault_lines(&experiment.faults) {
+        let _ = writeln!(text, "  {line}");
+    }
+    for answer in observed.answers {
+        let _ = writeln!(text, "\n{}: {:.3} s", method_name(answer.method), answer.seconds);
+        for update in &answer.track.updates {
+            let _ = writeln!(
+                text,
+                "  from {:.3} s: {} after {} steps, {:.1} ms",
+                update.from,
+                standing_name(&update.standing),
+                update.steps,
+                1e3 * update.seconds
+            );
+            let bounds = Some(&update.deviations[..]);
+            state_lines(&mut text, observed, &names, update.from, &update.estimate, bounds);
+        }
+        if let Some(last) = answer.track.last() {
+            let _ = writeln!(text, "  at the end, {:.3} s:", last.time);
+            state_lines(&mut text, observed, &names, last.time, &last.state, None);
+        }
+        if answer.track.unseen > 0 {
+            let _ = writeln!(text, "  not seen for {} of {samples} samples", answer.track.unseen);
+        }
+        for remark in &answer.track.remarks {
+            let _ = writeln!(text, "  {remark}");
+        }
+    }
+    for level in observed.noise {
+        let _ = writeln!(
+            text,
+            "\nnoise {:.1e} m: {} of {} seeds converged",
+            level.noise, level.converged, level.seeds
+        );
+        for ((name, error), bound) in names.iter().zip(&level.errors).zip(&level.bounds) {
+            let ratio = error / bound;
+            let _ = writeln!(text, "  {name:<8} rms error {error:.3e}, bound {bound:.3e}, ratio {ratio:.3}");
+        }
+    }
+    for basin in observed.basins {
+        let _ = writeln!(
+            text,
+            "\n{} arrives from {:.1}% of {} first guesses of {} and {}",
+            method_name(basin.method),
+            100.0 * basin.fraction(),
+            basin.arrives.iter().flatten().count(),
+            basin.names[0],
+            basin.names[1]
+        );
+    }
+    if observed.interrupted {
+        text.push_str("\ninterrupted; this is what was done until then\n");
+    }
+    text
+}
+
+fn state_lines(
+    text: &mut String,
+    observed: &Observed<'_>,
+    names: &[&str],
+    time: f64,
+    recovered: &[f64],
+    bounds: Option<&[f64]>,
+) {
+    let truth = observed.experiment.truth_at(time);
+    for (i, name) in names.iter().enumerate() {
+        let _ = write!(text, "    {name:<8} {:>15.9}", recovered[i]);
+        if let Some(truth) = &truth {
+            let _ = write!(text, "  true {:>15.9}  error {:.1e}", truth[i], error(recovered[i], truth[i]));
+        }
+        if let Some(bounds) = bounds {
+            let _ = write!(text, "  bound {:.1e}", bounds[i]);
+        }
+        text.push('\n');
+    }
+}
