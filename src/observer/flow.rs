@@ -58,8 +58,9 @@ pub struct Flow<'a> {
     pub tolerance: f64,
 }
 
-/// An integration takes no more steps than these between two samples: who needs more has met a pole.
-const MOST_EVALUATIONS: usize = 20_000;
+/// The equations are evaluated no more often than this between two samples (one step takes thirteen times): who needs
+/// more has met a pole.
+const MOST_EVALUATIONS: usize = 3000;
 
 /// The unknowns that one call can carry.
 pub const MOST_UNKNOWNS: usize = 10;
@@ -118,16 +119,13 @@ impl Flow<'_> {
                 loaded.run(&inputs, &mut registers.borrow_mut())
             };
         let failure: Cell<Option<(f64, Refusal)>> = Cell::new(None);
-        let evaluations = Cell::new(0);
         let right_hand_side = |time: f64, y: &[f64], dy: &mut [f64]| {
-            evaluations.set(evaluations.get() + 1);
             match evaluate(&model.rates, &rates, time, y) {
-                Ok(values) if evaluations.get() < MOST_EVALUATIONS => {
+                Ok(values) => {
                     for (value, places) in values.iter().zip(dy.chunks_mut(J::LENGTH)) {
                         value.pack(places);
                     }
                 }
-                Ok(_) => dy.fill(f64::NAN),
                 Err(error) => {
                     failure.set(Some((time, error.refusal)));
                     dy.fill(f64::NAN);
@@ -147,7 +145,6 @@ impl Flow<'_> {
         let mut samples = Vec::with_capacity(times.len());
         for (i, time) in times.iter().enumerate() {
             if i > 0 {
-                evaluations.set(0);
                 failure.set(None);
                 y = advance(&right_hand_side, times[i - 1], *time, &y, self.tolerance).map_err(|lost| {
                     match failure.get() {
@@ -189,13 +186,21 @@ fn sample<J: Jet>(time: f64, states: usize, p: usize, size: usize, y: &[f64], ou
 ///
 /// Dop853 of ode_solvers 0.6.2 takes zero for the twelfth node of the method, which is one: right-hand sides that depend on the
 /// time it hands over are integrated wrongly. A coordinate whose rate is one brings the right time.
-struct Equations<'f>(&'f dyn Fn(f64, &[f64], &mut [f64]));
+struct Equations<'f> {
+    f: &'f dyn Fn(f64, &[f64], &mut [f64]),
+    evaluations: Cell<usize>,
+}
 
 impl System<f64, DVector<f64>> for Equations<'_> {
     fn system(&self, _: f64, y: &DVector<f64>, dy: &mut DVector<f64>) {
         let ([y @ .., time], [dy @ .., time_rate]) = (y.as_slice(), dy.as_mut_slice()) else { return };
         *time_rate = 1.0;
-        (self.0)(*time, y, dy);
+        self.evaluations.set(self.evaluations.get() + 1);
+        if self.evaluations.get() > MOST_EVALUATIONS {
+            // no step is accepted from here on
+            return dy.fill(f64::NAN);
+        }
+        (self.f)(*time, y, dy);
     }
 }
 
@@ -211,7 +216,8 @@ pub(super) fn advance(
     tolerance: f64,
 ) -> Result<Vec<f64>, Lost> {
     let start = DVector::from_iterator(y.len() + 1, y.iter().copied().chain([from]));
-    let mut solver = Dop853::new(Equations(f), 0.0, to - from, to - from, start, tolerance, tolerance);
+    let equations = Equations { f, evaluations: Cell::new(0) };
+    let mut solver = Dop853::new(equations, 0.0, to - from, to - from, start, tolerance, tolerance);
     solver.set_output(OutputType::Sparse);
     let no_step = |why: String| Lost { time: from, why: format!("the integrator finds no step: {why}") };
     solver.integrate().map_err(|error| no_step(error.to_string()))?;

@@ -78,12 +78,14 @@ impl Observer for HighGain {
                     track.unseen += usize::from(!seen);
                 }
                 Err(lost) => {
-                    if track.unseen == 0 {
-                        track.remarks.push(format!("held, with the outputs as they are read: {lost}"));
+                    // what has run away does not come back
+                    track.remarks.push(format!("held from there on: {lost}"));
+                    track.unseen += times.len() - row;
+                    for time in &times[row..] {
+                        let state = state[..task.sought()].to_vec();
+                        track.moments.push(Moment { time: *time, state, surprise: Vec::new() });
                     }
-                    track.unseen += 1;
-                    let belief = state[..task.sought()].to_vec();
-                    state = task.full_state(&belief, row);
+                    break;
                 }
             }
             record(times[row], &state, row, &mut track);
