@@ -40,5 +40,7 @@ pub use reduction::Reduction;
 pub use series::lie_derivative_by_series;
 pub use singular::{Spectrum, customary_singular_values, singular_values};
 pub use state::{Coordinate, State, StateInWords, float_inputs};
-pub use stream::{DECADES, Elimination, Jacobi, Stream, StreamOptions, StreamReport};
+pub use stream::{
+    DECADES, Elimination, Jacobi, StatesError, Stream, StreamOptions, StreamReport, Verdict, Verdicts,
+};
 pub use sweep::{SweepOptions, SweepReport, UnseenDirection, sweep};
