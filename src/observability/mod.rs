@@ -9,6 +9,7 @@
 
 mod codistribution;
 mod conditions;
+mod digits;
 mod elimination;
 mod equilibrate;
 mod flow;
@@ -28,6 +29,7 @@ mod sweep;
 pub use codistribution::{Codistribution, Length, Stop, Word};
 pub use conditions::linear_solution;
 pub use conditions::{Branch, Unsolved, also_met_otherwise, solve_conditions};
+pub use digits::{Digits, MOST_DIGITS, NoDigits};
 pub use elimination::{certain_rank, kernel, rank};
 pub use equilibrate::equilibrate;
 pub use flow::Flow;

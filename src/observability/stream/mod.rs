@@ -28,6 +28,7 @@ pub use certain::Elimination;
 use dashu::rational::RBig;
 use decide::Decider;
 use draw::{Axis, Drawer, Wish, wishes};
+pub(super) use equilibrate::Equilibrium;
 pub use given::{StatesError, Verdict, Verdicts};
 pub use jacobi::Jacobi;
 use rayon::prelude::*;
