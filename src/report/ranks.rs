@@ -193,10 +193,12 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
     match &report.digits {
         None => {}
         Some(Ok(found)) => {
-            let _ = writeln!(out, "  its singular values: {}", found.values.join(", "));
+            if !found.values.is_empty() {
+                let _ = writeln!(out, "  its singular values: {}", found.values.join(", "));
+            }
             let _ = writeln!(
                 out,
-                "  {} digits, {} by {}; climbed {} rungs",
+                "  {} digits, {} by {}; rungs climbed: {}",
                 found.digits,
                 certainty_text(found.certainty),
                 found.rung.name(),
