@@ -1,6 +1,7 @@
 //! Our side of `benches/compare`: one job on given states, in the protocol of `benches/peers/worker.py`.
 //!
-//! `ours VARIANT JOB STATES RESULTS` (VARIANT: `computed`, or `certified` for verdicts that are proved) prepares (from the text of the proof file to a program that is ready to run), says
+//! `ours VARIANT JOB STATES RESULTS` (VARIANT: `computed`, or `certified` for verdicts that are proved)
+//! prepares (from the text of the proof file to a program that is ready to run), says
 //! `prepared SECONDS`, and obeys the lines `run` and `write` on standard input.
 
 use palmistry::System;

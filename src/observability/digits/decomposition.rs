@@ -28,8 +28,7 @@ pub fn approximate_values<A: Approximate>(
     on: &A,
     matrix: &Columns<A::Number>,
 ) -> Result<Vec<A::Number>, Refusal> {
-    let (orthogonal, _) = rotated(on, matrix)?;
-    orthogonal.iter().map(|column| length(on, column)).collect()
+    rotated(on, matrix)?.columns.iter().map(|column| length(on, column)).collect()
 }
 
 /// Enclosures of the singular values, in no order: the k-th largest lies between the k-th largest lower end and the k-th
@@ -41,7 +40,7 @@ pub fn enclosed_values<A: Enclosing>(
     on: &A,
     matrix: &Columns<A::Number>,
 ) -> Result<Option<Vec<A::Number>>, Refusal> {
-    let (_, rotations) = rotated(on, matrix)?;
+    let rotations = rotated(on, matrix)?.rotations;
     let rows = matrix.first().map_or(0, Vec::len);
     let mut turned = Vec::with_capacity(rotations.len());
     for rotation in &rotations {
@@ -79,12 +78,13 @@ pub fn enclosed_values<A: Enclosing>(
     lengths.iter().map(|length| on.mul(length, &factor)).collect::<Result<_, _>>().map(Some)
 }
 
-/// The matrix with its columns turned until they are orthogonal, approximately, and the columns of what it was
-/// multiplied by.
-fn rotated<A: Approximate>(
-    on: &A,
-    matrix: &Columns<A::Number>,
-) -> Result<(Columns<A::Number>, Columns<A::Number>), Refusal> {
+/// A matrix by columns, turned until these are orthogonal, approximately; and what it was multiplied by.
+struct Rotated<N> {
+    columns: Columns<N>,
+    rotations: Columns<N>,
+}
+
+fn rotated<A: Approximate>(on: &A, matrix: &Columns<A::Number>) -> Result<Rotated<A::Number>, Refusal> {
     let count = matrix.len();
     let mut both = Vec::with_capacity(count);
     for (k, column) in matrix.iter().enumerate() {
@@ -110,7 +110,7 @@ fn rotated<A: Approximate>(
         before = before.min(largest);
     }
     let rotations = both.iter_mut().map(|column| column.split_off(rows)).collect();
-    Ok((both, rotations))
+    Ok(Rotated { columns: both, rotations })
 }
 
 /// Turns two columns, of which the first `rows` entries count, so that they become orthogonal; what follows is turned with
