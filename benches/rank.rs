@@ -26,6 +26,7 @@ fn sweep(bencher: Bencher, regime: &str) {
                 samples: black_box(STATES),
                 seed: 1,
                 wanted: Certainty::Certified,
+                digits: None,
                 order: None,
                 fixed: BTreeMap::new(),
                 conditions: Vec::new(),

@@ -3,7 +3,13 @@
 mod common;
 
 use common::{folder, json, palmistry, with_threads, without_times, write};
+use palmistry::System;
+use palmistry::expression::{Program, expand_angles};
+use palmistry::number::Floats;
+use palmistry::observability::{Reduction, float_inputs};
+use palmistry::system::Value::Matrix;
 use serde_json::{Value, json};
+use std::path::Path;
 
 const SAME_RATE: &str = "proofs/moll2002/same_rate.proof";
 const GENERAL: &str = "proofs/moll2002/general.proof";
@@ -53,6 +59,80 @@ fn two_questions_have_two_answers() {
     );
     for branch in found["branches"].as_array().unwrap() {
         assert_eq!(branch["own_rows"]["rank_histogram"], json!({ "5": 50 }));
+    }
+}
+
+/// Outputs 4x + y and x + y: the squares of [4 1; 1 1], scaled, are [4/5 1/5; 1/5 4/5], as x/(1 - x) = |a d|/|b c|, so that
+/// the singular values are 3/sqrt(5) and 1/sqrt(5) and the condition is 3 (digits of the root: mpmath 1.3).
+#[test]
+fn digits_of_the_worst_state_in_closed_form() {
+    let text = "system \"linear\" state x, y field f x' = y y' = 0 output 4*x + y, x + y \
+                sample x in [0, 1] y in [0, 1]";
+    let folder = folder();
+    let file = write(&folder, "linear.proof", text);
+    let arguments = [file.to_str().unwrap(), "--samples", "10", "--digits"];
+    for (digits, first, second, numbers) in [
+        ("9", "1.34164079", "0.447213595", "intervals"),
+        (
+            "33",
+            "1.34164078649987381784550420123877",
+            "0.447213595499957939281834733746255",
+            "enclosures of 179 bits",
+        ),
+    ] {
+        let found = rank(&[&arguments[..], &[digits]].concat());
+        let exact = &found["worst_to_digits"];
+        assert_eq!(exact["singular_values"], json!([first, second]));
+        assert_eq!(exact["digits"].to_string(), digits);
+        assert_eq!((exact["verdict"].as_str(), exact["climbed"].as_u64()), (Some("certified"), Some(0)));
+        assert_eq!(exact["numbers"], numbers);
+        let worst = &found["worst_conditioned"];
+        assert_eq!(
+            (&worst["condition"], worst["singular_values"][0].as_f64()),
+            (&json!(3.0), first.parse().ok())
+        );
+    }
+    let words = palmistry(&[&["rank"], &arguments[..], &["20", "--verdict", "computed"]].concat());
+    let words = String::from_utf8(words.stdout).unwrap();
+    assert!(words.contains("worst conditioned: 3.0000000000000000000 at"), "{words}");
+    assert!(words.contains("20 digits, certified by enclosures of 134 bits"), "{words}");
+    // without the option nothing is said of digits
+    assert_eq!(rank(&arguments[..3]).get("worst_to_digits"), None);
+}
+
+/// The second witness: the rows at the reported state in doubles, unit rows left out, rows and columns scaled to length
+/// one in turn ten thousand times, singular values by faer.
+#[test]
+fn digits_of_a_regime_are_those_of_scaling_without_end() {
+    let found = rank(&[SAME_RATE, "--samples", "300", "--digits", "20"]);
+    let (found, digits) = (&found["own_rows"], &found["own_rows"]["worst_to_digits"]);
+    let mut system = System::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(SAME_RATE)).unwrap();
+    let Some(Matrix(rows)) = system.definition("rows").cloned() else { panic!("no rows") };
+    let kept = Reduction::new(&system.graph, &rows.entries, rows.columns);
+    let angles = system.angles();
+    let entries = expand_angles(&mut system.graph, &kept.entries, |symbol| angles.contains(&symbol));
+    let program = Program::new(&system.graph, &entries, |_| false, false);
+    let value =
+        |symbol| found["worst_conditioned"]["state"][system.symbol_name(symbol)]["value"].as_f64().unwrap();
+    let inputs = float_inputs(&program, value);
+    let entries = program.load(Floats).unwrap().run(&inputs, &mut Vec::new()).unwrap();
+    let size = kept.columns.len();
+    let mut matrix = faer::Mat::from_fn(size, size, |i, j| entries[i * size + j]);
+    for _ in 0..10_000 {
+        for i in 0..size {
+            let length = matrix.row(i).norm_l2();
+            (0..size).for_each(|j| matrix[(i, j)] /= length);
+        }
+        for j in 0..size {
+            let length = matrix.col(j).norm_l2();
+            (0..size).for_each(|i| matrix[(i, j)] /= length);
+        }
+    }
+    let values = matrix.singular_values().unwrap();
+    assert_eq!(digits["singular_values"].as_array().unwrap().len(), size);
+    for (value, digits) in values.iter().zip(digits["singular_values"].as_array().unwrap()) {
+        let exact: f64 = digits.as_str().unwrap().parse().unwrap();
+        assert!((value - exact).abs() < 1e-13, "{value}, {exact}");
     }
 }
 

@@ -1,10 +1,12 @@
 //! A hundred thousand states at once: what the stream says is true, the same everywhere, and names what is wrong.
 
+use faer::Mat;
 use palmistry::System;
 use palmistry::expression::{NodeId, Program, expand_angles};
-use palmistry::number::{Instructions, PrimeField, Rationals};
+use palmistry::number::{Floats, Instructions, PrimeField, Rationals, rational_to_f64};
 use palmistry::observability::{
-    Certainty, Coordinate, Locus, Stream, StreamOptions, StreamReport, rank, solve_conditions,
+    Certainty, Coordinate, Locus, Reduction, StatesError, Stream, StreamOptions, StreamReport, Verdict,
+    Verdicts, float_inputs, rank, singular_values, solve_conditions,
 };
 use palmistry::system::Value;
 use rand::SeedableRng;
@@ -133,6 +135,106 @@ fn states_lie_in_the_box_and_keep_away_from_what_is_avoided() {
         }
     }
     assert!(smallest < 0.1, "the edge of what is avoided is never reached: {smallest}");
+}
+
+/// Coordinates of the first states that a stream draws, angles in radians.
+fn drawn(stream: &Stream, count: u64) -> Vec<Vec<f64>> {
+    let mut coordinates = vec![Vec::new(); stream.coordinates().count()];
+    for index in 0..count {
+        let state = stream.state(7, index).unwrap();
+        for (values, symbol) in coordinates.iter_mut().zip(stream.coordinates()) {
+            values.push(state.values[&symbol].to_f64());
+        }
+    }
+    coordinates
+}
+
+/// The verdicts of states that are handed over beside two other witnesses: what the stream says where it draws the very
+/// same states, and the scalar singular values of the scaled block, its entries evaluated one by one.
+#[test]
+fn states_that_are_handed_over_get_the_verdicts_of_those_that_are_drawn() {
+    for name in ["general", "same_rate", "one_palm_fixed", "fixed_palms"] {
+        let mut system = regime(name);
+        let stream = stream(&mut system);
+        let (report, _) = run(&stream, 1003, Certainty::Certified);
+        let states = drawn(&stream, 1003);
+        let slices: Vec<&[f64]> = states.iter().map(Vec::as_slice).collect();
+        let (mut proved, mut plain) = (Verdicts::default(), Verdicts::default());
+        stream.verdicts(&slices, Certainty::Certified, &mut proved).unwrap();
+        stream.verdicts(&slices, Certainty::Computed, &mut plain).unwrap();
+        let count =
+            |found: &Verdicts, verdict| found.verdicts.iter().filter(|v| **v == verdict).count() as u64;
+        assert_eq!(count(&proved, Verdict::Full(Certainty::Certified)), report.certified, "{name}");
+        assert_eq!(
+            count(&plain, Verdict::Full(Certainty::Certified)),
+            0,
+            "{name}: plain doubles prove nothing"
+        );
+        assert!(count(&plain, Verdict::Full(Certainty::Computed)) >= 1000, "{name}");
+
+        let angles = system.angles();
+        let rows = rows(&system);
+        let kept = Reduction::new(&system.graph, &rows, system.states.len());
+        let entries = expand_angles(&mut system.graph, &kept.entries, |symbol| angles.contains(&symbol));
+        let program = Program::new(&system.graph, &entries, |_| false, false);
+        let symbols: Vec<_> = stream.coordinates().collect();
+        let (width, loaded) = (kept.columns.len(), program.load(Floats).unwrap());
+        for state in 0..1003 {
+            let value = |symbol| match symbols.iter().position(|other| *other == symbol) {
+                Some(place) => states[place][state],
+                None => rational_to_f64(system.symbol_info(symbol).unwrap().default.as_ref().unwrap()),
+            };
+            let entries = loaded.run(&float_inputs(&program, value), &mut Vec::new()).unwrap();
+            for found in [&proved, &plain] {
+                let factor = |place: usize| {
+                    found.row_factors[place / width][state] * found.column_factors[place % width][state]
+                };
+                let scaled = Mat::from_fn(entries.len() / width, width, |i, j| {
+                    entries[i * width + j] * factor(i * width + j)
+                });
+                let other = scaled.singular_values().unwrap();
+                for (values, other) in found.singular_values.iter().zip(&other) {
+                    // programs round differently; entries are sums that may cancel
+                    assert!(
+                        (values[state] - other).abs() < 1e-12 * found.singular_values[0][state],
+                        "{name}"
+                    );
+                }
+                // one scaling up to where it stops: lengths to half a percent
+                let single = singular_values(&entries, &vec![0.0; entries.len()], width).unwrap();
+                assert!((found.singular_values[0][state] / single.values[0] - 1.0).abs() < 0.02, "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn states_that_cannot_be_looked_at_are_refused_or_named() {
+    // the corner x vanishes at the second state, the third is no number, the fourth lies outside of the box
+    let mut system = small("1, x", "[1, 2]");
+    let stream = stream(&mut system);
+    let names: Vec<&str> = stream.coordinates().map(|symbol| system.symbol_name(symbol)).collect();
+    let (x, y) = ([1.5, 0.0, f64::NAN, -7.0], [1.0; 4]);
+    let states: Vec<&[f64]> = names.iter().map(|name| if *name == "x" { &x[..] } else { &y[..] }).collect();
+    let mut found = Verdicts::default();
+    stream.verdicts(&states, Certainty::Certified, &mut found).unwrap();
+    let proved = Verdict::Full(Certainty::Certified);
+    assert_eq!(found.verdicts, [proved, Verdict::Open(1), Verdict::NotFinite, proved]);
+    stream.verdicts(&states, Certainty::Computed, &mut found).unwrap();
+    let computed = Verdict::Full(Certainty::Computed);
+    assert_eq!(found.verdicts, [computed, Verdict::Open(1), Verdict::NotFinite, computed]);
+
+    let wanted = Certainty::Computed;
+    assert_eq!(
+        stream.verdicts(&states[1..], wanted, &mut found),
+        Err(StatesError::Coordinates { expected: states.len(), found: states.len() - 1 })
+    );
+    let mut short = states.clone();
+    short[names.len() - 1] = &y[..3];
+    assert_eq!(stream.verdicts(&short, wanted, &mut found), Err(StatesError::Lengths { first: 4, other: 3 }));
+    let nothing = vec![&y[..0]; names.len()];
+    stream.verdicts(&nothing, wanted, &mut found).unwrap();
+    assert!(found.verdicts.is_empty());
 }
 
 #[test]

@@ -4,8 +4,9 @@ Each peer is a process of its own (`worker.py`; ours is `ours.rs`), pinned to on
 from peer to peer, so that what else the machine does falls on all alike. A time is the least over the rounds (and the
 median); a ratio is that of the least times. Results are compared with ours, entry by entry, scaled by the largest of the
 row. Singular values are compared, scaled by the largest, with those that numpy finds for our entries: the peers' after the
-customary scaling of rows to length one; ours, of what the unit rows leave, after the scaling that `palmistry` does, of
-which it is checked that it multiplies rows and columns and does nothing else.
+customary scaling of rows to length one; ours, of what the unit rows leave, after the scaling that `palmistry` does. It
+says by which factors it multiplied rows and columns; that they are positive and that rows and columns come out of one
+length is checked too.
 """
 
 import argparse
@@ -33,8 +34,10 @@ TOLERANCE = 1e-9
 AVOIDED = 0.05
 
 OURS = "palmistry"
+PROVED = "palmistry, rank proved"
 PEERS = {
-    OURS: None,
+    OURS: "computed",
+    PROVED: "certified",
     "CasADi, generated C, gcc -O3": "peer_casadi:c",
     "CasADi, generated C, gcc -O3 -march=native": "peer_casadi:native",
     "SymPy cse, C loop, gcc -O3 -march=native -ffast-math": "peer_sympy:c",
@@ -44,6 +47,19 @@ PEERS = {
     "SymPy, lambdify, numpy": "peer_sympy:numpy",
 }
 NEEDS_GCC = [name for name in PEERS if "gcc" in name]
+
+# Squares of lengths after our scaling are as wanted to this part: twice that at which its iteration stops.
+EQUAL = 2e-2
+
+WHAT_IS_TIMED = """\
+A verdict is the singular values that decide the rank, in one batch. Ours, in both columns: ten rows are handed over; that
+six are unit rows is found in the preparation, and they leave with their columns; the 4x4 block that remains is computed,
+rows and columns are scaled to one length (to one percent), and one-sided Jacobi rotations find the singular values, eight
+states at a time. "Rank proved" is what `palmistry rank` does: bounds on the errors of all entries are carried along, and
+elimination with them proves the rank. Peers: in the first column they are told which rows and columns remain and compute
+these 16 entries; in the second they compute the four rows and put the six unit rows beside them. They scale the rows to
+length one, and find the singular values of the 4x4 or 10x10 matrices by LAPACK through numpy, one matrix after the other
+(JAX by its own call of it)."""
 
 
 class Left(Exception):
@@ -163,8 +179,10 @@ def measure(job_name, executable, environment, folder, options, entries):
     found, workers = {}, {}
     for name, peer in PEERS.items():
         note(f"{job.title}: {name} prepares", passing=True)
-        start = [executable] if peer is None else [sys.executable, "worker.py", peer]
+        start = [executable, peer] if name in (OURS, PROVED) else [sys.executable, "worker.py", peer]
         try:
+            if name == PROVED and not job.singular:
+                raise Left("not a verdict")
             if name in NEEDS_GCC and not shutil.which("gcc"):
                 raise Left("gcc is not there")
             workers[name] = Worker([*start, job_name, str(states_file), str(results_file)], environment, options.limit)
@@ -194,8 +212,10 @@ def measure(job_name, executable, environment, folder, options, entries):
     wrong = []
     for name, values in results.items():
         found[name]["ratio"] = found[name]["least_ns"] / found[OURS]["least_ns"]
-        if name == OURS and job.singular:
-            found[name]["deviation"] = own_deviation(values, entries[job.model])
+        if name in (OURS, PROVED) and job.singular:
+            found[name]["deviation"], unequal = own_deviation(values, entries[job.model])
+            if not unequal <= EQUAL:
+                wrong.append(f"{job.title}: {name} leaves rows or columns unequal by {unequal:.1e}")
         else:
             found[name]["deviation"] = deviation(values, expected, 1 if job.singular else len(job.rows))
         if not found[name]["deviation"] <= TOLERANCE:
@@ -210,18 +230,17 @@ def deviation(values, reference, rows):
 
 
 def own_deviation(values, entries):
-    """How far our singular values are from those that numpy finds for the block as we scaled it, and how far this is
-    from a scaling of rows and columns of our entries. `values` hold for every state the block and the singular values.
+    """How far our singular values are from those that numpy finds for our entries with rows and columns multiplied by our
+    factors, and how far the squares of the lengths of these rows and columns are from one. `values` hold for every state
+    the factors of rows, those of columns and the singular values.
     """
     size = len(UNSEEN)
-    scaled = values[:, : size * size].reshape(-1, size, size)
-    singular = -np.sort(-values[:, size * size :])
+    rows, columns, singular = np.split(values, [size, 2 * size], axis=1)
     block = entries.reshape(len(entries), size, -1)[:, :, list(UNSEEN)]
-    # r_i c_j, whose logarithms are a sum of what depends on i and what depends on j
-    factors = np.log(scaled / block)
-    factors -= factors.mean(axis=1, keepdims=True)
-    factors -= factors.mean(axis=2, keepdims=True)
-    return max(deviation(singular, np.linalg.svd(scaled, compute_uv=False), 1), float(np.max(np.abs(factors))))
+    scaled = rows[:, :, None] * block * columns[:, None, :]
+    squares = np.concatenate([np.sum(scaled**2, axis=1), np.sum(scaled**2, axis=2)])
+    unequal = np.inf if np.min(values[:, : 2 * size]) <= 0 else float(np.max(np.abs(squares - 1)))
+    return deviation(singular, np.linalg.svd(scaled, compute_uv=False), 1), unequal
 
 
 def machine():
@@ -276,7 +295,7 @@ def text(report):
                     f"  {name:<52} {peer['least_ns']:>10.1f} {peer['median_ns']:>9.1f} {peer['ratio']:>9.2f} "
                     f"{peer['prepared_s']:>8.3f} s {peer['deviation']:>11.1e}"
                 )
-    return "\n".join(lines)
+    return "\n".join([*lines, "", WHAT_IS_TIMED])
 
 
 def markdown(report):
@@ -292,7 +311,7 @@ def markdown(report):
         prepared = jobs[last]["peers"][name].get("prepared_s")
         cells.append("" if prepared is None else f"{prepared * 1e3:.0f} ms")
         lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return "\n".join([*lines, "", headline(report) + "."])
+    return "\n".join([*lines, "", WHAT_IS_TIMED, "", headline(report) + "."])
 
 
 def figures(value):

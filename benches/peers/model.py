@@ -85,7 +85,8 @@ class Job:
     A row is an output and the fields along which it is differentiated, first to last; its gradient is taken by the
     states of `columns`. The outputs are states themselves, so that their gradients are unit rows, which are constant
     and are not computed. `singular`: None, "block" (of the given rows and columns, which is what the unit rows leave) or
-    "whole" (of the square matrix with the unit rows; ours eliminates them by itself, so that for us both are one job).
+    "whole" (of the square matrix with the unit rows; ours finds and eliminates them by itself, in its preparation, so that
+    for us both are one job).
     """
 
     title: str
@@ -107,8 +108,8 @@ SEEN = indices(TenStates, "s1 s2 phi1 omega1 phi2 omega2")
 
 JOBS = {
     "matrix": Job("ten states: matrix", TenStates, TEN_ROWS, tuple(range(10))),
-    "block": Job("verdict, 4x4 block handed over", TenStates, TEN_ROWS, UNSEEN, "block"),
-    "whole": Job("verdict, all ten rows", TenStates, TEN_ROWS, tuple(range(10)), "whole", SEEN),
+    "block": Job("verdict, peers told of the 4x4 block", TenStates, TEN_ROWS, UNSEEN, "block"),
+    "whole": Job("verdict, all ten rows handed over", TenStates, TEN_ROWS, tuple(range(10)), "whole", SEEN),
     "same_rate": Job("same rate: matrix", SameRate, SAME_ROWS, tuple(range(6))),
     "order8": Job("gradient of Lg1^8 s1", TenStates, (("s1", ("g1",) * 8),), tuple(range(10))),
 }

@@ -1,12 +1,16 @@
 //! Our side of `benches/compare`: one job on given states, in the protocol of `benches/peers/worker.py`.
 //!
-//! `ours JOB STATES RESULTS` prepares (from the text of the proof file to a program that is ready to run), says
+//! `ours VARIANT JOB STATES RESULTS` (VARIANT: `computed`, or `certified` for verdicts that are proved)
+//! prepares (from the text of the proof file to a program that is ready to run), says
 //! `prepared SECONDS`, and obeys the lines `run` and `write` on standard input.
 
 use palmistry::System;
 use palmistry::expression::{BlockProgram, Input, NodeId, expand_angles, gradient};
-use palmistry::observability::{Reduction, equilibrate, lie_derivative_by_series, singular_values};
+use palmistry::observability::{
+    Certainty, Locus, Stream, Verdict, Verdicts, lie_derivative_by_series, solve_conditions,
+};
 use palmistry::system::Value;
+use std::collections::BTreeMap;
 use std::io::{BufRead, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -18,7 +22,7 @@ const ENOUGH: Duration = Duration::from_millis(20);
 
 fn main() -> Outcome<()> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
-    let [job, states, results] = arguments.as_slice() else {
+    let [variant, job, states, results] = arguments.as_slice() else {
         println!("this is one of the workers of benches/compare; run that");
         return Ok(());
     };
@@ -26,7 +30,7 @@ fn main() -> Outcome<()> {
         std::fs::read(states)?.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
 
     let begin = Instant::now();
-    let mut work = Work::prepare(job, &states)?;
+    let mut work = Work::prepare(variant, job, &states)?;
     println!("prepared {}", begin.elapsed().as_secs_f64());
     work.evaluate()?;
 
@@ -55,32 +59,46 @@ fn main() -> Outcome<()> {
 }
 
 /// A job on its states.
-struct Work {
-    program: BlockProgram,
-    /// For every input of the program, its values at all states.
-    inputs: Vec<Vec<f64>>,
-    /// For every entry, its values at all states.
-    entries: Vec<Vec<f64>>,
-    /// For a verdict, the number of columns of what is left when the unit rows are eliminated, and the singular values,
-    /// state by state.
-    columns: Option<usize>,
-    singular: Vec<f64>,
+enum Work {
+    /// Entries alone.
+    Entries {
+        program: BlockProgram,
+        /// For every input of the program, its values at all states.
+        inputs: Vec<Vec<f64>>,
+        /// For every entry, its values at all states.
+        entries: Vec<Vec<f64>>,
+    },
+    /// Entries and what they say of the rank: the engine of `palmistry rank`, at the states handed over.
+    Verdicts { stream: Box<Stream>, inputs: Vec<Vec<f64>>, wanted: Certainty, found: Verdicts },
 }
 
 impl Work {
-    fn prepare(job: &str, states: &[f64]) -> Outcome<Work> {
+    fn prepare(variant: &str, job: &str, states: &[f64]) -> Outcome<Work> {
         let file = if job == "same_rate" { "same_rate.proof" } else { "general.proof" };
         let mut system =
             System::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(file))?;
-        let dimension = system.states.len();
-        let mut columns = None;
+        let order = system.states.clone();
+        let dimension = order.len();
+        let of = |symbol| -> Outcome<Vec<f64>> {
+            let place = order.iter().position(|state| *state == symbol).ok_or("not a state")?;
+            Ok(states.iter().skip(place).step_by(dimension).copied().collect())
+        };
         let entries = match job {
             "order8" => order8(&mut system)?,
             "matrix" | "same_rate" => rows(&system)?[system.outputs.len() * dimension..].to_vec(),
             "block" | "whole" => {
-                let reduction = Reduction::new(&system.graph, &rows(&system)?, dimension);
-                columns = Some(reduction.columns.len());
-                reduction.entries
+                let rows = rows(&system)?;
+                let branch = solve_conditions(&mut system, &[])?.remove(0);
+                let locus = Locus::new(&mut system, &branch, &BTreeMap::new(), &rows)?;
+                let stream = Stream::new(&mut system, &locus, &rows).ok_or("an angle outside of sines")?;
+                let inputs = stream.coordinates().map(of).collect::<Outcome<_>>()?;
+                let wanted = if variant == "certified" { Certainty::Certified } else { Certainty::Computed };
+                return Ok(Work::Verdicts {
+                    stream: Box::new(stream),
+                    inputs,
+                    wanted,
+                    found: Verdicts::default(),
+                });
             }
             _ => return Err(format!("there is no job '{job}'").into()),
         };
@@ -94,50 +112,47 @@ impl Work {
         let mut inputs = Vec::new();
         for input in program.inputs() {
             let Input::Plain(symbol) = input else { return Err("sines are computed".into()) };
-            let place = system.states.iter().position(|state| state == symbol).ok_or("not a state")?;
-            inputs.push(states.iter().skip(place).step_by(dimension).copied().collect());
+            inputs.push(of(*symbol)?);
         }
-        let count = states.len() / dimension;
-        let entries = vec![vec![0.0; count]; roots.len()];
-        Ok(Work { program, inputs, entries, columns, singular: Vec::new() })
+        let entries = vec![vec![0.0; states.len() / dimension]; roots.len()];
+        Ok(Work::Entries { program, inputs, entries })
     }
 
-    /// The entries, and for a verdict the singular values, of every state.
+    /// The entries, or the verdicts and singular values, of every state.
     fn evaluate(&mut self) -> Outcome<()> {
-        let inputs: Vec<&[f64]> = self.inputs.iter().map(Vec::as_slice).collect();
-        let mut entries: Vec<&mut [f64]> = self.entries.iter_mut().map(Vec::as_mut_slice).collect();
-        if !self.program.evaluate(&inputs, &mut entries).is_empty() {
-            return Err("a value is not finite".into());
-        }
-        if let Some(columns) = self.columns {
-            self.singular.clear();
-            for state in 0..self.entries[0].len() {
-                let matrix = self.at(state);
-                let spectrum = singular_values(&matrix, &vec![0.0; matrix.len()], columns);
-                self.singular.extend(spectrum.ok_or("a value is not finite")?.values);
+        match self {
+            Work::Entries { program, inputs, entries } => {
+                let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+                let mut entries: Vec<&mut [f64]> = entries.iter_mut().map(Vec::as_mut_slice).collect();
+                if !program.evaluate(&inputs, &mut entries).is_empty() {
+                    return Err("a value is not finite".into());
+                }
+            }
+            Work::Verdicts { stream, inputs, wanted, found } => {
+                let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+                stream.verdicts(&inputs, *wanted, found)?;
+                if found.verdicts.contains(&Verdict::NotFinite) {
+                    return Err("a value is not finite".into());
+                }
             }
         }
         Ok(())
     }
 
-    /// The entries of one state.
-    fn at(&self, state: usize) -> Vec<f64> {
-        self.entries.iter().map(|values| values[state]).collect()
-    }
-
-    /// The results, and for a verdict with each state's singular values the scaled matrix whose they are.
+    /// The results, state by state: the entries, or by how much rows and columns were scaled and the singular values
+    /// that are then found.
     fn checkable(&self) -> Vec<f64> {
-        let mut all = Vec::new();
-        for state in 0..self.entries[0].len() {
-            let mut entries = self.at(state);
-            if let Some(columns) = self.columns {
-                let mut errors = vec![0.0; entries.len()];
-                equilibrate(&mut entries, &mut errors, columns);
-                entries.extend(&self.singular[state * columns..][..columns]);
+        let arrays: Vec<&Vec<f64>> = match self {
+            Work::Entries { entries, .. } => entries.iter().collect(),
+            Work::Verdicts { found, .. } => {
+                [&found.row_factors, &found.column_factors, &found.singular_values]
+                    .into_iter()
+                    .flatten()
+                    .collect()
             }
-            all.extend(entries);
-        }
-        all
+        };
+        let count = arrays.first().map_or(0, |array| array.len());
+        (0..count).flat_map(|state| arrays.iter().map(move |array| array[state])).collect()
     }
 }
 

@@ -4,7 +4,7 @@ use super::eval::assignments;
 use super::output::{INTERRUPTED, print_json, print_text, progress};
 use super::{Status, Unusable};
 use clap::{Args, ValueEnum};
-use palmistry::observability::Certainty;
+use palmistry::observability::{Certainty, MOST_DIGITS};
 use palmistry::report::{rank_json, rank_text};
 use palmistry::{RankQuestion, System, answer_rank};
 use std::collections::BTreeMap;
@@ -38,6 +38,12 @@ pub(crate) struct Rank {
     /// cheapest numbers that suffice are taken, and better ones where a state needs them.
     #[arg(long, value_enum, default_value_t = Wanted::Certified, value_name = "HOW")]
     verdict: Wanted,
+    /// Give the singular values of the worst conditioned state, and its condition, to N significant digits (at most 200);
+    /// by doubles they have about three. The digits are what '--verdict' says: all of them certain, or agreed on by
+    /// doubles and double-doubles. The cheapest numbers that suffice are taken; 'climbed' says how many were tried
+    /// before. Which state is worst is decided by doubles.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_DIGITS as i64))]
+    digits: Option<u16>,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -70,6 +76,7 @@ impl Rank {
                 samples: self.samples,
                 seed: self.seed,
                 wanted: self.verdict.into(),
+                digits: self.digits.map(usize::from),
                 order: self.order.map(usize::from),
                 fixed,
                 conditions: self.conditions,

@@ -22,10 +22,15 @@ const LARGEST_MULTIPLE: i64 = 64;
 
 /// Rewrites each sine and cosine whose argument is an integer combination of angles and quarter turns.
 pub fn expand_angles(graph: &mut Graph, roots: &[NodeId], is_angle: impl Fn(Symbol) -> bool) -> Vec<NodeId> {
+    expand(graph, roots, &is_angle)
+}
+
+/// Compiled once, and not for every closure.
+fn expand(graph: &mut Graph, roots: &[NodeId], is_angle: &dyn Fn(Symbol) -> bool) -> Vec<NodeId> {
     let order = graph.reachable(roots.iter().copied());
     let mut combinations: HashMap<NodeId, Combination> = HashMap::new();
     for &id in &order {
-        if let Some(combination) = combine(graph, id, &combinations, &is_angle) {
+        if let Some(combination) = combine(graph, id, &combinations, is_angle) {
             combinations.insert(id, combination);
         }
     }
@@ -54,7 +59,7 @@ fn combine(
     graph: &Graph,
     id: NodeId,
     known: &HashMap<NodeId, Combination>,
-    is_angle: &impl Fn(Symbol) -> bool,
+    is_angle: &dyn Fn(Symbol) -> bool,
 ) -> Option<Combination> {
     let combination = match graph.node(id) {
         Node::Symbol(symbol) if is_angle(symbol) => {

@@ -59,6 +59,11 @@ impl Program {
     /// The program for `roots`. Sines and cosines of a bare angle become inputs; where `opaque`, so does every other
     /// function.
     pub fn new(graph: &Graph, roots: &[NodeId], is_angle: impl Fn(Symbol) -> bool, opaque: bool) -> Self {
+        Self::build(graph, roots, &is_angle, opaque)
+    }
+
+    /// Compiled once, and not for every closure.
+    fn build(graph: &Graph, roots: &[NodeId], is_angle: &dyn Fn(Symbol) -> bool, opaque: bool) -> Self {
         let mut program = Program {
             operations: Vec::new(),
             origins: Vec::new(),

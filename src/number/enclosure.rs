@@ -174,6 +174,23 @@ impl Enclosures {
         (low <= high).then(|| Enclosure { low: low.clone(), high: high.clone() })
     }
 
+    /// The least enclosure that holds two.
+    pub fn hull(a: &Enclosure, b: &Enclosure) -> Enclosure {
+        let low = if a.low <= b.low { &a.low } else { &b.low };
+        let high = if a.high >= b.high { &a.high } else { &b.high };
+        Enclosure { low: low.clone(), high: high.clone() }
+    }
+
+    /// One number near the middle, as an enclosure that holds no other.
+    ///
+    /// # Errors
+    /// [`Refusal::TooLarge`] where it cannot be held.
+    pub fn middle(&self, a: &Enclosure) -> Result<Enclosure, Refusal> {
+        let sum = self.down.add(&a.low, &a.high).map_err(refusal)?.value().into_repr();
+        let half = Repr::new(sum.significand().clone(), sum.exponent() - 1);
+        Ok(Enclosure { low: half.clone(), high: half })
+    }
+
     fn endpoints(low: Rounded<Down>, high: Rounded<Up>) -> Result<Enclosure, Refusal> {
         let (low, high) =
             (low.map_err(refusal)?.value().into_repr(), high.map_err(refusal)?.value().into_repr());

@@ -9,15 +9,18 @@
 //! | enclosures | enclosures of 128 bits and more | a lower bound for *certain*; the rank as *computed* |
 //!
 //! A rung that cannot tell leaves the state to the next one. A stream begins with doubles that know their errors; a single
-//! state begins with intervals. Doubles that do not are on no rung: where a row vanishes they see noise of full rank. Where intervals
-//! fall short, a computed rank is taken from enclosures, a certified one by exact numbers.
+//! state begins with intervals. Doubles that do not are on no rung: where a row vanishes they see noise of full rank.
+//! Where intervals fall short, a computed rank is taken from enclosures, a certified one by exact numbers.
 
+use super::digits::{Digits, Matrices, NoDigits, digits_of};
 use super::elimination::{certain_rank, kernel, rank};
 use super::reduction::Reduction;
 use super::singular::{Spectrum, singular_values};
 use super::state::{State, float_inputs};
 use crate::expression::{Failure, Graph, Loaded, NodeId, Program, Symbol};
-use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals, Rung};
+use crate::number::{
+    Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals, Refusal, Rung,
+};
 use dashu::rational::RBig;
 
 /// How a rank is known.
@@ -41,6 +44,8 @@ pub struct StateReport {
     pub rung: Rung,
     /// What floating point says of the rows that remain without unit rows.
     pub spectrum: Option<Spectrum>,
+    /// Whether it is that of the quick rows.
+    pub quick: bool,
     /// The rank that floating point suggests, unit rows included.
     pub computed: Option<usize>,
     /// Where the rank is short: a basis of the directions that no row sees, exactly.
@@ -71,6 +76,20 @@ impl Rows {
         let width = self.reduction.columns.len().max(1);
         let mut values = values.into_iter();
         (0..self.reduction.rows.len()).map(|_| values.by_ref().take(width).collect()).collect()
+    }
+}
+
+/// What remains of some rows without unit rows, at a state.
+struct RowsAt<'j, 'g> {
+    judge: &'j Judge<'g>,
+    rows: &'j Rows,
+    state: &'j State,
+}
+
+impl Matrices for RowsAt<'_, '_> {
+    fn entries<A: Arithmetic + Copy>(&self, on: A) -> Result<Vec<Vec<A::Number>>, Option<Refusal>> {
+        let values = self.judge.values(self.rows, self.state, on);
+        Ok(self.rows.matrix(values.map_err(|failure| failure.map(|failure| failure.refusal))?))
     }
 }
 
@@ -127,6 +146,7 @@ impl<'g> Judge<'g> {
             certainty: Certainty::Certified,
             rung: Rung::Intervals,
             spectrum: None,
+            quick: true,
             computed: None,
             unseen: Vec::new(),
         };
@@ -134,6 +154,7 @@ impl<'g> Judge<'g> {
             let found = self.intervals(rows, state);
             let certain = found.as_ref().map(|(rank, _)| *rank);
             report.spectrum = found.and_then(|(_, spectrum)| spectrum).or_else(|| self.doubles(rows, state));
+            report.quick = std::ptr::eq(rows, &self.quick);
             report.computed = report.spectrum.as_ref().map(|s| rows.reduction.eliminated + s.rank);
             if certain == Some(full) {
                 return Judged::Report(report);
@@ -164,6 +185,16 @@ impl<'g> Judge<'g> {
             }
             Err(pole) => Judged::Pole(pole),
         }
+    }
+
+    /// The singular values that [`Judge::decide`] reports of a state, to so many digits.
+    ///
+    /// # Errors
+    /// Where digits cannot be had, and why.
+    pub fn digits(&self, state: &State, digits: usize) -> Result<Digits, NoDigits> {
+        let Judged::Report(report) = self.decide(state) else { return Err(NoDigits::NoState) };
+        let rows = if report.quick { &self.quick } else { &self.all };
+        digits_of(&RowsAt { judge: self, rows, state }, digits, self.wanted)
     }
 
     /// Why an output does not exist at a state, if one does not.

@@ -9,6 +9,7 @@
 
 mod codistribution;
 mod conditions;
+mod digits;
 mod elimination;
 mod equilibrate;
 mod flow;
@@ -28,6 +29,7 @@ mod sweep;
 pub use codistribution::{Codistribution, Length, Stop, Word};
 pub use conditions::linear_solution;
 pub use conditions::{Branch, Unsolved, also_met_otherwise, solve_conditions};
+pub use digits::{Digits, MOST_DIGITS, NoDigits};
 pub use elimination::{certain_rank, kernel, rank};
 pub use equilibrate::equilibrate;
 pub use flow::Flow;
@@ -40,5 +42,7 @@ pub use reduction::Reduction;
 pub use series::lie_derivative_by_series;
 pub use singular::{Spectrum, customary_singular_values, singular_values};
 pub use state::{Coordinate, State, StateInWords, float_inputs};
-pub use stream::{DECADES, Elimination, Jacobi, Stream, StreamOptions, StreamReport};
+pub use stream::{
+    DECADES, Elimination, Jacobi, StatesError, Stream, StreamOptions, StreamReport, Verdict, Verdicts,
+};
 pub use sweep::{SweepOptions, SweepReport, UnseenDirection, sweep};

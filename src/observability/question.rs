@@ -20,6 +20,8 @@ pub struct RankQuestion<'a> {
     pub seed: u64,
     /// What every rank has to be, at the least.
     pub wanted: Certainty,
+    /// To how many digits the singular values of the worst conditioned state are wanted, if doubles will not do.
+    pub digits: Option<usize>,
     /// Words of exactly up to so many fields; otherwise until the rank stops growing.
     pub order: Option<usize>,
     /// Symbols held fixed.
@@ -151,6 +153,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             samples: question.samples,
             seed: question.seed,
             wanted: question.wanted,
+            digits: question.digits,
             interrupt: question.interrupt,
             progress: question.progress,
         };

@@ -1,6 +1,7 @@
 //! The rank of a set of rows at many sampled states.
 
 use super::codistribution::Codistribution;
+use super::digits::{Digits, NoDigits};
 use super::ladder::{Certainty, Judge, Judged, StateReport};
 use super::locus::{Locus, LocusError};
 use super::singular::Spectrum;
@@ -24,6 +25,8 @@ pub struct SweepOptions<'a> {
     pub seed: u64,
     /// What every rank has to be, at the least.
     pub wanted: Certainty,
+    /// To how many digits the singular values of the worst conditioned state are wanted, if doubles will not do.
+    pub digits: Option<usize>,
     /// Set from outside to stop early; what was found is kept.
     pub interrupt: &'a AtomicBool,
     /// Called after every block with the number of states done.
@@ -66,6 +69,8 @@ pub struct SweepReport {
     pub poles: BTreeMap<String, u64>,
     /// The state of full rank with the largest ratio of singular values.
     pub worst: Option<(StateInWords, Spectrum)>,
+    /// Its singular values to as many digits as were wanted, if any were.
+    pub digits: Option<Result<Digits, NoDigits>>,
     /// What is not seen where the rank is short.
     pub unseen: Vec<UnseenDirection>,
     /// The smallest gap on which a computed rank rests.
@@ -138,7 +143,7 @@ fn one_by_one(
         done = end;
         (options.progress)(done);
     }
-    let mut report = tally.finish(system, done < options.samples);
+    let mut report = tally.finish(system, judge, options.digits, done < options.samples);
     report.remaining = judge.remaining();
     Ok(report)
 }
@@ -163,7 +168,7 @@ fn streamed(
             trouble = judge_all(system, judge, &mut tally, block, state).err();
         }
     };
-    let SweepOptions { samples: states, seed, wanted, interrupt, progress } = options;
+    let SweepOptions { samples: states, seed, wanted, digits, interrupt, progress } = options;
     let found = stream.run(&StreamOptions { states, seed, wanted, interrupt, progress }, &mut left)?;
     if let Some(error) = trouble {
         return Err(error);
@@ -189,7 +194,7 @@ fn streamed(
             tally.worst = Some((state, spectrum));
         }
     }
-    let mut report = tally.finish(system, found.interrupted || skipped);
+    let mut report = tally.finish(system, judge, digits, found.interrupted || skipped);
     report.first = Rung::Doubles;
     report.remaining = found.remaining;
     Ok(report)
@@ -274,7 +279,17 @@ impl Tally {
         entry.count += 1;
     }
 
-    fn finish(self, system: &System, interrupted: bool) -> SweepReport {
+    fn finish(
+        self,
+        system: &System,
+        judge: &Judge<'_>,
+        digits: Option<usize>,
+        interrupted: bool,
+    ) -> SweepReport {
+        let digits_of_worst = |digits| match &self.worst {
+            Some((state, _)) => judge.digits(state, digits),
+            None => Err(NoDigits::NoState),
+        };
         SweepReport {
             samples: self.samples,
             rank_histogram: self.ranks,
@@ -285,6 +300,7 @@ impl Tally {
             remaining: (0, 0),
             first: Rung::Intervals,
             poles: self.poles,
+            digits: digits.map(digits_of_worst),
             worst: self.worst.map(|(state, spectrum)| (state.describe(system), spectrum)),
             unseen: self.unseen.into_values().collect(),
             smallest_gap: self.smallest_gap.unwrap_or(f64::INFINITY),

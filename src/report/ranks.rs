@@ -1,6 +1,8 @@
 //! Answers about ranks, as JSON and as text.
 
-use crate::observability::{BranchAnswer, RankAnswer, Stop, SweepReport};
+use crate::observability::{
+    BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, Spectrum, Stop, SweepReport,
+};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -24,20 +26,54 @@ fn rungs_json(report: &SweepReport) -> Value {
     counts.collect::<serde_json::Map<_, _>>().into()
 }
 
+fn certainty_text(certainty: Certainty) -> &'static str {
+    match certainty {
+        Certainty::Certified => "certified",
+        Certainty::Computed => "computed",
+    }
+}
+
+/// Singular values and condition of the worst state: those that were found to many digits, where they were.
+fn nearest_doubles(report: &SweepReport, spectrum: &Spectrum) -> (Vec<f64>, f64) {
+    let rough = || (spectrum.values.clone(), spectrum.condition());
+    let Some(Ok(found)) = &report.digits else { return rough() };
+    let values: Result<Vec<f64>, _> = found.values.iter().map(|value| value.parse()).collect();
+    match (values, found.condition.parse()) {
+        (Ok(values), Ok(condition)) => (values, condition),
+        _ => rough(),
+    }
+}
+
+/// Singular values to many digits, or why there are none.
+fn digits_json(found: &Result<Digits, NoDigits>) -> Value {
+    match found {
+        Ok(found) => json!({
+            "digits": found.digits,
+            "singular_values": found.values,
+            "condition": found.condition,
+            "verdict": certainty_text(found.certainty),
+            "numbers": found.rung.name(),
+            "climbed": found.climbed,
+        }),
+        Err(why) => json!({ "missing": why.to_string() }),
+    }
+}
+
 fn sweep_json(report: &SweepReport) -> Value {
     let worst = report.worst.as_ref().map(|(state, spectrum)| {
+        let (values_of_worst, condition) = nearest_doubles(report, spectrum);
         let values: serde_json::Map<String, Value> = state
             .iter()
             .map(|(name, exact, float)| (name.clone(), json!({ "exact": exact, "value": float })))
             .collect();
         json!({
             "state": values,
-            "singular_values": spectrum.values,
-            "condition": finite(spectrum.condition()),
+            "singular_values": values_of_worst,
+            "condition": finite(condition),
             "gap": finite(spectrum.gap),
         })
     });
-    json!({
+    let mut object = json!({
         "samples": report.samples,
         "rank_histogram": histogram_json(&report.rank_histogram),
         "certified": report.certified,
@@ -58,7 +94,11 @@ fn sweep_json(report: &SweepReport) -> Value {
         "poles": report.poles,
         "seconds": report.seconds,
         "interrupted": report.interrupted,
-    })
+    });
+    if let Some(digits) = &report.digits {
+        object["worst_to_digits"] = digits_json(digits);
+    }
+    object
 }
 
 /// Why the words end where they end.
@@ -139,12 +179,35 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
     if let Some((state, spectrum)) = &report.worst {
         let values: Vec<String> =
             state.iter().map(|(name, _, float)| format!("{name} = {float:.6}")).collect();
-        let _ = writeln!(out, "  worst conditioned: {:.3e} at {}", spectrum.condition(), values.join(", "));
+        let condition = match &report.digits {
+            Some(Ok(found)) => found.condition.clone(),
+            _ => format!("{:.3e}", spectrum.condition()),
+        };
+        let _ = writeln!(out, "  worst conditioned: {condition} at {}", values.join(", "));
         let (rows, columns) = report.remaining;
         let _ = writeln!(
             out,
             "  (singular values are those of the {rows} by {columns} matrix that remains without unit rows, equilibrated)"
         );
+    }
+    match &report.digits {
+        None => {}
+        Some(Ok(found)) => {
+            if !found.values.is_empty() {
+                let _ = writeln!(out, "  its singular values: {}", found.values.join(", "));
+            }
+            let _ = writeln!(
+                out,
+                "  {} digits, {} by {}; rungs climbed: {}",
+                found.digits,
+                certainty_text(found.certainty),
+                found.rung.name(),
+                found.climbed
+            );
+        }
+        Some(Err(why)) => {
+            let _ = writeln!(out, "  no digits beyond those of doubles: {why}");
+        }
     }
     for direction in &report.unseen {
         let _ = writeln!(

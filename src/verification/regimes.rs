@@ -283,6 +283,7 @@ impl Regime {
                 samples: if set.conditions.is_empty() { SAMPLES } else { SAMPLES_ON_A_SET },
                 seed: options.seed,
                 wanted: Certainty::Certified,
+                digits: None,
                 order: None,
                 fixed: BTreeMap::new(),
                 conditions: set.conditions.iter().map(|c| (*c).to_owned()).collect(),

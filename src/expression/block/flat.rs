@@ -91,15 +91,15 @@ impl Flat {
         graph: &Graph,
         roots: &[NodeId],
         watched: &[NodeId],
-        input_of: impl Fn(NodeId) -> Option<Input>,
-        known: impl Fn(Input) -> Option<RBig>,
+        input_of: &dyn Fn(NodeId) -> Option<Input>,
+        known: &dyn Fn(Input) -> Option<RBig>,
     ) -> Flat {
         let mut flat = Flat::default();
         flat.product(Vec::new());
         flat.coefficient(RBig::ZERO);
         flat.coefficient(RBig::ONE);
         let mut terms: HashMap<NodeId, Term> = HashMap::new();
-        for id in needed(graph, roots.iter().chain(watched).copied(), &input_of) {
+        for id in needed(graph, roots.iter().chain(watched).copied(), input_of) {
             let at = |operand: NodeId| terms[&operand];
             let term = match (input_of(id), graph.node(id)) {
                 (Some(input), _) => match known(input) {
@@ -339,7 +339,7 @@ fn common(a: &Powers, b: &Powers) -> Powers {
 fn needed(
     graph: &Graph,
     roots: impl Iterator<Item = NodeId>,
-    input_of: &impl Fn(NodeId) -> Option<Input>,
+    input_of: &dyn Fn(NodeId) -> Option<Input>,
 ) -> Vec<NodeId> {
     let mut seen = BTreeSet::new();
     let mut stack: Vec<NodeId> = roots.collect();

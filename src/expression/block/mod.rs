@@ -55,7 +55,7 @@ impl BlockProgram {
             },
             _ => None,
         };
-        let flat = Flat::new(graph, roots, watched, input_of, known);
+        let flat = Flat::new(graph, roots, watched, &input_of, &known);
         let operations = Operations::new(&flat);
         let tape = Tape::new(&operations, flat.inputs.len());
         BlockProgram { tape, inputs: flat.inputs, undefined: operations.undefined }

@@ -55,9 +55,28 @@ impl<L: Lanes> Decider<L> {
         self.entries[place] = entry;
     }
 
-    /// Decides. Where an entry or its bound is not finite, nothing is separated and nothing certain.
+    /// The singular values of what was decided last, in descending order.
     #[inline(always)]
-    pub fn decide(&mut self) -> Found {
+    pub fn singular_values(&mut self) -> &[L] {
+        self.jacobi.sorted()
+    }
+
+    /// The factors by which rows were multiplied.
+    #[inline(always)]
+    pub fn row_factors(&self) -> &[L] {
+        self.equilibrium.factors().0
+    }
+
+    /// The factors by which columns were multiplied.
+    #[inline(always)]
+    pub fn column_factors(&self) -> &[L] {
+        self.equilibrium.factors().1
+    }
+
+    /// Decides. Where an entry or its bound is not finite, nothing is separated and nothing certain; nothing is either
+    /// where it is not to `certify`.
+    #[inline(always)]
+    pub fn decide(&mut self, certify: bool) -> Found {
         let (zero, one) = (self.zero, self.zero.splat(1.0));
         if self.rows == 0 || self.columns == 0 {
             // nothing is left to decide
@@ -98,7 +117,7 @@ impl<L: Lanes> Decider<L> {
         for j in 0..self.columns {
             self.elimination.set_weight(false, j, self.equilibrium.column_factor(j));
         }
-        let certain = self.elimination.is_full(one);
+        let certain = if certify { self.elimination.is_full(one) } else { zero };
 
         let (values, converged) = self.jacobi.singular_values();
         let (mut smallest, mut largest) = (values[0], values[0]);

@@ -70,6 +70,12 @@ impl<L: Lanes> Equilibrium<L> {
         self.column_factors[column]
     }
 
+    /// All `r_i`, and all `c_j`.
+    #[inline(always)]
+    pub fn factors(&self) -> (&[L], &[L]) {
+        (&self.row_factors, &self.column_factors)
+    }
+
     /// Finds the factors. A row or a column of zeros has the factor one.
     pub fn solve(&mut self) {
         if let Some(any) = self.squares.first().copied() {

@@ -57,6 +57,20 @@ impl<L: Lanes> Jacobi<L> {
         let converged = self.matrix.first().copied().is_none_or(|any| any.apart(Decompose(self)));
         (&self.squares, converged)
     }
+
+    /// The values found last, in descending order in each lane. Where one is not a number, all are.
+    #[inline(always)]
+    pub fn sorted(&mut self) -> &[L] {
+        let values = &mut self.squares;
+        for end in (1..values.len()).rev() {
+            for place in 0..end {
+                let (a, b) = (values[place], values[place + 1]);
+                values[place] = a.larger(b);
+                values[place + 1] = b.where_less(a, b, a);
+            }
+        }
+        values
+    }
 }
 
 struct Decompose<'j, L>(&'j mut Jacobi<L>);

@@ -12,6 +12,7 @@ mod certain;
 mod decide;
 mod draw;
 mod equilibrate;
+mod given;
 mod jacobi;
 mod random;
 mod report;
@@ -27,6 +28,8 @@ pub use certain::Elimination;
 use dashu::rational::RBig;
 use decide::Decider;
 use draw::{Axis, Drawer, Wish, wishes};
+pub(super) use equilibrate::Equilibrium;
+pub use given::{StatesError, Verdict, Verdicts};
 pub use jacobi::Jacobi;
 use rayon::prelude::*;
 pub use report::{DECADES, StreamReport};
@@ -260,7 +263,7 @@ impl Vectorised for Chunk<'_, '_> {
                 for place in 0..rows * columns {
                     decider.set(place, machine.output(place, lane));
                 }
-                let mut found = decider.decide();
+                let mut found = decider.decide(true);
                 let health = machine.health(lane);
                 let (mut finite, mut bounds) = ([0.0; 8], [0.0; 8]);
                 health.value.store(&mut finite);

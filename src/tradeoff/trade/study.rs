@@ -11,6 +11,7 @@ use super::ways::{Possible, Way};
 use super::work::{Block, Work};
 use dashu::rational::RBig;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// States that are evaluated in one go.
 const CHUNK: usize = 32;
@@ -159,8 +160,8 @@ pub(super) fn study<'s, N: Clone + Send + Sync + 's>(
             failed,
         });
         let matrices = |block: &Block| -> Vec<Option<Vec<N>>> {
-            let entries = entries.par_iter().map(Option::as_ref);
-            entries.map(|values| block.entries(&setup.constant, values?)).collect()
+            let of = |values: &Option<Vec<N>>| block.entries(&setup.constant, values.as_ref()?);
+            in_chunks(entries.len(), &|states| entries[states].iter().map(of).collect())
         };
         let blocks = matrices(&work.block);
         let wholes = if setup.ranks.iter().any(|(rank, _)| rank.keeps_unit_rows()) {
@@ -211,14 +212,17 @@ pub(super) fn study<'s, N: Clone + Send + Sync + 's>(
 
 fn evaluate<N: Clone + Send>(work: &Work, way: &Way<'_, N>) -> Vec<Option<Vec<N>>> {
     let count = work.states.len();
-    let chunk = |index: usize| {
+    in_chunks(count, &|states| {
         let mut found = Vec::with_capacity(CHUNK);
-        way(index * CHUNK..((index + 1) * CHUNK).min(count), &mut |values| {
-            found.push(values.map(<[N]>::to_vec))
-        });
+        way(states, &mut |values| found.push(values.map(<[N]>::to_vec)));
         found
-    };
-    (0..count.div_ceil(CHUNK)).into_par_iter().flat_map_iter(chunk).collect()
+    })
+}
+
+/// What comes of so many states, some at a time, on all cores; compiled once for each kind of result.
+fn in_chunks<T: Send>(count: usize, chunk: &(dyn Fn(Range<usize>) -> Vec<T> + Sync)) -> Vec<T> {
+    let states = |index: usize| chunk(index * CHUNK..((index + 1) * CHUNK).min(count));
+    (0..count.div_ceil(CHUNK)).into_par_iter().flat_map_iter(states).collect()
 }
 
 /// The digits at the median and at the worst state, and how many states have no value.
@@ -231,7 +235,9 @@ fn digits<N: Sync>(work: &Work, setup: &Setup<'_, N>, entries: &[Option<Vec<N>>]
         // at worst none are right; and zero is not minus zero
         worst.is_finite().then(|| (-worst.log10()).min(most).max(0.0) + 0.0)
     };
-    let mut found: Vec<Option<f64>> = entries.par_iter().zip(&work.truths).map(at_a_state).collect();
+    let mut found: Vec<Option<f64>> = in_chunks(entries.len().min(work.truths.len()), &|states| {
+        entries[states.clone()].iter().zip(&work.truths[states]).map(at_a_state).collect()
+    });
     let failed = found.iter().filter(|digits| digits.is_none()).count() as u64;
     match setup.accuracy {
         Accuracy::Exact if failed == 0 => return (Digits::Exact, 0),
@@ -244,12 +250,11 @@ fn digits<N: Sync>(work: &Work, setup: &Setup<'_, N>, entries: &[Option<Vec<N>>]
 }
 
 fn verdicts<N: Sync>(blocks: &[Option<Vec<N>>], decide: &RankWay<'_, N>) -> Vec<Verdict> {
-    let chunk = |blocks: &[Option<Vec<N>>]| {
-        let mut found = Vec::with_capacity(blocks.len());
-        decide(blocks, &mut |verdict| found.push(verdict));
+    in_chunks(blocks.len(), &|states| {
+        let mut found = Vec::with_capacity(states.len());
+        decide(&blocks[states], &mut |verdict| found.push(verdict));
         found
-    };
-    blocks.par_chunks(CHUNK).flat_map_iter(chunk).collect()
+    })
 }
 
 fn count(work: &Work, block: &Block, tally: &mut Combination, verdicts: &[Verdict]) {
