@@ -14,8 +14,9 @@
 //! formula of the thesis beyond the definitions of the frames and of what `s`, `r`, `d` and `e` mean. In
 //! particular it does not know that `r' = -d`, nor how `s` moves, nor Euler's equation.
 //!
-//! Left out: friction, contact that breaks (the sign of a contact force is reported, not enforced), palms
-//! that are not flat, and time: a motion is known at one moment, with its first two derivatives there.
+//! Left out here: friction, contact that breaks (the sign of a contact force is reported, not enforced), palms
+//! that are not flat, and time: a motion is known at one moment, with its first two derivatives there. Through time
+//! and in double precision bodies are moved by [`moving`], for which this is the witness.
 
 mod body;
 mod contact;
@@ -24,6 +25,7 @@ mod dynamics;
 mod grip;
 pub mod linear;
 mod motion;
+pub mod moving;
 mod precise;
 mod quasistatics;
 mod rest;

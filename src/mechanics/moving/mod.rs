@@ -1,0 +1,46 @@
+//! Planar bodies in motion, in double precision: a smooth convex body that slides between two palms through
+//! time.
+//!
+//! A [`Form`] says how a body looks, a [`Shape`] is the body once it has been seen to be strictly convex: its
+//! support function about the centre of mass, area, perimeter, radius of gyration. A [`Scene`] adds masses,
+//! gravity, a start and a [`Drive`], which either tells the palms how to move or what torques to feel;
+//! [`simulate`] then gives a [`Trajectory`], what sensors and motors would report at given times, and how it
+//! [`Ended`].
+//!
+//! As the rest of this floor it stays ignorant: it imports numbers only and reads no proof file. What it knows
+//! are the geometry of support functions, Newton's and Euler's laws and that a contact stays a contact. In
+//! particular no equation of the thesis for how `s`, `r` or `d` change is used, so that a motion can be held
+//! against them. The 320-bit floor beside it solves the same laws by differences and is the witness in tests.
+//!
+//! Left out: friction, impacts (a motion ends where a contact force reaches zero, for after that the body may
+//! come back and hit), palms that are not flat, the palms' own weight.
+
+mod drive;
+mod form;
+mod harmonics;
+mod integrate;
+mod laws;
+mod plane;
+mod positive;
+mod quadrature;
+mod random;
+mod scene;
+mod shape;
+mod simulate;
+mod spline;
+mod superellipse;
+mod trajectory;
+
+#[cfg(test)]
+pub(crate) mod fixtures;
+#[cfg(test)]
+mod tests;
+
+pub use drive::{Course, Drive, Oscillation, PushedPalm};
+pub use form::{CentreOfMass, Form, FormError, Knots};
+pub use laws::Breach;
+pub use random::{DrawnSpline, MOST_DRAWS, RADII, SplineDraws};
+pub use scene::{DEFAULT_TOLERANCE, Scene, SceneError};
+pub use shape::Shape;
+pub use simulate::simulate;
+pub use trajectory::{Ended, Moment, PalmMoment, Trajectory};
