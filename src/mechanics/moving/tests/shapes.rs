@@ -56,7 +56,7 @@ fn a_superellipse_is_rounded_by_a_disc() {
         let form = Form::Superellipse { semi_axes: [1.3, 0.8], exponent, rounding };
         Shape::new(&form, CentreOfMass::Uniform).unwrap()
     };
-    for (exponent, less) in [(2, 0.0), (4, 0.1), (8, 0.2)] {
+    for (exponent, less) in [(2, 0.0), (4, 0.1), (64, 0.05)] {
         let (slim, thick) = (made(exponent, less), made(exponent, less + 0.3));
         close(thick.perimeter(), slim.perimeter() + 0.3 * TAU, 1e-13);
         close(thick.area(), slim.area() + 0.3 * slim.perimeter() + 0.09 * PI, 1e-13);
