@@ -98,7 +98,7 @@ fn sines(values: &[f64]) -> (f64, Vec<Oscillation>, f64) {
     let frequency = |k: usize| k as f64 / 2.8;
     let entry = |i: usize, j: usize| {
         let turn = TAU * frequency(j.div_ceil(2)) * times[i];
-        if j % 2 == 0 { turn.cos() } else { turn.sin() }
+        if j.is_multiple_of(2) { turn.cos() } else { turn.sin() }
     };
     let matrix = DMatrix::from_fn(times.len(), 2 * modes + 1, entry);
     let right = DVector::from_column_slice(values);
