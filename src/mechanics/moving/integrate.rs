@@ -1,11 +1,16 @@
 //! The one place that knows the integrator: Dop853 of the crate ode_solvers (Hairer, Nørsett and Wanner, Solving
 //! Ordinary Differential Equations I, 1993, section II.10), asked for its own steps and nothing between them.
+//!
+//! In version 0.6.2 of the crate the twelfth stage of a step is computed with the time of its beginning instead of its
+//! end (`c_12` is 0; it has to be 1, the sum of its row; pull request 42). A system whose rates do not depend on the
+//! time is not affected. So the time is integrated along with the state, and the solver's own time is not used.
 
 use super::laws::{Situation, State};
 use super::scene::Scene;
 use ode_solvers::{Dop853, OutputType, SVector, System};
 
-type Vector = SVector<f64, 7>;
+/// The state, and the time since the beginning.
+type Vector = SVector<f64, 8>;
 
 /// Steps between two samples, refused ones included, after which an integration is given up.
 const MOST_STEPS: u32 = 20_000;
@@ -15,11 +20,19 @@ struct Laws<'a> {
     begin: f64,
 }
 
+fn state(y: &Vector) -> State {
+    std::array::from_fn(|i| y[i])
+}
+
+fn vector(state: State, last: f64) -> Vector {
+    Vector::from_fn(|i, _| state.get(i).copied().unwrap_or(last))
+}
+
 impl System<f64, Vector> for Laws<'_> {
-    fn system(&self, since: f64, y: &Vector, rates: &mut Vector) {
-        let state: State = (*y).into();
-        let situation = Situation::at(self.scene, self.begin + since, &state);
-        *rates = situation.rates(&state, &self.scene.drive).into();
+    fn system(&self, _: f64, y: &Vector, rates: &mut Vector) {
+        let state = state(y);
+        let situation = Situation::at(self.scene, self.begin + y[7], &state);
+        *rates = vector(situation.rates(&state, &self.scene.drive), 1.0);
     }
 }
 
@@ -27,7 +40,7 @@ impl System<f64, Vector> for Laws<'_> {
 /// `longest` seconds; and why it stopped before the end, if it did.
 pub(super) fn steps(
     scene: &Scene,
-    (begin, state): (f64, State),
+    (begin, from): (f64, State),
     end: f64,
     longest: f64,
 ) -> (Vec<(f64, State)>, Option<String>) {
@@ -40,7 +53,7 @@ pub(super) fn steps(
         0.0,
         span,
         span,
-        Vector::from(state),
+        vector(from, 0.0),
         tolerance,
         tolerance,
         0.9,
@@ -55,7 +68,7 @@ pub(super) fn steps(
     );
     let failure = solver.integrate().err().map(|error| error.to_string());
     let times = solver.x_out().iter().map(|since| begin + since);
-    let mut all: Vec<(f64, State)> = times.zip(solver.y_out().iter().map(|y| (*y).into())).collect();
+    let mut all: Vec<(f64, State)> = times.zip(solver.y_out().iter().map(state)).collect();
     // begin + (end - begin) may be off by a rounding
     if let (None, Some(last)) = (&failure, all.last_mut()) {
         last.0 = end;

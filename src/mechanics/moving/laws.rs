@@ -24,16 +24,16 @@ use std::f64::consts::FRAC_PI_2;
 /// palms' angles are told) and the work done by the motors.
 pub(super) type State = [f64; 7];
 
-/// Palms are parallel where the sine of the angle between them is below this.
-const PARALLEL: f64 = 1e-9;
+/// Palms count as parallel where the sine of the angle between them is below this. The forces follow from equations
+/// whose determinant falls with the square of the sine, so that half of their digits are lost there.
+const PARALLEL: f64 = 1e-4;
 
-/// What ends a contact.
+/// What ends a contact. That a contact reaches the joint is not among it: it lies on the body's side of the other palm,
+/// so that `s sin(phi2)` is positive as long as the body is between the palms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Breach {
     #[error("the palms are parallel, or the body is not between them")]
     Parallel,
-    #[error("the contact with palm {palm} is at the joint or behind it")]
-    Joint { palm: usize },
     #[error("the contact with palm {palm} is beyond the palm's end")]
     Beyond { palm: usize },
     #[error("the contact force of palm {palm} is not positive")]
@@ -165,10 +165,9 @@ impl Situation {
             return Some(Breach::Parallel);
         }
         let each = |holds: &dyn Fn(usize) -> bool| (0..2).find(|&i| !holds(i)).map(|i| i + 1);
-        let joint = each(&|i| positive(self.s[i])).map(|palm| Breach::Joint { palm });
         let beyond =
             each(&|i| positive(scene.palm_lengths[i] - self.s[i])).map(|palm| Breach::Beyond { palm });
         let contact = each(&|i| positive(self.forces[i])).map(|palm| Breach::Contact { palm });
-        joint.or(beyond).or(contact)
+        beyond.or(contact)
     }
 }

@@ -28,7 +28,7 @@ const DOUBLINGS: u32 = 14;
 const GAUSS: [(f64, f64); 3] = [
     (0.238_619_186_083_196_9, 0.467_913_934_572_691_05),
     (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
-    (0.932_469_514_203_152_1, 0.171_324_492_379_170_35),
+    (0.932_469_514_203_152, 0.171_324_492_379_170_35),
 ];
 
 /// The rates at which the integrals grow along an outline at the point `x` that moves at the rate `step`: the fan of

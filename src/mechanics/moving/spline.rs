@@ -47,6 +47,12 @@ impl ClosedSpline {
             Knots::Centripetal => chord[0].hypot(chord[1]).sqrt(),
             Knots::Chord => chord[0].hypot(chord[1]),
         });
+        ClosedSpline::through(points, steps)
+    }
+
+    /// The spline through three points, for which its parameter takes the given steps.
+    fn through(points: [Plane; 3], steps: [f64; 3]) -> Result<Self, FormError> {
+        let chords: [Plane; 3] = std::array::from_fn(|i| along(points[(i + 1) % 3], -1.0, points[i]));
         // the second derivatives at the points, from the continuity of the first ones
         let before = |i: usize| (i + 2) % 3;
         let rows = std::array::from_fn(|i| {
@@ -197,15 +203,54 @@ mod tests {
         }
     }
 
-    /// A dent's place lies on the outline, and the outline turns to the right there: by three near points.
+    /// The cubics with these ends and `speed` times the tangents of the unit circle there (Hermite).
+    fn arcs(corners: [Plane; 4], speed: f64) -> ClosedSpline {
+        let arc = |i: usize| {
+            let (begin, end) = (corners[i], corners[i + 1]);
+            let [leave, arrive] = [begin, end].map(|x| scaled(speed, left_of(x)));
+            let chord = along(end, -1.0, begin);
+            let second = along(along(scaled(3.0, chord), -2.0, leave), -1.0, arrive);
+            [begin, leave, second, along(along(scaled(-2.0, chord), 1.0, leave), 1.0, arrive)]
+        };
+        ClosedSpline { pieces: [arc(0), arc(1), arc(2)] }
+    }
+
+    fn corners(step: f64) -> [Plane; 4] {
+        [0.0, 1.0, 2.0, 3.0].map(|i| unit(step * i))
+    }
+
+    /// Three arcs of 120 degrees with the speed `k` turn at their ends by `2 T0 × (3 chord - 2 T0 - T1) = 9 k - sqrt(3)
+    /// k^2`: they have dents there beyond `k = 3 sqrt(3) = 5.196`. And clockwise the right way is the wrong one.
     #[test]
     fn a_dent_is_found_where_it_is() {
-        let Err(FormError::Dent { x, y, polar, curvature }) =
-            ClosedSpline::new([0.1, 2.5, 2.5], Knots::Chord)
-        else {
+        assert_eq!(arcs(corners(TAU / 3.0), 5.19).check(), Ok(()));
+        let Err(FormError::Dent { x, y, curvature, .. }) = arcs(corners(TAU / 3.0), 5.5).check() else {
             panic!("no dent")
         };
-        assert!(curvature < 0.0 && (y.atan2(x).rem_euclid(TAU) - polar).abs() < 1e-15);
+        assert!(corners(TAU / 3.0).iter().any(|c| (c[0] - x).hypot(c[1] - y) < 1e-14));
+        assert!((curvature - (9.0 * 5.5 - 3f64.sqrt() * 5.5 * 5.5) / 5.5f64.powi(3)).abs() < 1e-14);
+        let [a, b, c, _] = corners(TAU / 3.0);
+        assert!(ClosedSpline::through([a, b, c], [1.0; 3]).is_ok());
+        assert!(matches!(ClosedSpline::through([a, c, b], [1.0; 3]), Err(FormError::Dent { .. })));
+    }
+
+    /// What `Knots` says: on a grid over the radii of section 3.4 no spline has a dent.
+    #[test]
+    fn all_splines_of_a_grid_are_convex() {
+        for knots in [Knots::Uniform, Knots::Centripetal, Knots::Chord] {
+            for index in 0..13 * 13 * 13 {
+                let radii = [index % 13, index / 13 % 13, index / 169].map(|i| 0.1 + 0.2 * f64::from(i));
+                assert!(ClosedSpline::new(radii, knots).is_ok(), "{radii:?}");
+            }
+        }
+    }
+
+    /// An outline of three arcs that each turn by 240 degrees is convex everywhere but winds twice.
+    #[test]
+    fn a_loop_is_no_body() {
+        let wound = arcs(corners(2.0 * TAU / 3.0), 6.0);
+        let Err(FormError::Loops(turns)) = wound.check() else { panic!("{:?}", wound.check()) };
+        assert!((turns - 2.0).abs() < 1e-15);
     }
 
     /// The support function is the greatest projection over a fine outline, which at `n` points a piece falls short

@@ -87,10 +87,8 @@ pub enum Ended {
     Completed,
     /// A palm would have had to pull.
     ContactLost { palm: usize, time: f64 },
-    /// The palms became parallel.
+    /// The palms became parallel, to a ten-thousandth of a radian.
     PalmsParallel { time: f64 },
-    /// A contact reached the origin.
-    ContactAtJoint { palm: usize, time: f64 },
     /// A contact reached the end of its palm.
     OutOfPalm { palm: usize, time: f64 },
     /// The integrator gave up, for instance because the tolerance cannot be met.
@@ -101,7 +99,6 @@ impl Ended {
     pub(super) fn by(breach: Breach, time: f64) -> Ended {
         match breach {
             Breach::Parallel => Ended::PalmsParallel { time },
-            Breach::Joint { palm } => Ended::ContactAtJoint { palm, time },
             Breach::Beyond { palm } => Ended::OutOfPalm { palm, time },
             Breach::Contact { palm } => Ended::ContactLost { palm, time },
         }

@@ -1,0 +1,5 @@
+//! Bodies in motion against closed forms, laws of conservation and the 320-bit floor.
+
+mod motions;
+mod shapes;
+mod witness;
