@@ -119,8 +119,8 @@ impl Flow<'_> {
                 loaded.run(&inputs, &mut registers.borrow_mut())
             };
         let failure: Cell<Option<(f64, Refusal)>> = Cell::new(None);
-        let right_hand_side = |time: f64, y: &[f64], dy: &mut [f64]| {
-            match evaluate(&model.rates, &rates, time, y) {
+        let right_hand_side =
+            |time: f64, y: &[f64], dy: &mut [f64]| match evaluate(&model.rates, &rates, time, y) {
                 Ok(values) => {
                     for (value, places) in values.iter().zip(dy.chunks_mut(J::LENGTH)) {
                         value.pack(places);
@@ -130,8 +130,7 @@ impl Flow<'_> {
                     failure.set(Some((time, error.refusal)));
                     dy.fill(f64::NAN);
                 }
-            }
-        };
+            };
 
         let mut y = vec![0.0; start.len() * J::LENGTH];
         for (place, value) in start.iter().enumerate() {

@@ -48,9 +48,6 @@ pub fn ended_in_words(ended: &Ended) -> String {
             format!("contact with palm {palm} lost at {time:.6} s: its force is zero")
         }
         Ended::PalmsParallel { time } => format!("palms parallel at {time:.6} s"),
-        Ended::ContactAtJoint { palm, time } => {
-            format!("contact on palm {palm} reached the joint at {time:.6} s")
-        }
         Ended::OutOfPalm { palm, time } => format!("contact ran off palm {palm} at {time:.6} s"),
         Ended::Failed { time, why } => format!("failed at {time:.6} s: {why}"),
     }
