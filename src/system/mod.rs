@@ -15,5 +15,7 @@ mod model;
 mod read;
 
 pub use error::ReadError;
+pub(crate) use error::{Problem, nearest};
 pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement};
 pub use model::{Assignment, Field, Kind, Matrix, Range, SymbolInfo, System, Value};
+pub(crate) use read::load;

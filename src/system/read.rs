@@ -300,7 +300,7 @@ impl System {
 }
 
 /// The text of a file, or what is wrong with it in words.
-fn load(path: &Path) -> Result<String, String> {
+pub(crate) fn load(path: &Path) -> Result<String, String> {
     let shown = path.display();
     let length = std::fs::metadata(path).map_err(|e| format!("cannot read {shown}: {e}"))?.len();
     if length > LONGEST_FILE {

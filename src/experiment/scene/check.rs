@@ -1,0 +1,147 @@
+//! Holds every value of a scene to what it may be, and settles which of two ways of saying a thing was used.
+
+mod observer;
+mod physics;
+
+use super::keys::SceneKeys;
+use super::place::Places;
+use super::{Scene, Simulated};
+use crate::system::Problem;
+use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+/// The most samples that a scene may ask for.
+const MOST_SAMPLES: usize = 10_000_000;
+
+/// Marks values that cannot be.
+pub(super) struct Checks<'a> {
+    places: &'a Places<'a>,
+}
+
+impl Checks<'_> {
+    /// An error at a value.
+    fn wrong(&self, place: &str, message: impl Into<String>, help: impl Into<String>) -> Problem {
+        Problem::new(&self.places.value(place), message, "this").help(help)
+    }
+
+    /// An error at a key: it should not be there, or something is missing beside it.
+    fn wrong_key(&self, place: &str, message: impl Into<String>, help: impl Into<String>) -> Problem {
+        Problem::new(&self.places.key(place), message, "this").help(help)
+    }
+
+    fn finite(&self, place: &str, value: f64) -> Result<(), Problem> {
+        if value.is_finite() {
+            return Ok(());
+        }
+        Err(self.wrong(place, format!("'{}' is {value}", last(place)), "give a finite number"))
+    }
+
+    fn positive(&self, place: &str, value: f64, unit: &str) -> Result<(), Problem> {
+        if value.is_finite() && value > 0.0 {
+            return Ok(());
+        }
+        let help = format!("give a number above zero{}", spaced(unit));
+        Err(self.wrong(place, format!("'{}' has to be positive, and is {value}", last(place)), help))
+    }
+
+    fn not_negative(&self, place: &str, value: f64, unit: &str) -> Result<(), Problem> {
+        if value.is_finite() && value >= 0.0 {
+            return Ok(());
+        }
+        let help = format!("give zero or a number above it{}", spaced(unit));
+        Err(self.wrong(place, format!("'{}' must not be negative, and is {value}", last(place)), help))
+    }
+
+    fn count(&self, place: &str, value: usize, range: RangeInclusive<usize>) -> Result<(), Problem> {
+        if range.contains(&value) {
+            return Ok(());
+        }
+        let help = format!("give a whole number from {} to {}", range.start(), range.end());
+        Err(self.wrong(place, format!("'{}' cannot be {value}", last(place)), help))
+    }
+
+    /// Names of which none is empty or there twice.
+    fn names<T: Ord>(&self, place: &str, names: &[T], shown: impl Fn(&T) -> String) -> Result<(), Problem> {
+        let mut seen = BTreeSet::new();
+        for (index, name) in names.iter().enumerate() {
+            let shown = shown(name);
+            if shown.trim().is_empty() {
+                return Err(self.wrong(
+                    &format!("{place}[{index}]"),
+                    "a name is empty",
+                    "name it, or leave it out",
+                ));
+            }
+            if !seen.insert(name) {
+                let place = format!("{place}[{index}]");
+                return Err(self.wrong(&place, format!("{shown} is there twice"), "leave one out"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A key without the tables that it stands in and its index.
+fn last(place: &str) -> &str {
+    let key = place.rsplit('.').next().unwrap_or(place);
+    key.split('[').next().unwrap_or(key)
+}
+
+fn spaced(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(", in {unit}") }
+}
+
+/// The scene of a file's keys.
+pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) -> Result<Scene, Problem> {
+    let checks = Checks { places };
+    if keys.title.trim().is_empty() {
+        return Err(checks.wrong("title", "the title is empty", "say what the experiment is, in a line"));
+    }
+    for (place, path) in [("model", Some(&keys.model)), ("data.record", keys.data.record.as_ref())] {
+        if path.is_some_and(|path| path.as_os_str().is_empty()) {
+            return Err(checks.wrong(
+                place,
+                "the name of a file is empty",
+                "name a file, relative to this one",
+            ));
+        }
+    }
+    checks.sensor(&keys.sensor)?;
+    checks.positive("data.spike", keys.data.spike, "usual departures")?;
+    let simulated = checks.simulated(keys.duration, keys.samples, keys.rate, keys.body, keys.palms)?;
+    match &simulated {
+        None if keys.data.record.is_none() => {
+            let message = "nothing is simulated and no data is recorded";
+            let help = "give duration, samples, [body] and [palms]; or name the recorded data in [data]: \
+                        record = \"run.csv\"";
+            return Err(checks.wrong_key("title", message, help));
+        }
+        Some(_) if keys.data.record.is_some() => {
+            let message = "the data is both simulated and recorded";
+            let help = "leave out 'record'; or leave out duration, samples or rate, [body] and [palms]";
+            return Err(checks.wrong_key("data.record", message, help));
+        }
+        _ => {}
+    }
+    if let Some(simulated) = &simulated {
+        checks.jitter(keys.sensor.jitter, simulated)?;
+    }
+    let observer = checks.observer(keys.observer, simulated.as_ref())?;
+    checks.study(&keys.study, &observer, simulated.is_some())?;
+    let folder = Path::new(name).parent().unwrap_or(Path::new(""));
+    let mut data = keys.data;
+    data.record = data.record.map(|record| folder.join(record));
+    Ok(Scene {
+        title: keys.title,
+        model: folder.join(keys.model),
+        seed: keys.seed,
+        simulated,
+        sensor: keys.sensor,
+        data,
+        observer,
+        study: keys.study,
+        name: name.to_owned(),
+        text: text.to_owned(),
+    })
+}

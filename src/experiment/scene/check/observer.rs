@@ -1,0 +1,166 @@
+//! What is to be found out, and the studies.
+
+use super::super::keys::ObserverKeys;
+use super::super::{Guess, ObserverSettings, Study};
+use super::{Checks, MOST_SAMPLES, Problem, Simulated};
+
+/// The most first guesses that a study may try.
+const MOST_GUESSES: usize = 10_000_000;
+
+impl Checks<'_> {
+    pub(super) fn observer(
+        &self,
+        keys: ObserverKeys,
+        simulated: Option<&Simulated>,
+    ) -> Result<ObserverSettings, Problem> {
+        if keys.methods.is_empty() {
+            let help = "name one or more: newton, trust-region, integration, kalman, high-gain";
+            return Err(self.wrong("observer.methods", "there is no method", help));
+        }
+        self.names("observer.methods", &keys.methods, |method| format!("{method:?}"))?;
+        if keys.estimate.is_empty() {
+            let help = "name the states that are sought";
+            return Err(self.wrong("observer.estimate", "there is nothing to estimate", help));
+        }
+        self.names("observer.estimate", &keys.estimate, |name| format!("'{name}'"))?;
+        for (name, value) in &keys.known {
+            let place = format!("observer.known.{name}");
+            self.finite(&place, *value)?;
+            if keys.estimate.contains(name) {
+                let message = format!("'{name}' is both known and sought");
+                return Err(self.wrong_key(&place, message, "leave it out here or in 'estimate'"));
+            }
+        }
+        let guess = self.guess(keys.guess, keys.guess_off, &keys.estimate, simulated)?;
+        self.names("observer.clamp", &keys.clamp, |name| format!("'{name}'"))?;
+        for (index, name) in keys.clamp.iter().enumerate() {
+            self.sought(&format!("observer.clamp[{index}]"), name, &keys.estimate)?;
+        }
+        if keys.clamp.len() == keys.estimate.len() {
+            let message = "all that is sought is clamped: the first window has nothing to change";
+            return Err(self.wrong("observer.clamp", message, "leave at least one state free"));
+        }
+        let samples = simulated.map_or(MOST_SAMPLES, |s| s.samples);
+        let window = keys.window.unwrap_or(samples.min(80));
+        self.count("observer.window", window, 2..=samples)?;
+        self.count("observer.steps", keys.steps, 1..=1000)?;
+        self.positive("observer.blind", keys.blind, "")?;
+        self.not_negative("observer.kalman.process_noise", keys.kalman.process_noise, "")?;
+        self.positive("observer.kalman.prior", keys.kalman.prior, "")?;
+        self.positive("observer.high_gain.gain", keys.high_gain.gain, "1/s")?;
+        Ok(ObserverSettings {
+            methods: keys.methods,
+            estimate: keys.estimate,
+            known: keys.known,
+            guess,
+            clamp: keys.clamp,
+            window,
+            steps: keys.steps,
+            when_blind: keys.when_blind,
+            blind: keys.blind,
+            kalman: keys.kalman,
+            high_gain: keys.high_gain,
+        })
+    }
+
+    fn guess(
+        &self,
+        values: Option<std::collections::BTreeMap<String, f64>>,
+        off: Option<f64>,
+        estimate: &[String],
+        simulated: Option<&Simulated>,
+    ) -> Result<Guess, Problem> {
+        match (values, off) {
+            (Some(_), Some(_)) => {
+                let message = "both 'guess' and 'guess_off' are given";
+                Err(self.wrong_key("observer.guess_off", message, "leave one out"))
+            }
+            (None, None) => {
+                let help = "add, for instance: guess = { r1 = 2.0, r2 = 2.0 }, or guess_off = 0.1";
+                Err(self.wrong_key("observer", "there is no first guess", help))
+            }
+            (None, Some(off)) => {
+                self.finite("observer.guess_off", off)?;
+                if simulated.is_none() {
+                    let message = "recorded data has no truth from which a guess could be off";
+                    let help = "give the first guess itself: guess = { r1 = 2.0, ... }";
+                    return Err(self.wrong_key("observer.guess_off", message, help));
+                }
+                Ok(Guess::Off(off))
+            }
+            (Some(values), None) => {
+                for (name, value) in &values {
+                    let place = format!("observer.guess.{name}");
+                    self.sought(&place, name, estimate)?;
+                    self.finite(&place, *value)?;
+                }
+                if let Some(name) = estimate.iter().find(|name| !values.contains_key(*name)) {
+                    let message = format!("there is no first guess of '{name}'");
+                    let help = format!("add {name} = ... to it");
+                    return Err(self.wrong("observer.guess", message, help));
+                }
+                Ok(Guess::Values(values))
+            }
+        }
+    }
+
+    /// A name that has to be among those that are sought.
+    fn sought(&self, place: &str, name: &str, estimate: &[String]) -> Result<(), Problem> {
+        if estimate.iter().any(|sought| sought == name) {
+            return Ok(());
+        }
+        let help = match crate::system::nearest(name, estimate.iter().map(String::as_str)) {
+            Some(near) => format!("perhaps you meant '{near}'"),
+            None => format!("what is sought: {}", estimate.join(", ")),
+        };
+        Err(self.wrong_key(place, format!("'{name}' is not in 'estimate'"), help))
+    }
+
+    pub(super) fn study(
+        &self,
+        study: &Study,
+        observer: &ObserverSettings,
+        simulated: bool,
+    ) -> Result<(), Problem> {
+        for (place, asked) in [("study.noise", study.noise.is_some()), ("study.basin", study.basin.is_some())]
+        {
+            if asked && !simulated {
+                let message = "a study needs the truth, and recorded data has none";
+                return Err(self.wrong_key(place, message, "leave it out, or simulate"));
+            }
+        }
+        if let Some(noise) = &study.noise {
+            if noise.levels.is_empty() {
+                let help = "give one or more standard deviations, in m";
+                return Err(self.wrong("study.noise.levels", "there is no level of noise", help));
+            }
+            for (index, level) in noise.levels.iter().enumerate() {
+                self.not_negative(&format!("study.noise.levels[{index}]"), *level, "m")?;
+            }
+            self.count("study.noise.seeds", noise.seeds, 1..=1_000_000)?;
+        }
+        let Some(basin) = &study.basin else { return Ok(()) };
+        if basin.ranges.is_empty() {
+            let help = "add, for instance: r1 = [0.5, 3.0]";
+            return Err(self.wrong_key("study.basin", "the grid spans no state", help));
+        }
+        for (name, [low, high]) in &basin.ranges {
+            let place = format!("study.basin.{name}");
+            self.sought(&place, name, &observer.estimate)?;
+            self.finite(&place, *low)?;
+            self.finite(&place, *high)?;
+            if low >= high {
+                let message = format!("the range of '{name}' is empty: {low} to {high}");
+                return Err(self.wrong(&place, message, "give the least value first"));
+            }
+        }
+        self.count("study.basin.points", basin.points, 2..=10_001)?;
+        let guesses = u32::try_from(basin.ranges.len()).ok().and_then(|n| basin.points.checked_pow(n));
+        if guesses.is_none_or(|guesses| guesses > MOST_GUESSES) {
+            let message = format!("{} points along {} axes are too many", basin.points, basin.ranges.len());
+            let help = format!("let the grid have at most {MOST_GUESSES} points");
+            return Err(self.wrong("study.basin.points", message, help));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,190 @@
+//! The body, the palms, the sensors and the times.
+
+use super::super::keys::PalmsKeys;
+use super::super::simulated::MOST_JITTER;
+use super::super::{Body, Drive, Palms, Sensor, Shape, Swing};
+use super::{Checks, MOST_SAMPLES, Problem, Simulated};
+use std::f64::consts::PI;
+
+impl Checks<'_> {
+    pub(super) fn sensor(&self, sensor: &Sensor) -> Result<(), Problem> {
+        self.not_negative("sensor.noise", sensor.noise, "m")?;
+        self.not_negative("sensor.resolution", sensor.resolution, "m")?;
+        self.not_negative("sensor.jitter", sensor.jitter, "s")
+    }
+
+    pub(super) fn jitter(&self, jitter: f64, simulated: &Simulated) -> Result<(), Problem> {
+        let step = simulated.duration / simulated.samples.saturating_sub(1).max(1) as f64;
+        if jitter <= MOST_JITTER * step {
+            return Ok(());
+        }
+        let message = format!("a jitter of {jitter} s is too much for samples {step:.3e} s apart");
+        let help = format!("give at most {MOST_JITTER} of the time between samples, or take fewer");
+        Err(self.wrong("sensor.jitter", message, help))
+    }
+
+    /// What is simulated, if anything is said of it: then all has to be there.
+    pub(super) fn simulated(
+        &self,
+        duration: Option<f64>,
+        samples: Option<usize>,
+        rate: Option<f64>,
+        body: Option<Body>,
+        palms: Option<PalmsKeys>,
+    ) -> Result<Option<Simulated>, Problem> {
+        let given = [
+            ("duration", duration.is_some()),
+            ("samples", samples.is_some()),
+            ("rate", rate.is_some()),
+            ("body", body.is_some()),
+            ("palms", palms.is_some()),
+        ];
+        let Some((first, _)) = given.into_iter().find(|(_, there)| *there) else { return Ok(None) };
+        let beside = |missing: &str, example: &str| {
+            self.wrong_key(
+                first,
+                format!("'{first}' is given without {missing}"),
+                format!("add, for instance: {example}"),
+            )
+        };
+        let duration = duration.ok_or_else(|| beside("'duration'", "duration = 1.4, in s"))?;
+        self.positive("duration", duration, "s")?;
+        let (duration, samples) = match (samples, rate) {
+            (Some(_), Some(_)) => {
+                let message = "both 'samples' and 'rate' are given";
+                return Err(self.wrong_key(
+                    "rate",
+                    message,
+                    "leave one out: the duration and the other fix it",
+                ));
+            }
+            (None, None) => return Err(beside("'samples' or 'rate'", "samples = 400")),
+            (Some(samples), None) => {
+                self.count("samples", samples, 2..=MOST_SAMPLES)?;
+                (duration, samples)
+            }
+            (None, Some(rate)) => {
+                self.positive("rate", rate, "Hz")?;
+                // a whole number of periods may come out a rounding too short
+                let periods = (duration * rate * (1.0 + 4.0 * f64::EPSILON)).floor();
+                if !(1.0..MOST_SAMPLES as f64).contains(&periods) {
+                    let message = format!("at {rate} Hz, {duration} s have {periods} periods");
+                    let help = format!("let there be 2 to {MOST_SAMPLES} samples");
+                    return Err(self.wrong("rate", message, help));
+                }
+                (periods / rate, periods as usize + 1)
+            }
+        };
+        let body = body.ok_or_else(|| beside("[body]", "[body] with shape and mass"))?;
+        self.body(&body)?;
+        let palms = palms.ok_or_else(|| beside("[palms]", "[palms] with inertia and prescribed"))?;
+        Ok(Some(Simulated { duration, samples, body, palms: self.palms(palms)? }))
+    }
+
+    fn body(&self, body: &Body) -> Result<(), Problem> {
+        self.shape(&body.shape)?;
+        self.positive("body.mass", body.mass, "kg")?;
+        if let Some(radius) = body.radius_of_gyration {
+            self.positive("body.radius_of_gyration", radius, "m")?;
+        }
+        self.all_finite("body.centre_of_mass", body.centre_of_mass.iter().flatten())?;
+        self.finite("body.orientation", body.orientation)?;
+        self.finite("body.rate", body.rate)?;
+        self.finite("body.gravity", body.gravity)
+    }
+
+    fn shape(&self, shape: &Shape) -> Result<(), Problem> {
+        match shape {
+            Shape::Harmonics { mean, harmonics } => {
+                self.positive("body.shape.mean", *mean, "m")?;
+                if harmonics.len() > 64 {
+                    let message = format!("{} harmonics are too many", harmonics.len());
+                    return Err(self.wrong("body.shape.harmonics", message, "give at most 64"));
+                }
+                for (index, pair) in harmonics.iter().enumerate() {
+                    self.all_finite(&format!("body.shape.harmonics[{index}]"), pair)?;
+                }
+                Ok(())
+            }
+            Shape::Ellipse { semi_axes } => self.all_positive("body.shape.semi_axes", semi_axes, "m"),
+            Shape::Superellipse { semi_axes, exponent, rounding } => {
+                self.all_positive("body.shape.semi_axes", semi_axes, "m")?;
+                if !(2.0..=100.0).contains(exponent) {
+                    let message = format!("an exponent of {exponent} gives no smooth body");
+                    return Err(self.wrong("body.shape.exponent", message, "give a number from 2 to 100"));
+                }
+                self.not_negative("body.shape.rounding", *rounding, "m")
+            }
+            Shape::Spline { radii } => self.all_positive("body.shape.radii", radii, "m"),
+            Shape::RandomSpline { .. } => Ok(()),
+        }
+    }
+
+    fn palms(&self, keys: PalmsKeys) -> Result<Palms, Problem> {
+        self.all_positive("palms.inertia", &keys.inertia, "kg m^2")?;
+        let drive = match (keys.prescribed, keys.torques) {
+            (Some(_), Some(_)) => {
+                let message = "both 'prescribed' and 'torques' are given";
+                let help = "leave one out: either the motion follows from the torques or they from it";
+                return Err(self.wrong_key("palms.torques", message, help));
+            }
+            (None, None) => {
+                let help = "add, for instance: prescribed = [{ start = 0.8, rate = 0.5 }, { start = 1.6 }]";
+                return Err(self.wrong_key("palms", "nothing is said of how the palms move", help));
+            }
+            (Some(palms), None) => {
+                for (index, palm) in palms.iter().enumerate() {
+                    let place = format!("palms.prescribed[{index}]");
+                    self.finite(&format!("{place}.start"), palm.start)?;
+                    self.finite(&format!("{place}.rate"), palm.rate)?;
+                    self.swings(&place, &palm.swings)?;
+                }
+                self.opening("palms.prescribed[1].start", palms[1].start)?;
+                Drive::Prescribed(palms)
+            }
+            (None, Some(palms)) => {
+                for (index, palm) in palms.iter().enumerate() {
+                    let place = format!("palms.torques[{index}]");
+                    self.finite(&format!("{place}.angle"), palm.angle)?;
+                    self.finite(&format!("{place}.rate"), palm.rate)?;
+                    self.finite(&format!("{place}.torque"), palm.torque)?;
+                    self.swings(&place, &palm.swings)?;
+                }
+                self.opening("palms.torques[1].angle", palms[1].angle)?;
+                Drive::Torques(palms)
+            }
+        };
+        Ok(Palms { inertia: keys.inertia, drive })
+    }
+
+    /// The angle between the palms.
+    fn opening(&self, place: &str, angle: f64) -> Result<(), Problem> {
+        if angle > 0.0 && angle < PI {
+            return Ok(());
+        }
+        let message = format!("the palms do not form a V: palm 2 stands at {angle} rad from palm 1");
+        Err(self.wrong(place, message, "give an angle between 0 and pi, measured from palm 1"))
+    }
+
+    fn swings(&self, place: &str, swings: &[Swing]) -> Result<(), Problem> {
+        for (index, swing) in swings.iter().enumerate() {
+            let place = format!("{place}.swings[{index}]");
+            self.finite(&format!("{place}.amplitude"), swing.amplitude)?;
+            self.positive(&format!("{place}.frequency"), swing.frequency, "Hz")?;
+            self.finite(&format!("{place}.phase"), swing.phase)?;
+        }
+        Ok(())
+    }
+
+    fn all_finite<'a>(&self, place: &str, values: impl IntoIterator<Item = &'a f64>) -> Result<(), Problem> {
+        values
+            .into_iter()
+            .enumerate()
+            .try_for_each(|(index, v)| self.finite(&format!("{place}[{index}]"), *v))
+    }
+
+    fn all_positive(&self, place: &str, values: &[f64], unit: &str) -> Result<(), Problem> {
+        let place = |index: usize| format!("{place}[{index}]");
+        values.iter().enumerate().try_for_each(|(index, v)| self.positive(&place(index), *v, unit))
+    }
+}

@@ -1,0 +1,79 @@
+//! The file as it is written: what serde reads, before it is known whether the values go together.
+
+use super::observing::{Data, HighGain, Kalman, Method, Sensor, Study, WhenBlind};
+use super::place::Places;
+use super::simulated::{Body, PrescribedPalm, TorquedPalm};
+use crate::system::Problem;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneKeys {
+    pub title: String,
+    pub model: PathBuf,
+    #[serde(default = "one")]
+    pub seed: u64,
+    pub duration: Option<f64>,
+    pub samples: Option<usize>,
+    pub rate: Option<f64>,
+    pub body: Option<Body>,
+    pub palms: Option<PalmsKeys>,
+    #[serde(default)]
+    pub sensor: Sensor,
+    #[serde(default)]
+    pub data: Data,
+    pub observer: ObserverKeys,
+    #[serde(default)]
+    pub study: Study,
+}
+
+fn one() -> u64 {
+    1
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PalmsKeys {
+    pub inertia: [f64; 2],
+    pub prescribed: Option<[PrescribedPalm; 2]>,
+    pub torques: Option<[TorquedPalm; 2]>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ObserverKeys {
+    pub methods: Vec<Method>,
+    pub estimate: Vec<String>,
+    #[serde(default)]
+    pub known: BTreeMap<String, f64>,
+    pub guess: Option<BTreeMap<String, f64>>,
+    pub guess_off: Option<f64>,
+    #[serde(default)]
+    pub clamp: Vec<String>,
+    pub window: Option<usize>,
+    #[serde(default = "five")]
+    pub steps: usize,
+    #[serde(default)]
+    pub when_blind: WhenBlind,
+    #[serde(default = "unity")]
+    pub blind: f64,
+    #[serde(default)]
+    pub kalman: Kalman,
+    #[serde(default)]
+    pub high_gain: HighGain,
+}
+
+fn five() -> usize {
+    5
+}
+
+fn unity() -> f64 {
+    1.0
+}
+
+/// Reads the keys of a text.
+pub(super) fn read(text: &str, places: &Places) -> Result<SceneKeys, Problem> {
+    toml::from_str(text).map_err(|error| places.explain(&error))
+}

@@ -1,0 +1,190 @@
+//! What is measured, and what is to be found out from it.
+
+use crate::observer::OnFault;
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::PathBuf;
+
+/// How well the sensors read. All zero unless given.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sensor {
+    /// `noise`: the standard deviation of s1 and s2, in m.
+    pub noise: f64,
+    /// `resolution`: readings of s1 and s2 are rounded to multiples of it, in m.
+    pub resolution: f64,
+    /// `jitter`: the standard deviation of the time from one sample to the next, in s.
+    pub jitter: f64,
+}
+
+/// Recorded data, and what to do with a faulty row of it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Data {
+    /// `record`: the file, CSV or Parquet; relative to the scene in the file, and here to where the program runs.
+    pub record: Option<PathBuf>,
+    /// `on_fault`: `"stop"`, unless `"skip"` is given.
+    pub on_fault: OnFault,
+    /// `spike`: a value this many usual departures off what its neighbours foretell is a spike; 8 unless given.
+    pub spike: f64,
+}
+
+impl Default for Data {
+    fn default() -> Self {
+        Data { record: None, on_fault: OnFault::Stop, spike: 8.0 }
+    }
+}
+
+/// What is to be found out, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObserverSettings {
+    /// `methods`: one or more, none twice.
+    pub methods: Vec<Method>,
+    /// `estimate`: the states that are sought, none twice. Others are read from the record.
+    pub estimate: Vec<String>,
+    /// `known`: states and parameters of the model that no column gives and that are not sought, with their values.
+    pub known: BTreeMap<String, f64>,
+    /// `guess` or `guess_off`: where the search begins.
+    pub guess: Guess,
+    /// `clamp`: sought states that keep their first guess in the first window; none unless given.
+    pub clamp: Vec<String>,
+    /// `window`: the samples of one window; 80 unless given, or all where there are fewer.
+    pub window: usize,
+    /// `steps`: Newton steps a window; 5 unless given.
+    pub steps: usize,
+    /// `when_blind`: what to do while the outputs do not tell the state; `"integrate"` unless given.
+    pub when_blind: WhenBlind,
+    /// `blind`: the relative standard deviation (its bound by the size of the state) beyond which a state is not seen;
+    /// 1 unless given.
+    pub blind: f64,
+    /// `[observer.kalman]`.
+    pub kalman: Kalman,
+    /// `[observer.high_gain]`.
+    pub high_gain: HighGain,
+}
+
+/// A first guess.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Guess {
+    /// `guess`: a value for each state that is sought.
+    Values(BTreeMap<String, f64>),
+    /// `guess_off`: each state is off the truth by this part of it (0.1: ten percent more). Only where there is a
+    /// truth, in a simulation.
+    Off(f64),
+}
+
+/// A way to estimate a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// `newton`: Newton's method for the error of the output over a window (4.78).
+    Newton,
+    /// `trust-region`: the same error, with steps no longer than the quadratic model is trusted.
+    TrustRegion,
+    /// `integration`: the first guess, carried along by the model; the reference without observer.
+    Integration,
+    /// `kalman`: the extended Kalman filter.
+    Kalman,
+    /// `high-gain`: the high-gain observer.
+    HighGain,
+}
+
+/// What to do while the outputs do not tell the state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WhenBlind {
+    /// `integrate`: carry the last estimate along by the model.
+    #[default]
+    Integrate,
+    /// `hold`: keep the last estimate as it is.
+    Hold,
+}
+
+/// The extended Kalman filter's settings.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Kalman {
+    /// `process_noise`: the standard deviation of what the model leaves out of a sought state's rate, relative to the
+    /// state, per square root of a second; 0.01 unless given.
+    pub process_noise: f64,
+    /// `prior`: the standard deviation of the first guess, relative to it; 0.5 unless given.
+    pub prior: f64,
+}
+
+impl Default for Kalman {
+    fn default() -> Self {
+        Kalman { process_noise: 0.01, prior: 0.5 }
+    }
+}
+
+/// The high-gain observer's settings.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct HighGain {
+    /// `gain`, in 1/s: the rate at which an error is to decay; 20 unless given.
+    pub gain: f64,
+}
+
+impl Default for HighGain {
+    fn default() -> Self {
+        HighGain { gain: 20.0 }
+    }
+}
+
+/// What to try many times over.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Study {
+    /// `[study.noise]`: how the error grows with noise.
+    pub noise: Option<NoiseStudy>,
+    /// `[study.basin]`: from which first guesses the search arrives.
+    pub basin: Option<BasinStudy>,
+}
+
+/// Each level of noise, tried with many seeds.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoiseStudy {
+    /// `levels`: standard deviations of s1 and s2, in m.
+    pub levels: Vec<f64>,
+    /// `seeds`: how many for each level.
+    pub seeds: usize,
+}
+
+/// First guesses on a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BasinStudy {
+    /// For each state that the grid spans, a key of its name: the least and the greatest guess.
+    pub ranges: BTreeMap<String, [f64; 2]>,
+    /// `points`: the points of the grid along each range, both ends included.
+    pub points: usize,
+}
+
+/// By hand, because every key but one is the name of a state.
+impl<'de> Deserialize<'de> for BasinStudy {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Keys;
+        impl<'de> Visitor<'de> for Keys {
+            type Value = BasinStudy;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a table of ranges and 'points'")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<BasinStudy, A::Error> {
+                let (mut ranges, mut points) = (BTreeMap::new(), None);
+                while let Some(key) = map.next_key::<String>()? {
+                    if key == "points" {
+                        points = Some(map.next_value()?);
+                    } else {
+                        ranges.insert(key, map.next_value()?);
+                    }
+                }
+                Ok(BasinStudy { ranges, points: points.ok_or_else(|| A::Error::missing_field("points"))? })
+            }
+        }
+        deserializer.deserialize_map(Keys)
+    }
+}

@@ -1,0 +1,89 @@
+//! Comma-separated values: a header line with the columns' names, and a line a sample. A line that begins with `#` is
+//! a comment, spaces around a cell do not count.
+
+use super::rows::Table;
+use super::{Cell, Record, RecordError, Row, TIME};
+use csv::{ReaderBuilder, Trim, WriterBuilder};
+use std::io::Write;
+use std::path::Path;
+
+const COMMENT: u8 = b'#';
+
+/// The names of the columns, and the rows.
+pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
+    let complain = |why: String| RecordError::Unreadable { path: path.to_owned(), why, help: None };
+    let bytes = std::fs::read(path).map_err(|e| complain(e.to_string()))?;
+    let mut reader = ReaderBuilder::new()
+        .flexible(true)
+        .trim(Trim::All)
+        .comment(Some(COMMENT))
+        .from_reader(bytes.as_slice());
+    let complain = |e: csv::Error| complain(e.to_string());
+    let header = reader.byte_headers().map_err(complain)?.clone();
+    let names: Vec<String> = header
+        .iter()
+        .map(|name| String::from_utf8_lossy(name).trim_start_matches('\u{feff}').trim().to_owned())
+        .collect();
+    let refuse = |why: String| {
+        let help = "the first line names the columns, for instance: time,s1,s2".to_owned();
+        Err(RecordError::Header { path: path.to_owned(), why, help })
+    };
+    if names.is_empty() {
+        return refuse("the file is empty".to_owned());
+    }
+    if let Some(nameless) = names.iter().position(String::is_empty) {
+        return refuse(format!("column {} has no name", nameless + 1));
+    }
+    let mut rows = Vec::new();
+    for line in reader.byte_records() {
+        let line = line.map_err(complain)?;
+        let cells = (0..names.len()).map(|i| cell(line.get(i).unwrap_or_default())).collect();
+        let surplus = line.len().saturating_sub(names.len());
+        rows.push(Row { line: line.position().map(|at| line_number(&bytes, at)), cells, surplus });
+    }
+    Ok(Table { names, rows, ..Table::default() })
+}
+
+/// The line on which a row begins, counted from one. The format's reader tells where it began to look for the row,
+/// with empty lines and comments still before it.
+fn line_number(bytes: &[u8], from: &csv::Position) -> u64 {
+    let mut line = from.line();
+    let mut rest = usize::try_from(from.byte()).ok().and_then(|at| bytes.get(at..)).unwrap_or_default();
+    while let [first, ..] = rest
+        && matches!(*first, COMMENT | b'\r' | b'\n')
+        && let Some(end) = rest.iter().position(|b| *b == b'\n')
+    {
+        rest = &rest[end + 1..];
+        line += 1;
+    }
+    line
+}
+
+fn cell(bytes: &[u8]) -> Cell {
+    let text = String::from_utf8_lossy(bytes);
+    match text.trim() {
+        "" => Cell::Missing,
+        text => text.parse().map_or_else(|_| Cell::Unreadable(shortened(text)), Cell::Number),
+    }
+}
+
+/// An unclosed quote can make a cell of half a file: its beginning is enough.
+fn shortened(text: &str) -> String {
+    const LONGEST: usize = 40;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// Writes a record. Rust prints a double with the fewest digits that are read back as the same one.
+pub(super) fn write<W: Write>(record: &Record, file: &mut W) -> Result<(), String> {
+    let mut writer = WriterBuilder::new().from_writer(file);
+    let header = std::iter::once(TIME).chain(record.names.iter().map(String::as_str));
+    writer.write_record(header).map_err(|e| e.to_string())?;
+    for (row, time) in record.times.iter().enumerate() {
+        let values = std::iter::once(*time).chain(record.columns.iter().map(|column| column[row]));
+        writer.write_record(values.map(|value| format!("{value:?}"))).map_err(|e| e.to_string())?;
+    }
+    writer.flush().map_err(|e| e.to_string())
+}

@@ -1,0 +1,126 @@
+//! Measurement records: a table of times and named columns, read from CSV or Parquet and written to either.
+//!
+//! A file is read twice over: first as [`Rows`], cells as they stand there, readable or not; then, when [`check`] has
+//! said what is wrong with them and the caller's rules have said what to do about it, as a [`Record`] of plain numbers
+//! whose times increase. This module knows nothing of palms or observers: which columns are needed is the caller's.
+
+mod comma_separated;
+mod error;
+mod fault;
+mod parquet_file;
+mod rows;
+mod spike;
+mod write;
+
+pub use error::RecordError;
+pub use fault::{Fault, FaultKind, FaultRules, OnFault, check};
+pub use rows::{Cell, Row, Rows};
+
+use std::path::Path;
+
+/// The name of the column of times, in seconds.
+pub const TIME: &str = "time";
+
+/// A table of numbers: a time in seconds and named columns, one row a sample.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Record {
+    times: Vec<f64>,
+    names: Vec<String>,
+    columns: Vec<Vec<f64>>,
+}
+
+/// A record that was read by rules, with what was wrong in the file.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// The rows without fault.
+    pub record: Record,
+    /// All faults that were found, in the order of their rows. Rows with a fault are not in the record, but for a
+    /// gap, which takes away no row.
+    pub faults: Vec<Fault>,
+    /// Columns of the file that were not asked for and hold something other than numbers: not in the record.
+    pub left_out: Vec<String>,
+}
+
+impl Record {
+    /// The table of these columns; each name once, and none of them [`TIME`].
+    ///
+    /// # Errors
+    /// When a column has another length than the times, or a name is empty or there twice.
+    pub fn new(times: Vec<f64>, columns: Vec<(String, Vec<f64>)>) -> Result<Record, RecordError> {
+        let mut record = Record { times, ..Record::default() };
+        for (name, values) in columns {
+            if values.len() != record.times.len() {
+                let (found, expected) = (values.len(), record.times.len());
+                return Err(RecordError::Length { column: name, found, expected });
+            }
+            if name.trim().is_empty() || name == TIME || record.names.contains(&name) {
+                return Err(RecordError::Name { column: name });
+            }
+            record.names.push(name);
+            record.columns.push(values);
+        }
+        Ok(record)
+    }
+
+    /// Reads a file of numbers, CSV or Parquet by its extension, and judges no value: times may stand in any order,
+    /// and a cell that says `NaN` or `inf` is a number here. `needed` are the columns that must be there beside the
+    /// time; none means all. Other columns are kept where they are whole.
+    ///
+    /// # Errors
+    /// The file cannot be read, lacks a column or has no row, or a cell that is needed is no number.
+    pub fn read(path: &Path, needed: &[&str]) -> Result<Record, RecordError> {
+        let rows = Rows::read(path, needed)?;
+        let faults = fault::unreadable(&rows);
+        if !faults.is_empty() {
+            return Err(RecordError::faulty(&rows, faults));
+        }
+        Ok(rows.numbers(|_| true).0)
+    }
+
+    /// Reads a file, CSV or Parquet by its extension, and does with faulty rows what the rules say. In the record that
+    /// comes back every needed value is finite and the times increase.
+    ///
+    /// # Errors
+    /// As [`Record::read`]; and when there is a fault and the rules say to stop, or no row is left.
+    pub fn read_checked(path: &Path, needed: &[&str], rules: &FaultRules) -> Result<Reading, RecordError> {
+        Rows::read(path, needed)?.settle(rules)
+    }
+
+    /// Writes the record, CSV or Parquet by the extension, so that it is read back bit for bit (in CSV but for the
+    /// payload of a NaN). The file is written aside and moved into place: it is whole or not there.
+    ///
+    /// # Errors
+    /// The extension is another, or the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), RecordError> {
+        write::write(self, path)
+    }
+
+    /// The number of samples.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.times.is_empty()
+    }
+
+    /// The times of the samples, in seconds.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The names of the columns, without the time.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The values of a column, if there is one of that name; the times are not among them.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let index = self.names.iter().position(|n| n == name)?;
+        self.columns.get(index).map(Vec::as_slice)
+    }
+}
+
+#[cfg(test)]
+mod tests;

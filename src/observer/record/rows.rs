@@ -1,0 +1,179 @@
+//! A record as it stands in its file: cells that may be unreadable, and rows that may be too short or too long.
+
+use super::{Fault, FaultKind, FaultRules, OnFault, Reading, Record, RecordError, TIME, check};
+use super::{comma_separated, parquet_file};
+use crate::system::nearest;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// What stands in a cell.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// A number, finite or not.
+    Number(f64),
+    /// Nothing.
+    Missing,
+    /// Something else, and what it says.
+    Unreadable(String),
+}
+
+impl Cell {
+    /// The number that stands in the cell, if it is finite.
+    pub fn finite(&self) -> Option<f64> {
+        match self {
+            Cell::Number(value) => Some(*value).filter(|v| v.is_finite()),
+            Cell::Missing | Cell::Unreadable(_) => None,
+        }
+    }
+}
+
+/// A row of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The line in the file, counted from one; a Parquet file has no lines.
+    pub line: Option<u64>,
+    /// One cell a column.
+    pub cells: Vec<Cell>,
+    /// How many cells stand after those.
+    pub surplus: usize,
+}
+
+/// What a format's reader finds.
+#[derive(Default)]
+pub(super) struct Table {
+    pub names: Vec<String>,
+    pub rows: Vec<Row>,
+    /// What the columns hold that cannot hold numbers, by their indices.
+    pub foreign: BTreeMap<usize, String>,
+}
+
+/// A record as it stands in its file.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    pub(super) path: PathBuf,
+    /// The names of the columns, the time among them.
+    pub(super) names: Vec<String>,
+    pub(super) rows: Vec<Row>,
+    /// Which columns are judged, as indices; the first is that of the times.
+    pub(super) needed: Vec<usize>,
+}
+
+impl Rows {
+    /// Reads a file, CSV or Parquet by its extension. `needed` are the columns that must be there beside the time and
+    /// in which a cell that is no number is a fault; none means all.
+    ///
+    /// # Errors
+    /// The file cannot be read, lacks a column or has no row.
+    pub fn read(path: &Path, needed: &[&str]) -> Result<Rows, RecordError> {
+        let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+        let Table { names, rows, foreign } = match extension.as_deref() {
+            Some("csv") => comma_separated::read(path)?,
+            Some("parquet") => parquet_file::read(path)?,
+            _ => return Err(RecordError::Extension { path: path.to_owned() }),
+        };
+        let mut seen = BTreeSet::new();
+        if let Some(twice) = names.iter().find(|name| !seen.insert(name.as_str())) {
+            let why = format!("the column '{twice}' is there twice");
+            let help = "give every column a name of its own".to_owned();
+            return Err(RecordError::Header { path: path.to_owned(), why, help });
+        }
+        let index = |column: &str| {
+            names.iter().position(|name| name == column).ok_or_else(|| missing(path, &names, column))
+        };
+        let mut judged = vec![index(TIME)?];
+        if needed.is_empty() {
+            judged.extend((0..names.len()).filter(|i| names[*i] != TIME));
+        }
+        for column in needed {
+            let column = index(column)?;
+            if !judged.contains(&column) {
+                judged.push(column);
+            }
+        }
+        if let Some((column, what)) = foreign.iter().find(|(index, _)| judged.contains(index)) {
+            let why = format!("the column '{}' holds {what}, not numbers", names[*column]);
+            let help = "write it as doubles; times are seconds".to_owned();
+            return Err(RecordError::Header { path: path.to_owned(), why, help });
+        }
+        if rows.is_empty() {
+            return Err(RecordError::NoRows { path: path.to_owned() });
+        }
+        Ok(Rows { path: path.to_owned(), names, rows, needed: judged })
+    }
+
+    /// The rows, in the order of the file.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// The names of the columns, the time among them, in the order of the file.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Looks for faults and does with them what the rules say.
+    ///
+    /// # Errors
+    /// There is a fault and the rules say to stop; or no row is left.
+    pub fn settle(self, rules: &FaultRules) -> Result<Reading, RecordError> {
+        let faults = check(&self, rules);
+        if rules.on_fault == OnFault::Stop && !faults.is_empty() {
+            return Err(RecordError::faulty(&self, faults));
+        }
+        let skipped: BTreeSet<usize> = faults.iter().filter(|f| f.takes_its_row()).map(|f| f.row).collect();
+        if skipped.len() == self.rows.len() {
+            return Err(RecordError::NothingLeft { path: self.path, faults });
+        }
+        let (record, left_out) = self.numbers(|row| !skipped.contains(&row));
+        Ok(Reading { record, faults, left_out })
+    }
+
+    /// The record of the rows to keep, numbered from one, and the names of the columns that hold something other than
+    /// numbers there.
+    pub(super) fn numbers(&self, keep: impl Fn(usize) -> bool) -> (Record, Vec<String>) {
+        let kept: Vec<&Row> =
+            (1..).zip(&self.rows).filter(|(row, _)| keep(*row)).map(|(_, row)| row).collect();
+        let values = |column: usize| -> Option<Vec<f64>> {
+            let number = |row: &&Row| match row.cells.get(column) {
+                Some(Cell::Number(value)) => Some(*value),
+                _ => None,
+            };
+            kept.iter().map(number).collect()
+        };
+        let (mut record, mut left_out) = (Record::default(), Vec::new());
+        for (index, name) in self.names.iter().enumerate() {
+            match values(index) {
+                Some(values) if name == TIME => record.times = values,
+                Some(values) => {
+                    record.names.push(name.clone());
+                    record.columns.push(values);
+                }
+                None => left_out.push(name.clone()),
+            }
+        }
+        (record, left_out)
+    }
+
+    /// The fault of a kind in a row, counted from zero.
+    pub(super) fn fault(&self, row: usize, column: Option<usize>, kind: FaultKind) -> Fault {
+        let place = self.rows.get(row);
+        Fault {
+            row: row + 1,
+            line: place.and_then(|row| row.line),
+            time: place.and_then(|row| row.cells.get(self.needed[0])).and_then(Cell::finite),
+            column: column.and_then(|c| self.names.get(c).cloned()),
+            kind,
+        }
+    }
+}
+
+fn missing(path: &Path, names: &[String], column: &str) -> RecordError {
+    let help = match nearest(column, names.iter().map(String::as_str)) {
+        Some(name) => format!("perhaps '{name}' is meant; the header must name it '{column}'"),
+        None if names.len() == 1 => {
+            format!("its header is the one name {:?}; columns are separated by commas", names[0])
+        }
+        None => format!("its columns are {}", names.join(", ")),
+    };
+    RecordError::Column { path: path.to_owned(), column: column.to_owned(), help }
+}

@@ -1,0 +1,235 @@
+//! Values that are far from what their neighbours foretell.
+//!
+//! The rule. A value is foretold in three ways, each time by the parabola of least squares through readings that do
+//! not include it: the five before it, the five after it, and the three on either side. Its departure from each is
+//! divided by what that way does to unit white noise, which makes them alike, and the least of the three counts: a
+//! corner, a step or the neighbour of a spike is foretold well from one side, a spike from none. The usual departure
+//! is the upper quartile of these, divided by that of unit white noise, so that it is the noise's standard deviation
+//! where there is nothing but white noise. In data without noise it would be next to nothing; so it is never taken
+//! below a tenth of the usual change from reading to reading nearby, three tenths of the sensor's resolution, and
+//! 1e-9 of the largest value. A value that departs by more than the threshold times this is a spike, the worst among its
+//! neighbours first; it is taken out and the rest is judged anew, until no more are found.
+//!
+//! What follows: the five readings at either end are foretold less well, and a spike has to be larger there; with fewer than [`FEWEST`] readings there is no judgement; where more than a fifth of the readings
+//! are spikes, they are what is usual; several wrong readings in a row that agree are a step and no spikes.
+
+use std::collections::BTreeSet;
+
+/// Fewer readings than this are not judged: the upper quartile of so few says little.
+pub(super) const FEWEST: usize = 16;
+
+/// The upper quartile of the least departure in evenly sampled white noise of unit standard deviation (from a
+/// simulation; a test draws it anew).
+const QUARTILE_OF_NOISE: f64 = 0.535;
+
+/// The neighbours by which a value is foretold, as offsets among the readings that are left.
+const WAYS: [&[isize]; 3] = [&[-5, -4, -3, -2, -1], &[1, 2, 3, 4, 5], &[-3, -2, -1, 1, 2, 3]];
+
+/// What is added where there are no five readings before, or none after (with the signs changed): one wrong reading
+/// near the end cannot spoil all of these for its neighbours.
+const AT_AN_END: [[isize; 5]; 2] = [[2, 3, 4, 5, 6], [3, 4, 5, 6, 7]];
+
+/// How far away those neighbours are at most.
+const REACH: usize = 5;
+
+/// The spikes among pairs of time and value, times increasing and all finite: index, and how many usual departures it
+/// is off. They come in no particular order.
+pub(super) fn spikes(series: &[(f64, f64)], threshold: f64, resolution: f64) -> Vec<(usize, f64)> {
+    let mut left: Vec<usize> = (0..series.len()).collect();
+    let mut found = Vec::new();
+    let size = series.iter().fold(0.0, |size: f64, (_, value)| size.max(value.abs()));
+    let floor = (0.3 * resolution).max(1e-9 * size).max(f64::MIN_POSITIVE);
+    while left.len() >= FEWEST {
+        let points: Vec<(f64, f64)> = left.iter().map(|i| series[*i]).collect();
+        let departures: Vec<f64> = (0..points.len()).map(|at| departure(&points, at)).collect();
+        let usual = usual_departure(&departures).max(floor);
+        let score = |at: usize| departures[at] / usual.max(change_nearby(&points, at) / 10.0);
+        let scores: Vec<f64> = (0..points.len()).map(score).collect();
+        // the worst first: a reading with spikes on either side of it has yet to be foretold without them
+        let worst = |at: usize| {
+            let nearby = at.saturating_sub(REACH)..(at + REACH + 1).min(scores.len());
+            scores[nearby].iter().all(|other| *other <= scores[at])
+        };
+        let spikes: BTreeSet<usize> =
+            (0..points.len()).filter(|at| scores[*at] > threshold && worst(*at)).collect();
+        if spikes.is_empty() {
+            break;
+        }
+        found.extend(spikes.iter().map(|at| (left[*at], scores[*at])));
+        let kept = left.iter().enumerate().filter(|(at, _)| !spikes.contains(at));
+        left = kept.map(|(_, index)| *index).collect();
+    }
+    found
+}
+
+/// The upper quartile of the departures, in terms of the standard deviation of white noise.
+fn usual_departure(departures: &[f64]) -> f64 {
+    let mut sorted = departures.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(3 * sorted.len() / 4).map_or(0.0, |quartile| quartile / QUARTILE_OF_NOISE)
+}
+
+/// The least departure of a value from what is foretold of it, in terms of what unit white noise would make of it.
+fn departure(points: &[(f64, f64)], at: usize) -> f64 {
+    let by = |way: &[isize]| -> Option<f64> {
+        let neighbours: Vec<(f64, f64)> =
+            way.iter().map(|by| points.get(at.checked_add_signed(*by)?).copied()).collect::<Option<_>>()?;
+        let (foretold, gain) = foretell(&neighbours, points[at].0);
+        let departure = (points[at].1 - foretold).abs() / gain;
+        departure.is_finite().then_some(departure)
+    };
+    let mut least = WAYS.iter().filter_map(|way| by(way)).fold(f64::INFINITY, f64::min);
+    if at < REACH || at + REACH >= points.len() {
+        let sign = if at < REACH { 1 } else { -1 };
+        least = AT_AN_END.iter().filter_map(|way| by(&way.map(|o| sign * o))).fold(least, f64::min);
+    }
+    if least.is_finite() { least } else { 0.0 }
+}
+
+/// What the parabola of least squares through some points says at a time, and the standard deviation of a value's
+/// departure from it when all values have the standard deviation one.
+///
+/// By polynomials that are orthonormal on the points' times (Forsythe 1957).
+fn foretell(points: &[(f64, f64)], time: f64) -> (f64, f64) {
+    let size = points.iter().fold(0.0, |size: f64, (t, _)| size.max((t - time).abs()));
+    let times: Vec<f64> = points.iter().map(|(t, _)| (t - time) / size).collect();
+    let mut basis: Vec<(Vec<f64>, f64)> = Vec::new();
+    for degree in 0..3 {
+        // the polynomial's values at the points, and at the time, which is zero
+        let mut values: Vec<f64> = times.iter().map(|t| t.powi(degree)).collect();
+        let mut here = if degree == 0 { 1.0 } else { 0.0 };
+        for (other, other_here) in &basis {
+            let share: f64 = values.iter().zip(other).map(|(v, o)| v * o).sum();
+            values.iter_mut().zip(other).for_each(|(v, o)| *v -= share * o);
+            here -= share * other_here;
+        }
+        let norm = values.iter().map(|v| v * v).sum::<f64>().sqrt();
+        values.iter_mut().for_each(|v| *v /= norm);
+        basis.push((values, here / norm));
+    }
+    let (mut foretold, mut variance) = (0.0, 1.0);
+    for (index, (_, value)) in points.iter().enumerate() {
+        let weight: f64 = basis.iter().map(|(values, here)| values[index] * here).sum();
+        foretold += weight * value;
+        variance += weight * weight;
+    }
+    (foretold, f64::sqrt(variance))
+}
+
+/// The usual change from one reading to the next among the three on either side, without the reading itself.
+fn change_nearby(points: &[(f64, f64)], at: usize) -> f64 {
+    let side = |range: std::ops::Range<usize>| {
+        let points = points.get(range.start..range.end.min(points.len())).unwrap_or_default();
+        points.windows(2).map(|w| (w[1].1 - w[0].1).abs()).collect::<Vec<f64>>()
+    };
+    let mut changes = side(at.saturating_sub(3)..at);
+    changes.extend(side(at + 1..at + 4));
+    changes.sort_by(f64::total_cmp);
+    changes.get(changes.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// White noise of unit standard deviation, by the transform of Box and Muller.
+    fn noise(seed: u64, count: usize) -> Vec<f64> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut draw = || {
+            let (radius, angle): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
+            (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
+        };
+        (0..count).map(|_| draw()).collect()
+    }
+
+    fn sampled(count: usize, value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        let time = |i: usize| 1.4 * i as f64 / (count - 1) as f64;
+        (0..count).map(|i| (time(i), value(time(i)))).collect()
+    }
+
+    fn indices(series: &[(f64, f64)]) -> Vec<usize> {
+        let mut found: Vec<usize> = spikes(series, 8.0, 0.0).into_iter().map(|(at, _)| at).collect();
+        found.sort_unstable();
+        found
+    }
+
+    #[test]
+    fn the_usual_departure_of_white_noise_is_its_standard_deviation() {
+        let series: Vec<(f64, f64)> =
+            noise(2, 200_000).into_iter().enumerate().map(|(i, v)| (i as f64, v)).collect();
+        let departures: Vec<f64> = (0..series.len()).map(|at| departure(&series, at)).collect();
+        let usual = usual_departure(&departures);
+        // the quartile of 200 000 draws is known to about one part in 300
+        assert!((usual - 1.0).abs() < 0.01, "{usual}");
+    }
+
+    /// The parabola that passes through points of a parabola is that one: 2 - 3 t + 5 t^2 at t = 0.5 is 1.75.
+    #[test]
+    fn a_parabola_foretells_itself() {
+        let parabola = |t: f64| (t, 2.0 - 3.0 * t + 5.0 * t * t);
+        let (foretold, gain) = foretell(&[0.1, 0.3, 0.7, 1.2].map(parabola), 0.5);
+        assert!((foretold - 1.75).abs() < 1e-13);
+        assert!(gain > 1.0);
+    }
+
+    /// From five even readings the next is foretold with the weights 9/5, 0, -4/5, -3/5, 3/5 (normal equations by
+    /// hand), whose squares with the reading's own sum to 28/5.
+    #[test]
+    fn the_gain_of_five_readings_before() {
+        let (_, gain) = foretell(&[-5.0, -4.0, -3.0, -2.0, -1.0].map(|t| (t, 0.0)), 0.0);
+        assert!((gain * gain - 28.0 / 5.0).abs() < 1e-12, "{}", gain * gain);
+    }
+
+    /// Twelve radians in 400 readings, exactly: what is left is the error of the parabola.
+    #[test]
+    fn smooth_data_has_no_spikes() {
+        assert_eq!(indices(&sampled(400, |t| (9.0 * t).sin() + 0.2 * (23.0 * t).cos())), [0usize; 0]);
+        assert_eq!(indices(&sampled(400, |t| 1.0 / (1.0 + 100.0 * (t - 0.7).powi(2)))), [0usize; 0]);
+        assert_eq!(indices(&sampled(400, |_| 2.0)), [0usize; 0]);
+        assert_eq!(indices(&sampled(400, |t| 0.1 + 0.5 * t)), [0usize; 0]);
+    }
+
+    #[test]
+    fn corners_steps_and_wrapped_angles_are_no_spikes() {
+        assert_eq!(indices(&sampled(200, |t| (t - 0.7).abs())), [0usize; 0]);
+        assert_eq!(indices(&sampled(200, |t| if t < 0.7 { 0.2 } else { 0.9 })), [0usize; 0]);
+        assert_eq!(indices(&sampled(200, |t| (7.0 * t) % 3.0)), [0usize; 0]);
+    }
+
+    #[test]
+    fn noise_has_no_spikes_and_hides_none_that_stands_out() {
+        for seed in 0..20 {
+            let mut series = sampled(400, |t| (5.0 * t).sin());
+            series.iter_mut().zip(noise(seed, 400)).for_each(|(point, n)| point.1 += 1e-3 * n);
+            assert_eq!(indices(&series), [0usize; 0], "seed {seed}");
+            // thirty standard deviations: 8 usual departures from five readings on one side are 8 * 2.37
+            series[123].1 += 0.03;
+            assert_eq!(indices(&series), [123], "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn single_and_neighbouring_spikes_are_found_and_no_others() {
+        for wrong in
+            [vec![0], vec![399], vec![2], vec![57], vec![57, 58], vec![57, 59], vec![57, 60, 63, 200]]
+        {
+            for size in [0.3, -40.0] {
+                let mut series = sampled(400, |t| (5.0 * t).sin());
+                wrong.iter().for_each(|at: &usize| series[*at].1 += size);
+                assert_eq!(indices(&series), wrong, "{size}");
+            }
+        }
+    }
+
+    #[test]
+    fn readings_on_a_grid_have_no_spikes() {
+        let grid = 1e-4;
+        let mut series = sampled(400, |t| grid * (0.02 * (1.0 - (4.0 * (t - 0.9)).tanh()) / grid).round());
+        let found = |series: &[(f64, f64)]| spikes(series, 8.0, grid).len();
+        assert_eq!(found(&series), 0);
+        series[100].1 += 2e-3;
+        assert_eq!(found(&series), 1);
+    }
+}
