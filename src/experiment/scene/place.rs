@@ -43,23 +43,25 @@ impl<'a> Places<'a> {
     }
 
     fn walk(&self, place: &str) -> Option<Entry<'a, '_>> {
-        let mut keys = place.split('.');
         let mut found: Option<Entry> = None;
-        for key in keys.by_ref() {
-            let (key, index) = match key.split_once('[') {
-                Some((key, index)) => (key, index.trim_end_matches(']').parse::<usize>().ok()),
-                None => (key, None),
-            };
+        for part in place.split('.') {
+            let mut indices = part.split(['[', ']']).filter(|piece| !piece.is_empty());
+            let key = indices.next()?;
             let table = match &found {
                 None => Some(self.table.get_ref()),
                 Some(entry) => entry.value.get_ref().as_table(),
             };
-            let Some((at, value)) = table.and_then(|t| t.iter().find(|(k, _)| k.get_ref().as_ref() == key))
+            let Some((at, mut value)) =
+                table.and_then(|t| t.iter().find(|(k, _)| k.get_ref().as_ref() == key))
             else {
                 break;
             };
-            let element = index.and_then(|i| value.get_ref().as_array()?.get(i));
-            found = Some(Entry { key: at.span(), value: element.unwrap_or(value) });
+            for index in indices {
+                let array = index.parse::<usize>().ok().zip(value.get_ref().as_array());
+                let Some(inner) = array.and_then(|(index, array)| array.get(index)) else { break };
+                value = inner;
+            }
+            found = Some(Entry { key: at.span(), value });
         }
         found
     }
@@ -142,6 +144,9 @@ const EXAMPLES: [(&str, &str); 20] = [
 
 /// A message of serde's in words that are not Rust's.
 fn in_words(message: &str) -> String {
+    if message == "wanted string or table" {
+        return "this is no text, expected one in quotation marks".to_owned();
+    }
     let words = [
         ("floating point `", "the number `"),
         ("integer `", "the number `"),
