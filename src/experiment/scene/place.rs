@@ -110,7 +110,12 @@ impl<'a> Places<'a> {
             (Some((missing, _)), m) if m.starts_with("missing field") => {
                 let help = EXAMPLES.iter().find(|(key, _)| key == missing).map(|(_, example)| *example);
                 let help = help.map_or(format!("give '{missing}'"), |e| format!("add, for instance: {e}"));
-                Problem::new(&span, format!("the key '{missing}' is missing"), "in this table").help(help)
+                // the table of the whole file has no header to mark
+                let (place, label) = match span.is_empty() {
+                    true => (self.top(), "at the top of the file, before the first table"),
+                    false => (span, "in this table"),
+                };
+                Problem::new(&place, format!("the key '{missing}' is missing"), label).help(help)
             }
             _ => Problem::new(&span, in_words(message), "this")
                 .help("write a value of the kind that is expected"),

@@ -7,12 +7,13 @@
 //! is the upper quartile of these, divided by that of unit white noise, so that it is the noise's standard deviation
 //! where there is nothing but white noise. In data without noise it would be next to nothing; so it is never taken
 //! below a tenth of the usual change from reading to reading nearby, three tenths of the sensor's resolution, and
-//! 1e-9 of the largest value. A value that departs by more than the threshold times this is a spike, the worst among its
-//! neighbours first; it is taken out and the rest is judged anew, until no more are found.
+//! 1e-9 of the largest value. A value that departs by more than the threshold times this is a spike, the worst among
+//! its neighbours first; it is taken out and the rest is judged anew, until no more are found.
 //!
-//! What follows: the five readings at either end are foretold less well, and a spike has to be larger there; with fewer than [`FEWEST`] readings there is no judgement; where more than a fifth of the readings
-//! are spikes, they are what is usual; a reading between two spikes can be taken for one too; several wrong readings in a row that
-//! agree are a step and no spikes.
+//! What follows: a spike has to be larger among the five readings at either end, which are foretold less well; with
+//! fewer than [`FEWEST`] readings there is no judgement; where a quarter of the readings or more are spikes, they are
+//! what is usual; a reading between two spikes can be taken for one too; several wrong readings in a row that agree are
+//! a step and no spikes.
 
 use std::collections::BTreeSet;
 
