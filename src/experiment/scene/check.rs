@@ -30,10 +30,6 @@ impl Checks<'_> {
         Problem::new(&self.places.key(place), message, "this").help(help)
     }
 
-    fn is_there(&self, place: &str) -> bool {
-        self.places.has(place)
-    }
-
     fn finite(&self, place: &str, value: f64) -> Result<(), Problem> {
         if value.is_finite() {
             return Ok(());

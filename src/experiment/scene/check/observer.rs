@@ -41,9 +41,7 @@ impl Checks<'_> {
             return Err(self.wrong("observer.clamp", message, "leave at least one state free"));
         }
         let samples = simulated.map_or(MOST_SAMPLES, |s| s.samples);
-        // eighty samples are too many of a short record only where they are asked for
-        let asked = self.is_there("observer.window");
-        let window = if asked { keys.window } else { keys.window.min(samples) };
+        let window = keys.window.unwrap_or(samples.min(80));
         self.count("observer.window", window, 2..=samples)?;
         self.count("observer.steps", keys.steps, 1..=1000)?;
         self.positive("observer.blind", keys.blind, "")?;
@@ -54,7 +52,6 @@ impl Checks<'_> {
             methods: keys.methods,
             estimate: keys.estimate,
             known: keys.known,
-            inputs: keys.inputs,
             guess,
             clamp: keys.clamp,
             window,
