@@ -50,11 +50,8 @@ pub mod claim;
 // real bodies between real palms, a second witness for the physics
 pub mod mechanics;
 
-// what was measured, and the state that it tells of
+// states recovered from what is measured
 pub mod observer;
-
-// scenes: what is held, moved, measured and to be found out
-pub mod experiment;
 
 // speed against accuracy, the extremes
 pub mod tradeoff;

@@ -1,12 +1,20 @@
-//! Floor 6, beside the trade-offs: experiments, simulated or recorded. A [`Scene`] says what is held, how it moves,
-//! what the sensors read and which observers are to find out; it is read from a TOML file.
+//! Floor 6, beside the trade-offs: experiments, simulated or recorded.
 //!
-//! A scene holds what the file says, checked value by value. Whether a shape is convex, and whether a model has the
-//! states that a scene names, is found out by those who know; [`Scene::error_at`] marks the place for them.
+//! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
+//! from a TOML file and checked value by value. A [`Simulation`] moves its body; an [`Experiment`] is a scene with its readings, and
+//! runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`], [`basins`]).
+//!
+//! Beside `verification` this is the place that knows both palms and observers.
 
+mod run;
 mod scene;
+mod simulation;
+mod study;
 
+pub use run::{Answer, Experiment, NOMINAL, error};
 pub use scene::{
-    BasinStudy, Body, Data, Drive, Guess, HighGain, Kalman, Method, NoiseStudy, ObserverSettings, Palms,
-    PrescribedPalm, Scene, SceneError, Sensor, Shape, Simulated, Study, Swing, TorquedPalm, WhenBlind,
+    BasinStudy, Body, Data, Drive, Guess, HighGain, Kalman, Knots, Method, NoiseStudy, ObserverSettings,
+    Palms, PrescribedPalm, Scene, SceneError, Sensor, Shape, Simulated, Study, Swing, TorquedPalm, WhenBlind,
 };
+pub use simulation::{Simulation, TOUCH, deviation};
+pub use study::{ARRIVED, Basin, NoiseLevel, basins, noise_study};

@@ -146,11 +146,11 @@ fn body(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {
         }
         scene::Shape::Ellipse { semi_axes } => Form::Ellipse { semi_axes: *semi_axes },
         scene::Shape::Superellipse { semi_axes, exponent, rounding } => {
-            Form::Superellipse { semi_axes: *semi_axes, exponent: *exponent as u32, rounding: *rounding }
+            Form::Superellipse { semi_axes: *semi_axes, exponent: *exponent, rounding: *rounding }
         }
-        scene::Shape::Spline { radii } => Form::Spline { radii: *radii, knots: Knots::Uniform },
-        scene::Shape::RandomSpline { seed } => {
-            let drawn = SplineDraws::new(*seed, Knots::Uniform).until_convex()?;
+        scene::Shape::Spline { radii, knots } => Form::Spline { radii: *radii, knots: knots_of(*knots) },
+        scene::Shape::RandomSpline { seed, knots } => {
+            let drawn = SplineDraws::new(*seed, knots_of(*knots)).until_convex()?;
             return match centre {
                 CentreOfMass::Uniform => Ok((drawn.shape, Some(drawn.draws))),
                 CentreOfMass::At(_) => Ok((Shape::new(&drawn.form, centre)?, Some(drawn.draws))),
@@ -158,6 +158,14 @@ fn body(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {
         }
     };
     Ok((Shape::new(&form, centre)?, None))
+}
+
+fn knots_of(knots: scene::Knots) -> Knots {
+    match knots {
+        scene::Knots::Uniform => Knots::Uniform,
+        scene::Knots::Centripetal => Knots::Centripetal,
+        scene::Knots::Chord => Knots::Chord,
+    }
 }
 
 fn drive(drive: &scene::Drive) -> Drive {

@@ -48,6 +48,8 @@ pub(super) struct ObserverKeys {
     pub estimate: Vec<String>,
     #[serde(default)]
     pub known: BTreeMap<String, f64>,
+    #[serde(default)]
+    pub inputs: BTreeMap<String, String>,
     pub guess: Option<BTreeMap<String, f64>>,
     pub guess_off: Option<f64>,
     #[serde(default)]

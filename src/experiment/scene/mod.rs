@@ -13,7 +13,7 @@ pub use crate::system::ReadError as SceneError;
 pub use observing::{
     BasinStudy, Data, Guess, HighGain, Kalman, Method, NoiseStudy, ObserverSettings, Sensor, Study, WhenBlind,
 };
-pub use simulated::{Body, Drive, Palms, PrescribedPalm, Shape, Simulated, Swing, TorquedPalm};
+pub use simulated::{Body, Drive, Knots, Palms, PrescribedPalm, Shape, Simulated, Swing, TorquedPalm};
 
 use crate::observer::FaultRules;
 use crate::system::{Problem, load};

@@ -46,6 +46,8 @@ pub struct ObserverSettings {
     pub estimate: Vec<String>,
     /// `known`: states and parameters of the model that no column gives and that are not sought, with their values.
     pub known: BTreeMap<String, f64>,
+    /// `inputs`: input fields of the model and the columns that drive them, as in `{ g1 = "tau1" }`; none unless given.
+    pub inputs: BTreeMap<String, String>,
     /// `guess` or `guess_off`: where the search begins.
     pub guess: Guess,
     /// `clamp`: sought states that keep their first guess in the first window; none unless given.

@@ -101,7 +101,7 @@ pub enum Shape {
         /// `A` and `B`.
         semi_axes: [f64; 2],
         /// `p`.
-        exponent: f64,
+        exponent: u32,
         /// The radius of the disc that rounds the corners; 0 unless given.
         #[serde(default)]
         rounding: f64,
@@ -110,12 +110,31 @@ pub enum Shape {
     Spline {
         /// Their distances from the origin.
         radii: [f64; 3],
+        /// How the curve's parameter grows from point to point; `uniform` unless given.
+        #[serde(default)]
+        knots: Knots,
     },
     /// `random-spline`: such a spline with radii drawn as in section 3.4.
     RandomSpline {
         /// Where the draw begins.
         seed: u64,
+        /// How the curve's parameter grows from point to point; `uniform` unless given.
+        #[serde(default)]
+        knots: Knots,
     },
+}
+
+/// How the parameter of a closed spline grows from one point to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Knots {
+    /// `uniform`: by the same everywhere.
+    #[default]
+    Uniform,
+    /// `centripetal`: by the square root of the points' distance.
+    Centripetal,
+    /// `chord`: by the points' distance.
+    Chord,
 }
 
 /// The two palms; palm 2 is measured from palm 1.

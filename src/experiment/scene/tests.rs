@@ -143,6 +143,7 @@ fn every_key_arrives_where_it_belongs() {
         ],
         estimate: ["r1", "r2", "omega0"].map(str::to_owned).to_vec(),
         known: value(&[("rho", 0.6)]),
+        inputs: Default::default(),
         guess: Guess::Values(value(&[("r1", 2.0), ("r2", 2.0), ("omega0", 0.0)])),
         clamp: vec!["omega0".to_owned()],
         window: 60,
@@ -200,12 +201,18 @@ fn every_shape_can_be_written() {
     };
     assert_eq!(
         shape("{ kind = \"superellipse\", semi_axes = [1.2, 0.9], exponent = 4, rounding = 0.1 }"),
-        Shape::Superellipse { semi_axes: [1.2, 0.9], exponent: 4.0, rounding: 0.1 }
+        Shape::Superellipse { semi_axes: [1.2, 0.9], exponent: 4, rounding: 0.1 }
     );
     assert_eq!(shape("{ kind = \"ellipse\", semi_axes = [1, 2] }"), Shape::Ellipse { semi_axes: [1.0, 2.0] });
     let radii = [1.2, 1.5, 1.3];
-    assert_eq!(shape("{ kind = \"spline\", radii = [1.2, 1.5, 1.3] }"), Shape::Spline { radii });
-    assert_eq!(shape("{ kind = \"random-spline\", seed = 3 }"), Shape::RandomSpline { seed: 3 });
+    assert_eq!(
+        shape("{ kind = \"spline\", radii = [1.2, 1.5, 1.3] }"),
+        Shape::Spline { radii, knots: Knots::Uniform }
+    );
+    assert_eq!(
+        shape("{ kind = \"random-spline\", seed = 3 }"),
+        Shape::RandomSpline { seed: 3, knots: Knots::Uniform }
+    );
     assert_eq!(
         shape("{ kind = \"harmonics\", mean = 1 }"),
         Shape::Harmonics { mean: 1.0, harmonics: Vec::new() }

@@ -1,4 +1,4 @@
-//! Parquet without compression, as columns of doubles. What is read may also hold single-precision and whole numbers
+//! Parquet, plain or compressed by Snappy, as columns of doubles. What is read may also hold single-precision and whole numbers
 //! and may lack values; columns of other types, and numbers that mean dates or decimals, are known by name only.
 
 use super::rows::Table;
@@ -38,7 +38,7 @@ pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
     match catch_unwind(AssertUnwindSafe(|| table(file))) {
         Ok(Ok(table)) => Ok(table),
         Ok(Err(why)) if why.contains("Disabled feature") => {
-            let help = "write it without compression, or as CSV";
+            let help = "write it without compression or with Snappy, or as CSV";
             Err(complain("its columns are compressed".to_owned(), Some(help)))
         }
         Ok(Err(why)) => Err(complain(why, Some("the file may be cut short, or no Parquet file"))),

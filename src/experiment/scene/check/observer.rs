@@ -52,6 +52,7 @@ impl Checks<'_> {
             methods: keys.methods,
             estimate: keys.estimate,
             known: keys.known,
+            inputs: keys.inputs,
             guess,
             clamp: keys.clamp,
             window,

@@ -109,13 +109,17 @@ impl Checks<'_> {
             Shape::Ellipse { semi_axes } => self.all_positive("body.shape.semi_axes", semi_axes, "m"),
             Shape::Superellipse { semi_axes, exponent, rounding } => {
                 self.all_positive("body.shape.semi_axes", semi_axes, "m")?;
-                if !(2.0..=100.0).contains(exponent) {
+                if !(2..=64).contains(exponent) || exponent % 2 == 1 {
                     let message = format!("an exponent of {exponent} gives no smooth body");
-                    return Err(self.wrong("body.shape.exponent", message, "give a number from 2 to 100"));
+                    return Err(self.wrong(
+                        "body.shape.exponent",
+                        message,
+                        "give an even number from 2 to 64",
+                    ));
                 }
                 self.not_negative("body.shape.rounding", *rounding, "m")
             }
-            Shape::Spline { radii } => self.all_positive("body.shape.radii", radii, "m"),
+            Shape::Spline { radii, .. } => self.all_positive("body.shape.radii", radii, "m"),
             Shape::RandomSpline { .. } => Ok(()),
         }
     }
