@@ -79,7 +79,7 @@ impl Flow<'_> {
         order: Order,
     ) -> Result<Vec<Sample>, Lost> {
         let p = free.len();
-        // a few sizes for all: what is too large is filled with zeros
+        // few sizes for all, since each is compiled: what is too large is filled with zeros
         macro_rules! sized {
             ($($size:literal)*) => {
                 match order {
@@ -90,7 +90,7 @@ impl Flow<'_> {
                 }
             };
         }
-        sized!(2 3 4 5 6 8 10)
+        sized!(3 6 10)
     }
 
     fn integrate<J: Jet>(

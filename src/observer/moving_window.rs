@@ -118,6 +118,7 @@ impl MovingWindow {
             deviations: vec![f64::INFINITY; task.sought()],
             condition: f64::INFINITY,
             cost: f64::INFINITY,
+            misfit: f64::INFINITY,
             steps: 0,
             troubled: 0,
             seconds: 0.0,
@@ -127,7 +128,7 @@ impl MovingWindow {
         update.standing = match window.expand(&guess, Order::First) {
             Err(lost) => Standing::Lost(lost),
             Ok(expansion) => {
-                update.cost = expansion.cost;
+                (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
                 match self.see(task, &window, &expansion.slopes, &sizes, &mut update) {
                     Some(blind) => blind,
                     None => self.search(task, &window, guess, &sizes, &mut update),
@@ -193,12 +194,11 @@ impl MovingWindow {
         update.troubled = troubled;
         let Some(found) = state.get_param() else { return Standing::Stuck };
         update.estimate = window.state(found)[..task.sought()].to_vec();
-        update.cost = state.get_cost();
         // the bound belongs to where one is
         match window.expand(found, Order::First) {
             Err(lost) => return Standing::Lost(lost),
             Ok(expansion) => {
-                update.cost = expansion.cost;
+                (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
                 if let Some(blind) = self.see(task, window, &expansion.slopes, sizes, update) {
                     update.estimate = window.start[..task.sought()].to_vec();
                     return blind;

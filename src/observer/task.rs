@@ -187,6 +187,8 @@ pub struct Update {
     pub condition: f64,
     /// The error of the output, `k` of 4.77, there.
     pub cost: f64,
+    /// The root of the mean square of expected minus read there, in the outputs' unit.
+    pub misfit: f64,
     /// Steps that were taken, and those of them that had to be shortened, refused or replaced.
     pub steps: u64,
     pub troubled: usize,

@@ -39,6 +39,13 @@ pub struct Expansion {
     pub end_slopes: DMatrix<f64>,
 }
 
+impl Expansion {
+    /// The root of the mean square of the differences.
+    pub fn misfit(&self) -> f64 {
+        self.differences.norm() / (self.differences.len().max(1) as f64).sqrt()
+    }
+}
+
 impl Window<'_> {
     /// The unknowns of a state.
     pub fn unknowns(&self, state: &[f64]) -> DVector<f64> {

@@ -91,6 +91,7 @@ fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
         "seconds": update.seconds,
         "condition": finite(update.condition),
         "cost": finite(update.cost),
+        "misfit": finite(update.misfit),
         "states": states(observed, update.from, &update.estimate, Some(&update.deviations)),
     });
     if let Standing::Blind { weakest } = &update.standing {
