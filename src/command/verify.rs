@@ -18,6 +18,9 @@ pub(crate) struct Verify {
     /// The folder that holds the thesis's proof files.
     #[arg(long, value_name = "DIR", default_value = "proofs/moll2002")]
     proofs: PathBuf,
+    /// The folder that holds the scenes.
+    #[arg(long, value_name = "DIR", default_value = "scenes")]
+    scenes: PathBuf,
     /// Seed of the random points and the sampled states.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -28,16 +31,24 @@ pub(crate) struct Verify {
 
 impl Default for Verify {
     fn default() -> Self {
-        Verify { out: "verify".into(), proofs: "proofs/moll2002".into(), seed: 1, json: false }
+        Verify {
+            out: "verify".into(),
+            proofs: "proofs/moll2002".into(),
+            scenes: "scenes".into(),
+            seed: 1,
+            json: false,
+        }
     }
 }
 
 impl Verify {
     pub fn run(self) -> miette::Result<Status> {
         let folder = folder_of(&self.proofs)?;
+        let scenes = folder_of(&self.scenes)?;
         let bar = progress(1, "verifying");
         let found = verify(&Options {
             folder: &folder,
+            scenes: &scenes,
             seed: self.seed,
             interrupt: &INTERRUPTED,
             progress: &|what, done, all| {
@@ -75,5 +86,5 @@ pub(crate) fn folder_of(proofs: &Path) -> miette::Result<PathBuf> {
         }
     }
     let message = format!("there is no folder {}", proofs.display());
-    Err(Unusable::report(message, "run it where 'proofs' is, or name the folder with --proofs"))
+    Err(Unusable::report(message, "run it where the folder is, or name it with --proofs or --scenes"))
 }

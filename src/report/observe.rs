@@ -19,6 +19,13 @@ pub struct Observed<'a> {
     pub interrupted: bool,
 }
 
+impl<'a> Observed<'a> {
+    /// An experiment without studies.
+    pub fn of(experiment: &'a Experiment, answers: &'a [Answer]) -> Self {
+        Observed { experiment, answers, noise: &[], basins: &[], interrupted: false }
+    }
+}
+
 /// A method's name, as a scene writes it.
 pub fn method_name(method: Method) -> &'static str {
     match method {

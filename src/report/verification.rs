@@ -1,6 +1,7 @@
 //! The main job's findings as JSON and as lines for the terminal.
 
 use super::claims::{claim_json, claim_line};
+use super::observe::{Observed, observe_json};
 use super::ranks::rank_json;
 use super::region::region_json;
 use super::stress::stress_json;
@@ -117,6 +118,9 @@ pub fn verification_json(found: &Verification) -> Value {
         "trade": found.trade.as_ref().map(trade_json),
         "stress": stress_json(&found.stress, found.seed),
         "certificates": found.regions.iter().map(region_json).collect::<Vec<_>>(),
+        "experiments": found.experiments.iter().map(|(experiment, answers)| {
+            observe_json(&Observed::of(experiment, answers))
+        }).collect::<Vec<_>>(),
         "seconds": found.seconds,
     })
 }

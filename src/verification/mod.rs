@@ -6,6 +6,7 @@
 mod appendix;
 mod dimensions;
 mod equations;
+mod motion;
 mod regimes;
 mod routes;
 mod stress;
@@ -13,11 +14,13 @@ mod stress;
 pub use appendix::{Appendix, PrintedValue, printed_values};
 pub use dimensions::{DIMENSIONS, UNIT_SYSTEMS, dimension};
 pub use equations::{Equation, NUMBERED, equations, in_order_of_the_thesis};
+pub use motion::SCENES;
 pub use regimes::{Picture, REGIMES, Regime, RegimeResult, SingularSet};
 pub use routes::{RouteAgreement, compare_routes};
 pub use stress::{prepare_regimes, short_stress};
 
 use crate::claim::{Outcome, decide_all};
+use crate::experiment::{Answer, Experiment};
 use crate::observability::region::{RegionAnswer, certify_region};
 use crate::system::{ReadError, System};
 use crate::tradeoff::stress::Study;
@@ -30,6 +33,8 @@ use std::time::Instant;
 pub struct Options<'a> {
     /// Where the thesis's files are.
     pub folder: &'a Path,
+    /// Where the scenes are.
+    pub scenes: &'a Path,
     pub seed: u64,
     /// Set from outside to stop early; what was found is kept.
     pub interrupt: &'a AtomicBool,
@@ -53,6 +58,8 @@ pub struct Verification {
     pub stress: Vec<Study>,
     /// Certificates on the sample boxes, after a few thousand sub-boxes: one a regime.
     pub regions: Vec<RegionAnswer>,
+    /// Bodies in motion, and what observers made of them.
+    pub experiments: Vec<(Experiment, Vec<Answer>)>,
     pub seed: u64,
     /// Whether it was stopped before the end.
     pub interrupted: bool,
@@ -120,7 +127,7 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         systems.push(read(&file)?);
     }
     let claims: usize = systems.iter().map(|system| system.claims.len()).sum();
-    let steps = claims as u64 + REGIMES.iter().map(Regime::steps).sum::<u64>() + 6;
+    let steps = claims as u64 + REGIMES.iter().map(Regime::steps).sum::<u64>() + 7;
     let counter = std::sync::atomic::AtomicU64::new(0);
     let step = |what: &str| {
         let done = counter.fetch_add(1, Ordering::Relaxed) + 1;
@@ -151,6 +158,7 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         trade: None,
         stress: Vec::new(),
         regions: Vec::new(),
+        experiments: Vec::new(),
         seed: options.seed,
         interrupted: false,
         seconds: 0.0,
@@ -195,6 +203,11 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         verification.regions.push(found);
     }
     step("certificates on boxes");
+    if !stopped() {
+        step("bodies in motion");
+        verification.experiments =
+            motion::experiments(options).map_err(|error| VerifyError::Read(Box::new(error)))?;
+    }
     verification.interrupted = stopped();
     verification.seconds = begin.elapsed().as_secs_f64();
     Ok(verification)
