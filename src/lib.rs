@@ -7,7 +7,8 @@
 //! number by intervals ([`claim`]).
 //! [`answer_rank`] asks at sampled states whether the differentials of the outputs and of their Lie derivatives span
 //! the state space ([`observability`]). Real bodies, moved by Newton's laws alone, are a second witness for the physics
-//! ([`mechanics`]). And [`report`] writes down what came of it all.
+//! ([`mechanics`]). An [`observer`] recovers states from what is measured, and an [`experiment`] has such observers recover
+//! the shape of a real body from touch. And [`report`] writes down what came of it all.
 //!
 //! ```
 //! use palmistry::{System, decide_all};
