@@ -177,7 +177,7 @@ fn a_high_gain_observer_forgets_its_first_guess() {
         assert!((moment.state[1] - 4.0 * place).abs() < left, "{moment:?}");
     }
     assert_eq!(track.unseen, 0);
-    assert_eq!(track.remarks, ["canonical form: the outputs with 3 derivatives"]);
+    assert_eq!(track.remarks, ["canonical form: the outputs and their derivatives, 3 coordinates"]);
 }
 
 /// Two springs of which only the sum of the stiffnesses is felt.

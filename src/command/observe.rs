@@ -6,9 +6,9 @@ use clap::Args;
 use indicatif::ProgressBar;
 use palmistry::experiment::{Basin, Experiment, NoiseLevel, Scene, SceneError, basins, noise_study};
 use palmistry::mechanics::moving::Ended;
-use palmistry::observer::Standing;
+use palmistry::observer::{Record, Standing};
 use palmistry::report::{Observed, ended_in_words, method_name, observe_json, observe_page, observe_text};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 /// Moves a body between two palms, hands on what touch sensors and motors tell, and has observers recover its shape and
@@ -43,6 +43,9 @@ pub(crate) struct Observe {
     /// Write the readings to a file, CSV or Parquet by its extension.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
+    /// Write all of the simulated motion to a file, CSV or Parquet: poses, contact forces, torques, energies, the truth.
+    #[arg(long, value_name = "FILE")]
+    motion: Option<PathBuf>,
     /// Print one JSON object: 'observers' with their 'updates' and 'end', and the studies.
     #[arg(long)]
     pub json: bool,
@@ -56,13 +59,15 @@ impl Observe {
         let experiment = Experiment::new(scene, self.data.as_deref())?;
         bar.inc(1);
         if let Some(path) = &self.record {
-            experiment.record.write(path).map_err(|error| {
-                Unusable::report(
-                    error.to_string(),
-                    "name a file that ends in .csv or .parquet, in a folder that can be written",
-                )
-            })?;
-            eprintln!("written: {}", path.display());
+            write_table(path, &experiment.record)?;
+        }
+        if let Some(path) = &self.motion {
+            let Some(simulation) = &experiment.simulation else {
+                let message = "readings from a file tell no motion";
+                return Err(Unusable::report(message, "leave out --motion, or --data"));
+            };
+            let table = simulation.table().map_err(|error| Unusable::report(error.to_string(), ""))?;
+            write_table(path, &table)?;
         }
         bar.set_message("observing");
         let answers = experiment.run(&INTERRUPTED, &|method| {
@@ -103,6 +108,13 @@ impl Observe {
         let as_expected = !interrupted && !updates.into_iter().any(|update| lost(&update.standing));
         Ok(if as_expected { Status::AsExpected } else { Status::NotAsExpected })
     }
+}
+
+fn write_table(path: &Path, table: &Record) -> miette::Result<()> {
+    let help = "name a file that ends in .csv or .parquet, in a folder that can be written";
+    table.write(path).map_err(|error| Unusable::report(error.to_string(), help))?;
+    eprintln!("written: {}", path.display());
+    Ok(())
 }
 
 fn studies(experiment: &Experiment) -> Result<(Vec<NoiseLevel>, Vec<Basin>), SceneError> {

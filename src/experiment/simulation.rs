@@ -101,6 +101,50 @@ impl Simulation {
         }
     }
 
+    /// All of the motion, as a table: the body's pose, rates and accelerations, the contacts, the contact forces, the motors'
+    /// torques, the energies and the motors' work, in SI units.
+    ///
+    /// # Errors
+    /// None that a simulation could bring about.
+    pub fn table(&self) -> Result<Record, RecordError> {
+        type Column = fn(&crate::mechanics::moving::Moment) -> f64;
+        let columns: [(&str, Column); 26] = [
+            ("phi0", |m| m.phi0),
+            ("omega0", |m| m.omega0),
+            ("alpha0", |m| m.alpha0),
+            ("x", |m| m.centre[0]),
+            ("y", |m| m.centre[1]),
+            ("vx", |m| m.velocity[0]),
+            ("vy", |m| m.velocity[1]),
+            ("phi1", |m| m.palms[0].angle),
+            ("phi2", |m| m.palms[1].angle),
+            ("omega1", |m| m.palms[0].rate),
+            ("omega2", |m| m.palms[1].rate),
+            ("alpha1", |m| m.palms[0].acceleration),
+            ("alpha2", |m| m.palms[1].acceleration),
+            ("s1", |m| m.palms[0].s),
+            ("s2", |m| m.palms[1].s),
+            ("r1", |m| m.palms[0].r),
+            ("r2", |m| m.palms[1].r),
+            ("d1", |m| m.palms[0].d),
+            ("d2", |m| m.palms[1].d),
+            ("force1", |m| m.palms[0].force),
+            ("force2", |m| m.palms[1].force),
+            ("tau1", |m| m.palms[0].torque),
+            ("tau2", |m| m.palms[1].torque),
+            ("kinetic", |m| m.kinetic),
+            ("potential", |m| m.potential),
+            ("work", |m| m.work),
+        ];
+        let moments = &self.trajectory.moments;
+        let values = |column: Column| moments.iter().map(column).collect();
+        let times = moments.iter().map(|moment| moment.time).collect();
+        Record::new(
+            times,
+            columns.into_iter().map(|(name, column)| (name.to_owned(), values(column))).collect(),
+        )
+    }
+
     /// What sensors and motors tell: the contacts along the palms with normal errors of the standard deviation `noise`,
     /// rounded to multiples of `resolution` (both in m), and the palms' angles, rates, accelerations and torques as they are.
     /// The same seed gives the same errors, whatever their size.

@@ -91,7 +91,10 @@ impl Observer for HighGain {
             record(times[row], &state, row, &mut track);
         }
         let lengths: Vec<String> = canonical.lengths.iter().map(ToString::to_string).collect();
-        track.remarks.push(format!("canonical form: the outputs with {} derivatives", lengths.join(" and ")));
+        track.remarks.push(format!(
+            "canonical form: the outputs and their derivatives, {} coordinates",
+            lengths.join(" and ")
+        ));
         track
     }
 }
