@@ -10,6 +10,8 @@ pub(super) type Iteration = IterState<DVector<f64>, DVector<f64>, (), DMatrix<f6
 
 /// A step shorter than this fraction of the unknowns' sizes ends the search.
 const SHORTEST: f64 = 1e-13;
+/// And so does one shorter than this that does not lower the error any more: what is left is rounding.
+const SHORT: f64 = 1e-9;
 /// A step is halved so often at most.
 const HALVINGS: usize = 12;
 
@@ -99,7 +101,7 @@ impl Solver<Window<'_>, Iteration> for Newton {
         problem: &mut Problem<Window<'_>>,
         state: Iteration,
     ) -> Result<(Iteration, Option<KV>), Error> {
-        let guess = state.get_param().cloned().ok_or_else(|| no_guess())?;
+        let guess = state.get_param().cloned().ok_or_else(no_guess)?;
         let expansion = problem.problem("expansions", |window| Ok(window.expand(&guess, Order::Second)?))?;
         let Some(mut step) = self.direction(&expansion) else {
             self.stuck = true;
@@ -125,7 +127,7 @@ impl Solver<Window<'_>, Iteration> for Newton {
             self.stuck = true;
             return Ok((state.param(guess).cost(expansion.cost), None));
         };
-        self.converged = length(&step, &self.sizes) < SHORTEST;
+        self.converged = settled(length(&step, &self.sizes), expansion.cost, cost);
         Ok((
             state.param(guess + step).gradient(expansion.gradient).hessian(expansion.hessian).cost(cost),
             None,
@@ -141,6 +143,11 @@ impl Solver<Window<'_>, Iteration> for Newton {
             _ => TerminationStatus::NotTerminated,
         }
     }
+}
+
+/// Whether a search is at its end after a step of this length, from one error to another.
+pub(super) fn settled(length: f64, before: f64, after: f64) -> bool {
+    length < SHORTEST || (length < SHORT && after >= before * (1.0 - 1e-6))
 }
 
 pub(super) fn no_guess() -> Error {

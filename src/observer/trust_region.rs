@@ -1,13 +1,11 @@
 //! Gauss and Newton's method within a region of trust, as a solver of argmin.
 
-use super::newton::{Iteration, gauss_newton, length, no_guess};
+use super::newton::{Iteration, gauss_newton, length, no_guess, settled};
 use super::window::{Expansion, Window};
 use super::{Lost, Order};
 use argmin::core::{Error, KV, Problem, Solver, State, TerminationReason, TerminationStatus};
 use nalgebra::DVector;
 
-/// A step shorter than this fraction of the unknowns' sizes ends the search.
-const SHORTEST: f64 = 1e-13;
 /// The damping beyond which no step is tried any more.
 const STRONGEST: f64 = 1e16;
 
@@ -56,7 +54,7 @@ impl Solver<Window<'_>, Iteration> for TrustRegion {
         problem: &mut Problem<Window<'_>>,
         state: Iteration,
     ) -> Result<(Iteration, Option<KV>), Error> {
-        let guess = state.get_param().cloned().ok_or_else(|| no_guess())?;
+        let guess = state.get_param().cloned().ok_or_else(no_guess)?;
         let here = match self.here.take() {
             Some(here) => here,
             None => {
@@ -83,7 +81,7 @@ impl Solver<Window<'_>, Iteration> for TrustRegion {
                     let shrink = 1.0 - (2.0 * ratio - 1.0).powi(3);
                     self.lambda *= if ratio.is_finite() { shrink.clamp(1e-3, 2.0) } else { 1.0 };
                     self.growth = 2.0;
-                    self.converged = short < SHORTEST;
+                    self.converged = settled(short, here.cost, there.cost);
                     let state = state.param(guess + step).cost(there.cost).gradient(there.gradient.clone());
                     self.here = Some(there);
                     return Ok((state, None));
