@@ -14,7 +14,8 @@ const TRUE_OUTLINE: RGBColor = RGBColor(150, 156, 165);
 const UNSEEN: RGBColor = RGBColor(205, 209, 215);
 const COLUMNS: usize = 4;
 const FRAMES: usize = 12;
-const CELL: (u32, u32) = (240, 200);
+/// Twice the size in which they are shown: places are whole pixels, and a curve of few pixels is not smooth.
+const CELL: (u32, u32) = (480, 400);
 
 /// A place in the world or the body's frame as a pixel.
 struct View {
@@ -102,25 +103,25 @@ pub(super) fn frames(observed: &Observed<'_>, outline: &Outline) -> String {
         let points = instants[..=*row].iter().flat_map(|instant| instant.points).chain(sides.clone());
         palms.into_iter().chain([[0.0; 2]]).chain(points.map(move |point| placed(point, pose)))
     });
-    let view = View::of(everywhere, (f64::from(CELL.0) - 24.0, f64::from(CELL.1) - 40.0));
+    let view = View::of(everywhere, (f64::from(CELL.0) - 48.0, f64::from(CELL.1) - 80.0));
     let height = CELL.1 * (count.div_ceil(COLUMNS)) as u32;
     svg((CELL.0 * COLUMNS as u32, height), |area| {
         for (frame, row) in rows.iter().enumerate() {
             let instant = &instants[*row];
             let left = CELL.0 as i32 * (frame % COLUMNS) as i32;
             let top = CELL.1 as i32 * (frame / COLUMNS) as i32;
-            let pixel = |place: [f64; 2]| view.pixel(place, (f64::from(left) + 12.0, f64::from(top) + 28.0));
+            let pixel = |place: [f64; 2]| view.pixel(place, (f64::from(left) + 24.0, f64::from(top) + 56.0));
             let pose = pose(observed, instant);
-            let style = ("sans-serif", 13).into_font().color(&INK);
-            area.draw(&Text::new(format!("{:.3} s", instant.time), (left + 12, top + 6), style))?;
+            let style = ("sans-serif", 26).into_font().color(&INK);
+            area.draw(&Text::new(format!("{:.3} s", instant.time), (left + 24, top + 12), style))?;
             for angle in instant.palms {
                 let ends = [pixel([0.0; 2]), pixel(tip(angle))];
-                area.draw(&PathElement::new(ends, INK.stroke_width(3)))?;
+                area.draw(&PathElement::new(ends, INK.stroke_width(6)))?;
             }
-            closed(area, sides.iter().map(|point| pixel(placed(*point, pose))), 1)?;
-            dots(area, &instants[..=*row], 2, |point| pixel(placed(point, pose)))?;
+            closed(area, sides.iter().map(|point| pixel(placed(*point, pose))), 2)?;
+            dots(area, &instants[..=*row], 4, |point| pixel(placed(point, pose)))?;
             for place in [pose.0, instant.contacts[0], instant.contacts[1]] {
-                area.draw(&Circle::new(pixel(place), 5, INK.filled()))?;
+                area.draw(&Circle::new(pixel(place), 10, INK.filled()))?;
             }
         }
         Ok(())
@@ -142,43 +143,43 @@ fn closed(
 
 /// The true outline, where it is known, and the recovered points, in the frame of the body.
 pub(super) fn recovered_outline(shape: Option<&Shape>, outline: &Outline) -> String {
-    const SIZE: (u32, u32) = (560, 420);
+    const SIZE: (u32, u32) = (1120, 840);
     let sides: Vec<[f64; 2]> = shape.map(|shape| shape.outline(360)).unwrap_or_default();
     let everywhere = sides.iter().copied().chain(outline.instants.iter().flat_map(|i| i.points));
-    let view = View::of(everywhere.chain([[0.0; 2]]), (f64::from(SIZE.0) - 60.0, f64::from(SIZE.1) - 110.0));
-    let pixel = |place: [f64; 2]| view.pixel(place, (30.0, 50.0));
+    let view = View::of(everywhere.chain([[0.0; 2]]), (f64::from(SIZE.0) - 120.0, f64::from(SIZE.1) - 220.0));
+    let pixel = |place: [f64; 2]| view.pixel(place, (60.0, 100.0));
     svg(SIZE, |area| {
         let words = |size: i32| ("sans-serif", size).into_font().color(&INK);
         let left = |size: i32| words(size).pos(Pos::new(HPos::Left, VPos::Center));
-        area.draw(&Text::new("outline in the body's frame", (12, 8), words(15)))?;
-        let mut x = 14;
+        area.draw(&Text::new("outline in the body's frame", (24, 16), words(30)))?;
+        let mut x = 28;
         for (text, colour) in [("touched by palm 1", PALM_COLOURS[0]), ("touched by palm 2", PALM_COLOURS[1])]
         {
-            area.draw(&Circle::new((x, 38), 3, colour.filled()))?;
-            area.draw(&Text::new(text, (x + 10, 38), left(12)))?;
-            x += 140;
+            area.draw(&Circle::new((x, 76), 6, colour.filled()))?;
+            area.draw(&Text::new(text, (x + 20, 76), left(24)))?;
+            x += 280;
         }
         if shape.is_some() {
-            area.draw(&PathElement::new([(x, 38), (x + 22, 38)], TRUE_OUTLINE.stroke_width(3)))?;
-            area.draw(&Text::new("true", (x + 30, 38), left(12)))?;
+            area.draw(&PathElement::new([(x, 76), (x + 44, 76)], TRUE_OUTLINE.stroke_width(6)))?;
+            area.draw(&Text::new("true", (x + 60, 76), left(24)))?;
         }
         if !outline.instants.iter().all(|instant| instant.seen) {
-            area.draw(&Circle::new((x + 80, 38), 3, UNSEEN.filled()))?;
-            area.draw(&Text::new("while it could not see", (x + 90, 38), left(12)))?;
+            area.draw(&Circle::new((x + 160, 76), 6, UNSEEN.filled()))?;
+            area.draw(&Text::new("while it could not see", (x + 180, 76), left(24)))?;
         }
-        closed(area, sides.iter().map(|point| pixel(*point)), 3)?;
-        dots(area, &outline.instants, 2, pixel)?;
-        area.draw(&Circle::new(pixel([0.0; 2]), 5, INK.filled()))?;
+        closed(area, sides.iter().map(|point| pixel(*point)), 6)?;
+        dots(area, &outline.instants, 4, pixel)?;
+        area.draw(&Circle::new(pixel([0.0; 2]), 10, INK.filled()))?;
         let (x, y) = pixel([0.0; 2]);
-        area.draw(&Text::new("centre of mass", (x + 10, y), left(12)))?;
+        area.draw(&Text::new("centre of mass", (x + 20, y), left(24)))?;
         // a rule of a round length
         let wide = f64::from(SIZE.0) / 4.0 / view.scale;
         let power = 10f64.powf(wide.log10().floor());
         let length = [5.0, 2.0, 1.0].into_iter().map(|k| k * power).find(|length| *length <= wide);
         let length = length.unwrap_or(power);
-        let (right, low) = (30 + (length * view.scale).round() as i32, SIZE.1 as i32 - 26);
-        area.draw(&PathElement::new([(30, low), (right, low)], INK.stroke_width(2)))?;
-        area.draw(&Text::new(format!("{length} m"), (right + 8, low), left(12)))?;
+        let (right, low) = (60 + (length * view.scale).round() as i32, SIZE.1 as i32 - 52);
+        area.draw(&PathElement::new([(60, low), (right, low)], INK.stroke_width(4)))?;
+        area.draw(&Text::new(format!("{length} m"), (right + 16, low), left(24)))?;
         Ok(())
     })
 }

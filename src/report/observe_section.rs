@@ -3,10 +3,10 @@
 use super::observe::{Observed, ended_in_words, fault_lines, method_name};
 use super::observe_frames::{frames, recovered_outline};
 use super::observe_plot::{errors, sensor_errors, state, unit_of};
-use super::observe_shape::outline;
+use super::observe_shape::{outline, shown};
 use super::observe_study_plot as study_plot;
-use super::observe_table::{ends, notes, updates};
-use crate::experiment::{ARRIVED, NOMINAL, Shape};
+use super::observe_table::{ends, notes, pace, updates};
+use crate::experiment::{ARRIVED, NOMINAL, Shape, error};
 use maud::{Markup, PreEscaped, html};
 
 /// Experiments, as a section of the page of the thesis.
@@ -57,6 +57,7 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
     let guesses =
         experiment.sought.guess.iter().map(|(name, value)| format!("{name} = {}", shortest(*value)));
     html! {
+        (headline(observed))
         p {
             @if let (Some(simulation), Some(simulated)) = (&experiment.simulation, &scene.simulated) {
                 "Simulated: " (shape_in_words(&simulated.body.shape)) ", " (simulated.body.mass) " kg, between two palms; "
@@ -67,7 +68,8 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
                 }
                 ", and energy was kept to " (format!("{:.0e} J", simulation.trajectory.energy_drift())) ". "
                 @if sensor.noise == 0.0 && sensor.resolution == 0.0 {
-                    "The contacts were read without error; bounds are for readings good to " (format!("{NOMINAL:.0e} m")) ". "
+                    "The contacts were read without error; bounds are for readings good to " (format!("{NOMINAL:.0e} m")) ", and what is left of "
+                    "an error comes from the curves between the samples. "
                 } @else {
                     "The contacts were read with errors of " (format!("{:.1e} m", sensor.noise)) " (standard deviation, seed "
                     (scene.seed) ")"
@@ -92,6 +94,29 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
             ". A window has " (scene.observer.window) " steps of time."
         }
         @if observed.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
+    }
+}
+
+/// In a sentence what the method whose outline is shown came to.
+fn headline(observed: &Observed<'_>) -> Markup {
+    let Some(answer) = shown(observed) else { return html! {} };
+    let names = observed.experiment.names();
+    let end = answer.track.last().and_then(|last| Some((last, observed.experiment.truth_at(last.time)?)));
+    let largest = end.map(|(last, truth)| {
+        last.state.iter().zip(&truth).map(|(value, truth)| error(*value, *truth)).fold(0.0, f64::max)
+    });
+    html! {
+        p.lead {
+            b { (method_name(answer.method)) }
+            @match largest {
+                Some(largest) if largest.is_finite() => {
+                    " knows " (names.join(", ")) " at the last sample to " b { (format!("{largest:.1e}")) } " of their size; "
+                }
+                Some(_) => { " has no number for all of " (names.join(", ")) " at the last sample; " }
+                None => { " recovered " (names.join(", ")) "; " }
+            }
+            (pace(observed, answer)) "."
+        }
     }
 }
 
@@ -172,7 +197,7 @@ pub(super) fn state_pictures(observed: &Observed<'_>) -> Markup {
     let known = observed.experiment.simulation.is_some();
     html! {
         figure {
-            div.pair {
+            div.two {
                 @for place in places {
                     (PreEscaped(state(observed, place)))
                     @if let Some(picture) = errors(observed, place) { (PreEscaped(picture)) }
@@ -200,7 +225,7 @@ pub(super) fn sensor_pictures(observed: &Observed<'_>) -> Markup {
             p.remark { "No method compared what it expected with what was read." }
         } @else {
             figure {
-                div.pair { @for picture in &pictures { (PreEscaped(picture)) } }
+                div.two { @for picture in &pictures { (PreEscaped(picture)) } }
                 figcaption {
                     "As figure 4.4d: the contact that the model expects minus the one that was read. What an observer that is right has "
                     "left is the error of the sensor, without a trend; a curve that bends within a window tells of a wrong state or "

@@ -34,7 +34,7 @@ pub(super) struct Outline {
 }
 
 /// The answer whose outline is shown: of the first method by windows, else of the first.
-fn shown<'a>(observed: &Observed<'a>) -> Option<&'a Answer> {
+pub(super) fn shown<'a>(observed: &Observed<'a>) -> Option<&'a Answer> {
     let by_windows = |answer: &&Answer| !answer.track.updates.is_empty();
     observed.answers.iter().find(by_windows).or(observed.answers.first())
 }

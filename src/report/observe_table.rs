@@ -24,7 +24,7 @@ fn median(answer: &Answer) -> Option<&Update> {
 }
 
 /// How the time of an update compares with the time that its window covers.
-fn pace(observed: &Observed<'_>, answer: &Answer) -> String {
+pub(super) fn pace(observed: &Observed<'_>, answer: &Answer) -> String {
     let times = observed.experiment.signals.times();
     let covered = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
     match median(answer) {
@@ -101,6 +101,10 @@ pub(super) fn updates(observed: &Observed<'_>) -> Markup {
         @for answer in observed.answers.iter().filter(|answer| !answer.track.updates.is_empty()) {
             h3 { (method_name(answer.method)) ": " (pace(observed, answer)) }
             (update_table(observed, answer))
+            p.remark {
+                "The state is that at the window's first sample; the bound is its least standard deviation. Steps that had to be "
+                "shortened, refused or replaced are counted as mended."
+            }
             @if answer.track.updates.len() > MOST_UPDATES {
                 p.remark { "The first " (MOST_UPDATES) " of " (answer.track.updates.len()) " updates; the JSON has them all." }
             }
@@ -181,10 +185,10 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
     }
     html! {
         @if lines.is_empty() {
-            p { "Every update converged, and every method could see at every sample." }
+            p { "Every update converged, and there was no sample at which a method could not see." }
         } @else {
             details open[lines.len() <= 12] {
-                summary { "what they could not see, or not do: " (lines.len()) @if lines.len() == 1 { " note" } @else { " notes" } }
+                summary { "what they could not see or not do, and other remarks: " (lines.len()) }
                 ul { @for line in &lines { li { (line) } } }
             }
         }
