@@ -125,7 +125,7 @@ steps = 20
                 assert!(turned.abs() < 1e-6, "{} s: {turned:e}", instant.time);
             }
             let turned = (0..moments.len()).map(|i| rule(i).abs()).fold(0.0, f64::max);
-            let (largest, mean) = outline.departure(&simulation.shape);
+            let (largest, mean) = outline.departure(&simulation.shape).unwrap();
             assert!(largest < 2e-6 + 1.2 * turned, "{largest:e} for {turned:e}");
             assert!(mean <= largest);
         });

@@ -168,6 +168,17 @@ fn outputs(observed: &Observed<'_>) -> Option<(Vec<String>, Option<f64>)> {
     Some((task.full.outputs.clone(), (!task.exact).then_some(task.sigma)))
 }
 
+/// The root of the mean square in stretches of time with equally many samples: noise has no line of its own.
+fn sizes(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    const STRETCHES: usize = 80;
+    let root = |run: &[(f64, f64)]| {
+        let count = run.len() as f64;
+        let mean = |of: &dyn Fn(&(f64, f64)) -> f64| run.iter().map(of).sum::<f64>() / count;
+        (mean(&|point| point.0), mean(&|point| point.1 * point.1).sqrt())
+    };
+    points.chunks((points.len() / STRETCHES).max(5)).map(root).collect()
+}
+
 /// The sensor error, expected minus read: of one method as it is, as figure 4.4d, and the size of every method's, an output each.
 pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
     let Some((names, sigma)) = outputs(observed) else { return Vec::new() };
@@ -189,7 +200,7 @@ pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
         let size = values.filter(|value| value.is_finite()).fold(0.0f64, f64::max).max(LEAST) * 1.08;
         let frame = Frame {
             title: format!("sensor error of {}: expected minus read", method_name(answer.method)),
-            vertical: "m".to_owned(),
+            vertical: names.first().map_or(String::new(), |name| unit_of(name).to_owned()),
             times: times(observed),
             range: (-size, size),
             limits: &limits,
@@ -203,7 +214,7 @@ pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
     for (place, name) in names.iter().enumerate() {
         let all = observed.answers.iter();
         let curve = |answer: &Answer| {
-            Curve::of_method(answer.method, logarithms(surprises(answer, place).into_iter()))
+            Curve::of_method(answer.method, logarithms(sizes(&surprises(answer, place)).into_iter()))
         };
         let mut curves: Vec<Curve> = all.map(curve).collect();
         curves.retain(|curve| !curve.points.is_empty());
@@ -212,16 +223,42 @@ pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
         }
         let range = decades(&curves, sigma.iter().map(|sigma| sigma.log10()));
         let frame = Frame {
-            title: format!("size of the sensor error of {name}"),
+            title: format!("sensor error of {name}: rms in short stretches of time"),
             vertical: with_unit(name),
             times: times(observed),
             range,
             logarithmic: true,
             limits: &limits,
-            band: sigma.map(|sigma| ((range.0, sigma.log10()), "below one standard deviation of a reading")),
+            band: sigma.map(|sigma| ((range.0, sigma.log10()), "up to one standard deviation of a reading")),
             ..Frame::default()
         };
         pictures.push(draw(&frame, &curves));
     }
     pictures
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: plus and minus three have the size three, whatever the noise between them.
+    #[test]
+    fn noise_has_its_size() {
+        let points: Vec<(f64, f64)> =
+            (0..4000).map(|i| (f64::from(i), if i % 2 == 0 { 3.0 } else { -3.0 })).collect();
+        let found = sizes(&points);
+        assert_eq!(found.len(), 80);
+        assert!(found.iter().all(|(_, size)| *size == 3.0));
+        assert_eq!(found[0].0, 24.5);
+    }
+
+    /// A curve that runs away does not flatten the others.
+    #[test]
+    fn a_range_follows_the_truth() {
+        let truth = [(0.0, 1.0), (1.0, 2.0)];
+        let curves = [Curve::truth(vec![(0.0, 0.9), (0.5, 1e9), (1.0, f64::NAN)])];
+        let (low, high) = range(&truth, &curves);
+        assert!(low < 0.9 && low > 0.7 && high > 2.0 && high < 2.2, "{low} {high}");
+        assert_eq!(range(&[], &[]), (0.0, 1.0));
+    }
 }

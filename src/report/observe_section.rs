@@ -110,10 +110,13 @@ fn headline(observed: &Observed<'_>) -> Markup {
             b { (method_name(answer.method)) }
             @match largest {
                 Some(largest) if largest.is_finite() => {
-                    " knows " (names.join(", ")) " at the last sample to " b { (format!("{largest:.1e}")) } " of their size; "
+                    " ends with " (names.join(", ")) " off by at most " b { (format!("{largest:.1e}")) } " of their size; "
                 }
-                Some(_) => { " has no number for all of " (names.join(", ")) " at the last sample; " }
-                None => { " recovered " (names.join(", ")) "; " }
+                Some(_) => { " does not end with a number for each of " (names.join(", ")) "; " }
+                None => { " looked for " (names.join(", ")) "; " }
+            }
+            @if answer.track.unseen > 0 {
+                b { "it could not see for " (answer.track.unseen) " of " (observed.experiment.signals.times().len()) " samples" } "; "
             }
             (pace(observed, answer)) "."
         }
@@ -159,7 +162,9 @@ pub(super) fn body_pictures(observed: &Observed<'_>) -> Markup {
             figcaption {
                 "As figure 4.3: the palms about their joint at " (outline.instants.len().min(12)) " samples. Large dots are the "
                 "centre of mass and the two contacts. Small dots are the part of the outline that " b { (method_name(outline.method)) }
-                " has recovered by then, blue where palm 1 touched it and orange where palm 2 did. "
+                " has recovered by then, blue where palm 1 touched it and orange where palm 2 did"
+                @if !outline.instants.iter().all(|instant| instant.seen) { ", pale where it could not see" }
+                ". "
                 @if shape.is_some() {
                     "The thin line is the true outline; dots beside it are errors of the observer, or of the orientation, which is the "
                     "integral of its rate."
@@ -171,10 +176,15 @@ pub(super) fn body_pictures(observed: &Observed<'_>) -> Markup {
             figcaption {
                 "As figure 4.4a: every recovered contact, turned back by the recovered orientation. "
                 @if let Some(shape) = shape {
-                    @let (largest, mean) = outline.departure(shape);
-                    @let size = (shape.area() / std::f64::consts::PI).sqrt();
-                    "Where it could see, the points lie within " b { (length(largest)) } " of the true outline (root of the mean square "
-                    (length(mean)) "), " (format!("{:.1e}", largest / size)) " of the radius of a disc with the body's area."
+                    @match outline.departure(shape) {
+                        Some((largest, mean)) => {
+                            @let size = (shape.area() / std::f64::consts::PI).sqrt();
+                            "Where it could see, the points lie within " b { (length(largest)) } " of the true outline (root of the "
+                            "mean square " (length(mean)) "), " (format!("{:.1e}", largest / size)) " of the radius of a disc with "
+                            "the body's area."
+                        }
+                        None => { b { "There was no sample at which it could see:" } " no point counts as recovered." }
+                    }
                 } @else { "The frame is that of the body at the first sample." }
             }
         }

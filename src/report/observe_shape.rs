@@ -112,13 +112,13 @@ pub(super) fn outline(observed: &Observed<'_>) -> Option<Outline> {
 
 impl Outline {
     /// The largest distance of a recovered point from the true outline, and the root of their mean square, in m; over the
-    /// samples at which the observer could see.
-    pub fn departure(&self, shape: &Shape) -> (f64, f64) {
+    /// samples at which the observer could see; none where there is no such sample.
+    pub fn departure(&self, shape: &Shape) -> Option<(f64, f64)> {
         let points = self.instants.iter().filter(|instant| instant.seen).flat_map(|instant| instant.points);
         let distances: Vec<f64> = points.map(|point| distance(shape, point)).collect();
         let square: f64 = distances.iter().map(|distance| distance * distance).sum();
         let largest = distances.iter().copied().fold(0.0, f64::max);
-        (largest, (square / distances.len().max(1) as f64).sqrt())
+        (!distances.is_empty()).then(|| (largest, (square / distances.len() as f64).sqrt()))
     }
 }
 

@@ -175,7 +175,7 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
             let from = update.from;
             match &update.standing {
                 Standing::Blind { weakest } => {
-                    lines.push(format!("{name} from {from:.3} s: {}", blind(observed, weakest)));
+                    lines.push(format!("{name} from {from:.3} s: {}", blind(observed, update, weakest)));
                 }
                 Standing::Converged => {}
                 _ => lines.push(format!("{name} from {from:.3} s: {}", standing_name(&update.standing))),
@@ -195,17 +195,21 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
     }
 }
 
-/// The direction that the readings tell least of, by the names of what is sought.
-fn blind(observed: &Observed<'_>, weakest: &[f64]) -> String {
-    // what a window may not change has no part in the direction, and readings that are unknown come last
-    let first = weakest.len() < observed.experiment.names().len();
-    let names = observed.experiment.names();
-    let clamped = &observed.experiment.sought.clamped;
-    let free = names.iter().filter(|name| !first || !clamped.iter().any(|other| other == *name));
-    let parts: Vec<String> = free
-        .zip(weakest)
-        .filter(|(_, part)| part.abs() > 0.05)
-        .map(|(name, part)| format!("{part:+.2} {name}"))
-        .collect();
-    format!("the readings of this window do not tell {} (each in parts of its size)", parts.join(" "))
+/// The direction that the readings of a window tell least of, by the names of what is sought.
+fn blind(observed: &Observed<'_>, update: &Update, weakest: &[f64]) -> String {
+    let experiment = observed.experiment;
+    let first = experiment.signals.times().first() == Some(&update.from);
+    // what the first window may not change has no part in the direction; readings that are unknown come last
+    let names = experiment.names();
+    let clamped = |name: &str| first && experiment.sought.clamped.iter().any(|other| other == name);
+    let mut parts: Vec<(&str, f64)> =
+        names.into_iter().filter(|name| !clamped(name)).zip(weakest.iter().copied()).collect();
+    parts.retain(|(_, part)| part.abs() > 0.05);
+    parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let sign = parts.first().map_or(1.0, |(_, part)| part.signum());
+    let parts: Vec<String> = parts.iter().map(|(name, part)| format!("{:+.2} {name}", sign * part)).collect();
+    match &parts[..] {
+        [] => "the readings of this window do not tell what is sought".to_owned(),
+        parts => format!("the readings of this window tell least of {}, each in its size", parts.join(" ")),
+    }
 }
