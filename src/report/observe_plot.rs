@@ -65,7 +65,11 @@ fn range(truth: &[(f64, f64)], curves: &[Curve]) -> (f64, f64) {
         return (0.0, 1.0);
     }
     let span = (high - low).max(0.2 * low.abs().max(high.abs())).max(1e-12);
-    let near = |value: &f64| *value > low - 0.6 * span && *value < high + 0.6 * span;
+    // how far the values in the middle are off: one method that runs away does not flatten the others
+    let mut off: Vec<f64> = recovered.iter().map(|value| (low - value).max(value - high).max(0.0)).collect();
+    off.sort_by(f64::total_cmp);
+    let reach = off.get(off.len() / 2).map_or(0.0, |middle| 3.0 * middle).max(0.6 * span);
+    let near = |value: &f64| *value > low - reach && *value < high + reach;
     let shown: Vec<f64> = recovered.into_iter().filter(near).chain([low, high]).collect();
     let (low, high) = ends(&shown);
     let room = 0.06 * (high - low).max(span / 2.0);
@@ -256,9 +260,12 @@ mod tests {
     #[test]
     fn a_range_follows_the_truth() {
         let truth = [(0.0, 1.0), (1.0, 2.0)];
-        let curves = [Curve::truth(vec![(0.0, 0.9), (0.5, 1e9), (1.0, f64::NAN)])];
+        let curves = [Curve::truth(vec![(0.0, 0.9), (0.2, 1.5), (0.5, 1e9), (1.0, f64::NAN)])];
         let (low, high) = range(&truth, &curves);
         assert!(low < 0.9 && low > 0.7 && high > 2.0 && high < 2.2, "{low} {high}");
+        // a truth that stands still: what is beside it is shown
+        let (low, high) = range(&[(0.0, 1.0), (1.0, 1.0)], &[Curve::truth(vec![(0.0, 1.5), (1.0, 1.6)])]);
+        assert!(low < 1.0 && high > 1.6, "{low} {high}");
         assert_eq!(range(&[], &[]), (0.0, 1.0));
     }
 }

@@ -2,10 +2,10 @@
 
 use super::observe::{Observed, ended_in_words, fault_lines, method_name};
 use super::observe_frames::{frames, recovered_outline};
-use super::observe_plot::{errors, sensor_errors, state, unit_of};
+use super::observe_plot::{errors, sensor_errors, state};
 use super::observe_shape::{outline, shown};
 use super::observe_study_plot as study_plot;
-use super::observe_table::{ends, notes, pace, updates};
+use super::observe_table::{ends, noise_table, notes, pace, updates};
 use crate::experiment::{ARRIVED, NOMINAL, Shape, error};
 use maud::{Markup, PreEscaped, html};
 
@@ -277,26 +277,5 @@ pub(super) fn studies(observed: &Observed<'_>) -> Markup {
                 }
             }
         }
-    }
-}
-
-fn noise_table(observed: &Observed<'_>) -> Markup {
-    let names = observed.experiment.names();
-    html! {
-        div.scroll { table {
-            thead { tr {
-                th { "noise, m" } th { "converged" }
-                @for name in &names { th { (name) ", rms error" } th { "bound, " (unit_of(name)) } th { "ratio" } }
-            } }
-            tbody { @for level in observed.noise { tr {
-                td.number { (format!("{:.1e}", level.noise)) }
-                td.number { (level.converged) " of " (level.seeds) }
-                @for (error, bound) in level.errors.iter().zip(&level.bounds) {
-                    td.number { (format!("{error:.2e}")) }
-                    td.number { @if bound.is_finite() { (format!("{bound:.2e}")) } @else { "not seen" } }
-                    td.number { @if bound.is_finite() && *bound > 0.0 { (format!("{:.2}", error / bound)) } @else { "-" } }
-                }
-            } } }
-        } }
     }
 }

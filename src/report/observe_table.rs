@@ -1,6 +1,7 @@
 //! What each observer found, as tables: at the end, update by update, and what it could not see.
 
 use super::observe::{Observed, method_name, standing_name};
+use super::observe_plot::unit_of;
 use crate::experiment::{Answer, error};
 use crate::observer::{Standing, Update};
 use maud::{Markup, html};
@@ -211,5 +212,27 @@ fn blind(observed: &Observed<'_>, update: &Update, weakest: &[f64]) -> String {
     match &parts[..] {
         [] => "the readings of this window do not tell what is sought".to_owned(),
         parts => format!("the readings of this window tell least of {}, each in its size", parts.join(" ")),
+    }
+}
+
+/// The error over noise beside its bound.
+pub(super) fn noise_table(observed: &Observed<'_>) -> Markup {
+    let names = observed.experiment.names();
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th { "noise, m" } th { "converged" }
+                @for name in &names { th { (name) ", rms error" } th { "bound, " (unit_of(name)) } th { "ratio" } }
+            } }
+            tbody { @for level in observed.noise { tr {
+                td.number { (format!("{:.1e}", level.noise)) }
+                td.number { (level.converged) " of " (level.seeds) }
+                @for (error, bound) in level.errors.iter().zip(&level.bounds) {
+                    td.number { (format!("{error:.2e}")) }
+                    td.number { @if bound.is_finite() { (format!("{bound:.2e}")) } @else { "not seen" } }
+                    td.number { @if bound.is_finite() && *bound > 0.0 { (format!("{:.2}", error / bound)) } @else { "-" } }
+                }
+            } } }
+        } }
     }
 }
