@@ -37,7 +37,7 @@ pub fn method_name(method: Method) -> &'static str {
     }
 }
 
-fn standing_name(standing: &Standing) -> String {
+pub(super) fn standing_name(standing: &Standing) -> String {
     match standing {
         Standing::Converged => "converged".to_owned(),
         Standing::StepsSpent => "all steps spent".to_owned(),

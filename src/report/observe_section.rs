@@ -1,0 +1,282 @@
+//! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
+
+use super::observe::{Observed, ended_in_words, fault_lines, method_name};
+use super::observe_frames::{frames, recovered_outline};
+use super::observe_plot::{errors, sensor_errors, state};
+use super::observe_shape::{outline, shown};
+use super::observe_study_plot as study_plot;
+use super::observe_table::{ends, noise_table, notes, pace, updates};
+use crate::experiment::{ARRIVED, NOMINAL, Shape, error};
+use maud::{Markup, PreEscaped, html};
+
+/// Experiments, as a section of the page of the thesis.
+#[cfg_attr(not(test), expect(dead_code, reason = "the page of the thesis is to embed it"))]
+pub(super) fn observed_section(experiments: &[Observed<'_>]) -> Markup {
+    html! {
+        section #observers {
+            h2 { "Bodies in motion" }
+            p {
+                "A body moves between two palms by Newton's laws and contact geometry; observers get only what touch sensors and "
+                "motors tell, and recover shape and motion with the equations of the proof file. "
+                code { "palmistry observe" } " writes such a page for any scene."
+            }
+            @for observed in experiments {
+                h3 { (observed.experiment.scene.title) }
+                (summary(observed))
+                (faults(observed))
+                (body_pictures(observed))
+                (ends(observed))
+                (notes(observed))
+                details { summary { "states over time, and their errors" } (state_pictures(observed)) }
+                details { summary { "sensor errors" } (sensor_pictures(observed)) }
+                details { summary { "all updates" } (updates(observed)) }
+                (studies(observed))
+            }
+        }
+    }
+}
+
+fn shape_in_words(shape: &Shape) -> String {
+    match shape {
+        Shape::Harmonics { harmonics, .. } => {
+            format!("a body whose support function has {} harmonics", harmonics.len())
+        }
+        Shape::Ellipse { .. } => "an ellipse".to_owned(),
+        Shape::Superellipse { .. } => "a superellipse".to_owned(),
+        Shape::Spline { .. } => "a closed spline".to_owned(),
+        Shape::RandomSpline { seed } => format!("a random closed spline (seed {seed})"),
+    }
+}
+
+/// What was simulated or read, and what was asked for.
+pub(super) fn summary(observed: &Observed<'_>) -> Markup {
+    let experiment = observed.experiment;
+    let (scene, times) = (&experiment.scene, experiment.signals.times());
+    let (first, last) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
+    let sensor = &scene.sensor;
+    let guesses =
+        experiment.sought.guess.iter().map(|(name, value)| format!("{name} = {}", shortest(*value)));
+    html! {
+        (headline(observed))
+        p {
+            @if let (Some(simulation), Some(simulated)) = (&experiment.simulation, &scene.simulated) {
+                "Simulated: " (shape_in_words(&simulated.body.shape)) ", " (simulated.body.mass) " kg, between two palms; "
+                b { (times.len()) " samples over " (shortest(last - first)) " s" } ". The motion "
+                @match simulation.ended() {
+                    crate::mechanics::moving::Ended::Completed => { "went to its end" }
+                    early => { b { "ended early: " (ended_in_words(early)) } }
+                }
+                ", and energy was kept to " (format!("{:.0e} J", simulation.trajectory.energy_drift())) ". "
+                @if sensor.noise == 0.0 && sensor.resolution == 0.0 {
+                    "The contacts were read without error; bounds are for readings good to " (format!("{NOMINAL:.0e} m")) ", and what is left of "
+                    "an error comes from the curves between the samples. "
+                } @else {
+                    "The contacts were read with errors of " (format!("{:.1e} m", sensor.noise)) " (standard deviation, seed "
+                    (scene.seed) ")"
+                    @if sensor.resolution > 0.0 { ", rounded to multiples of " (format!("{:.1e} m", sensor.resolution)) }
+                    ". "
+                }
+                @if sensor.jitter > 0.0 { "Steps in time vary by " (format!("{:.1e} s", sensor.jitter)) ". " }
+            } @else {
+                "Recorded: " b { (times.len()) " samples from " (shortest(first)) " s to " (shortest(last)) " s" }
+                @if let Some(file) = scene.data.record.as_ref().and_then(|path| path.file_name()) {
+                    " (the scene names " code { (file.to_string_lossy()) } ")"
+                }
+                ". What is true is not known, so that there are no errors here, only bounds. "
+            }
+            "Model: " (experiment.system.title) "."
+        }
+        p {
+            "Sought, with the first guesses: " code { (guesses.collect::<Vec<_>>().join(", ")) }
+            @if !experiment.sought.clamped.is_empty() {
+                "; held at its guess in the first window: " code { (experiment.sought.clamped.join(", ")) }
+            }
+            ". A window has " (scene.observer.window) " steps of time."
+        }
+        @if observed.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
+    }
+}
+
+/// In a sentence what the method whose outline is shown came to.
+fn headline(observed: &Observed<'_>) -> Markup {
+    let Some(answer) = shown(observed) else { return html! {} };
+    let names = observed.experiment.names();
+    let end = answer.track.last().and_then(|last| Some((last, observed.experiment.truth_at(last.time)?)));
+    let largest = end.map(|(last, truth)| {
+        last.state.iter().zip(&truth).map(|(value, truth)| error(*value, *truth)).fold(0.0, f64::max)
+    });
+    html! {
+        p.lead {
+            b { (method_name(answer.method)) }
+            @match largest {
+                Some(largest) if largest.is_finite() => {
+                    " ends with " (names.join(", ")) " off by at most " b { (format!("{largest:.1e}")) } " of their size; "
+                }
+                Some(_) => { " does not end with a number for each of " (names.join(", ")) "; " }
+                None => { " looked for " (names.join(", ")) "; " }
+            }
+            @if answer.track.unseen > 0 {
+                b { "it could not see for " (answer.track.unseen) " of " (observed.experiment.signals.times().len()) " samples" } "; "
+            }
+            (pace(observed, answer)) "."
+        }
+    }
+}
+
+/// A number with no more digits than it needs, five at most.
+fn shortest(value: f64) -> String {
+    let text = format!("{value:.5}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// The faults of a file, by row.
+pub(super) fn faults(observed: &Observed<'_>) -> Markup {
+    let lines = fault_lines(&observed.experiment.faults);
+    html! {
+        @if !lines.is_empty() {
+            details open[lines.len() <= 12] {
+                summary { (lines.len()) " faults in the file; their rows were left out, unless the fault is a gap" }
+                ul.faults { @for line in &lines { li { code { (line) } } } }
+            }
+        } @else if observed.experiment.simulation.is_none() {
+            p { "No row of the file is faulty." }
+        }
+    }
+}
+
+/// As figure 4.3 and 4.4a.
+pub(super) fn body_pictures(observed: &Observed<'_>) -> Markup {
+    let Some(outline) = outline(observed) else {
+        return html! {
+            p.remark {
+                "There is no picture of the body: that takes two flat palms with the outputs s1 and s2, estimates of r1 and r2, and "
+                "omega0, phi1 and phi2 sought, read or told."
+            }
+        };
+    };
+    let shape = observed.experiment.simulation.as_ref().map(|simulation| &simulation.shape);
+    html! {
+        figure {
+            (PreEscaped(frames(observed, &outline)))
+            figcaption {
+                "As figure 4.3: the palms about their joint at " (outline.instants.len().min(12)) " samples. Large dots are the "
+                "centre of mass and the two contacts. Small dots are the part of the outline that " b { (method_name(outline.method)) }
+                " has recovered by then, blue where palm 1 touched it and orange where palm 2 did"
+                @if !outline.instants.iter().all(|instant| instant.seen) { ", pale where it could not see" }
+                ". "
+                @if shape.is_some() {
+                    "The thin line is the true outline; dots beside it are errors of the observer, or of the orientation, which is the "
+                    "integral of its rate."
+                } @else { "The body's place is the recovered one: the true outline is not known." }
+            }
+        }
+        figure.narrow {
+            (PreEscaped(recovered_outline(shape, &outline)))
+            figcaption {
+                "As figure 4.4a: every recovered contact, turned back by the recovered orientation. "
+                @if let Some(shape) = shape {
+                    @match outline.departure(shape) {
+                        Some((largest, mean)) => {
+                            @let size = (shape.area() / std::f64::consts::PI).sqrt();
+                            "Where it could see, the points lie within " b { (length(largest)) } " of the true outline (root of the "
+                            "mean square " (length(mean)) "), " (format!("{:.1e}", largest / size)) " of the radius of a disc with "
+                            "the body's area."
+                        }
+                        None => { b { "There was no sample at which it could see:" } " no point counts as recovered." }
+                    }
+                } @else { "The frame is that of the body at the first sample." }
+            }
+        }
+    }
+}
+
+/// A length in a unit in which it is easily read.
+fn length(metres: f64) -> String {
+    match metres {
+        m if m < 1e-6 => format!("{:.2} nm", m * 1e9),
+        m if m < 1e-3 => format!("{:.2} µm", m * 1e6),
+        m if m < 1.0 => format!("{:.2} mm", m * 1e3),
+        m => format!("{m:.3} m"),
+    }
+}
+
+/// As figure 4.4b and c: each state over time, and its errors beside the bound.
+pub(super) fn state_pictures(observed: &Observed<'_>) -> Markup {
+    let places = 0..observed.experiment.names().len();
+    let known = observed.experiment.simulation.is_some();
+    html! {
+        figure {
+            div.two {
+                @for place in places {
+                    (PreEscaped(state(observed, place)))
+                    @if let Some(picture) = errors(observed, place) { (PreEscaped(picture)) }
+                }
+            }
+            figcaption {
+                @if known {
+                    "As figures 4.4b and 4.4c: each state, true (broad grey line) and recovered; a good observer hides in the grey. "
+                    "Beside it the error, in decades: " b { "circles are the bound of Cramér and Rao" } " at the first sample of each "
+                    "window, below which no unbiased estimate can stay on average. "
+                } @else { "Each state as each method recovered it. " }
+                "Faint vertical lines are where windows meet; bars, where they are long enough to be seen, are two standard deviations "
+                "of the bound to either side. Values far outside are cut off. A window's estimate holds for its first sample; from "
+                "there the equations carry it on."
+            }
+        }
+    }
+}
+
+/// As figure 4.4d.
+pub(super) fn sensor_pictures(observed: &Observed<'_>) -> Markup {
+    let pictures = sensor_errors(observed);
+    html! {
+        @if pictures.is_empty() {
+            p.remark { "No method compared what it expected with what was read." }
+        } @else {
+            figure {
+                div.two { @for picture in &pictures { (PreEscaped(picture)) } }
+                figcaption {
+                    "As figure 4.4d: the contact that the model expects minus the one that was read. What an observer that is right has "
+                    "left is the error of the sensor, without a trend; a curve that bends within a window tells of a wrong state or "
+                    "model. A method that compares nothing has no curve."
+                }
+            }
+        }
+    }
+}
+
+/// The error over noise, and the basins of attraction.
+pub(super) fn studies(observed: &Observed<'_>) -> Markup {
+    let places = 0..observed.experiment.names().len();
+    html! {
+        @if !observed.noise.is_empty() {
+            h3 { "The error over noise" }
+            figure {
+                div.grid { @for place in places { (PreEscaped(study_plot::noise(observed, place))) } }
+                figcaption {
+                    "The first window by least squares, over many seeds: the root of the mean square error of those that converged, and "
+                    "the bound at the truth, both in decades. Dots on the line: nothing more is to be had from these readings. Dots "
+                    "above it: the search did not find the best state. By chance they are off by a part of about one in the root of twice "
+                    "the number of seeds, at all levels alike, for a seed has the same errors at each but for their size. "
+                    @for level in observed.noise {
+                        (format!("{:.0e} m: {} of {} converged. ", level.noise, level.converged, level.seeds))
+                    }
+                }
+            }
+            (noise_table(observed))
+        }
+        @if !observed.basins.is_empty() {
+            h3 { "From where they arrive" }
+            figure {
+                div.basins { @for basin in observed.basins { (PreEscaped(study_plot::basin(observed, basin))) } }
+                figcaption {
+                    "First guesses of two states, the others as in the scene, from which each method comes within "
+                    (format!("{:.0}%", 100.0 * ARRIVED)) " of all that is sought: after the first window for methods that work by "
+                    "windows, at the last sample for the others. The cross is the truth. Where the readings have errors, and the bound "
+                    "of a state is near that part of it, they decide as well."
+                }
+            }
+        }
+    }
+}

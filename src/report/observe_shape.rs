@@ -1,0 +1,188 @@
+//! The outline that recovered states draw: the contacts, sample by sample, in the frame of the body.
+//!
+//! This is geometry of two flat palms about the origin; what is true comes only from the simulation.
+
+use super::observe::Observed;
+use crate::experiment::{Answer, Experiment, Method};
+use crate::mechanics::moving::Shape;
+use crate::number::rational_to_f64;
+use std::f64::consts::TAU;
+
+/// The palms, and what was recovered between them, at one sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Instant {
+    /// In s.
+    pub time: f64,
+    /// Directions of the palms in the world, in rad.
+    pub palms: [f64; 2],
+    /// The contacts in the world, as they are read, in m.
+    pub contacts: [[f64; 2]; 2],
+    /// The recovered centre of mass in the world, in m.
+    pub centre: [f64; 2],
+    /// The recovered orientation, in rad.
+    pub orientation: f64,
+    /// The recovered points of the outline in the frame of the body, in m.
+    pub points: [[f64; 2]; 2],
+    /// Whether the observer compared its belief with readings here, and did not hold or integrate blindly.
+    pub seen: bool,
+}
+
+/// What one observer recovered of the outline.
+pub(super) struct Outline {
+    pub method: Method,
+    pub instants: Vec<Instant>,
+}
+
+/// The answer whose outline is shown: of the first method by windows, else of the first.
+pub(super) fn shown<'a>(observed: &Observed<'a>) -> Option<&'a Answer> {
+    let by_windows = |answer: &&Answer| !answer.track.updates.is_empty();
+    observed.answers.iter().find(by_windows).or(observed.answers.first())
+}
+
+/// The value of a state or constant at a sample, from the readings or from what is told.
+fn told(experiment: &Experiment, name: &str, row: usize) -> Option<f64> {
+    let signals = &experiment.signals;
+    if let Some(place) = signals.find(name) {
+        return signals.column(place).get(row).copied();
+    }
+    experiment.sought.known.get(name).copied().or_else(|| {
+        let symbol = experiment.system.find_symbol(name)?;
+        let info = experiment.system.symbols().find(|(other, _)| *other == symbol)?.1;
+        info.default.as_ref().map(rational_to_f64)
+    })
+}
+
+/// The outline by the best of the answers. None where the model is not one of two flat palms, or `r1` and `r2` were not sought.
+///
+/// The contacts as seen from the centre of mass are `R x_i = -(r_i n_i + d_i t_i)`, with `d_i` by 3.18 and 3.19 from the recovered
+/// `r_i` and the `s_i` that are read. They are turned back by the orientation, the integral of the recovered `omega0` by the
+/// trapezoidal rule; it starts at the true one where that is known, and at zero otherwise.
+pub(super) fn outline(observed: &Observed<'_>) -> Option<Outline> {
+    let experiment = observed.experiment;
+    let flat = |name: &str| experiment.system.outputs.iter().any(|(output, _)| output == name);
+    if !(flat("s1") && flat("s2")) {
+        return None;
+    }
+    let answer = shown(observed)?;
+    let names = experiment.names();
+    let place = |name: &str| names.iter().position(|other| *other == name);
+    let (first, second) = (place("r1")?, place("r2")?);
+    let times = experiment.signals.times();
+    let start = experiment.simulation.as_ref().and_then(|s| s.trajectory.moments.first());
+    let mut orientation = start.map_or(0.0, |moment| moment.phi0);
+    let mut before: Option<(f64, f64)> = None;
+    let mut instants = Vec::new();
+    for moment in &answer.track.moments {
+        let row = times.partition_point(|time| *time < moment.time);
+        let of = |name: &str| match place(name) {
+            Some(place) => Some(moment.state[place]),
+            None => told(experiment, name, row),
+        };
+        let rate = of("omega0")?;
+        if let Some((time, last)) = before {
+            orientation += (moment.time - time) * (rate + last) / 2.0;
+        }
+        before = Some((moment.time, rate));
+        let (r, s) = ([moment.state[first], moment.state[second]], [of("s1")?, of("s2")?]);
+        let (phi1, phi2) = (of("phi1")?, of("phi2")?);
+        let (sine, cosine) = phi2.sin_cos();
+        let d = [(r[0] * cosine + r[1]) / sine - s[0], -(r[1] * cosine + r[0]) / sine + s[1]];
+        let palms = [phi1, phi1 + phi2];
+        // t2 points towards the origin, so that n2 points to the body as n1 does
+        let along = [unit(palms[0]), unit(palms[1]).map(|x| -x)];
+        let arm = |i: usize| -> [f64; 2] {
+            let t = along[i];
+            let n = [-t[1], t[0]];
+            [-(r[i] * n[0] + d[i] * t[0]), -(r[i] * n[1] + d[i] * t[1])]
+        };
+        let contacts = [unit(palms[0]).map(|x| x * s[0]), unit(palms[1]).map(|x| x * s[1])];
+        let arms = [arm(0), arm(1)];
+        instants.push(Instant {
+            time: moment.time,
+            palms,
+            contacts,
+            centre: [contacts[0][0] - arms[0][0], contacts[0][1] - arms[0][1]],
+            orientation,
+            points: arms.map(|arm| turned(arm, -orientation)),
+            seen: answer.track.updates.is_empty() || !moment.surprise.is_empty(),
+        });
+    }
+    (!instants.is_empty()).then_some(Outline { method: answer.method, instants })
+}
+
+impl Outline {
+    /// The largest distance of a recovered point from the true outline, and the root of their mean square, in m; over the
+    /// samples at which the observer could see; none where there is no such sample.
+    pub fn departure(&self, shape: &Shape) -> Option<(f64, f64)> {
+        let points = self.instants.iter().filter(|instant| instant.seen).flat_map(|instant| instant.points);
+        let distances: Vec<f64> = points.map(|point| distance(shape, point)).collect();
+        let square: f64 = distances.iter().map(|distance| distance * distance).sum();
+        let largest = distances.iter().copied().fold(0.0, f64::max);
+        (!distances.is_empty()).then(|| (largest, (square / distances.len() as f64).sqrt()))
+    }
+}
+
+/// The distance of a point from the outline of a convex body: the greatest value of `x · u - h` over all directions, without its
+/// sign; the direction is found on a grid and then by Newton's method.
+fn distance(shape: &Shape, point: [f64; 2]) -> f64 {
+    let beyond = |angle: f64| {
+        let ([h, slope, second], [c, s]) = (shape.support(angle), unit(angle));
+        let (out, across) = (point[0] * c + point[1] * s, point[1] * c - point[0] * s);
+        [out - h, across - slope, -out - second]
+    };
+    const GRID: usize = 360;
+    let grid = (0..GRID).map(|i| TAU * i as f64 / GRID as f64);
+    let Some(mut angle) = grid.max_by(|a, b| beyond(*a)[0].total_cmp(&beyond(*b)[0])) else {
+        return f64::INFINITY;
+    };
+    let mut best = beyond(angle)[0];
+    for _ in 0..4 {
+        let [_, slope, curvature] = beyond(angle);
+        if curvature < 0.0 {
+            angle -= (slope / curvature).clamp(-TAU / GRID as f64, TAU / GRID as f64);
+        }
+        best = best.max(beyond(angle)[0]);
+    }
+    best.abs()
+}
+
+fn unit(angle: f64) -> [f64; 2] {
+    let (sine, cosine) = angle.sin_cos();
+    [cosine, sine]
+}
+
+/// A vector, turned counterclockwise by an angle in rad.
+pub(super) fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+    let [c, s] = unit(angle);
+    [c * x - s * y, s * x + c * y]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::moving::{CentreOfMass, Form};
+
+    /// A disc of radius 2 about its centre: the distance of a point is that of its radius from 2, inside and outside.
+    #[test]
+    fn the_distance_from_a_disc_is_known() {
+        let form = Form::Harmonics { mean: 2.0, harmonics: Vec::new() };
+        let disc = Shape::new(&form, CentreOfMass::Uniform).unwrap();
+        assert!((distance(&disc, [3.0, 4.0]) - 3.0).abs() < 1e-14);
+        assert!((distance(&disc, [0.3, -0.4]) - 1.5).abs() < 1e-14);
+    }
+
+    /// A point of the boundary moved out along its normal by a known length, on a body that is no disc.
+    #[test]
+    fn a_point_moved_along_its_normal_is_that_far() {
+        let form = Form::Harmonics { mean: 1.0, harmonics: vec![[0.0, 0.0], [0.08, 0.03]] };
+        let shape = Shape::new(&form, CentreOfMass::Uniform).unwrap();
+        for i in 0..50 {
+            let angle = 0.1 + f64::from(i);
+            let ([x, y], [c, s]) = (shape.point(angle), unit(angle));
+            for moved in [1e-6, 0.2, -1e-6] {
+                let found = distance(&shape, [x + moved * c, y + moved * s]);
+                assert!((found - moved.abs()).abs() < 1e-14, "{angle}: {found} for {moved}");
+            }
+        }
+    }
+}

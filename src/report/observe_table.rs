@@ -1,0 +1,238 @@
+//! What each observer found, as tables: at the end, update by update, and what it could not see.
+
+use super::observe::{Observed, method_name, standing_name};
+use super::observe_plot::unit_of;
+use crate::experiment::{Answer, error};
+use crate::observer::{Standing, Update};
+use maud::{Markup, html};
+
+/// More updates than these are in the JSON only.
+const MOST_UPDATES: usize = 60;
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
+        s if s < 1.0 => format!("{:.0} ms", s * 1e3),
+        s => format!("{s:.1} s"),
+    }
+}
+
+/// The update in the middle, by time.
+fn median(answer: &Answer) -> Option<&Update> {
+    let mut updates: Vec<&Update> = answer.track.updates.iter().collect();
+    updates.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    updates.get(updates.len() / 2).copied()
+}
+
+/// How the time of an update compares with the time that its window covers.
+pub(super) fn pace(observed: &Observed<'_>, answer: &Answer) -> String {
+    let times = observed.experiment.signals.times();
+    let covered = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+    match median(answer) {
+        Some(update) => {
+            let window = update.to - update.from;
+            let verdict = if update.seconds < window { "fast enough" } else { "too slow" };
+            let steps = times.iter().filter(|time| (update.from..update.to).contains(*time)).count();
+            format!(
+                "one update of the {steps}-step window takes {}, the window covers {}: {verdict} to keep up",
+                duration(update.seconds),
+                duration(window)
+            )
+        }
+        None => format!("{} for {} of motion", duration(answer.seconds), duration(covered)),
+    }
+}
+
+/// Each method at the last sample, and whether it keeps up with the motion.
+pub(super) fn ends(observed: &Observed<'_>) -> Markup {
+    let names = observed.experiment.names();
+    let known = observed.experiment.simulation.is_some();
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th { "method" } th { "at" }
+                @for name in &names { th { (name) } @if known { th { "error" } } }
+                th { "updates that converged" } th { "time" }
+            } }
+            tbody {
+                @for answer in observed.answers {
+                    @let converged = answer.track.updates.iter().filter(|u| u.standing == Standing::Converged).count();
+                    tr {
+                        td { b { (method_name(answer.method)) } }
+                        @if let Some(last) = answer.track.last() {
+                            @let truth = observed.experiment.truth_at(last.time);
+                            td.number { (format!("{:.3} s", last.time)) }
+                            @for (place, value) in last.state.iter().enumerate() {
+                                td.number { (format!("{value:.6}")) }
+                                @if known { td.number {
+                                    (truth.as_ref().map_or("-".to_owned(), |truth| format!("{:.1e}", error(*value, truth[place]))))
+                                } }
+                            }
+                        } @else { td colspan=(1 + names.len() * if known { 2 } else { 1 }) { "it found nothing" } }
+                        td.number {
+                            @if answer.track.updates.is_empty() { "-" }
+                            @else { (converged) " of " (answer.track.updates.len()) }
+                        }
+                        td.words { (pace(observed, answer)) }
+                    }
+                }
+                @if let (true, Some(truth)) = (known, last_truth(observed)) {
+                    tr {
+                        td { "true" } td {}
+                        @for value in truth { td.number { (format!("{value:.6}")) } td {} }
+                        td {} td {}
+                    }
+                }
+            }
+        } }
+        p.remark {
+            @if known { "An error is relative, or absolute where the truth is less than a millionth. " }
+            "Times are wall times of this run."
+        }
+    }
+}
+
+fn last_truth(observed: &Observed<'_>) -> Option<Vec<f64>> {
+    observed.experiment.truth_at(*observed.experiment.signals.times().last()?)
+}
+
+/// Every update of the methods that work by windows, a row a state.
+pub(super) fn updates(observed: &Observed<'_>) -> Markup {
+    html! {
+        @for answer in observed.answers.iter().filter(|answer| !answer.track.updates.is_empty()) {
+            h3 { (method_name(answer.method)) ": " (pace(observed, answer)) }
+            (update_table(observed, answer))
+            p.remark {
+                "The state is that at the window's first sample; the bound is its least standard deviation. Steps that had to be "
+                "shortened, refused or replaced are counted as mended."
+            }
+            @if answer.track.updates.len() > MOST_UPDATES {
+                p.remark { "The first " (MOST_UPDATES) " of " (answer.track.updates.len()) " updates; the JSON has them all." }
+            }
+        }
+    }
+}
+
+fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
+    let names = observed.experiment.names();
+    let known = observed.experiment.simulation.is_some();
+    let bound = |value: f64| if value.is_finite() { format!("{value:.1e}") } else { "not seen".to_owned() };
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th { "window" } th { "it" } th { "steps" } th { "time" } th { "state" } th { "recovered" }
+                @if known { th { "true" } th { "off by" } }
+                th { "bound" } @if known { th { "off by, in bounds" } }
+            } }
+            tbody { @for update in answer.track.updates.iter().take(MOST_UPDATES) {
+                @let truth = observed.experiment.truth_at(update.from);
+                @for (place, name) in names.iter().enumerate() {
+                    @let (value, deviation) = (update.estimate[place], update.deviations[place]);
+                    tr {
+                        @if place == 0 {
+                            td.number rowspan=(names.len()) { (format!("{:.3} to {:.3} s", update.from, update.to)) }
+                            td rowspan=(names.len()) { (standing_name(&update.standing)) }
+                            td.number rowspan=(names.len()) {
+                                (update.steps) @if update.troubled > 0 { " (" (update.troubled) " mended)" }
+                            }
+                            td.number rowspan=(names.len()) { (duration(update.seconds)) }
+                        }
+                        td { (name) }
+                        td.number { (format!("{value:.9}")) }
+                        @if known { @match &truth {
+                            Some(truth) => {
+                                td.number { (format!("{:.9}", truth[place])) }
+                                td.number { (format!("{:.1e}", (value - truth[place]).abs())) }
+                            }
+                            None => { td { "-" } td { "-" } }
+                        } }
+                        td.number { (bound(deviation)) }
+                        @if known { td.number { @match &truth {
+                            Some(truth) if deviation.is_finite() && deviation > 0.0 => {
+                                (format!("{:.1}", (value - truth[place]).abs() / deviation))
+                            }
+                            _ => { "-" }
+                        } } }
+                    }
+                }
+            } }
+        } }
+    }
+}
+
+/// What the observers could not see or follow, and what else they have to say.
+pub(super) fn notes(observed: &Observed<'_>) -> Markup {
+    let samples = observed.experiment.signals.times().len();
+    let mut lines = Vec::new();
+    for answer in observed.answers {
+        let name = method_name(answer.method);
+        if answer.track.unseen > 0 {
+            lines.push(format!(
+                "{name} could not see for {} of {samples} samples, and held what it believed or integrated",
+                answer.track.unseen
+            ));
+        }
+        for update in &answer.track.updates {
+            let from = update.from;
+            match &update.standing {
+                Standing::Blind { weakest } => {
+                    lines.push(format!("{name} from {from:.3} s: {}", blind(observed, update, weakest)));
+                }
+                Standing::Converged => {}
+                _ => lines.push(format!("{name} from {from:.3} s: {}", standing_name(&update.standing))),
+            }
+        }
+        lines.extend(answer.track.remarks.iter().map(|remark| format!("{name}: {remark}")));
+    }
+    html! {
+        @if lines.is_empty() {
+            p { "Every update converged, and there was no sample at which a method could not see." }
+        } @else {
+            details open[lines.len() <= 12] {
+                summary { "what they could not see or not do, and other remarks: " (lines.len()) }
+                ul { @for line in &lines { li { (line) } } }
+            }
+        }
+    }
+}
+
+/// The direction that the readings of a window tell least of, by the names of what is sought.
+fn blind(observed: &Observed<'_>, update: &Update, weakest: &[f64]) -> String {
+    let experiment = observed.experiment;
+    let first = experiment.signals.times().first() == Some(&update.from);
+    // what the first window may not change has no part in the direction; readings that are unknown come last
+    let names = experiment.names();
+    let clamped = |name: &str| first && experiment.sought.clamped.iter().any(|other| other == name);
+    let mut parts: Vec<(&str, f64)> =
+        names.into_iter().filter(|name| !clamped(name)).zip(weakest.iter().copied()).collect();
+    parts.retain(|(_, part)| part.abs() > 0.05);
+    parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let sign = parts.first().map_or(1.0, |(_, part)| part.signum());
+    let parts: Vec<String> = parts.iter().map(|(name, part)| format!("{:+.2} {name}", sign * part)).collect();
+    match &parts[..] {
+        [] => "the readings of this window do not tell what is sought".to_owned(),
+        parts => format!("the readings of this window tell least of {}, each in its size", parts.join(" ")),
+    }
+}
+
+/// The error over noise beside its bound.
+pub(super) fn noise_table(observed: &Observed<'_>) -> Markup {
+    let names = observed.experiment.names();
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th { "noise, m" } th { "converged" }
+                @for name in &names { th { (name) ", rms error" } th { "bound, " (unit_of(name)) } th { "ratio" } }
+            } }
+            tbody { @for level in observed.noise { tr {
+                td.number { (format!("{:.1e}", level.noise)) }
+                td.number { (level.converged) " of " (level.seeds) }
+                @for (error, bound) in level.errors.iter().zip(&level.bounds) {
+                    td.number { (format!("{error:.2e}")) }
+                    td.number { @if bound.is_finite() { (format!("{bound:.2e}")) } @else { "not seen" } }
+                    td.number { @if bound.is_finite() && *bound > 0.0 { (format!("{:.2}", error / bound)) } @else { "-" } }
+                }
+            } } }
+        } }
+    }
+}
