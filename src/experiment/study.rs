@@ -58,7 +58,7 @@ pub fn noise_study(
     let task = experiment.task(interrupt)?;
     let observer = MovingWindow { steps: 50, blind: f64::INFINITY, ..experiment.window(Method::TrustRegion) };
     let mut levels = Vec::new();
-    for &noise in &study.levels {
+    for (level, &noise) in study.levels.iter().enumerate() {
         if task.interrupted() {
             break;
         }
@@ -67,6 +67,8 @@ pub fn noise_study(
                 return None;
             }
             let estimate = (|| {
+                // every level has errors of its own
+                let seed = (level * study.seeds) as u64 + seed;
                 let seed = experiment.scene.seed.wrapping_add(1 + seed);
                 let signals = noisy(experiment, simulation, noise, seed)?;
                 let mut task = task.with_signals(&signals);

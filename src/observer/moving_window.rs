@@ -60,12 +60,14 @@ impl Observer for MovingWindow {
             // too few samples to compare are only followed, and seen if those before were
             let update =
                 (rows.len() >= self.window.min(samples)).then(|| self.update(task, &belief, &rows, clamped));
+            let mut start = task.full_state(&belief, row);
             if let Some(update) = update {
                 sees = !matches!(update.standing, Standing::Blind { .. } | Standing::Lost(_));
                 belief.clone_from(&update.estimate);
+                start = [&update.estimate[..], &update.outputs].concat();
                 track.updates.push(update);
             }
-            belief = self.follow(task, &belief, &rows, sees, &mut track);
+            belief = self.follow(task, &start, &rows, sees, &mut track);
             row = rows.end - 1;
         }
         track
@@ -115,6 +117,7 @@ impl MovingWindow {
             from: window.times[0],
             to: window.times[window.times.len() - 1],
             estimate: belief.to_vec(),
+            outputs: window.start[task.sought()..].to_vec(),
             deviations: vec![f64::INFINITY; task.sought()],
             condition: f64::INFINITY,
             cost: f64::INFINITY,
@@ -193,7 +196,9 @@ impl MovingWindow {
         update.steps = state.get_iter();
         update.troubled = troubled;
         let Some(found) = state.get_param() else { return Standing::Stuck };
-        update.estimate = window.state(found)[..task.sought()].to_vec();
+        let whole = window.state(found);
+        update.estimate = whole[..task.sought()].to_vec();
+        update.outputs = whole[task.sought()..].to_vec();
         // the bound belongs to where one is
         match window.expand(found, Order::First) {
             Err(lost) => return Standing::Lost(lost),
@@ -201,6 +206,7 @@ impl MovingWindow {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
                 if let Some(blind) = self.see(task, window, &expansion.slopes, sizes, update) {
                     update.estimate = window.start[..task.sought()].to_vec();
+                    update.outputs = window.start[task.sought()..].to_vec();
                     return blind;
                 }
             }
@@ -212,11 +218,11 @@ impl MovingWindow {
         }
     }
 
-    /// The moments of some rows from a belief at the first of them; gives the belief at the last.
+    /// The moments of some rows from a state at the first of them; gives what is believed of what is sought at the last.
     fn follow(
         &self,
         task: &Task<'_>,
-        belief: &[f64],
+        start: &[f64],
         rows: &std::ops::Range<usize>,
         sees: bool,
         track: &mut Track,
@@ -224,9 +230,9 @@ impl MovingWindow {
         let times = &task.signals.times()[rows.clone()];
         // the sample that two windows share has its moment by now
         let skipped = usize::from(!track.moments.is_empty());
-        let start = task.full_state(belief, rows.start);
+        let belief = &start[..task.sought()];
         let followed =
-            if sees { task.full_flow().follow(&start, &[], times, Order::Value) } else { Ok(Vec::new()) };
+            if sees { task.full_flow().follow(start, &[], times, Order::Value) } else { Ok(Vec::new()) };
         if let Ok(samples) = &followed
             && let Some(last) = samples.last()
         {

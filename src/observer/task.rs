@@ -182,6 +182,8 @@ pub struct Update {
     pub to: f64,
     /// What is believed of the state at the first time, and the least standard deviation that it could have.
     pub estimate: Vec<f64>,
+    /// What is believed of the outputs that are followed, there.
+    pub outputs: Vec<f64>,
     pub deviations: Vec<f64>,
     /// The condition of the sensitivities, scaled.
     pub condition: f64,

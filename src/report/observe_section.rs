@@ -10,7 +10,6 @@ use crate::experiment::{ARRIVED, NOMINAL, Shape, error};
 use maud::{Markup, PreEscaped, html};
 
 /// Experiments, as a section of the page of the thesis.
-#[cfg_attr(not(test), expect(dead_code, reason = "the page of the thesis is to embed it"))]
 pub(super) fn observed_section(experiments: &[Observed<'_>]) -> Markup {
     html! {
         section #observers {
@@ -44,7 +43,7 @@ fn shape_in_words(shape: &Shape) -> String {
         Shape::Ellipse { .. } => "an ellipse".to_owned(),
         Shape::Superellipse { .. } => "a superellipse".to_owned(),
         Shape::Spline { .. } => "a closed spline".to_owned(),
-        Shape::RandomSpline { seed } => format!("a random closed spline (seed {seed})"),
+        Shape::RandomSpline { seed, .. } => format!("a random closed spline (seed {seed})"),
     }
 }
 

@@ -2,6 +2,8 @@
 
 use super::claims::{error_bound, witness_line};
 use super::extremes::extremes;
+use super::observe::Observed;
+use super::observe_section::observed_section;
 use super::plot;
 use super::verification::ranks_in_words;
 use crate::claim::{Outcome, Verdict};
@@ -16,6 +18,8 @@ const STYLE: &str = include_str!("page.css");
 pub fn page(found: &Verification) -> String {
     let count = |word: &str| found.outcomes.iter().filter(|outcome| outcome.word() == word).count();
     let failed = found.outcomes.iter().filter(|outcome| !outcome.ok).count();
+    let experiments: Vec<Observed<'_>> =
+        found.experiments.iter().map(|(experiment, answers)| Observed::of(experiment, answers)).collect();
     let content = html! {
         (DOCTYPE)
         html lang="en" {
@@ -56,6 +60,7 @@ pub fn page(found: &Verification) -> String {
                         a href="#appendix" { "Appendix A.2" }
                         a href="#derivatives" { "Lie derivatives" }
                         a href="#extremes" { "Speed against accuracy" }
+                        @if !experiments.is_empty() { a href="#observers" { "Bodies in motion" } }
                         a href="#claims" { "All claims" }
                     }
                 }
@@ -66,6 +71,7 @@ pub fn page(found: &Verification) -> String {
                 @if let Some(values) = &found.appendix { (appendix(values, &found.outcomes)) }
                 (derivatives(found))
                 (extremes(found))
+                @if !experiments.is_empty() { (observed_section(&experiments)) }
                 (all_claims(&found.outcomes))
             }
         }
