@@ -57,9 +57,8 @@ impl Experiment {
         let Reading { record, faults, .. } = match (&simulation, file) {
             (Some(simulation), _) => {
                 let record = simulation.readings(scene.sensor.noise, scene.sensor.resolution, scene.seed);
-                let place = |error: RecordError| {
-                    scene.error_at("sensor", error.to_string(), "these readings", "")
-                };
+                let place =
+                    |error: RecordError| scene.error_at("sensor", error.to_string(), "these readings", "");
                 Reading { record: record.map_err(place)?, faults: Vec::new(), left_out: Vec::new() }
             }
             (None, Some(file)) => {
@@ -79,7 +78,7 @@ impl Experiment {
         let signals = Signals::new(record.times().to_vec(), columns.collect());
         let signals =
             signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
-        let sought = sought(&scene, simulation.as_ref(), told, &signals)?;
+        let sought = sought(&scene, &system, simulation.as_ref(), told, &signals)?;
         let experiment = Experiment { scene, system, simulation, record, faults, signals, sought };
         // whether the model can be made at all is better known now
         let never = AtomicBool::new(false);
@@ -258,6 +257,7 @@ fn needed(scene: &Scene, system: &System, told: &BTreeMap<String, f64>) -> Vec<S
 
 fn sought(
     scene: &Scene,
+    system: &System,
     simulation: Option<&Simulation>,
     mut known: BTreeMap<String, f64>,
     signals: &Signals,
@@ -267,7 +267,8 @@ fn sought(
     for (place, name) in signals.names().iter().enumerate() {
         let column = signals.column(place);
         let steady = column.iter().all(|value| *value == column[0]);
-        if steady && !TOUCH.contains(&name.as_str()) && !settings.estimate.contains(name) {
+        let met = system.find_symbol(name).is_some();
+        if met && steady && !TOUCH.contains(&name.as_str()) && !settings.estimate.contains(name) {
             known.entry(name.clone()).or_insert(column[0]);
         }
     }
