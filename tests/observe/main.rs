@@ -8,6 +8,7 @@ mod common;
 
 mod broken;
 mod noise;
+mod options;
 mod random;
 mod recorded;
 mod recovered;
