@@ -58,6 +58,10 @@ impl Observe {
         let bar = progress(scene.observer.methods.len() as u64 + 1, "simulating");
         let experiment = Experiment::new(scene, self.data.as_deref())?;
         bar.inc(1);
+        if self.studies && experiment.simulation.is_none() {
+            let message = "a study needs the truth, and readings from a file have none";
+            return Err(Unusable::report(message, "leave out --studies, or simulate"));
+        }
         if let Some(path) = &self.record {
             write_table(path, &experiment.record)?;
         }

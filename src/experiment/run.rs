@@ -1,12 +1,13 @@
 //! A scene from beginning to end: bodies or a file, what is read of them, and what the observers make of it.
 
 use super::scene::{self, Guess, Scene, SceneError};
-use super::simulation::{Simulation, TOUCH, deviation};
+use super::simulation::{Simulation, TOUCH, body, constants, deviation};
 use crate::observer::{
     Fault, HighGain, Integration, Kalman, Method, ModelError, MovingWindow, Observer, Reading, Record,
-    Signals, Sought, Task, Track, WhenBlind,
+    RecordError, Signals, Sought, Task, Track, WhenBlind,
 };
-use crate::system::{Kind, System};
+use crate::system::{Kind, System, nearest};
+use miette::Diagnostic;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -51,22 +52,20 @@ impl Experiment {
             (Some(simulated), None) => Some(Simulation::of(&scene, simulated)?),
             _ => None,
         };
-        let told = told(&scene, &system, simulation.as_ref());
+        known_states(&scene, &system)?;
+        let told = told(&scene, &system, simulation.as_ref())?;
         let Reading { record, faults, .. } = match (&simulation, file) {
             (Some(simulation), _) => {
                 let record = simulation.readings(scene.sensor.noise, scene.sensor.resolution, scene.seed);
-                let place = |error: crate::observer::RecordError| {
-                    scene.error_at("sensor", error.to_string(), "these readings", "")
-                };
+                let place =
+                    |error: RecordError| scene.error_at("sensor", error.to_string(), "these readings", "");
                 Reading { record: record.map_err(place)?, faults: Vec::new(), left_out: Vec::new() }
             }
             (None, Some(file)) => {
                 let needed = needed(&scene, &system, &told);
                 let needed: Vec<&str> = needed.iter().map(String::as_str).collect();
-                Record::read_checked(file, &needed, &scene.fault_rules()).map_err(|error| {
-                    let help = "mend the file, or say on_fault = \"skip\" under [data]";
-                    scene.error_at("data", error.to_string(), "read by these rules", help)
-                })?
+                Record::read_checked(file, &needed, &scene.fault_rules())
+                    .map_err(|error| unusable(&scene, &error))?
             }
             (None, None) => {
                 let help =
@@ -79,7 +78,7 @@ impl Experiment {
         let signals = Signals::new(record.times().to_vec(), columns.collect());
         let signals =
             signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
-        let sought = sought(&scene, simulation.as_ref(), told, &signals)?;
+        let sought = sought(&scene, &system, simulation.as_ref(), told, &signals)?;
         let experiment = Experiment { scene, system, simulation, record, faults, signals, sought };
         // whether the model can be made at all is better known now
         let never = AtomicBool::new(false);
@@ -183,8 +182,41 @@ pub fn error(estimate: f64, truth: f64) -> f64 {
     ((estimate - truth) / size).abs()
 }
 
+/// Whether all that is sought are states of the system: said before anyone asks for readings or a first guess of them.
+fn known_states(scene: &Scene, system: &System) -> Result<(), SceneError> {
+    let states: Vec<&str> = system.states.iter().map(|state| system.symbol_name(*state)).collect();
+    for (index, name) in scene.observer.estimate.iter().enumerate() {
+        if !states.contains(&name.as_str()) {
+            let help = match nearest(name, states.iter().copied()) {
+                Some(near) => format!("perhaps you meant '{near}'"),
+                None => "an observer seeks states; constants are told".to_owned(),
+            };
+            let error = ModelError::NoState { name: name.clone(), states: states.join(", ") };
+            let place = format!("observer.estimate[{index}]");
+            return Err(scene.error_at(&place, error.to_string(), "sought here", help));
+        }
+    }
+    Ok(())
+}
+
+/// What is wrong with a file of readings, with the record's own advice.
+fn unusable(scene: &Scene, error: &RecordError) -> SceneError {
+    let advice = error.help().map(|help| help.to_string()).unwrap_or_default();
+    let help = match error {
+        RecordError::Column { column, .. } => {
+            format!("{advice}; or give '{column}' under `known`, or estimate it")
+        }
+        _ => advice,
+    };
+    scene.error_at("data", error.to_string(), "the readings of this scene", help)
+}
+
 /// The constants that the observers are told: the scene's own, and those of the bodies that the model knows.
-fn told(scene: &Scene, system: &System, simulation: Option<&Simulation>) -> BTreeMap<String, f64> {
+fn told(
+    scene: &Scene,
+    system: &System,
+    simulation: Option<&Simulation>,
+) -> Result<BTreeMap<String, f64>, SceneError> {
     let settings = &scene.observer;
     let mut told = settings.known.clone();
     let mut tell = |name: &str, value: f64| {
@@ -198,15 +230,11 @@ fn told(scene: &Scene, system: &System, simulation: Option<&Simulation>) -> BTre
         }
     } else if let Some(simulated) = &scene.simulated {
         // a recording of what the scene describes
-        tell("m", simulated.body.mass);
-        tell("g", simulated.body.gravity);
-        tell("I1", simulated.palms.inertia[0]);
-        tell("I2", simulated.palms.inertia[1]);
-        if let Some(gyration) = simulated.body.radius_of_gyration {
-            tell("rho", gyration);
+        for (name, value) in constants(simulated, &body(scene, simulated)?.0) {
+            tell(&name, value);
         }
     }
-    told
+    Ok(told)
 }
 
 /// The columns without which the model is not determined.
@@ -229,6 +257,7 @@ fn needed(scene: &Scene, system: &System, told: &BTreeMap<String, f64>) -> Vec<S
 
 fn sought(
     scene: &Scene,
+    system: &System,
     simulation: Option<&Simulation>,
     mut known: BTreeMap<String, f64>,
     signals: &Signals,
@@ -238,7 +267,8 @@ fn sought(
     for (place, name) in signals.names().iter().enumerate() {
         let column = signals.column(place);
         let steady = column.iter().all(|value| *value == column[0]);
-        if steady && !TOUCH.contains(&name.as_str()) && !settings.estimate.contains(name) {
+        let met = system.find_symbol(name).is_some();
+        if met && steady && !TOUCH.contains(&name.as_str()) && !settings.estimate.contains(name) {
             known.entry(name.clone()).or_insert(column[0]);
         }
     }

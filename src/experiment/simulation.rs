@@ -30,14 +30,11 @@ impl Simulation {
     /// # Errors
     /// Where the body is not convex or the palms cannot hold it, with the place in the scene.
     pub fn of(scene: &Scene, simulated: &Simulated) -> Result<Simulation, SceneError> {
-        let (shape, draws) = body(simulated).map_err(|error| {
-            let help = "a body has to be smooth and strictly convex, with its centre of mass inside";
-            scene.error_at("body.shape", error.to_string(), "this body", help)
-        })?;
-        let gyration = simulated.body.radius_of_gyration.unwrap_or_else(|| shape.gyration());
+        let (shape, draws) = body(scene, simulated)?;
+        let constants = constants(simulated, &shape);
         let bodies = Bodies {
             mass: simulated.body.mass,
-            gyration,
+            gyration: simulated.body.radius_of_gyration.unwrap_or_else(|| shape.gyration()),
             orientation: simulated.body.orientation,
             rate: simulated.body.rate,
             gravity: simulated.body.gravity,
@@ -48,7 +45,7 @@ impl Simulation {
             shape,
         };
         let times = simulated.times(scene.sensor.jitter, scene.seed);
-        let trajectory = follow(&bodies, &times).map_err(|error| {
+        let mut trajectory = follow(&bodies, &times).map_err(|error| {
             let place = match error {
                 Refused::NotHeld { .. } | Refused::Start(_) => "palms",
                 _ => "body",
@@ -60,15 +57,10 @@ impl Simulation {
                 "the body has to touch both palms at the start, and be pushed by both",
             )
         })?;
-        let inertia = simulated.palms.inertia;
-        let constants = [
-            ("m", bodies.mass),
-            ("rho", gyration),
-            ("I1", inertia[0]),
-            ("I2", inertia[1]),
-            ("g", bodies.gravity),
-        ];
-        let constants = constants.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+        // a sensor reads at its own times: the moment at which a contact ends is none of them, and may lie so near to one
+        // that no polynomial can run through both
+        let sampled = |time: f64| times.binary_search_by(|other| other.total_cmp(&time)).is_ok();
+        trajectory.moments.retain(|moment| sampled(moment.time));
         Ok(Simulation { shape: bodies.shape, trajectory, constants, draws })
     }
 
@@ -182,7 +174,28 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
     radius * (std::f64::consts::TAU * random.random::<f64>()).cos()
 }
 
-fn body(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {
+/// The body of a scene, and how many splines were drawn until one was convex.
+pub(super) fn body(scene: &Scene, simulated: &Simulated) -> Result<(Shape, Option<usize>), SceneError> {
+    outline(simulated).map_err(|error| {
+        let help = "a body has to be smooth and strictly convex, with its centre of mass inside";
+        scene.error_at("body.shape", error.to_string(), "this body", help)
+    })
+}
+
+/// Constants of the bodies by the names that the thesis gives them: `m`, `rho`, `I1`, `I2`, `g`.
+pub(super) fn constants(simulated: &Simulated, shape: &Shape) -> BTreeMap<String, f64> {
+    let (body, inertia) = (&simulated.body, simulated.palms.inertia);
+    let constants = [
+        ("m", body.mass),
+        ("rho", body.radius_of_gyration.unwrap_or_else(|| shape.gyration())),
+        ("I1", inertia[0]),
+        ("I2", inertia[1]),
+        ("g", body.gravity),
+    ];
+    constants.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+fn outline(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {
     let centre = simulated.body.centre_of_mass.map_or(CentreOfMass::Uniform, CentreOfMass::At);
     let form = match &simulated.body.shape {
         scene::Shape::Harmonics { mean, harmonics } => {

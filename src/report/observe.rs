@@ -197,7 +197,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             simulation.trajectory.energy_drift()
         );
     } else {
-        let _ = writeln!(text, "{samples} samples from a file, {} faults", experiment.faults.len());
+        let _ = writeln!(text, "{samples} samples from a file; faults: {}", experiment.faults.len());
     }
     for line in fault_lines(&experiment.faults) {
         let _ = writeln!(text, "  {line}");

@@ -11,8 +11,8 @@ use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// The most samples that a scene may ask for.
-const MOST_SAMPLES: usize = 10_000_000;
+/// The most samples that a scene may ask for: each takes about a kilobyte.
+const MOST_SAMPLES: usize = 1_000_000;
 
 /// Marks values that cannot be.
 pub(super) struct Checks<'a> {
