@@ -6,7 +6,7 @@ use clap::Args;
 use indicatif::ProgressBar;
 use palmistry::experiment::{Basin, Experiment, NoiseLevel, Scene, SceneError, basins, noise_study};
 use palmistry::mechanics::moving::Ended;
-use palmistry::observer::{Record, Standing};
+use palmistry::observer::{Record, Standing, Update};
 use palmistry::report::{Observed, ended_in_words, method_name, observe_json, observe_page, observe_text};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -107,9 +107,10 @@ impl Observe {
         } else {
             print_text(&observe_text(&observed));
         }
-        let lost = |standing: &Standing| matches!(standing, Standing::Lost(_));
-        let updates = answers.iter().flat_map(|answer| &answer.track.updates);
-        let as_expected = !interrupted && !updates.into_iter().any(|update| lost(&update.standing));
+        // a window that cannot be seen is part of the answer; a method that saw none has found nothing
+        let unseen = |update: &Update| matches!(update.standing, Standing::Blind { .. } | Standing::Lost(_));
+        let found_nothing = |updates: &[Update]| !updates.is_empty() && updates.iter().all(unseen);
+        let as_expected = !interrupted && !answers.iter().any(|answer| found_nothing(&answer.track.updates));
         Ok(if as_expected { Status::AsExpected } else { Status::NotAsExpected })
     }
 }
