@@ -11,7 +11,7 @@ use super::{Model, Signals};
 use crate::number::{Duals, Refusal};
 use nalgebra::DMatrix;
 use num_dual::{Dual2SVec64, DualSVec64};
-use ode_solvers::dop_shared::OutputType;
+use ode_solvers::dop_shared::{IntegrationError, OutputType};
 use ode_solvers::{DVector, Dop853, System};
 use std::cell::{Cell, RefCell};
 
@@ -221,9 +221,12 @@ pub(super) fn advance(
     let equations = Equations { f, evaluations: Cell::new(0) };
     let mut solver = Dop853::new(equations, 0.0, to - from, to - from, start, tolerance, tolerance);
     solver.set_output(OutputType::Sparse);
-    let no_step = |why: String| Lost { time: from, why: format!("the integrator finds no step: {why}") };
-    solver.integrate().map_err(|error| no_step(error.to_string()))?;
+    let lost = |after: f64, why: &str| Lost { time: from + after, why: why.to_owned() };
+    solver.integrate().map_err(|error| match error {
+        IntegrationError::StepSizeUnderflow { x } => lost(x, "no step is small enough, as near a pole"),
+        IntegrationError::MaxNumStepReached { x, .. } => lost(x, "there are too many steps, as near a pole"),
+        IntegrationError::StiffnessDetected { x } => lost(x, "the equations become stiff"),
+    })?;
     let end = solver.y_out().last().filter(|end| end.iter().all(|value| value.is_finite()));
-    end.map(|end| end.as_slice()[..y.len()].to_vec())
-        .ok_or_else(|| no_step("a number is not finite".to_owned()))
+    end.map(|end| end.as_slice()[..y.len()].to_vec()).ok_or_else(|| lost(0.0, "a number is not finite"))
 }
