@@ -181,12 +181,15 @@ fn sample<J: Jet>(time: f64, states: usize, p: usize, size: usize, y: &[f64], ou
     }
 }
 
+/// `f(t, y)`, written into its last argument.
+type RightHandSide<'f> = dyn Fn(f64, &[f64], &mut [f64]) + 'f;
+
 /// Equations with time as their last coordinate.
 ///
 /// Dop853 of ode_solvers 0.6.2 takes zero for the twelfth node of the method, which is one: right-hand sides that depend on the
 /// time it hands over are integrated wrongly. A coordinate whose rate is one brings the right time.
 struct Equations<'f> {
-    f: &'f dyn Fn(f64, &[f64], &mut [f64]),
+    f: &'f RightHandSide<'f>,
     evaluations: Cell<usize>,
 }
 
@@ -208,7 +211,7 @@ impl System<f64, DVector<f64>> for Equations<'_> {
 /// # Errors
 /// Where no step is small enough, as near a pole.
 pub(super) fn advance(
-    f: &dyn Fn(f64, &[f64], &mut [f64]),
+    f: &RightHandSide<'_>,
     from: f64,
     to: f64,
     y: &[f64],

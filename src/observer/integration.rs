@@ -17,7 +17,7 @@ impl Observer for Integration {
         let mut track = Track::default();
         let mut belief = task.guess.clone();
         track.moments.push(Moment { time: times[0], state: belief.clone(), surprise: Vec::new() });
-        for row in 1..times.len() {
+        for (row, time) in times.iter().enumerate().skip(1) {
             if task.interrupted() {
                 break;
             }
@@ -30,7 +30,7 @@ impl Observer for Integration {
                     track.unseen += 1;
                 }
             }
-            track.moments.push(Moment { time: times[row], state: belief.clone(), surprise: Vec::new() });
+            track.moments.push(Moment { time: *time, state: belief.clone(), surprise: Vec::new() });
         }
         track
     }

@@ -48,8 +48,8 @@ impl<const P: usize> Jet for Dual2SVec64<P> {
     }
     fn pack(&self, places: &mut [f64]) {
         places[0] = self.re;
-        let slopes = self.v1.clone().unwrap_generic(Const::<1>, Const::<P>);
-        let bends = self.v2.clone().unwrap_generic(Const::<P>, Const::<P>);
+        let slopes = self.v1.unwrap_generic(Const::<1>, Const::<P>);
+        let bends = self.v2.unwrap_generic(Const::<P>, Const::<P>);
         places[1..=P].copy_from_slice(slopes.as_slice());
         for i in 0..P {
             for j in 0..=i {

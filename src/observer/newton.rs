@@ -99,7 +99,7 @@ impl Solver<Window<'_>, Iteration> for Newton {
         problem: &mut Problem<Window<'_>>,
         state: Iteration,
     ) -> Result<(Iteration, Option<KV>), Error> {
-        let guess = state.get_param().cloned().ok_or_else(|| no_guess())?;
+        let guess = state.get_param().cloned().ok_or_else(no_guess)?;
         let expansion = problem.problem("expansions", |window| Ok(window.expand(&guess, Order::Second)?))?;
         let Some(mut step) = self.direction(&expansion) else {
             self.stuck = true;

@@ -125,7 +125,7 @@ impl Signals {
             let mut product = T::from(self.weights[start][i]);
             for (j, node) in nodes.iter().enumerate() {
                 if j != i {
-                    product = product * ((time - *node) / self.unit);
+                    product *= (time - *node) / self.unit;
                 }
             }
             *value = product;

@@ -71,7 +71,11 @@ impl<'a> Task<'a> {
         let mut followed = names.clone();
         for name in outputs {
             if !names.contains(name) && signals.find(name).is_some() && !sought.known.contains_key(name) {
-                let alone = Model::new(system, &question([&names[..], &[name.clone()]].concat()), signals)?;
+                let alone = Model::new(
+                    system,
+                    &question([&names[..], std::slice::from_ref(name)].concat()),
+                    signals,
+                )?;
                 let depends = alone.system.graph.symbols_of([alone.rate_nodes[names.len()]]);
                 if alone.symbols[..names.len()].iter().any(|symbol| depends.contains(symbol)) {
                     followed.push(name.clone());

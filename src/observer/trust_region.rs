@@ -56,7 +56,7 @@ impl Solver<Window<'_>, Iteration> for TrustRegion {
         problem: &mut Problem<Window<'_>>,
         state: Iteration,
     ) -> Result<(Iteration, Option<KV>), Error> {
-        let guess = state.get_param().cloned().ok_or_else(|| no_guess())?;
+        let guess = state.get_param().cloned().ok_or_else(no_guess)?;
         let here = match self.here.take() {
             Some(here) => here,
             None => {
