@@ -58,7 +58,7 @@ fn palms() -> impl Strategy<Value = String> {
 /// How many scenes could be used.
 static OBSERVED: AtomicUsize = AtomicUsize::new(0);
 
-const CASES: u32 = 150;
+const CASES: u32 = 100;
 
 /// A case takes less than half a second; the machine may have other work.
 const LONGEST: Duration = Duration::from_secs(10);
