@@ -1,14 +1,14 @@
 //! `palmistry eval`: the value of an expression at a point.
 
+use super::arguments::{Wanted, assignments};
 use super::output::{print_json, print_text};
-use super::rank::Wanted;
 use super::{Status, Unusable};
 use clap::Args;
 use dashu::rational::RBig;
 use palmistry::claim::{PointValue, computed_value};
 use palmistry::expression::{NodeId, Symbol};
 use palmistry::observability::Certainty;
-use palmistry::{System, ValueError, certified_value, number::parse_decimal, system::Value};
+use palmistry::{System, ValueError, certified_value, system::Value};
 use serde_json::{Value as Json, json};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -37,33 +37,6 @@ pub(crate) struct Eval {
     /// Print one JSON object with 'value' (a string), 'exact' where the value is rational, 'numbers' and 'at'.
     #[arg(long)]
     pub json: bool,
-}
-
-/// Reads `name=value` pairs, for the symbols of a system.
-pub(crate) fn assignments(system: &System, pairs: &[String]) -> miette::Result<HashMap<Symbol, RBig>> {
-    let mut values = HashMap::new();
-    for pair in pairs.iter().filter(|pair| !pair.trim().is_empty()) {
-        let Some((name, text)) = pair.split_once('=') else {
-            return Err(Unusable::report(
-                format!("'{pair}' is not of the form name=value"),
-                "as in --at rho=1/2,g=0",
-            ));
-        };
-        let Some(symbol) = system.find_symbol(name.trim()) else {
-            let known: Vec<&str> = system.symbols().map(|(symbol, _)| system.symbol_name(symbol)).collect();
-            return Err(Unusable::report(
-                format!("'{}' is no state or parameter of {}", name.trim(), system.name),
-                format!("these are: {}", known.join(", ")),
-            ));
-        };
-        let Some(value) = parse_decimal(text) else {
-            return Err(Unusable::report(format!("'{text}' is not a number"), "such as 2, -.5, 1e-3 or 1/3"));
-        };
-        if values.insert(symbol, value).is_some() {
-            return Err(Unusable::report(format!("'{}' is given twice", name.trim()), "give it once"));
-        }
-    }
-    Ok(values)
 }
 
 impl Eval {

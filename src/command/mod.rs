@@ -3,6 +3,7 @@
 //! Results go to standard output (as JSON with `--json`), progress and words to standard error. The exit status is 0
 //! when all is as expected, 1 when something is not, 2 when the input could not be used.
 
+mod arguments;
 mod certify;
 mod eval;
 mod observe;

@@ -1,10 +1,10 @@
 //! `palmistry rank`: is the state seen in the outputs?
 
-use super::eval::assignments;
+use super::arguments::{Wanted, assignments};
 use super::output::{INTERRUPTED, print_json, print_text, progress};
 use super::{Status, Unusable};
-use clap::{Args, ValueEnum};
-use palmistry::observability::{Certainty, MOST_DIGITS};
+use clap::Args;
+use palmistry::observability::MOST_DIGITS;
 use palmistry::report::{rank_json, rank_text};
 use palmistry::{RankQuestion, System, answer_rank};
 use std::collections::BTreeMap;
@@ -47,22 +47,6 @@ pub(crate) struct Rank {
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
-}
-
-/// What a verdict has to be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Wanted {
-    Certified,
-    Computed,
-}
-
-impl From<Wanted> for Certainty {
-    fn from(wanted: Wanted) -> Self {
-        match wanted {
-            Wanted::Certified => Certainty::Certified,
-            Wanted::Computed => Certainty::Computed,
-        }
-    }
 }
 
 impl Rank {
