@@ -257,7 +257,7 @@ pub(super) fn studies(observed: &Observed<'_>) -> Markup {
                     "The first window by least squares, over many seeds: the root of the mean square error of those that converged, and "
                     "the bound at the truth, both in decades. Dots on the line: nothing more is to be had from these readings. Dots "
                     "above it: the search did not find the best state. By chance they are off by a part of about one in the root of twice "
-                    "the number of seeds, at all levels alike, for a seed has the same errors at each but for their size. "
+                    "the number of seeds. "
                     @for level in observed.noise {
                         (format!("{:.0e} m: {} of {} converged. ", level.noise, level.converged, level.seeds))
                     }
