@@ -90,7 +90,7 @@ impl Flow<'_> {
                 }
             };
         }
-        sized!(3 6 10)
+        sized!(3 4 6 10)
     }
 
     fn integrate<J: Jet>(
