@@ -143,7 +143,7 @@ fn a_filter_ends_near_the_truth() {
     let truth = [0.7, -1.1, 2.3];
     let signals = readings(truth, 301);
     let task = Task::new(&system(OSCILLATOR), &sought(&[("v", -1.0), ("w", 2.5)]), &signals, &NEVER).unwrap();
-    let track = Kalman::default().observe(&task);
+    let track = Kalman { prior: 0.1, process_noise: 1e-6, least_sigma: 1e-6 }.observe(&task);
     assert!((track.last().unwrap().state[1] - truth[2]).abs() < 1e-4, "{:?}", track.last());
     assert_eq!(track.unseen, 0);
 }

@@ -3,8 +3,8 @@
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{Simulation, TOUCH, body, constants, deviation};
 use crate::observer::{
-    Fault, HighGain, Integration, Kalman, Method, ModelError, MovingWindow, Observer, Reading, Record,
-    RecordError, Signals, Sought, Task, Track, WhenBlind,
+    Fault, Integration, Method, ModelError, MovingWindow, Observer, Reading, Record, RecordError, Signals,
+    Sought, Task, Track,
 };
 use crate::system::{Kind, System, nearest};
 use miette::Diagnostic;
@@ -116,12 +116,8 @@ impl Experiment {
             scene::Method::Newton => Box::new(self.window(Method::Newton)),
             scene::Method::TrustRegion => Box::new(self.window(Method::TrustRegion)),
             scene::Method::Integration => Box::new(Integration),
-            scene::Method::Kalman => Box::new(Kalman {
-                prior: settings.kalman.prior,
-                process_noise: settings.kalman.process_noise,
-                ..Kalman::default()
-            }),
-            scene::Method::HighGain => Box::new(HighGain { gain: settings.high_gain.gain }),
+            scene::Method::Kalman => Box::new(settings.kalman),
+            scene::Method::HighGain => Box::new(settings.high_gain),
         }
     }
 
@@ -133,10 +129,7 @@ impl Experiment {
             window: settings.window,
             steps: settings.steps as u64,
             blind: settings.blind,
-            when_blind: match settings.when_blind {
-                scene::WhenBlind::Hold => WhenBlind::Hold,
-                scene::WhenBlind::Integrate => WhenBlind::Integrate,
-            },
+            when_blind: settings.when_blind,
         }
     }
 

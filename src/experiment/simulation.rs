@@ -2,8 +2,8 @@
 
 use super::scene::{self, Scene, SceneError, Simulated};
 use crate::mechanics::moving::{
-    CentreOfMass, Course, DEFAULT_TOLERANCE, Drive, Ended, Form, FormError, Knots, Oscillation, PushedPalm,
-    Scene as Bodies, SceneError as Refused, Shape, SplineDraws, Trajectory, simulate as follow,
+    CentreOfMass, DEFAULT_TOLERANCE, Ended, Form, FormError, Scene as Bodies, SceneError as Refused, Shape,
+    SplineDraws, Trajectory, simulate as follow,
 };
 use crate::observer::{Record, RecordError};
 use rand::SeedableRng;
@@ -40,7 +40,7 @@ impl Simulation {
             gravity: simulated.body.gravity,
             palm_inertia: simulated.palms.inertia,
             palm_lengths: [f64::INFINITY; 2],
-            drive: drive(&simulated.palms.drive),
+            drive: simulated.palms.drive.clone(),
             tolerance: DEFAULT_TOLERANCE,
             shape,
         };
@@ -205,9 +205,9 @@ fn outline(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {
         scene::Shape::Superellipse { semi_axes, exponent, rounding } => {
             Form::Superellipse { semi_axes: *semi_axes, exponent: *exponent, rounding: *rounding }
         }
-        scene::Shape::Spline { radii, knots } => Form::Spline { radii: *radii, knots: knots_of(*knots) },
+        scene::Shape::Spline { radii, knots } => Form::Spline { radii: *radii, knots: *knots },
         scene::Shape::RandomSpline { seed, knots } => {
-            let drawn = SplineDraws::new(*seed, knots_of(*knots)).until_convex()?;
+            let drawn = SplineDraws::new(*seed, *knots).until_convex()?;
             return match centre {
                 CentreOfMass::Uniform => Ok((drawn.shape, Some(drawn.draws))),
                 CentreOfMass::At(_) => Ok((Shape::new(&drawn.form, centre)?, Some(drawn.draws))),
@@ -215,33 +215,4 @@ fn outline(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {
         }
     };
     Ok((Shape::new(&form, centre)?, None))
-}
-
-fn knots_of(knots: scene::Knots) -> Knots {
-    match knots {
-        scene::Knots::Uniform => Knots::Uniform,
-        scene::Knots::Centripetal => Knots::Centripetal,
-        scene::Knots::Chord => Knots::Chord,
-    }
-}
-
-fn drive(drive: &scene::Drive) -> Drive {
-    let swings = |swings: &[scene::Swing]| -> Vec<Oscillation> {
-        let one =
-            |s: &scene::Swing| Oscillation { amplitude: s.amplitude, frequency: s.frequency, phase: s.phase };
-        swings.iter().map(one).collect()
-    };
-    match drive {
-        scene::Drive::Prescribed(palms) => Drive::Prescribed(palms.each_ref().map(|p| Course {
-            start: p.start,
-            rate: p.rate,
-            swings: swings(&p.swings),
-        })),
-        scene::Drive::Torques(palms) => Drive::Torques(palms.each_ref().map(|p| PushedPalm {
-            angle: p.angle,
-            rate: p.rate,
-            torque: p.torque,
-            swings: swings(&p.swings),
-        })),
-    }
 }

@@ -7,6 +7,7 @@ use super::{Lost, Model};
 use crate::expression::{NodeId, Symbol, gradient};
 use crate::number::{Duals, Refusal};
 use nalgebra::{DMatrix, DVector};
+use serde::Deserialize;
 use std::cell::Cell;
 use std::collections::HashMap;
 
@@ -20,7 +21,8 @@ use std::collections::HashMap;
 ///
 /// Reference: J. P. Gauthier, H. Hammouri, S. Othman, A simple observer for nonlinear systems, IEEE TAC 37(6), 1992; for
 /// several outputs G. Bornard and H. Hammouri, CDC 1991.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct HighGain {
     /// In 1/s: errors die out as `exp(-gain t)`, and noise is amplified by powers of it.
     pub gain: f64,
@@ -28,7 +30,7 @@ pub struct HighGain {
 
 impl Default for HighGain {
     fn default() -> Self {
-        HighGain { gain: 60.0 }
+        HighGain { gain: 20.0 }
     }
 }
 

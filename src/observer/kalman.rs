@@ -3,6 +3,7 @@
 use super::task::{Moment, Observer, Task, Track};
 use super::{Lost, Order};
 use nalgebra::{Cholesky, DMatrix, DVector};
+use serde::Deserialize;
 
 /// The extended Kalman filter with continuous equations and sampled readings.
 ///
@@ -10,7 +11,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 /// derivative of the flow over the step; at a sample state and covariance are corrected by the gain `P H^T (H P H^T + R)^-1`.
 ///
 /// Reference: A. Gelb (ed.), Applied Optimal Estimation, 1974, table 6.1-1, with the flow's derivative in place of an Euler step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct Kalman {
     /// The standard deviation of the first guess, relative to the sizes of what is sought.
     pub prior: f64,
@@ -23,7 +25,7 @@ pub struct Kalman {
 
 impl Default for Kalman {
     fn default() -> Self {
-        Kalman { prior: 0.1, process_noise: 1e-6, least_sigma: 1e-6 }
+        Kalman { prior: 0.5, process_noise: 0.01, least_sigma: 1e-6 }
     }
 }
 

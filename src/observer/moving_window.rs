@@ -6,6 +6,7 @@ use super::window::Window;
 use super::{Newton, Order, TrustRegion, cramer_rao};
 use argmin::core::{Executor, State, TerminationReason, TerminationStatus};
 use nalgebra::DVector;
+use serde::Deserialize;
 use std::time::Instant;
 
 /// How the smallest error of a window is sought.
@@ -18,12 +19,14 @@ pub enum Method {
 }
 
 /// What an observer does while it cannot see.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum WhenBlind {
-    /// Believe what it believed.
-    Hold,
-    /// Integrate the equations with the outputs as they are read.
+    /// `integrate`: the equations, with the outputs as they are read.
+    #[default]
     Integrate,
+    /// `hold`: believe what it believed.
+    Hold,
 }
 
 /// The observer by windows.

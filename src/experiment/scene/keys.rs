@@ -1,8 +1,10 @@
 //! The file as it is written: what serde reads, before it is known whether the values go together.
 
-use super::observing::{Data, HighGain, Kalman, Method, Sensor, Study, WhenBlind};
+use super::observing::{Data, Method, Sensor, Study};
 use super::place::Places;
-use super::simulated::{Body, PrescribedPalm, TorquedPalm};
+use super::simulated::Body;
+use crate::mechanics::moving::{Course, PushedPalm};
+use crate::observer::{HighGain, Kalman, WhenBlind};
 use crate::system::Problem;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -37,8 +39,8 @@ fn one() -> u64 {
 #[serde(deny_unknown_fields)]
 pub(super) struct PalmsKeys {
     pub inertia: [f64; 2],
-    pub prescribed: Option<[PrescribedPalm; 2]>,
-    pub torques: Option<[TorquedPalm; 2]>,
+    pub prescribed: Option<[Course; 2]>,
+    pub torques: Option<[PushedPalm; 2]>,
 }
 
 #[derive(Deserialize)]

@@ -10,10 +10,8 @@ mod place;
 mod simulated;
 
 pub use crate::system::ReadError as SceneError;
-pub use observing::{
-    BasinStudy, Data, Guess, HighGain, Kalman, Method, NoiseStudy, ObserverSettings, Sensor, Study, WhenBlind,
-};
-pub use simulated::{Body, Drive, Knots, Palms, PrescribedPalm, Shape, Simulated, Swing, TorquedPalm};
+pub use observing::{BasinStudy, Data, Guess, Method, NoiseStudy, ObserverSettings, Sensor, Study};
+pub use simulated::{Body, Palms, Shape, Simulated};
 
 use crate::observer::FaultRules;
 use crate::system::{Problem, load};

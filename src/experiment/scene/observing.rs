@@ -1,6 +1,6 @@
 //! What is measured, and what is to be found out from it.
 
-use crate::observer::OnFault;
+use crate::observer::{HighGain, Kalman, OnFault, WhenBlind};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 use std::collections::BTreeMap;
@@ -91,48 +91,6 @@ pub enum Method {
     Kalman,
     /// `high-gain`: the high-gain observer.
     HighGain,
-}
-
-/// What to do while the outputs do not tell the state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum WhenBlind {
-    /// `integrate`: carry the last estimate along by the model.
-    #[default]
-    Integrate,
-    /// `hold`: keep the last estimate as it is.
-    Hold,
-}
-
-/// The extended Kalman filter's settings.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Kalman {
-    /// `process_noise`: the standard deviation of what the model leaves out of a sought state's rate, relative to the
-    /// state, per square root of a second; 0.01 unless given.
-    pub process_noise: f64,
-    /// `prior`: the standard deviation of the first guess, relative to it; 0.5 unless given.
-    pub prior: f64,
-}
-
-impl Default for Kalman {
-    fn default() -> Self {
-        Kalman { process_noise: 0.01, prior: 0.5 }
-    }
-}
-
-/// The high-gain observer's settings.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct HighGain {
-    /// `gain`, in 1/s: the rate at which an error is to decay; 20 unless given.
-    pub gain: f64,
-}
-
-impl Default for HighGain {
-    fn default() -> Self {
-        HighGain { gain: 20.0 }
-    }
 }
 
 /// What to try many times over.

@@ -1,5 +1,6 @@
 //! What is simulated: a body, two palms, and for how long. Lengths in metres, masses in kilograms, angles in radians.
 
+use crate::mechanics::moving::{Drive, Knots};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Deserialize;
@@ -124,19 +125,6 @@ pub enum Shape {
     },
 }
 
-/// How the parameter of a closed spline grows from one point to the next.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Knots {
-    /// `uniform`: by the same everywhere.
-    #[default]
-    Uniform,
-    /// `centripetal`: by the square root of the points' distance.
-    Centripetal,
-    /// `chord`: by the points' distance.
-    Chord,
-}
-
 /// The two palms; palm 2 is measured from palm 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Palms {
@@ -144,56 +132,4 @@ pub struct Palms {
     pub inertia: [f64; 2],
     /// `prescribed` or `torques`: what moves them.
     pub drive: Drive,
-}
-
-/// What moves the palms.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Drive {
-    /// Their angles are given; the motors' torques follow.
-    Prescribed([PrescribedPalm; 2]),
-    /// The motors' torques are given; the angles follow.
-    Torques([TorquedPalm; 2]),
-}
-
-/// A palm whose angle is `start + rate t` and its swings.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PrescribedPalm {
-    /// In rad: palm 1 from the X axis, palm 2 from palm 1.
-    pub start: f64,
-    /// In rad/s; 0 unless given.
-    #[serde(default)]
-    pub rate: f64,
-    /// Amplitudes in rad; none unless given.
-    #[serde(default)]
-    pub swings: Vec<Swing>,
-}
-
-/// A palm whose motor has a torque `torque` and its swings.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TorquedPalm {
-    /// The angle at the start, in rad: palm 1 from the X axis, palm 2 from palm 1.
-    pub angle: f64,
-    /// The rate at the start, in rad/s; 0 unless given.
-    #[serde(default)]
-    pub rate: f64,
-    /// In N m.
-    pub torque: f64,
-    /// Amplitudes in N m; none unless given.
-    #[serde(default)]
-    pub swings: Vec<Swing>,
-}
-
-/// `amplitude sin(2 pi frequency t + phase)`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Swing {
-    /// In the unit of what swings.
-    pub amplitude: f64,
-    /// In Hz.
-    pub frequency: f64,
-    /// In rad; 0 unless given.
-    #[serde(default)]
-    pub phase: f64,
 }

@@ -1,7 +1,8 @@
 mod mistakes;
 
 use super::*;
-use crate::observer::OnFault;
+use crate::mechanics::moving::{Course, Drive, Knots, Oscillation, PushedPalm};
+use crate::observer::{HighGain, Kalman, OnFault, WhenBlind};
 
 const WHOLE: &str = r#"title = "Both palms turn at one constant rate"
 model = "../proofs/general.proof"
@@ -124,11 +125,9 @@ fn every_key_arrives_where_it_belongs() {
         gravity: -9.8,
     };
     assert_eq!(*body, body_meant);
-    let swings = vec![Swing { amplitude: 0.1, frequency: 1.0, phase: 0.2 }];
-    let prescribed = [
-        PrescribedPalm { start: 0.8, rate: 0.5, swings },
-        PrescribedPalm { start: 1.6, rate: 0.0, swings: Vec::new() },
-    ];
+    let swings = vec![Oscillation { amplitude: 0.1, frequency: 1.0, phase: 0.2 }];
+    let prescribed =
+        [Course { start: 0.8, rate: 0.5, swings }, Course { start: 1.6, rate: 0.0, swings: Vec::new() }];
     assert_eq!(*palms, Palms { inertia: [0.5, 0.4], drive: Drive::Prescribed(prescribed) });
     assert_eq!(scene.sensor, Sensor { noise: 1e-5, resolution: 1e-4, jitter: 1e-3 });
     assert_eq!(scene.data, Data { record: None, on_fault: OnFault::Skip, spike: 6.0 });
@@ -170,7 +169,7 @@ fn what_is_not_given_has_its_default() {
     assert_eq!((simulated.duration, simulated.samples), (1.0, 101));
     assert_eq!((simulated.body.orientation, simulated.body.rate, simulated.body.gravity), (0.0, 0.0, -9.81));
     assert_eq!(simulated.body.centre_of_mass, None);
-    let palm = |angle, torque| TorquedPalm { angle, rate: 0.0, torque, swings: Vec::new() };
+    let palm = |angle, torque| PushedPalm { angle, rate: 0.0, torque, swings: Vec::new() };
     assert_eq!(simulated.palms.drive, Drive::Torques([palm(0.8, 10.0), palm(1.6, -10.0)]));
     assert_eq!(scene.seed, 1);
     assert_eq!(scene.sensor, Sensor::default());

@@ -1,13 +1,16 @@
 //! What moves the palms: angles that are told, or torques.
 
+use serde::Deserialize;
 use std::f64::consts::TAU;
 
 /// `amplitude sin(2 pi frequency t + phase)`: the amplitude in the unit of what oscillates, the frequency in hertz,
-/// the phase in radians.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// the phase in radians, zero unless given.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Oscillation {
     pub amplitude: f64,
     pub frequency: f64,
+    #[serde(default)]
     pub phase: f64,
 }
 
@@ -21,11 +24,14 @@ impl Oscillation {
 }
 
 /// An angle that is told for all times: `start + rate t` and oscillations, in radians and seconds. A phase that is
-/// not zero moves the angle at time zero away from `start`.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// not zero moves the angle at time zero away from `start`. What is not given is zero.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Course {
     pub start: f64,
+    #[serde(default)]
     pub rate: f64,
+    #[serde(default)]
     pub swings: Vec<Oscillation>,
 }
 
@@ -42,11 +48,14 @@ impl Course {
 
 /// A palm that a motor pushes: where and how fast it starts, in radians and seconds, and the motor's torque about the
 /// origin, `torque` and oscillations, in newton metres.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PushedPalm {
     pub angle: f64,
+    #[serde(default)]
     pub rate: f64,
     pub torque: f64,
+    #[serde(default)]
     pub swings: Vec<Oscillation>,
 }
 

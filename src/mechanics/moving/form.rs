@@ -1,5 +1,7 @@
 //! How a body looks, as a researcher writes it down, and why it may be no body that palms can hold.
 
+use serde::Deserialize;
+
 /// The outline of a body, in a frame of its own. Lengths are in metres, angles in radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Form {
@@ -21,7 +23,8 @@ pub enum Form {
 ///
 /// Splines with the other two are convex as well for all radii on a grid over those of section 3.4, with steps of 0.2 m;
 /// that they always are is not proved, so each is checked.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Knots {
     /// By the same everywhere. Three points are the affine image of an equilateral triangle's corners, and then so
     /// is the spline: it is convex whatever the radii.

@@ -47,6 +47,7 @@ impl Checks<'_> {
         self.positive("observer.blind", keys.blind, "")?;
         self.not_negative("observer.kalman.process_noise", keys.kalman.process_noise, "")?;
         self.positive("observer.kalman.prior", keys.kalman.prior, "")?;
+        self.positive("observer.kalman.least_sigma", keys.kalman.least_sigma, "m")?;
         self.positive("observer.high_gain.gain", keys.high_gain.gain, "1/s")?;
         Ok(ObserverSettings {
             methods: keys.methods,

@@ -2,8 +2,9 @@
 
 use super::super::keys::PalmsKeys;
 use super::super::simulated::MOST_JITTER;
-use super::super::{Body, Drive, Palms, Sensor, Shape, Swing};
+use super::super::{Body, Palms, Sensor, Shape};
 use super::{Checks, MOST_SAMPLES, Problem, Simulated};
+use crate::mechanics::moving::{Drive, Oscillation};
 use std::f64::consts::PI;
 
 impl Checks<'_> {
@@ -170,7 +171,7 @@ impl Checks<'_> {
         Err(self.wrong(place, message, "give an angle between 0 and pi, measured from palm 1"))
     }
 
-    fn swings(&self, place: &str, swings: &[Swing]) -> Result<(), Problem> {
+    fn swings(&self, place: &str, swings: &[Oscillation]) -> Result<(), Problem> {
         for (index, swing) in swings.iter().enumerate() {
             let place = format!("{place}.swings[{index}]");
             self.finite(&format!("{place}.amplitude"), swing.amplitude)?;
