@@ -81,6 +81,7 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
         verdict,
         expected,
         remark: claim.remark.clone(),
+        fields: if claim.body.is_about_the_codistribution() { system.roles() } else { Vec::new() },
         seconds: begin.elapsed().as_secs_f64(),
     }
 }

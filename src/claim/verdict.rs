@@ -1,7 +1,7 @@
 //! What a claim can come to.
 
 use crate::observability::StateInWords;
-use crate::system::Expectation;
+use crate::system::{Expectation, FieldRole};
 
 /// A state in exact numbers at which a statement fails.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,6 +116,8 @@ pub struct Outcome {
     pub ok: bool,
     /// The remark in the file.
     pub remark: Option<String>,
+    /// The fields of which words are made, where the claim is about the rank of the codistribution.
+    pub fields: Vec<FieldRole>,
     /// How long it took.
     pub seconds: f64,
 }

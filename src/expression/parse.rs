@@ -91,7 +91,7 @@ pub(crate) fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<
 }
 
 /// Words that begin something and so cannot be names.
-pub(crate) const RESERVED: [&str; 25] = [
+pub(crate) const RESERVED: [&str; 27] = [
     "system",
     "cite",
     "use",
@@ -99,6 +99,8 @@ pub(crate) const RESERVED: [&str; 25] = [
     "param",
     "angle",
     "let",
+    "drift",
+    "input",
     "field",
     "output",
     "sample",

@@ -8,7 +8,7 @@ use super::sweep::{SweepOptions, SweepReport, sweep};
 use crate::expression::parse::{Depth, equation, read_all};
 use crate::expression::syntax::Equation;
 use crate::expression::{NodeId, Symbol};
-use crate::system::{Kind, SymbolInfo, System, Value};
+use crate::system::{FieldRole, Kind, SymbolInfo, System, Value};
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -59,6 +59,8 @@ pub struct RankAnswer {
     pub file: String,
     pub title: String,
     pub outputs: usize,
+    /// The fields that the words take.
+    pub fields: Vec<FieldRole>,
     pub seed: u64,
     pub dimension: usize,
     pub branches: Vec<BranchAnswer>,
@@ -100,11 +102,12 @@ pub fn parse_condition(text: &str) -> Result<Equation, String> {
 /// Answers a question about the rank of a system's observability codistribution.
 ///
 /// # Errors
-/// In words: no states or outputs, conditions that cannot be solved, a pole everywhere, an empty sample box.
+/// In words: no states or outputs, no drift or input, conditions that cannot be solved, a pole everywhere, an empty sample box.
 pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<RankAnswer, String> {
     if system.states.is_empty() || system.outputs.is_empty() {
         return Err(format!("{} declares no states or no outputs", system.name));
     }
+    system.require_motion()?;
     let mut equations = Vec::new();
     for text in &question.conditions {
         equations.push(parse_condition(text)?);
@@ -180,6 +183,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         file: system.name.clone(),
         title: system.title.clone(),
         outputs: system.outputs.len(),
+        fields: system.roles(),
         seed: question.seed,
         dimension: system.states.len(),
         branches: answers,

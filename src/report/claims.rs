@@ -1,5 +1,6 @@
 //! Outcomes of claims, in three notations.
 
+use super::ranks::{fields_json, fields_text};
 use crate::claim::{Outcome, Verdict, Witness};
 use crate::number::{parse_decimal, rational_to_f64};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -49,6 +50,9 @@ pub fn claim_json(outcome: &Outcome) -> Value {
         object["definitions"] =
             outcome.definitions.iter().map(|(name, text)| (name.clone(), json!(text))).collect();
     }
+    if !outcome.fields.is_empty() {
+        object["fields"] = fields_json(&outcome.fields);
+    }
     if let Some(scanned) = &outcome.scanned {
         object["scanned"] = json!(scanned);
     }
@@ -94,6 +98,9 @@ pub(crate) fn with_decimal(value: &str) -> String {
 pub fn claim_line(outcome: &Outcome) -> String {
     let mark = if outcome.ok { "ok  " } else { "FAIL" };
     let mut line = format!("  {mark} {:<10} {}", outcome.word(), outcome.id);
+    if !outcome.fields.is_empty() {
+        line.push_str(&format!("  [{}]", fields_text(&outcome.fields)));
+    }
     let explain = |verdict: &Verdict| match verdict {
         Verdict::Proved { log2_error, .. } if *log2_error == f64::NEG_INFINITY => "certain".to_owned(),
         Verdict::Proved { log2_error, .. } => {

@@ -3,6 +3,7 @@
 use crate::observability::{
     BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, Spectrum, Stop, SweepReport,
 };
+use crate::system::FieldRole;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -13,6 +14,18 @@ fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
         .map(|(rank, count)| (rank.to_string(), json!(count)))
         .collect::<serde_json::Map<_, _>>()
         .into()
+}
+
+/// The fields of which words are made, each with its role.
+pub(crate) fn fields_json(fields: &[FieldRole]) -> Value {
+    fields.iter().map(|field| json!({ "name": field.name, "role": field.role.name() })).collect()
+}
+
+/// The same in words: `drift f, input g1`.
+pub(crate) fn fields_text(fields: &[FieldRole]) -> String {
+    let each: Vec<String> =
+        fields.iter().map(|field| format!("{} {}", field.role.name(), field.name)).collect();
+    each.join(", ")
 }
 
 /// JSON has no infinity; a gap without bound is null.
@@ -129,6 +142,7 @@ pub fn rank_json(answer: &RankAnswer) -> Value {
     let mut branches: Vec<Value> = answer.branches.iter().map(branch_json).collect();
     let mut object = if branches.len() == 1 { branches.remove(0) } else { total_json(answer, branches) };
     object["file"] = json!(answer.file);
+    object["fields"] = fields_json(&answer.fields);
     object["dimension"] = json!(answer.dimension);
     object["seed"] = json!(answer.seed);
     object
@@ -230,6 +244,7 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
 /// An answer as text.
 pub fn rank_text(answer: &RankAnswer) -> String {
     let mut out = format!("{}: {} states, {} outputs\n", answer.title, answer.dimension, answer.outputs);
+    let _ = writeln!(out, "fields: {}", fields_text(&answer.fields));
     for branch in &answer.branches {
         if !branch.conditions.is_empty() {
             let _ = writeln!(out, "where {}", branch.conditions.join(", "));

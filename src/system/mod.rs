@@ -17,5 +17,5 @@ mod read;
 pub use error::ReadError;
 pub(crate) use error::{Problem, nearest};
 pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement};
-pub use model::{Assignment, Field, Kind, Matrix, Range, SymbolInfo, System, Value};
+pub use model::{Assignment, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value};
 pub(crate) use read::load;

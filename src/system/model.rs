@@ -1,6 +1,8 @@
 //! What a system is.
 
+use super::error::Problem;
 use super::grammar::ClaimSyntax;
+use crate::expression::syntax::Span;
 use crate::expression::{Derivation, Graph, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -35,13 +37,46 @@ pub struct SymbolInfo {
     pub range: Option<Range>,
 }
 
+/// What a vector field is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// How the states move by themselves; a system has at most one.
+    Drift,
+    /// How they move besides where something drives them: `x' = f + u g`.
+    Input,
+    /// Only differentiated along, as in `L(f, e)`: no rank and no observer knows of it.
+    Other,
+}
+
+impl Role {
+    /// The word that declares a field of this role.
+    pub fn name(self) -> &'static str {
+        match self {
+            Role::Drift => "drift",
+            Role::Input => "input",
+            Role::Other => "field",
+        }
+    }
+}
+
 /// A vector field: `x' = component` for each state that it moves.
 #[derive(Clone, Debug)]
 pub struct Field {
     pub name: String,
+    /// What it is for. Fields of imported systems keep theirs.
+    pub role: Role,
+    /// Where its name stands in the text of its file.
+    pub span: Span,
     /// The states that it moves, and how; all others stand still.
     pub components: Vec<(Symbol, NodeId)>,
     pub(crate) derivation: Derivation,
+}
+
+/// A field that takes part in a rank, for reports.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FieldRole {
+    pub name: String,
+    pub role: Role,
 }
 
 /// A matrix of expressions, by rows.
@@ -105,7 +140,7 @@ pub struct System {
     pub graph: Graph,
     /// The states, in the order in which the file names them.
     pub states: Vec<Symbol>,
-    /// The vector fields of this file, in order; the first is the drift by custom.
+    /// The vector fields of this file, of any role, in order. Words of Lie derivatives name fields by their places here.
     pub fields: Vec<Field>,
     /// The outputs: how they are written, and what they are.
     pub outputs: Vec<(String, NodeId)>,
@@ -156,6 +191,73 @@ impl System {
     /// The field of a name, imported ones included.
     pub(crate) fn field_mut(&mut self, name: &str) -> Option<&mut Field> {
         self.fields.iter_mut().chain(&mut self.imported_fields).find(|field| field.name == name)
+    }
+
+    /// The places of the fields that move the states: the drift and the inputs, in the order of the file. Ranks are made
+    /// of these.
+    pub fn moving_fields(&self) -> Vec<usize> {
+        (0..self.fields.len()).filter(|field| self.fields[*field].role != Role::Other).collect()
+    }
+
+    /// The place of the drift among [`System::fields`].
+    pub fn drift(&self) -> Option<usize> {
+        self.fields.iter().position(|field| field.role == Role::Drift)
+    }
+
+    /// Name and role of the fields that move the states, in the order of the file.
+    pub fn roles(&self) -> Vec<FieldRole> {
+        let role =
+            |field: usize| FieldRole { name: self.fields[field].name.clone(), role: self.fields[field].role };
+        self.moving_fields().into_iter().map(role).collect()
+    }
+
+    /// Nothing, where a field moves the states.
+    ///
+    /// # Errors
+    /// In words, with the line and the word to add, where no field is a drift or an input: a rank of such a system would be
+    /// that of its outputs alone, or of fields that were declared for something else.
+    pub fn require_motion(&self) -> Result<(), String> {
+        match self.no_motion() {
+            None => Ok(()),
+            Some(problem) => {
+                let line = self.source.as_bytes()[..problem.span.start.min(self.source.len())]
+                    .iter()
+                    .filter(|byte| **byte == b'\n')
+                    .count()
+                    + 1;
+                let place = if self.fields.is_empty() {
+                    self.name.clone()
+                } else {
+                    format!("{}, line {line}", self.name)
+                };
+                Err(format!("{place}: {}; {}", problem.message, problem.help.unwrap_or_default()))
+            }
+        }
+    }
+
+    /// What is wrong with a rank where no field moves the states, at the first field, else at the beginning of the file.
+    pub(crate) fn no_motion(&self) -> Option<Problem> {
+        if !self.moving_fields().is_empty() {
+            return None;
+        }
+        let problem = match self.fields.first() {
+            Some(field) => {
+                let name = &field.name;
+                let message = format!(
+                    "'field {name}' is only differentiated along, and a rank needs a drift or an input"
+                );
+                Problem::new(&field.span, message, "neither drift nor input").help(format!(
+                    "write 'drift {name}' where the states move so by themselves, 'input {name}' where something drives them"
+                ))
+            }
+            None => {
+                let message =
+                    "a rank needs a drift or an input, and the file declares no field that moves its states";
+                Problem::new(&(0..0), message, "")
+                    .help("write \"drift f  others' = 0\" where the states rest")
+            }
+        };
+        Some(problem)
     }
 
     /// The names that a definition of the file has given.

@@ -3,7 +3,7 @@
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Item, parse_file};
-use super::model::{Field, Kind, Range, SymbolInfo, System, Value};
+use super::model::{Field, Kind, Range, Role, SymbolInfo, System, Value};
 use crate::expression::syntax::{Expr, Name, Span};
 use crate::expression::{Derivation, Graph, Symbol, parse_expression};
 use std::collections::{BTreeMap, HashMap};
@@ -122,8 +122,8 @@ impl System {
                 self.definition_texts.insert(name.text.clone(), text);
                 self.definitions.insert(name.text, value);
             }
-            Item::Field { name, components, others_are_zero } => {
-                self.field(name, &components, others_are_zero)?
+            Item::Field { role, name, components, others_are_zero } => {
+                self.field(role, name, &components, others_are_zero)?
             }
             Item::Output(list) => {
                 for expr in list {
@@ -153,6 +153,20 @@ impl System {
                 (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
                 (left, right) => matches!(left, Value::Scalar(_)) || matches!(right, Value::Scalar(_)),
             };
+            let of_codistribution =
+                matches!(values, (Value::CodistributionRank, _) | (_, Value::CodistributionRank));
+            if of_codistribution
+                && !self.states.is_empty()
+                && !self.outputs.is_empty()
+                && let Some(problem) = self.no_motion()
+            {
+                let span = if self.fields.is_empty() { statement.span.clone() } else { problem.span.clone() };
+                return Err(Problem {
+                    span,
+                    message: format!("claim {}: {}", claim.id, problem.message),
+                    ..problem
+                });
+            }
             if !comparable {
                 let message = format!("{} cannot equal {}", values.0.describe(), values.1.describe());
                 return Err(Problem::new(&statement.span, message, "this claim"));
@@ -200,6 +214,7 @@ impl System {
 
     fn field(
         &mut self,
+        role: Role,
         name: Name,
         components: &[(Name, Expr)],
         others_are_zero: bool,
@@ -210,6 +225,13 @@ impl System {
                 format!("there is a field '{}' already", name.text),
                 "the second one",
             ));
+        }
+        if let (Role::Drift, Some(first)) = (role, self.drift()) {
+            let message = format!("there is a drift '{}' already", self.fields[first].name);
+            return Err(Problem::new(&name.span, message, "the second one").help(format!(
+                "write 'input {0}' if it is driven, 'field {0}' if it is only differentiated along",
+                name.text
+            )));
         }
         let mut rates: Vec<(Symbol, _)> = Vec::new();
         for (state, expr) in components {
@@ -231,7 +253,7 @@ impl System {
                 .help("end it with: others' = 0, if the states that it does not name stand still"));
         }
         let derivation = Derivation::new(rates.iter().copied().collect());
-        self.fields.push(Field { name: name.text, components: rates, derivation });
+        self.fields.push(Field { name: name.text, role, span: name.span, components: rates, derivation });
         Ok(())
     }
 
