@@ -6,7 +6,7 @@ use super::ranks::{decide_codistribution, decide_rank};
 use super::verdict::{Outcome, Verdict};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{Branch, solve_conditions};
-use crate::system::{ClaimBody, ClaimSyntax, Expectation, Matrix, Statement, System, Value};
+use crate::system::{ClaimBody, ClaimSyntax, Expectation, Matrix, Statement, System, Value, in_one_line};
 use dashu::rational::RBig;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -42,10 +42,7 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
     let begin = Instant::now();
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id));
     let mut system = system.clone();
-    let text = |system: &System, statement: &Statement| {
-        let text = system.source.get(statement.span.clone()).unwrap_or_default();
-        text.split_whitespace().collect::<Vec<_>>().join(" ")
-    };
+    let text = |system: &System, statement: &Statement| in_one_line(&system.source, &statement.span);
     let mut printed = None;
     let (statement, verdict, expected) = match &claim.body {
         ClaimBody::Claim { statement, expected } => {
@@ -66,9 +63,10 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
         }
     };
     let print_is_wrong = printed.as_ref().is_none_or(|(_, verdict)| verdict.meets(Expectation::Refuted));
-    let mentioned = format!("{statement} {}", printed.as_ref().map_or("", |(text, _)| text));
+    let explanations = system.explanations(&claim.body);
     Outcome {
-        definitions: system.definitions_in(&mentioned),
+        definitions: explanations.definitions,
+        differentiated_along: explanations.fields,
         file: system.name.clone(),
         id: claim.id.clone(),
         ok: expected.is_none_or(|expected| verdict.meets(expected)) && print_is_wrong,

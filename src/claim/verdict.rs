@@ -106,8 +106,10 @@ pub struct Outcome {
     pub printed: Option<(String, Verdict)>,
     /// The text as the scanner left it; of a scanning fault only.
     pub scanned: Option<String>,
-    /// The abbreviations that these statements use: name and meaning.
+    /// The abbreviations that these statements use, those of imported files too: name and meaning, as it is written.
     pub definitions: Vec<(String, String)>,
+    /// The fields along which these statements differentiate: name and components, as they are written.
+    pub differentiated_along: Vec<(String, String)>,
     /// The verdict on the claim, or on the corrected form.
     pub verdict: Verdict,
     /// What the file expects; of a definition nothing.

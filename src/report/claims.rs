@@ -53,6 +53,10 @@ pub fn claim_json(outcome: &Outcome) -> Value {
     if !outcome.fields.is_empty() {
         object["fields"] = fields_json(&outcome.fields);
     }
+    if !outcome.differentiated_along.is_empty() {
+        object["differentiated_along"] =
+            outcome.differentiated_along.iter().map(|(name, text)| (name.clone(), json!(text))).collect();
+    }
     if let Some(scanned) = &outcome.scanned {
         object["scanned"] = json!(scanned);
     }
@@ -92,6 +96,13 @@ pub(crate) fn with_decimal(value: &str) -> String {
         Some(number) if value.contains('/') => format!("{value} = {:.8}", rational_to_f64(&number)),
         _ => value.to_owned(),
     }
+}
+
+/// What the names in a claim's statements stand for, a line each, in the notation of the language.
+pub(crate) fn explanations(outcome: &Outcome) -> Vec<String> {
+    let definitions = outcome.definitions.iter().map(|(name, text)| format!("{name} = {text}"));
+    let fields = outcome.differentiated_along.iter().map(|(name, text)| format!("field {name}  {text}"));
+    definitions.chain(fields).collect()
 }
 
 /// An outcome as a line for the terminal, with a second one where there is something to explain.

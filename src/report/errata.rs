@@ -1,7 +1,7 @@
 //! The errata as a text that a code host shows: for each the equation as printed, as it should be, and a state in exact
 //! numbers with both values.
 
-use super::claims::{error_bound, with_decimal};
+use super::claims::{error_bound, explanations, with_decimal};
 use crate::claim::{Outcome, Verdict, Witness};
 use crate::verification::{Equation, equations, in_order_of_the_thesis};
 use std::fmt::Write;
@@ -69,9 +69,8 @@ fn erratum(outcome: &Outcome, out: &mut String) {
 
 /// What the abbreviations of a statement mean.
 fn definitions(outcome: &Outcome, out: &mut String) {
-    if !outcome.definitions.is_empty() {
-        let lines: Vec<String> =
-            outcome.definitions.iter().map(|(name, text)| format!("{name} = {text}")).collect();
+    let lines = explanations(outcome);
+    if !lines.is_empty() {
         let _ = writeln!(out, "where\n\n{}", block(&lines.join("\n")));
     }
 }

@@ -1,6 +1,6 @@
 //! The page that the main job writes: one file, with its plots and nothing from elsewhere.
 
-use super::claims::{error_bound, witness_line};
+use super::claims::{error_bound, explanations, witness_line};
 use super::extremes::extremes;
 use super::observe::Observed;
 use super::observe_section::observed_section;
@@ -93,10 +93,11 @@ fn errata(outcomes: &[Outcome]) -> Markup {
                     }
                     p.corrected { span.label { "corrected" } code { (outcome.statement) } }
                     p { span.label { (outcome.verdict.word()) } (explain(&outcome.verdict)) }
-                    @if !outcome.definitions.is_empty() {
+                    @let lines = explanations(outcome);
+                    @if !lines.is_empty() {
                         details {
                             summary { "what the names mean" }
-                            @for (name, text) in &outcome.definitions { div { code { (name) " = " (text) } } }
+                            @for line in lines { div { code { (line) } } }
                         }
                     }
                     @if let Some(remark) = &outcome.remark { p.remark { (remark) } }

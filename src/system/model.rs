@@ -1,11 +1,12 @@
 //! What a system is.
 
 use super::error::Problem;
-use super::grammar::ClaimSyntax;
+use super::grammar::{ClaimBody, ClaimSyntax};
+use super::written::{Mention, Written, places_in_equation};
 use crate::expression::syntax::Span;
 use crate::expression::{Derivation, Graph, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 
 /// What a symbol is in its system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +70,18 @@ pub struct Field {
     pub span: Span,
     /// The states that it moves, and how; all others stand still.
     pub components: Vec<(Symbol, NodeId)>,
+    /// Its components as they are written.
+    pub(crate) written: Written,
     pub(crate) derivation: Derivation,
+}
+
+/// What names stand for, as it is written: name and text of each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Explanations {
+    /// Definitions: `name = text`.
+    pub definitions: Vec<(String, String)>,
+    /// Fields along which something is differentiated; the text is a list of `x' = rate`.
+    pub fields: Vec<(String, String)>,
 }
 
 /// A field that takes part in a rank, for reports.
@@ -150,8 +162,8 @@ pub struct System {
     pub claims: Vec<ClaimSyntax>,
     pub(crate) symbols: BTreeMap<Symbol, SymbolInfo>,
     pub(crate) definitions: BTreeMap<String, Value>,
-    /// The definitions of this file as they are written.
-    pub(crate) definition_texts: BTreeMap<String, String>,
+    /// The definitions as they are written, imported ones under their full names.
+    pub(crate) written: BTreeMap<String, Written>,
     /// Fields of imported systems, under their full names.
     pub(crate) imported_fields: Vec<Field>,
     pub(crate) partials: HashMap<Symbol, Derivation>,
@@ -265,20 +277,37 @@ impl System {
         self.definitions.get(name)
     }
 
-    /// The definitions of this file that a text mentions, and those that they mention in turn: name and text, in the
-    /// order in which they are met.
-    pub fn definitions_in(&self, text: &str) -> Vec<(String, String)> {
-        let mut found: Vec<(String, String)> = Vec::new();
-        let mut texts = vec![text.to_owned()];
-        while let Some(text) = texts.pop() {
-            let words = text.split(|c: char| !c.is_alphanumeric() && c != '_' && c != '.');
-            for word in words.filter(|word| !word.is_empty()) {
-                if let Some(definition) = self.definition_texts.get(word)
-                    && !found.iter().any(|(name, _)| name == word)
-                {
-                    found.push((word.to_owned(), definition.clone()));
-                    texts.push(definition.clone());
+    /// What the names in the statements of a claim stand for: definitions and fields, and those that they mention in turn,
+    /// in the order in which they are met; imported ones under the names that they have here.
+    pub fn explanations(&self, body: &ClaimBody) -> Explanations {
+        let mut places = Vec::new();
+        for statement in body.statements() {
+            for equation in [&statement.equation].into_iter().chain(&statement.conditions) {
+                places_in_equation(
+                    &self.source,
+                    equation,
+                    &|name| self.definitions.contains_key(name),
+                    &mut places,
+                );
+            }
+        }
+        places.sort_by_key(|(span, _)| span.start);
+        let mut waiting: VecDeque<Mention> = places.into_iter().map(|(_, mention)| mention).collect();
+        let mut found = Explanations::default();
+        while let Some(mention) = waiting.pop_front() {
+            let (list, name, written) = match mention {
+                Mention::Definition(name) => (&mut found.definitions, name.clone(), self.written.get(&name)),
+                Mention::Field(name) => {
+                    let field =
+                        self.fields.iter().chain(&self.imported_fields).find(|field| field.name == name);
+                    (&mut found.fields, name, field.map(|field| &field.written))
                 }
+            };
+            if let Some(written) = written
+                && !list.iter().any(|(known, _)| *known == name)
+            {
+                list.push((name, written.text()));
+                waiting.extend(written.mentions());
             }
         }
         found

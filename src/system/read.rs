@@ -4,6 +4,7 @@ use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Item, parse_file};
 use super::model::{Field, Kind, Range, Role, SymbolInfo, System, Value};
+use super::written::{Written, in_one_line, places_in};
 use crate::expression::syntax::{Expr, Name, Span};
 use crate::expression::{Derivation, Graph, Symbol, parse_expression};
 use std::collections::{BTreeMap, HashMap};
@@ -58,7 +59,7 @@ impl System {
             claims: Vec::new(),
             symbols: BTreeMap::new(),
             definitions: BTreeMap::new(),
-            definition_texts: BTreeMap::new(),
+            written: BTreeMap::new(),
             imported_fields: Vec::new(),
             partials: HashMap::new(),
         };
@@ -118,8 +119,7 @@ impl System {
                         "claim it as it is",
                     ));
                 }
-                let text = self.source[expr.span.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
-                self.definition_texts.insert(name.text.clone(), text);
+                self.written.insert(name.text.clone(), self.written_as(&expr.span, [&expr]));
                 self.definitions.insert(name.text, value);
             }
             Item::Field { role, name, components, others_are_zero } => {
@@ -128,7 +128,7 @@ impl System {
             Item::Output(list) => {
                 for expr in list {
                     let value = self.scalar(&expr)?;
-                    self.outputs.push((self.source[expr.span.clone()].trim().to_owned(), value));
+                    self.outputs.push((in_one_line(&self.source, &expr.span), value));
                 }
             }
             Item::Sample { ranges, avoid } => self.sample(&ranges, &avoid)?,
@@ -252,9 +252,32 @@ impl System {
             return Err(Problem::new(&name.span, message, "this field")
                 .help("end it with: others' = 0, if the states that it does not name stand still"));
         }
+        let written = match (components.first(), components.last()) {
+            (Some((first, _)), Some((_, last))) => {
+                self.written_as(&(first.span.start..last.span.end), components.iter().map(|(_, expr)| expr))
+            }
+            _ => Written::default(),
+        };
+        let written = if others_are_zero { written.followed_by("others' = 0") } else { written };
         let derivation = Derivation::new(rates.iter().copied().collect());
-        self.fields.push(Field { name: name.text, role, span: name.span, components: rates, derivation });
+        self.fields.push(Field {
+            name: name.text,
+            role,
+            span: name.span,
+            components: rates,
+            written,
+            derivation,
+        });
         Ok(())
+    }
+
+    /// Some expressions as they are written, within a span that holds them all.
+    fn written_as<'a>(&self, span: &Span, expressions: impl IntoIterator<Item = &'a Expr>) -> Written {
+        let mut places = Vec::new();
+        for expr in expressions {
+            places_in(&self.source, expr, &|name| self.definitions.contains_key(name), &mut places);
+        }
+        Written::new(&self.source, span, places)
     }
 
     fn sample(&mut self, ranges: &[(Name, Expr, Expr)], avoid: &[Expr]) -> Result<(), Problem> {
@@ -277,7 +300,7 @@ impl System {
         }
         for expr in avoid {
             let value = self.scalar(expr)?;
-            self.avoid.push((self.source[expr.span.clone()].trim().to_owned(), value));
+            self.avoid.push((in_one_line(&self.source, &expr.span), value));
         }
         Ok(())
     }
@@ -312,7 +335,12 @@ impl System {
             known.is_angle |= info.is_angle;
         }
         for field in other.fields.into_iter().chain(other.imported_fields) {
-            self.imported_fields.push(Field { name: format!("{}.{}", alias.text, field.name), ..field });
+            let (name, written) =
+                (format!("{}.{}", alias.text, field.name), field.written.under(&alias.text));
+            self.imported_fields.push(Field { name, written, ..field });
+        }
+        for (name, written) in other.written {
+            self.written.insert(format!("{}.{name}", alias.text), written.under(&alias.text));
         }
         for (name, value) in other.definitions {
             self.definitions.insert(format!("{}.{name}", alias.text), value);
