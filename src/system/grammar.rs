@@ -3,7 +3,7 @@
 use super::model::Role;
 use crate::expression::Expected;
 use crate::expression::parse::{
-    Depth, Read, Text, blank, equation, keyword, name, read_all, sign, stop, sum,
+    Depth, Read, Text, blank, ends_a_line, equation, keyword, name, read_all, sign, stop, sum,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};
@@ -15,7 +15,7 @@ use winnow::token::{literal, take_till, take_while};
 /// One entry of a file.
 #[derive(Clone, Debug)]
 pub(crate) enum Item {
-    System { title: String, cite: Option<String> },
+    System { title: String, cite: Option<String>, span: Span },
     Use { alias: Name, path: String, span: Span },
     State(Vec<Name>),
     Param(Vec<(Name, Option<Expr>)>),
@@ -107,10 +107,10 @@ fn names(input: &mut Text<'_>) -> Read<Vec<Name>> {
 }
 
 fn system(input: &mut Text<'_>) -> Read<Item> {
-    keyword("system").parse_next(input)?;
+    let span = keyword("system").parse_next(input)?;
     let title = cut_err(quoted).parse_next(input)?;
     let cite = opt(preceded(keyword("cite"), cut_err(quoted))).parse_next(input)?;
-    Ok(Item::System { title, cite })
+    Ok(Item::System { title, cite, span })
 }
 
 fn import(input: &mut Text<'_>) -> Read<Item> {
@@ -320,7 +320,7 @@ const ENTRIES: [&str; 16] = [
 /// What to say where no entry begins.
 fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {
     let mut error = Expected::from_input(input);
-    let line = text[..error.at].rfind('\n').map_or(0, |newline| newline + 1);
+    let line = text[..error.at].rfind(ends_a_line).map_or(0, |end| end + 1);
     let word: String = text[error.at..].chars().take_while(|c| c.is_alphanumeric()).collect();
     if after_an_entry && !text[line..error.at].trim().is_empty() {
         error.what = "an operator, or the next entry on a line of its own".to_owned();

@@ -2,7 +2,7 @@
 
 use super::error::Problem;
 use super::grammar::{ClaimBody, ClaimSyntax};
-use super::written::{Mention, Written, places_in_equation};
+use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};
 use crate::expression::syntax::Span;
 use crate::expression::{Derivation, Graph, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
@@ -167,6 +167,12 @@ pub struct System {
     /// Fields of imported systems, under their full names.
     pub(crate) imported_fields: Vec<Field>,
     pub(crate) partials: HashMap<Symbol, Derivation>,
+    /// Whether something has been differentiated by all states: then these are all that there are.
+    pub(crate) states_are_final: bool,
+    /// The names that this file gives to imported systems.
+    pub(crate) aliases: Vec<String>,
+    /// The symbols that this file gives a range to.
+    pub(crate) sampled: HashSet<Symbol>,
 }
 
 impl System {
@@ -193,6 +199,11 @@ impl System {
     /// A symbol's name.
     pub fn symbol_name(&self, symbol: Symbol) -> &str {
         self.graph.symbol_name(symbol)
+    }
+
+    /// The names of the states, in their order.
+    pub(crate) fn state_names(&self) -> Vec<String> {
+        self.states.iter().map(|state| self.symbol_name(*state).to_owned()).collect()
     }
 
     /// The symbol of a name, if the file declares it.
@@ -280,19 +291,21 @@ impl System {
     /// What the names in the statements of a claim stand for: definitions and fields, and those that they mention in turn,
     /// in the order in which they are met; imported ones under the names that they have here.
     pub fn explanations(&self, body: &ClaimBody) -> Explanations {
+        let states = self.state_names();
+        let is_definition = |name: &str| self.definitions.contains_key(name);
+        let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
         let mut places = Vec::new();
         for statement in body.statements() {
             for equation in [&statement.equation].into_iter().chain(&statement.conditions) {
-                places_in_equation(
-                    &self.source,
-                    equation,
-                    &|name| self.definitions.contains_key(name),
-                    &mut places,
-                );
+                places_in_equation(&scope, equation, &mut places);
             }
         }
         places.sort_by_key(|(span, _)| span.start);
-        let mut waiting: VecDeque<Mention> = places.into_iter().map(|(_, mention)| mention).collect();
+        let mention = |(_, insert): Place| match insert {
+            Insert::Mention(mention) => Some(mention),
+            Insert::States(_) => None,
+        };
+        let mut waiting: VecDeque<Mention> = places.into_iter().filter_map(mention).collect();
         let mut found = Explanations::default();
         while let Some(mention) = waiting.pop_front() {
             let (list, name, written) = match mention {

@@ -16,6 +16,8 @@ enum Piece {
     Definition(String),
     /// The name of a field, in `L(f, e)`.
     Field(String),
+    /// Behind the argument of `d(e)`: the states of its file, which another file has to name.
+    States(Vec<String>),
 }
 
 /// A formula as it is written.
@@ -31,13 +33,28 @@ pub(crate) enum Mention {
     Field(String),
 }
 
+/// What is put in the place of a part of the text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Insert {
+    Mention(Mention),
+    /// Nothing in its own file, `, x, y` in one that imports it.
+    States(Vec<String>),
+}
+
+/// What the names of a text mean: what is needed of a system.
+pub(crate) struct Scope<'a> {
+    pub source: &'a str,
+    pub is_definition: &'a dyn Fn(&str) -> bool,
+    pub states: &'a [String],
+}
+
 /// A name in the text of a file that stands for something else, and where it stands.
-pub(crate) type Place = (Span, Mention);
+pub(crate) type Place = (Span, Insert);
 
 impl Written {
     /// The text of a span of a file; `places` are the names in it that stand for something else.
     pub fn new(source: &str, span: &Span, mut places: Vec<Place>) -> Written {
-        places.sort_by_key(|(span, _)| span.start);
+        places.sort_by_key(|(span, _)| (span.start, span.end));
         let mut written = Written::default();
         let (mut begin, mut is_blank) = (span.start, false);
         let mut plain = |written: &mut Written, part: &str| {
@@ -65,8 +82,9 @@ impl Written {
             plain(&mut written, source.get(begin..place.start).unwrap_or_default());
             begin = place.end;
             written.pieces.push(match mention {
-                Mention::Definition(name) => Piece::Definition(name),
-                Mention::Field(name) => Piece::Field(name),
+                Insert::Mention(Mention::Definition(name)) => Piece::Definition(name),
+                Insert::Mention(Mention::Field(name)) => Piece::Field(name),
+                Insert::States(names) => Piece::States(names),
             });
         }
         plain(&mut written, source.get(begin..span.end).unwrap_or_default());
@@ -78,10 +96,14 @@ impl Written {
 
     /// The formula in one line.
     pub fn text(&self) -> String {
-        let piece = |piece: &Piece| match piece {
-            Piece::Plain(text) | Piece::Definition(text) | Piece::Field(text) => text.clone(),
-        };
-        self.pieces.iter().map(piece).collect()
+        let mut text = String::new();
+        for piece in &self.pieces {
+            match piece {
+                Piece::Plain(part) | Piece::Definition(part) | Piece::Field(part) => text.push_str(part),
+                Piece::States(_) => {}
+            }
+        }
+        text
     }
 
     /// The same in a file that imports this one under another name.
@@ -90,6 +112,8 @@ impl Written {
             Piece::Plain(text) => Piece::Plain(text.clone()),
             Piece::Definition(name) => Piece::Definition(format!("{alias}.{name}")),
             Piece::Field(name) => Piece::Field(format!("{alias}.{name}")),
+            // the states of a file are symbols, and those have one name everywhere
+            Piece::States(names) => Piece::Plain(names.iter().map(|name| format!(", {name}")).collect()),
         };
         Written { pieces: self.pieces.iter().map(piece).collect() }
     }
@@ -104,7 +128,7 @@ impl Written {
     /// The names in it that stand for something else, in order.
     pub fn mentions(&self) -> impl Iterator<Item = Mention> {
         self.pieces.iter().filter_map(|piece| match piece {
-            Piece::Plain(_) => None,
+            Piece::Plain(_) | Piece::States(_) => None,
             Piece::Definition(name) => Some(Mention::Definition(name.clone())),
             Piece::Field(name) => Some(Mention::Field(name.clone())),
         })
@@ -116,20 +140,15 @@ pub(crate) fn in_one_line(source: &str, span: &Span) -> String {
     Written::new(source, span, Vec::new()).text()
 }
 
-/// The names in an expression that stand for something else, with their places; `is_definition` tells definitions from
-/// symbols.
-pub(crate) fn places_in(
-    source: &str,
-    expr: &Expr,
-    is_definition: &dyn Fn(&str) -> bool,
-    found: &mut Vec<Place>,
-) {
-    let mut inner = |expr: &Expr| places_in(source, expr, is_definition, found);
+/// The names in an expression that stand for something else, with their places.
+pub(crate) fn places_in(scope: &Scope<'_>, expr: &Expr, found: &mut Vec<Place>) {
+    let mut inner = |expr: &Expr| places_in(scope, expr, found);
     match &expr.kind {
         ExprKind::Number(_) => {}
         ExprKind::Name(name) => {
-            if is_definition(name) {
-                found.push((name_within(source, expr, name), Mention::Definition(name.clone())));
+            if (scope.is_definition)(name) {
+                let mention = Insert::Mention(Mention::Definition(name.clone()));
+                found.push((name_within(scope.source, expr, name), mention));
             }
         }
         ExprKind::Call(function, arguments) => {
@@ -137,8 +156,13 @@ pub(crate) fn places_in(
             arguments[fields..].iter().for_each(&mut inner);
             for argument in &arguments[..fields] {
                 if let ExprKind::Name(name) = &argument.kind {
-                    found.push((name_within(source, argument, name), Mention::Field(name.clone())));
+                    let mention = Insert::Mention(Mention::Field(name.clone()));
+                    found.push((name_within(scope.source, argument, name), mention));
                 }
+            }
+            if let ("d", [argument]) = (function.as_str(), arguments.as_slice()) {
+                let end = argument.span.end;
+                found.push((end..end, Insert::States(scope.states.to_vec())));
             }
         }
         ExprKind::Sum(parts) | ExprKind::Product(parts) => parts.iter().for_each(|(_, part)| inner(part)),
@@ -152,15 +176,10 @@ pub(crate) fn places_in(
 }
 
 /// The same for an equation.
-pub(crate) fn places_in_equation(
-    source: &str,
-    equation: &Equation,
-    is_definition: &dyn Fn(&str) -> bool,
-    found: &mut Vec<Place>,
-) {
+pub(crate) fn places_in_equation(scope: &Scope<'_>, equation: &Equation, found: &mut Vec<Place>) {
     for side in [Some(&equation.left), Some(&equation.right), equation.within.as_ref()].into_iter().flatten()
     {
-        places_in(source, side, is_definition, found);
+        places_in(scope, side, found);
     }
 }
 
@@ -182,16 +201,22 @@ fn name_within(source: &str, expr: &Expr, name: &str) -> Span {
 mod tests {
     use super::*;
 
+    /// The oracle is the text itself, rewritten by hand.
     #[test]
     fn comments_and_line_breaks_are_left_out_and_names_are_kept_apart() {
-        let source = "x = ( - v # the rate, v\n  + L(f, w)*\u{2028} 2 ) # all";
-        let expr = crate::expression::parse_expression(&source[4..]).unwrap();
-        assert_eq!(in_one_line(&source[4..], &expr.span), "( - v + L(f, w)* 2 )");
+        let source = "( - v # the rate, v\n  + L(v, w)*\u{2028} d(x) ) # all";
+        let expr = crate::expression::parse_expression(source).unwrap();
+        assert_eq!(in_one_line(source, &expr.span), "( - v + L(v, w)* d(x) )");
+        let states = ["x".to_owned(), "y".to_owned()];
+        let scope = Scope { source, is_definition: &|name| name == "v" || name == "w", states: &states };
         let mut places = Vec::new();
-        places_in(&source[4..], &expr, &|name| name == "v" || name == "w", &mut places);
-        let written = Written::new(&source[4..], &expr.span, places);
-        assert_eq!(written.text(), "( - v + L(f, w)* 2 )");
-        assert_eq!(written.under("a").text(), "( - a.v + L(a.f, a.w)* 2 )");
-        assert_eq!(written.under("a").under("b").mentions().count(), 3);
+        places_in(&scope, &expr, &mut places);
+        let written = Written::new(source, &expr.span, places);
+        assert_eq!(written.text(), "( - v + L(v, w)* d(x) )");
+        assert_eq!(written.under("a").text(), "( - a.v + L(a.v, a.w)* d(x, x, y) )");
+        let mentions: Vec<Mention> = written.under("a").under("b").mentions().collect();
+        let definition = |name: &str| Mention::Definition(name.to_owned());
+        let along = Mention::Field("b.a.v".to_owned());
+        assert_eq!(mentions, [definition("b.a.v"), along, definition("b.a.w")]);
     }
 }
