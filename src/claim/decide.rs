@@ -1,5 +1,6 @@
 //! From a claim to its outcome.
 
+use super::defaults::at_the_files_values;
 use super::identity::{decide_identity, decide_nearness};
 use super::pole::decide_pole;
 use super::ranks::{decide_codistribution, decide_rank};
@@ -43,18 +44,33 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id));
     let mut system = system.clone();
     let text = |system: &System, statement: &Statement| in_one_line(&system.source, &statement.span);
+    // other random numbers than those of the verdict: that one stays what it is whatever the file's values are
+    let mut again = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id) ^ 1);
+    let mut special = |system: &mut System, statement: &Statement, verdict: &Verdict| {
+        at_the_files_values(system, statement, verdict, |system, special| {
+            decide_statement(system, special, &mut again)
+        })
+    };
+    let mut at_files_values = None;
+    let mut printed_at_files_values = None;
     let mut printed = None;
     let (statement, verdict, expected) = match &claim.body {
         ClaimBody::Claim { statement, expected } => {
-            (text(&system, statement), decide_statement(&mut system, statement, &mut rng), Some(*expected))
+            let verdict = decide_statement(&mut system, statement, &mut rng);
+            at_files_values = special(&mut system, statement, &verdict);
+            (text(&system, statement), verdict, Some(*expected))
         }
         ClaimBody::Erratum { printed: print, corrected } => {
-            printed = Some((text(&system, print), decide_statement(&mut system, print, &mut rng)));
+            let refuted = decide_statement(&mut system, print, &mut rng);
+            printed_at_files_values = special(&mut system, print, &refuted);
+            printed = Some((text(&system, print), refuted));
             let verdict = decide_statement(&mut system, corrected, &mut rng);
+            at_files_values = special(&mut system, corrected, &verdict);
             (text(&system, corrected), verdict, Some(Expectation::Proved))
         }
         ClaimBody::Scan { repaired, .. } => {
             let verdict = decide_statement(&mut system, repaired, &mut rng);
+            at_files_values = special(&mut system, repaired, &verdict);
             (text(&system, repaired), verdict, Some(Expectation::Proved))
         }
         ClaimBody::Definition { text } => (text.clone(), Verdict::Definition { text: text.clone() }, None),
@@ -79,6 +95,8 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
         verdict,
         expected,
         remark: claim.remark.clone(),
+        at_files_values,
+        printed_at_files_values,
         fields: if claim.body.is_about_the_codistribution() { system.roles() } else { Vec::new() },
         seconds: begin.elapsed().as_secs_f64(),
     }

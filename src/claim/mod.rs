@@ -7,6 +7,7 @@
 //! This floor shares no formula with `proofs/`, and knows nothing of pages or plots.
 
 mod decide;
+mod defaults;
 mod identity;
 mod pole;
 mod ranks;
@@ -15,6 +16,7 @@ mod verdict;
 mod witness;
 
 pub use decide::{decide, decide_all};
+pub use defaults::AtFilesValues;
 pub use pole::{PoleOrder, pole_order};
 pub use value::{PointValue, ValueError, certified_value, computed_value};
 pub use verdict::{Outcome, Verdict, Witness};

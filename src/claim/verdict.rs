@@ -1,5 +1,6 @@
 //! What a claim can come to.
 
+use super::defaults::AtFilesValues;
 use crate::observability::StateInWords;
 use crate::system::{Expectation, FieldRole};
 
@@ -118,6 +119,10 @@ pub struct Outcome {
     pub ok: bool,
     /// The remark in the file.
     pub remark: Option<String>,
+    /// What the statement comes to at the file's values of its parameters, where that is another word.
+    pub at_files_values: Option<AtFilesValues>,
+    /// The same for the printed form of an erratum.
+    pub printed_at_files_values: Option<AtFilesValues>,
     /// The fields of which words are made, where the claim is about the rank of the codistribution.
     pub fields: Vec<FieldRole>,
     /// How long it took.

@@ -8,7 +8,7 @@ use super::sweep::{SweepOptions, SweepReport, sweep};
 use crate::expression::parse::{Depth, equation, read_all};
 use crate::expression::syntax::Equation;
 use crate::expression::{NodeId, Symbol};
-use crate::system::{FieldRole, Kind, SymbolInfo, System, Value};
+use crate::system::{Assignment, FieldRole, Kind, SymbolInfo, System, Value};
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -38,6 +38,9 @@ pub struct RankQuestion<'a> {
 pub struct BranchAnswer {
     /// The conditions, solved, in words.
     pub conditions: Vec<String>,
+    /// The parameters that the rank depends on and the file gives a value to: they were held at it. A claim about the rank is
+    /// about all values.
+    pub held: Vec<(String, RBig)>,
     /// The words that were needed, as a paper writes them.
     pub words: Vec<String>,
     /// The length of the longest word taken, and why no longer ones were.
@@ -86,6 +89,26 @@ fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol
         let exact = !info.is_angle || value.is_zero();
         (exact && info.kind != Kind::Imported && !question.fixed.contains_key(&symbol))
             .then_some((symbol, value))
+    };
+    system.symbols().filter_map(held).collect()
+}
+
+/// The parameters with a value in the file, and no other from the question, that outputs, fields and own rows mention.
+fn held_parameters<'a>(
+    system: &System,
+    question: &RankQuestion<'_>,
+    solved: &Assignment,
+    own: impl Iterator<Item = &'a NodeId>,
+) -> Vec<(String, RBig)> {
+    let mut nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).chain(own.copied()).collect();
+    for field in system.moving_fields() {
+        nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
+    }
+    let mentioned = system.graph.symbols_of(nodes);
+    let held = |(symbol, info): (Symbol, &SymbolInfo)| {
+        let value = info.default.clone().filter(|_| info.range.is_none() && mentioned.contains(&symbol))?;
+        let given = question.fixed.contains_key(&symbol) || solved.contains_key(&symbol);
+        (!given).then(|| (system.symbol_name(symbol).to_owned(), value))
     };
     system.symbols().filter_map(held).collect()
 }
@@ -170,6 +193,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         };
         answers.push(BranchAnswer {
             conditions: locus.conditions.clone(),
+            held: held_parameters(system, question, &branch.values, own.iter().flatten()),
             words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
             order: codistribution.order,
             stop: codistribution.stop,

@@ -1,5 +1,6 @@
 //! Answers about ranks, as JSON and as text.
 
+use super::claims::{values_json, values_text};
 use crate::observability::{
     BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, Spectrum, Stop, SweepReport,
 };
@@ -128,6 +129,7 @@ pub(crate) fn stop_text(stop: Stop) -> &'static str {
 fn branch_json(branch: &BranchAnswer) -> Value {
     let mut object = sweep_json(&branch.full);
     object["conditions"] = json!(branch.conditions);
+    object["held_at_the_files_values"] = values_json(&branch.held);
     object["words"] = json!(branch.words);
     object["order"] = json!(branch.order);
     object["stopped_because"] = json!(stop_text(branch.stop));
@@ -248,6 +250,13 @@ pub fn rank_text(answer: &RankAnswer) -> String {
     for branch in &answer.branches {
         if !branch.conditions.is_empty() {
             let _ = writeln!(out, "where {}", branch.conditions.join(", "));
+        }
+        if !branch.held.is_empty() {
+            let _ = writeln!(
+                out,
+                "held at the file's values: {} (a claim 'rank = n' is about all values)",
+                values_text(&branch.held)
+            );
         }
         let _ = writeln!(out, "words that were needed: {}", branch.words.join(", "));
         let _ =
