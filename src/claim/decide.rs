@@ -13,6 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Decides all claims of a system, several at a time; the outcomes are in the order of the file and do not depend on
@@ -23,6 +24,10 @@ pub fn decide_all(
     interrupt: &AtomicBool,
     done: &(dyn Fn(&Outcome) + Sync),
 ) -> Vec<Outcome> {
+    let extent = system.extent();
+    // as many copies as claims are decided at once
+    let copies: Mutex<Vec<System>> = Mutex::default();
+    let copies = || copies.lock().unwrap_or_else(PoisonError::into_inner);
     system
         .claims
         .par_iter()
@@ -30,7 +35,11 @@ pub fn decide_all(
             if interrupt.load(Ordering::Relaxed) {
                 return None;
             }
-            let outcome = decide(system, claim, seed);
+            let spare = copies().pop();
+            let mut copy = spare.unwrap_or_else(|| system.clone());
+            let outcome = decide_in(&mut copy, claim, seed);
+            copy.shrink_to(&extent);
+            copies().push(copy);
             done(&outcome);
             Some(outcome)
         })
@@ -39,9 +48,13 @@ pub fn decide_all(
 
 /// Decides one claim. The system is left as it was.
 pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
+    decide_in(&mut system.clone(), claim, seed)
+}
+
+/// Decides one claim in a system that may be added to.
+fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64) -> Outcome {
     let begin = Instant::now();
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id));
-    let mut system = system.clone();
     let text = |system: &System, statement: &Statement| {
         let text = system.source.get(statement.span.clone()).unwrap_or_default();
         text.split_whitespace().collect::<Vec<_>>().join(" ")
@@ -49,16 +62,16 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
     let mut printed = None;
     let (statement, verdict, expected) = match &claim.body {
         ClaimBody::Claim { statement, expected } => {
-            (text(&system, statement), decide_statement(&mut system, statement, &mut rng), Some(*expected))
+            (text(system, statement), decide_statement(system, statement, &mut rng), Some(*expected))
         }
         ClaimBody::Erratum { printed: print, corrected } => {
-            printed = Some((text(&system, print), decide_statement(&mut system, print, &mut rng)));
-            let verdict = decide_statement(&mut system, corrected, &mut rng);
-            (text(&system, corrected), verdict, Some(Expectation::Proved))
+            printed = Some((text(system, print), decide_statement(system, print, &mut rng)));
+            let verdict = decide_statement(system, corrected, &mut rng);
+            (text(system, corrected), verdict, Some(Expectation::Proved))
         }
         ClaimBody::Scan { repaired, .. } => {
-            let verdict = decide_statement(&mut system, repaired, &mut rng);
-            (text(&system, repaired), verdict, Some(Expectation::Proved))
+            let verdict = decide_statement(system, repaired, &mut rng);
+            (text(system, repaired), verdict, Some(Expectation::Proved))
         }
         ClaimBody::Definition { text } => (text.clone(), Verdict::Definition { text: text.clone() }, None),
         ClaimBody::Open { reason } => {

@@ -102,7 +102,10 @@ pub(crate) fn watched(
         let _ = done.send(work());
     });
     let thread = thread.map_err(|error| {
-        Unusable::report(format!("the system gives no thread to work on: {error}"), "end other programs first")
+        Unusable::report(
+            format!("the system gives no thread to work on: {error}"),
+            "end other programs first",
+        )
     })?;
     let mut asked: Option<Instant> = None;
     loop {

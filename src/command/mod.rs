@@ -29,7 +29,9 @@ use std::process::ExitCode;
 /// claim by claim, proved, refuted (with a witness) or undecided. Without a command it runs 'verify'.
 #[derive(Parser)]
 #[command(name = "palmistry", version, max_term_width = 110)]
-#[command(after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written.")]
+#[command(
+    after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written."
+)]
 struct Cli {
     #[command(subcommand)]
     verb: Option<Verb>,
@@ -141,7 +143,11 @@ fn not_understood(error: &clap::Error) -> ExitCode {
         };
     }
     // the arguments are not understood, so what they ask for has to be looked for by hand
-    if std::env::args_os().skip(1).take_while(|argument| argument != "--").any(|argument| argument == "--json") {
+    if std::env::args_os()
+        .skip(1)
+        .take_while(|argument| argument != "--")
+        .any(|argument| argument == "--json")
+    {
         let _ = output::print_json(&output::usage_json(&text));
     }
     file::note(text.trim_end_matches('\n'));

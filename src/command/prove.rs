@@ -87,7 +87,8 @@ impl Prove {
     /// Prints and writes what is decided, in the order of the files.
     fn tell(&self, decided: &Mutex<Decided>) -> miette::Result<Status> {
         let Decided { places, mut outcomes } = std::mem::take(&mut *hold(decided));
-        outcomes.sort_by_cached_key(|outcome| places.get(&(outcome.file.clone(), outcome.id.clone())).copied());
+        outcomes
+            .sort_by_cached_key(|outcome| places.get(&(outcome.file.clone(), outcome.id.clone())).copied());
         let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
         let mut files = Files::default();
         if let Some(path) = &self.junit {

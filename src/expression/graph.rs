@@ -56,6 +56,14 @@ pub struct Graph {
     symbol_places: HashMap<String, Symbol>,
 }
 
+/// How much there is in a graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Extent {
+    nodes: usize,
+    constants: usize,
+    symbols: usize,
+}
+
 /// Constants longer than this many bits are not multiplied out when the graph is built.
 const FOLDED_BITS: usize = 4096;
 
@@ -141,6 +149,25 @@ impl Graph {
     /// Whether nothing may be simplified here, because an operand has no value: zero times nothing is not zero.
     pub(super) fn has_no_value(&self, operands: &[NodeId]) -> bool {
         operands.iter().any(|operand| self.undefined[operand.0 as usize])
+    }
+
+    /// How much there is, to come back to.
+    pub(crate) fn extent(&self) -> Extent {
+        Extent { nodes: self.nodes.len(), constants: self.constants.len(), symbols: self.symbols.len() }
+    }
+
+    /// Takes away all that was added since; no node of it may be used any more. The cost is that of what goes.
+    pub(crate) fn shrink_to(&mut self, extent: &Extent) {
+        self.undefined.truncate(extent.nodes);
+        for node in self.nodes.drain(extent.nodes.min(self.nodes.len())..) {
+            self.places.remove(&node);
+        }
+        for constant in self.constants.drain(extent.constants.min(self.constants.len())..) {
+            self.constant_places.remove(&constant);
+        }
+        for symbol in self.symbols.drain(extent.symbols.min(self.symbols.len())..) {
+            self.symbol_places.remove(&symbol);
+        }
     }
 
     /// A symbol as an expression.

@@ -20,7 +20,11 @@ const PATIENCE: Duration = Duration::from_secs(5);
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// Opens a file; a pipe without waiting for its other end.
-fn open(options: &mut std::fs::OpenOptions, path: &std::path::Path, pipe: Pipe) -> std::io::Result<std::fs::File> {
+fn open(
+    options: &mut std::fs::OpenOptions,
+    path: &std::path::Path,
+    pipe: Pipe,
+) -> std::io::Result<std::fs::File> {
     #[cfg(unix)]
     if pipe == Pipe::Yes {
         use std::os::unix::fs::OpenOptionsExt;

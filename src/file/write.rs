@@ -38,7 +38,10 @@ pub fn write_whole(path: &Path, fill: impl FnOnce(&mut (dyn Write + Send)) -> Re
     }
 }
 
-fn through(mut file: impl Write + Send, fill: impl FnOnce(&mut (dyn Write + Send)) -> Result<()>) -> Result<()> {
+fn through(
+    mut file: impl Write + Send,
+    fill: impl FnOnce(&mut (dyn Write + Send)) -> Result<()>,
+) -> Result<()> {
     let mut buffer = BufWriter::new(&mut file);
     let written = fill(&mut buffer).and_then(|()| buffer.flush());
     // what could not be written must not be tried once more when the buffer goes

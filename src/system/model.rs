@@ -176,15 +176,16 @@ impl System {
     /// order in which they are met.
     pub fn definitions_in(&self, text: &str) -> Vec<(String, String)> {
         let mut found: Vec<(String, String)> = Vec::new();
-        let mut texts = vec![text.to_owned()];
+        let mut met: HashSet<&str> = HashSet::new();
+        let mut texts = vec![text];
         while let Some(text) = texts.pop() {
             let words = text.split(|c: char| !c.is_alphanumeric() && c != '_' && c != '.');
             for word in words.filter(|word| !word.is_empty()) {
-                if let Some(definition) = self.definition_texts.get(word)
-                    && !found.iter().any(|(name, _)| name == word)
+                if let Some((name, definition)) = self.definition_texts.get_key_value(word)
+                    && met.insert(name)
                 {
-                    found.push((word.to_owned(), definition.clone()));
-                    texts.push(definition.clone());
+                    found.push((name.clone(), definition.clone()));
+                    texts.push(definition);
                 }
             }
         }

@@ -26,8 +26,8 @@ use crate::system::{ReadError, System};
 use crate::tradeoff::stress::Study;
 use crate::tradeoff::{Growth, Trade, TradeQuestion, growth_of_lie_derivatives, trade};
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// How the main job is to be run.
@@ -222,8 +222,7 @@ pub fn verify_into(options: &Options<'_>, found: &Mutex<Verification>) -> Result
     step("certificates on boxes");
     if !stopped() {
         step("bodies in motion");
-        let experiments =
-            motion::experiments(options).map_err(|error| VerifyError::Read(Box::new(error)))?;
+        let experiments = motion::experiments(options).map_err(|error| VerifyError::Read(Box::new(error)))?;
         found().experiments = experiments;
     }
     let mut found = found();

@@ -18,17 +18,12 @@ pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
     let complain = |why: String| RecordError::Unreadable { path: path.to_owned(), why, help: None };
     let bytes = read_bytes(path, LONGEST_FILE).map_err(|e| complain(e.to_string()))?;
     let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes);
-    let mut reader = ReaderBuilder::new()
-        .flexible(true)
-        .trim(Trim::All)
-        .comment(Some(COMMENT))
-        .from_reader(bytes);
+    let mut reader =
+        ReaderBuilder::new().flexible(true).trim(Trim::All).comment(Some(COMMENT)).from_reader(bytes);
     let complain = |e: csv::Error| complain(e.to_string());
     let header = reader.byte_headers().map_err(complain)?.clone();
-    let names: Vec<String> = header
-        .iter()
-        .map(|name| String::from_utf8_lossy(name).trim().to_owned())
-        .collect();
+    let names: Vec<String> =
+        header.iter().map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect();
     let refuse = |why: String| {
         let help = "the first line names the columns, for instance: time,s1,s2".to_owned();
         Err(RecordError::Header { path: path.to_owned(), why, help })
