@@ -1,5 +1,6 @@
 //! `palmistry certify`: full rank proved on whole regions.
 
+use super::arguments::number;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::{Files, Form, fraction_bar};
 use super::{Status, Unusable};
@@ -9,7 +10,6 @@ use indicatif::ProgressBar;
 use palmistry::System;
 use palmistry::expression::Symbol;
 use palmistry::file::{note, read_text};
-use palmistry::number::parse_decimal;
 use palmistry::observability::region::{Limits, Progress, Region, RegionAnswer, RegionRows};
 use palmistry::report::{percent, region_curve, region_json, region_map, region_text};
 use palmistry::system::Kind;
@@ -225,11 +225,6 @@ fn ranges(system: &System, texts: &[String]) -> miette::Result<BTreeMap<Symbol, 
         let (name, range) = text.split_once('=').ok_or_else(form)?;
         let (low, high) = range.split_once("..").ok_or_else(form)?;
         let symbol = symbol(system, name)?;
-        let number = |text: &str| {
-            parse_decimal(text).ok_or_else(|| {
-                Unusable::report(format!("'{text}' is not a number"), "such as 2, -.5, 1e-3 or 1/3")
-            })
-        };
         let (low, high) = (number(low)?, number(high)?);
         if low > high {
             return Err(Unusable::report(
