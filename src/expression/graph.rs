@@ -5,7 +5,7 @@
 
 use crate::number::{Arithmetic, Function, Rationals, Refusal};
 use dashu::rational::RBig;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A coordinate, a parameter, or any other name that stands for a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -66,6 +66,9 @@ pub(crate) struct Extent {
 
 /// Constants longer than this many bits are not multiplied out when the graph is built.
 const FOLDED_BITS: usize = 4096;
+
+/// Up to this part of a graph is few nodes, in [`Graph::reachable`]. A node of a set costs as much as some dozens of a table.
+const FEW: usize = 128;
 
 impl Graph {
     /// The number of nodes.
@@ -373,11 +376,23 @@ impl Graph {
 
     /// All nodes that the given ones need, themselves included, operands before what uses them.
     pub fn reachable(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
-        let mut seen = vec![false; self.nodes.len()];
+        // a table of all nodes is quick to ask and slow to make: where few are needed, a set does
+        let (mut few, mut table) = (HashSet::new(), Vec::new());
+        let many = self.nodes.len() / FEW;
         let mut stack: Vec<NodeId> = roots.into_iter().collect();
-        let mut found = Vec::new();
+        let mut found: Vec<NodeId> = Vec::new();
         while let Some(id) = stack.pop() {
-            if !std::mem::replace(&mut seen[id.0 as usize], true) {
+            if table.is_empty() && found.len() >= many {
+                table = vec![false; self.nodes.len()];
+                for known in &found {
+                    table[known.0 as usize] = true;
+                }
+            }
+            let new = match table.get_mut(id.0 as usize) {
+                Some(seen) => !std::mem::replace(seen, true),
+                None => few.insert(id),
+            };
+            if new {
                 found.push(id);
                 stack.extend(self.node(id).operands());
             }

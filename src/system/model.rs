@@ -47,6 +47,13 @@ pub struct Field {
     pub(crate) derivation: Derivation,
 }
 
+/// Where a field is, among those of its file or among the imported ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FieldPlace {
+    Own(usize),
+    Imported(usize),
+}
+
 /// A matrix of expressions, by rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Matrix {
@@ -128,6 +135,8 @@ pub struct System {
     pub(crate) definition_texts: BTreeMap<String, String>,
     /// Fields of imported systems, under their full names.
     pub(crate) imported_fields: Vec<Field>,
+    /// Where the field of a name is.
+    pub(crate) field_places: HashMap<String, FieldPlace>,
     pub(crate) partials: HashMap<Symbol, Derivation>,
 }
 
@@ -163,8 +172,19 @@ impl System {
     }
 
     /// The field of a name, imported ones included.
+    pub(crate) fn field(&self, name: &str) -> Option<&Field> {
+        match self.field_places.get(name)? {
+            FieldPlace::Own(place) => self.fields.get(*place),
+            FieldPlace::Imported(place) => self.imported_fields.get(*place),
+        }
+    }
+
+    /// The same, to be derived along.
     pub(crate) fn field_mut(&mut self, name: &str) -> Option<&mut Field> {
-        self.fields.iter_mut().chain(&mut self.imported_fields).find(|field| field.name == name)
+        match self.field_places.get(name)? {
+            FieldPlace::Own(place) => self.fields.get_mut(*place),
+            FieldPlace::Imported(place) => self.imported_fields.get_mut(*place),
+        }
     }
 
     /// The names that a definition of the file has given.

@@ -3,7 +3,7 @@
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Item, parse_file};
-use super::model::{Field, Kind, Range, SymbolInfo, System, Value};
+use super::model::{Field, FieldPlace, Kind, Range, SymbolInfo, System, Value};
 use crate::expression::syntax::{Expr, Name, Span};
 use crate::expression::{Derivation, Graph, Symbol, parse_expression};
 use crate::file::{ReadFailure, read_text};
@@ -79,6 +79,7 @@ impl System {
             domain: Default::default(),
             definition_texts: BTreeMap::new(),
             imported_fields: Vec::new(),
+            field_places: HashMap::new(),
             partials: HashMap::new(),
         };
         let mut ids = HashSet::new();
@@ -227,7 +228,7 @@ impl System {
         components: &[(Name, Expr)],
         others_are_zero: bool,
     ) -> Result<(), Problem> {
-        if self.field_mut(&name.text).is_some() {
+        if self.field(&name.text).is_some() {
             return Err(Problem::new(
                 &name.span,
                 format!("there is a field '{}' already", name.text),
@@ -260,6 +261,7 @@ impl System {
                 .help("end it with: others' = 0, if the states that it does not name stand still"));
         }
         let derivation = Derivation::new(rates.iter().copied().collect());
+        self.field_places.insert(name.text.clone(), FieldPlace::Own(self.fields.len()));
         self.fields.push(Field { name: name.text, components: rates, guards, derivation });
         Ok(())
     }
@@ -335,6 +337,9 @@ impl System {
         }
         for field in other.fields.iter().chain(&other.imported_fields) {
             let name = format!("{}.{}", alias.text, field.name);
+            // of two of one name the first is meant
+            let place = FieldPlace::Imported(self.imported_fields.len());
+            self.field_places.entry(name.clone()).or_insert(place);
             self.imported_fields.push(Field { name, ..field.clone() });
         }
         for (name, value) in &other.definitions {
