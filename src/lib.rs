@@ -33,6 +33,9 @@
 //! Beside these stand [`tradeoff`], speed against accuracy and the extremes, and [`verification`], the main job.
 //! Each module is a floor and imports only from those above it here.
 
+// files: read within bounds, written whole or not at all
+pub mod file;
+
 // what a value can be
 pub mod number;
 

@@ -16,6 +16,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Decides all claims of a system, several at a time; the outcomes are in the order of the file and do not depend on
@@ -26,6 +27,10 @@ pub fn decide_all(
     interrupt: &AtomicBool,
     done: &(dyn Fn(&Outcome) + Sync),
 ) -> Vec<Outcome> {
+    let extent = system.extent();
+    // as many copies as claims are decided at once
+    let copies: Mutex<Vec<System>> = Mutex::default();
+    let copies = || copies.lock().unwrap_or_else(PoisonError::into_inner);
     system
         .claims
         .par_iter()
@@ -33,7 +38,11 @@ pub fn decide_all(
             if interrupt.load(Ordering::Relaxed) {
                 return None;
             }
-            let outcome = decide(system, claim, seed);
+            let spare = copies().pop();
+            let mut copy = spare.unwrap_or_else(|| system.clone());
+            let outcome = decide_in(&mut copy, claim, seed);
+            copy.shrink_to(&extent);
+            copies().push(copy);
             done(&outcome);
             Some(outcome)
         })
@@ -42,9 +51,13 @@ pub fn decide_all(
 
 /// Decides one claim. The system is left as it was.
 pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
+    decide_in(&mut system.clone(), claim, seed)
+}
+
+/// Decides one claim in a system that may be added to.
+fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64) -> Outcome {
     let begin = Instant::now();
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id));
-    let mut system = system.clone();
     let text = |system: &System, statement: &Statement| in_one_line(&system.source, &statement.span);
     // other random numbers than those of the verdict: that one stays what it is whatever the file's values are
     let mut again = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id) ^ 1);
@@ -63,22 +76,22 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
     };
     let (statement, verdict, expected) = match &claim.body {
         ClaimBody::Claim { statement, expected } => {
-            let verdict = known(decide_statement(&mut system, statement, &mut rng));
-            at_files_values = special(&mut system, statement, &verdict);
-            (text(&system, statement), verdict, Some(*expected))
+            let verdict = known(decide_statement(system, statement, &mut rng));
+            at_files_values = special(system, statement, &verdict);
+            (text(system, statement), verdict, Some(*expected))
         }
         ClaimBody::Erratum { printed: print, corrected } => {
-            let refuted = decide_statement(&mut system, print, &mut rng).verdict;
-            printed_at_files_values = special(&mut system, print, &refuted);
-            printed = Some((text(&system, print), refuted));
-            let verdict = known(decide_statement(&mut system, corrected, &mut rng));
-            at_files_values = special(&mut system, corrected, &verdict);
-            (text(&system, corrected), verdict, Some(Expectation::Proved))
+            let refuted = decide_statement(system, print, &mut rng).verdict;
+            printed_at_files_values = special(system, print, &refuted);
+            printed = Some((text(system, print), refuted));
+            let verdict = known(decide_statement(system, corrected, &mut rng));
+            at_files_values = special(system, corrected, &verdict);
+            (text(system, corrected), verdict, Some(Expectation::Proved))
         }
         ClaimBody::Scan { repaired, .. } => {
-            let verdict = known(decide_statement(&mut system, repaired, &mut rng));
-            at_files_values = special(&mut system, repaired, &verdict);
-            (text(&system, repaired), verdict, Some(Expectation::Proved))
+            let verdict = known(decide_statement(system, repaired, &mut rng));
+            at_files_values = special(system, repaired, &verdict);
+            (text(system, repaired), verdict, Some(Expectation::Proved))
         }
         ClaimBody::Definition { text } => (text.clone(), Verdict::Definition { text: text.clone() }, None),
         ClaimBody::Open { reason } => {

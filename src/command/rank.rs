@@ -1,7 +1,8 @@
 //! `palmistry rank`: is the state seen in the outputs?
 
 use super::arguments::{Wanted, assignments};
-use super::output::{INTERRUPTED, print_json, print_text, progress};
+use super::interrupt::{INTERRUPTED, begin_to_tell};
+use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::observability::MOST_DIGITS;
@@ -71,11 +72,8 @@ impl Rank {
         );
         bar.finish_and_clear();
         let answer = answer.map_err(|why| Unusable::report(why, ""))?;
-        if self.json {
-            print_json(&rank_json(&answer));
-        } else {
-            print_text(&rank_text(&answer));
-        }
-        Ok(if answer.interrupted() { Status::NotAsExpected } else { Status::AsExpected })
+        begin_to_tell();
+        let status = if answer.interrupted() { Status::NotAsExpected } else { Status::AsExpected };
+        Files::default().print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
     }
 }

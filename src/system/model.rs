@@ -94,6 +94,13 @@ pub struct FieldRole {
     pub role: Role,
 }
 
+/// Where a field is, among those of its file or among the imported ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FieldPlace {
+    Own(usize),
+    Imported(usize),
+}
+
 /// A matrix of expressions, by rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Matrix {
@@ -175,6 +182,8 @@ pub struct System {
     pub(crate) written: BTreeMap<String, Written>,
     /// Fields of imported systems, under their full names.
     pub(crate) imported_fields: Vec<Field>,
+    /// Where the field of a name is.
+    pub(crate) field_places: HashMap<String, FieldPlace>,
     pub(crate) partials: HashMap<Symbol, Derivation>,
     /// Whether something has been differentiated by all states: then these are all that there are.
     pub(crate) states_are_final: bool,
@@ -221,8 +230,19 @@ impl System {
     }
 
     /// The field of a name, imported ones included.
+    pub(crate) fn field(&self, name: &str) -> Option<&Field> {
+        match self.field_places.get(name)? {
+            FieldPlace::Own(place) => self.fields.get(*place),
+            FieldPlace::Imported(place) => self.imported_fields.get(*place),
+        }
+    }
+
+    /// The same, to be derived along.
     pub(crate) fn field_mut(&mut self, name: &str) -> Option<&mut Field> {
-        self.fields.iter_mut().chain(&mut self.imported_fields).find(|field| field.name == name)
+        match self.field_places.get(name)? {
+            FieldPlace::Own(place) => self.fields.get_mut(*place),
+            FieldPlace::Imported(place) => self.imported_fields.get_mut(*place),
+        }
     }
 
     /// The places of the fields that move the states: the drift and the inputs, in the order of the file. Ranks are made
@@ -320,8 +340,7 @@ impl System {
             let (list, name, written) = match mention {
                 Mention::Definition(name) => (&mut found.definitions, name.clone(), self.written.get(&name)),
                 Mention::Field(name) => {
-                    let field =
-                        self.fields.iter().chain(&self.imported_fields).find(|field| field.name == name);
+                    let field = self.field(&name);
                     (&mut found.fields, name, field.map(|field| &field.written))
                 }
             };
