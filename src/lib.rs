@@ -42,6 +42,9 @@ pub mod expression;
 // a system, and how it is read from a proof file
 pub mod system;
 
+// what was found, evaluated again by code that shares nothing with what found it
+pub mod checker;
+
 // Lie derivatives, codistribution, rank at sampled states
 pub mod observability;
 
