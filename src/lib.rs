@@ -48,6 +48,9 @@ pub mod checker;
 // Lie derivatives, codistribution, rank at sampled states
 pub mod observability;
 
+// what verdicts rest on, written down for the checker
+pub mod evidence;
+
 // claims, the engines that decide them, verdicts
 pub mod claim;
 

@@ -1,7 +1,7 @@
 //! What a check can come to, and why it did not confirm.
 
 use crate::number::Refusal;
-use std::cell::Cell;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Why an operation of a listing has no value at a state, as far as the checker can tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -29,19 +29,19 @@ impl Missing {
 
 /// The work that is left to a check, in operations on numbers of about a machine word.
 #[derive(Debug)]
-pub struct Effort(Cell<u64>);
+pub struct Effort(AtomicU64);
 
 impl Default for Effort {
     /// A file of honest size takes a thousandth of this; all of it is some minutes.
     fn default() -> Self {
-        Effort(Cell::new(1 << 32))
+        Effort(AtomicU64::new(1 << 32))
     }
 }
 
 impl Effort {
     /// So much and no more.
     pub fn new(operations: u64) -> Self {
-        Effort(Cell::new(operations))
+        Effort(AtomicU64::new(operations))
     }
 
     /// Takes some of it.
@@ -49,8 +49,8 @@ impl Effort {
     /// # Errors
     /// Where there is not so much left.
     pub fn spend(&self, operations: u64) -> Result<(), Missing> {
-        let left = self.0.get().checked_sub(operations).ok_or(Missing::Effort)?;
-        self.0.set(left);
+        let take = |left: u64| left.checked_sub(operations);
+        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).map_err(|_| Missing::Effort)?;
         Ok(())
     }
 }
@@ -110,6 +110,19 @@ pub enum Doubt {
     Empty,
     #[error("it was interrupted before this was checked")]
     Interrupted,
+}
+
+impl Doubt {
+    /// The same with the state to which it belongs, where it does not name one yet.
+    pub(super) fn at_state(self, state: usize) -> Doubt {
+        match self {
+            Doubt::NotOnTheCircle(_)
+            | Doubt::NoValue(_)
+            | Doubt::RequirementNotMet(_)
+            | Doubt::RequirementNotShown(_) => Doubt::AtState { state, doubt: Box::new(self) },
+            named => named,
+        }
+    }
 }
 
 /// What a check has come to.

@@ -4,6 +4,7 @@ use super::doubt::{Doubt, Effort, Finding};
 use super::identity::StatedIdentity;
 use super::minor::CertifiedRank;
 use super::witness::Refutation;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -119,7 +120,7 @@ impl VerdictFile {
         seed: u64,
         effort: &Effort,
         interrupt: &AtomicBool,
-        done: &dyn Fn(),
+        done: &(dyn Fn() + Sync),
     ) -> Vec<CheckedVerdict<'f>> {
         let check = |(index, record): (usize, &'f VerdictRecord)| {
             let seed = seed.wrapping_add(index as u64);
@@ -133,7 +134,7 @@ impl VerdictFile {
             done();
             CheckedVerdict { record, finding }
         };
-        self.verdicts.iter().enumerate().map(check).collect()
+        self.verdicts.par_iter().enumerate().map(check).collect()
     }
 }
 

@@ -8,6 +8,7 @@ use super::state::{ExactState, Ratio};
 use super::witness::{Requirement, holds};
 use crate::number::{Arithmetic, Enclosure, Rationals, Refusal};
 use dashu::rational::RBig;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -63,21 +64,14 @@ impl CertifiedRank {
         if ragged || self.states.is_empty() {
             return Finding::NotConfirmed(if ragged { Doubt::Ragged } else { Doubt::Empty });
         }
-        for (index, state) in self.states.iter().enumerate() {
-            let found = if interrupt.load(Ordering::Relaxed) {
-                Err(Doubt::Interrupted)
-            } else {
-                self.check_state(index, state, effort)
-            };
-            match found {
-                Ok(()) => {}
-                Err(doubt @ (Doubt::NoValue(_) | Doubt::NotOnTheCircle(_) | Doubt::RequirementNotMet(_))) => {
-                    return Finding::NotConfirmed(Doubt::AtState { state: index, doubt: Box::new(doubt) });
-                }
-                Err(doubt) => return Finding::NotConfirmed(doubt),
-            }
+        let check = |(index, state): (usize, &RankedState)| match interrupt.load(Ordering::Relaxed) {
+            true => Some(Doubt::Interrupted),
+            false => self.check_state(index, state, effort).err().map(|doubt| doubt.at_state(index)),
+        };
+        match self.states.par_iter().enumerate().find_map_first(check) {
+            Some(doubt) => Finding::NotConfirmed(doubt),
+            None => Finding::Confirmed { times: self.states.len() },
         }
-        Finding::Confirmed { times: self.states.len() }
     }
 
     fn check_state(&self, state: usize, found: &RankedState, effort: &Effort) -> Result<(), Doubt> {
