@@ -5,6 +5,7 @@ use crate::checker::{
 };
 use crate::expression::{Graph, Guard, Need, Node, NodeId};
 use crate::observability::{Coordinate, State};
+use dashu::rational::RBig;
 use std::collections::HashMap;
 
 /// A listing that grows as nodes are asked for.
@@ -88,6 +89,14 @@ impl<'g> Lowering<'g> {
             Need::InsideOne => RequirementKind::InsideOne,
         };
         Ok(Requirement { kind, step: self.place(guard.node)? })
+    }
+
+    /// The place of a zero.
+    ///
+    /// # Errors
+    /// Where the listing becomes too long.
+    pub fn zero(&mut self) -> Result<usize, Missing> {
+        self.listing.push(Step::Constant(RBig::ZERO))
     }
 
     /// The listing.

@@ -8,6 +8,8 @@
 mod lowering;
 mod minors;
 mod ranks;
+mod statements;
 
 pub use lowering::{Lowering, exact_coordinate, exact_state};
 pub use ranks::rank_records;
+pub use statements::StatementAt;
