@@ -104,6 +104,8 @@ pub enum Doubt {
     NotAnnihilated { state: usize, row: usize, vector: usize },
     #[error("row {row} cannot be shown to annihilate vector {vector} of the kernel of state {state}")]
     NotShownAnnihilated { state: usize, row: usize, vector: usize },
+    #[error("the rank is {found} at another state, and not {stated} at almost all")]
+    GreaterRank { found: usize, stated: usize },
     #[error("at state {state}: {doubt}")]
     AtState { state: usize, doubt: Box<Doubt> },
     #[error("there is nothing in it to be checked")]
@@ -118,6 +120,8 @@ impl Doubt {
         match self {
             Doubt::NotOnTheCircle(_)
             | Doubt::NoValue(_)
+            | Doubt::ConditionNotMet(_)
+            | Doubt::ConditionNotShown(_)
             | Doubt::RequirementNotMet(_)
             | Doubt::RequirementNotShown(_) => Doubt::AtState { state, doubt: Box::new(self) },
             named => named,

@@ -1,5 +1,6 @@
 //! The verdict file: what was found, and what it rests on, in one JSON object that is checked without any other file.
 
+use super::claimed_rank::ClaimedRank;
 use super::doubt::{Doubt, Effort, Finding};
 use super::identity::StatedIdentity;
 use super::minor::CertifiedRank;
@@ -22,8 +23,10 @@ pub enum Evidence {
     Refuted(Refutation),
     /// An exact argument, which evaluation can try and not repeat.
     Proved(StatedIdentity),
-    /// Minors and kernels.
+    /// Minors and kernels at states.
     Rank(CertifiedRank),
+    /// A minor, of a claim about almost all states.
+    ClaimedRank(ClaimedRank),
     /// Nothing that evaluation could check; in words, why.
     Unchecked(String),
 }
@@ -129,6 +132,7 @@ impl VerdictFile {
                 Evidence::Refuted(refutation) => refutation.check(effort),
                 Evidence::Proved(identity) => identity.check(seed, effort),
                 Evidence::Rank(rank) => rank.check(effort, interrupt),
+                Evidence::ClaimedRank(rank) => rank.check(seed, effort),
                 Evidence::Unchecked(_) => Finding::NotChecked,
             };
             done();
@@ -145,6 +149,8 @@ impl Evidence {
             Evidence::Refuted(_) => "refuted",
             Evidence::Proved(_) => "proved",
             Evidence::Rank(_) => "rank",
+            Evidence::ClaimedRank(rank) if rank.is_proved() => "proved",
+            Evidence::ClaimedRank(_) => "refuted",
             Evidence::Unchecked(_) => "unchecked",
         }
     }

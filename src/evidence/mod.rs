@@ -13,3 +13,12 @@ mod statements;
 pub use lowering::{Lowering, exact_coordinate, exact_state};
 pub use ranks::rank_records;
 pub use statements::StatementAt;
+
+/// Why evidence could not be written down.
+#[derive(Debug, thiserror::Error)]
+pub enum NotWritten {
+    #[error("what the verdict rests on is too long to be written down: {0}")]
+    TooLong(#[from] crate::checker::Missing),
+    #[error("a condition cannot be read: {0}")]
+    Condition(String),
+}
