@@ -181,6 +181,32 @@ fn products(x: &str, y: &str, rank: usize, minor: Value, kernel: Value) -> Value
     }}))
 }
 
+/// Of the same rows: "the rank is 2 at almost all states" is confirmed by one minor, "it is 1" refuted by the same; that it
+/// is 1 of the first row alone, too. A proof that it is 1 by the state (1, 1) is found wrong at another state.
+#[test]
+fn a_claim_about_a_rank_is_tried_at_other_states() {
+    let claimed = |at: &str, rank: usize, claimed: usize, word: &str| {
+        let places: Vec<usize> = (0..rank).collect();
+        let minor = json!({"rows": places, "columns": places});
+        let mut file = products(at, "1", rank, minor, json!([]));
+        let matrix = file["verdicts"][0]["evidence"]["rank"].take();
+        file["verdicts"][0]["evidence"] = json!({"claimed_rank": {
+            "matrix": matrix, "claimed": claimed, "word": word, "engine": "by hand", "log2_error": null,
+        }});
+        check(&file)
+    };
+    assert_eq!(claimed("2", 2, 2, "proved"), Finding::Confirmed { times: 1 });
+    assert_eq!(claimed("2", 2, 1, "refuted"), Finding::Confirmed { times: 1 });
+    let greater = Finding::NotConfirmed(Doubt::GreaterRank { found: 2, stated: 1 });
+    assert_eq!(claimed("1", 1, 1, "proved"), greater);
+    assert_eq!(claimed("1", 1, 2, "refuted"), greater);
+    assert_eq!(claimed("1", 2, 2, "proved"), Finding::NotConfirmed(Doubt::MinorVanishes(0)));
+    for (rank, of, word) in [(2, 1, "proved"), (2, 2, "refuted")] {
+        let found = claimed("2", rank, of, word);
+        assert_eq!(found, Finding::NotConfirmed(Doubt::OtherRank { found: rank, claimed: of }));
+    }
+}
+
 #[test]
 fn a_rank_is_confirmed_by_its_minor_and_its_kernel_alone() {
     let whole = json!({"rows": [1, 0], "columns": [0, 1]});

@@ -11,14 +11,24 @@ use serde::{Deserialize, Serialize};
 /// So many states are compared.
 const COMPARED: usize = 4;
 
+/// What became of a claim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ClaimedWord {
+    Proved,
+    Refuted,
+}
+
 /// A rank that was claimed, and what it was found to be.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClaimedRank {
     /// The matrix, with one state and a minor of the rank that was found; a kernel is not needed.
     pub matrix: CertifiedRank,
-    /// The rank that is claimed: proved where it is the one that was found, else refuted.
+    /// The rank that is claimed.
     pub claimed: usize,
+    /// Proved where it is the one that was found, else refuted.
+    pub word: ClaimedWord,
     /// What the verdict rests on: the engine.
     pub engine: String,
     /// A bound on the probability that it errs, as a power of two; nothing where it cannot err.
@@ -26,11 +36,6 @@ pub struct ClaimedRank {
 }
 
 impl ClaimedRank {
-    /// Whether it was proved.
-    pub fn is_proved(&self) -> bool {
-        self.matrix.states.first().is_some_and(|state| state.rank == self.claimed)
-    }
-
     /// Checks the minor, and draws states from a seed.
     pub fn check(&self, seed: u64, effort: &Effort) -> Finding {
         self.try_check(seed, effort).unwrap_or_else(Finding::NotConfirmed)
@@ -39,6 +44,9 @@ impl ClaimedRank {
     fn try_check(&self, seed: u64, effort: &Effort) -> Result<Finding, Doubt> {
         self.matrix.shape()?;
         let [state] = self.matrix.states.as_slice() else { return Err(Doubt::Empty) };
+        if (state.rank == self.claimed) != (self.word == ClaimedWord::Proved) {
+            return Err(Doubt::OtherRank { found: state.rank, claimed: self.claimed });
+        }
         self.matrix.is_at_least(0, state, effort)?;
         let largest = self.matrix.columns.len().min(self.matrix.rows.len());
         if state.rank == largest || state.rank > self.claimed {

@@ -104,6 +104,8 @@ pub enum Doubt {
     NotAnnihilated { state: usize, row: usize, vector: usize },
     #[error("row {row} cannot be shown to annihilate vector {vector} of the kernel of state {state}")]
     NotShownAnnihilated { state: usize, row: usize, vector: usize },
+    #[error("a rank of {found} does not say this of a claim of {claimed}")]
+    OtherRank { found: usize, claimed: usize },
     #[error("the rank is {found} at another state, and not {stated} at almost all")]
     GreaterRank { found: usize, stated: usize },
     #[error("at state {state}: {doubt}")]

@@ -1,6 +1,6 @@
 //! The verdict file: what was found, and what it rests on, in one JSON object that is checked without any other file.
 
-use super::claimed_rank::ClaimedRank;
+use super::claimed_rank::{ClaimedRank, ClaimedWord};
 use super::doubt::{Doubt, Effort, Finding};
 use super::identity::StatedIdentity;
 use super::minor::CertifiedRank;
@@ -149,7 +149,7 @@ impl Evidence {
             Evidence::Refuted(_) => "refuted",
             Evidence::Proved(_) => "proved",
             Evidence::Rank(_) => "rank",
-            Evidence::ClaimedRank(rank) if rank.is_proved() => "proved",
+            Evidence::ClaimedRank(rank) if rank.word == ClaimedWord::Proved => "proved",
             Evidence::ClaimedRank(_) => "refuted",
             Evidence::Unchecked(_) => "unchecked",
         }

@@ -19,7 +19,7 @@ mod minor;
 mod state;
 mod witness;
 
-pub use claimed_rank::ClaimedRank;
+pub use claimed_rank::{ClaimedRank, ClaimedWord};
 pub use doubt::{Doubt, Effort, Finding, Missing};
 pub use evaluation::{Difference, Evaluation, PRECISIONS};
 pub use exact::{Exact, Form};
