@@ -91,12 +91,12 @@ impl<'g> Lowering<'g> {
         Ok(Requirement { kind, step: self.place(guard.node)? })
     }
 
-    /// The place of a zero.
+    /// A node that is to be zero, beside a zero.
     ///
     /// # Errors
     /// Where the listing becomes too long.
-    pub fn zero(&mut self) -> Result<usize, Missing> {
-        self.listing.push(Step::Constant(RBig::ZERO))
+    pub fn vanishing(&mut self, node: NodeId) -> Result<Sides, Missing> {
+        Ok(Sides { left: self.place(node)?, right: self.listing.push(Step::Constant(RBig::ZERO))? })
     }
 
     /// The listing.

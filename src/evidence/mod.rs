@@ -11,6 +11,7 @@ mod ranks;
 mod statements;
 
 pub use lowering::{Lowering, exact_coordinate, exact_state};
+pub use minors::largest_minor;
 pub use ranks::rank_records;
 pub use statements::StatementAt;
 

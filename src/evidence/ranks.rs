@@ -2,7 +2,7 @@
 
 use super::NotWritten;
 use super::lowering::{Lowering, exact_state};
-use super::minors::minor;
+use super::minors::largest_minor;
 use crate::checker::{CertifiedRank, Evidence, Missing, RankedState, Ratio, VerdictRecord};
 use crate::expression::{Guard, NodeId, Program, Symbol, expand_angles};
 use crate::number::PrimeField;
@@ -75,7 +75,7 @@ fn certified_rank(
         state: exact_state(graph, &recorded.state),
         rank: recorded.rank,
         // a minor that is too small, or none, is seen by the checker
-        minor: minor(&program, width, &recorded.state, field).unwrap_or_default(),
+        minor: largest_minor(&program, width, &recorded.state, field).unwrap_or_default(),
         kernel: recorded.unseen.iter().map(|v| v.iter().cloned().map(Ratio).collect()).collect(),
     };
     let mut states: Vec<RankedState> = report.recorded.par_iter().map(with_minor).collect();

@@ -92,7 +92,7 @@ impl StatementAt<'_> {
         let within = self.within.map(|node| lowering.place(node)).transpose()?;
         let mut conditions = Vec::new();
         for condition in self.conditions {
-            conditions.push(Sides { left: lowering.place(*condition)?, right: lowering.zero()? });
+            conditions.push(lowering.vanishing(*condition)?);
         }
         let requirements = self.guards.iter().map(|guard| lowering.requirement(*guard));
         let requirements = requirements.collect::<Result<_, _>>()?;
