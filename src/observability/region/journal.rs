@@ -34,12 +34,23 @@ impl Region {
     fn fingerprint(&self) -> u64 {
         let mut hash = Hash::new();
         hash.add(env!("CARGO_PKG_VERSION"));
-        for part in &self.problem.parts {
+        let problem = &self.problem;
+        hash.add(&format!(
+            "{} {} {:?} {:?};",
+            problem.file, problem.dimension, problem.order, problem.nowhere
+        ));
+        hash.add(&format!("{:?} {:?};", problem.ranges, problem.minors));
+        for part in &problem.parts {
             for coordinate in part.chart.coordinates() {
                 hash.add(&format!("{} {} {};", coordinate.name, coordinate.low, coordinate.high));
             }
+            // tapes name slots by number: which coordinate these are, and which function of it, belongs to their meaning
+            hash.add(&format!("{:?};", part.chart.slots()));
             for factor in &part.factors {
-                hash.add(&format!("{:?} {:?} {};", factor.tape, factor.witnesses, factor.positive));
+                hash.add(&format!(
+                    "{} {:?} {:?} {:?};",
+                    factor.text, factor.tape, factor.witnesses, factor.need
+                ));
             }
             hash.add(&format!("{:?} {:?} {:?}", part.guards, part.common, part.alternatives));
         }

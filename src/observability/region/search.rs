@@ -2,7 +2,7 @@
 //! first.
 
 use super::boxes::{DEEPEST, Side, Volume};
-use super::factor::{Desk, Guess};
+use super::factor::{Desk, Guess, HOPE};
 use super::part::{Alternative, Part};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
@@ -104,8 +104,6 @@ pub(super) struct Search {
 
 /// The boxes of a turn are judged by all threads.
 const LONGEST_TURN: usize = 2048;
-/// A factor is tried where floating point gives it this much of a chance.
-const HOPE: f64 = 0.6;
 /// So many minors are tried on a box.
 const TRIES: usize = 3;
 /// With so many open boxes a search ends: what is left would fill the memory (some 150 bytes each).
@@ -214,12 +212,14 @@ fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> Judged {
             }
             let Some(guess) = guesses[factor] else { continue };
             let expression = &part.factors[factor];
-            if guess.ratio >= HOPE && expression.excludes_zero(chart, desk, guess.value < 0.0) {
+            if expression.is_worth_trying(guess)
+                && expression.holds_everywhere(chart, desk, guess.value < 0.0)
+            {
                 cell.learn(factor);
                 continue;
             }
             proved = false;
-            if expression.is_nowhere_positive(desk) {
+            if expression.fails_everywhere(desk) {
                 return Judged::Left;
             }
             if rank == 0 && worst.is_none_or(|(ratio, _)| guess.ratio < ratio) {
