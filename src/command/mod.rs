@@ -10,6 +10,7 @@ mod observe;
 mod output;
 mod prove;
 mod rank;
+mod recheck;
 mod stress;
 mod trade;
 mod verify;
@@ -35,6 +36,7 @@ enum Verb {
     Verify(verify::Verify),
     Prove(prove::Prove),
     Rank(rank::Rank),
+    Recheck(recheck::Recheck),
     Certify(certify::Certify),
     Trade(trade::Trade),
     Stress(stress::Stress),
@@ -81,6 +83,7 @@ pub fn run() -> ExitCode {
         Verb::Verify(verb) => (verb.json, verb.run()),
         Verb::Prove(verb) => (verb.json, verb.run()),
         Verb::Rank(verb) => (verb.json, verb.run()),
+        Verb::Recheck(verb) => (verb.json, verb.run()),
         Verb::Certify(verb) => (verb.json, verb.run()),
         Verb::Trade(verb) => (verb.json, verb.run()),
         Verb::Stress(verb) => (verb.json, verb.run()),
