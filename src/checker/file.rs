@@ -1,5 +1,6 @@
 //! The verdict file: what was found, and what it rests on, in one JSON object that is checked without any other file.
 
+use super::boxes::CertifiedBoxes;
 use super::doubt::{Doubt, Effort, Finding};
 use super::identity::StatedIdentity;
 use super::minor::CertifiedRank;
@@ -24,6 +25,8 @@ pub enum Evidence {
     Proved(StatedIdentity),
     /// Minors and kernels.
     Rank(CertifiedRank),
+    /// Boxes, each with its minor.
+    Boxes(CertifiedBoxes),
     /// Nothing that evaluation could check; in words, why.
     Unchecked(String),
 }
@@ -129,6 +132,7 @@ impl VerdictFile {
                 Evidence::Refuted(refutation) => refutation.check(effort),
                 Evidence::Proved(identity) => identity.check(seed, effort),
                 Evidence::Rank(rank) => rank.check(effort, interrupt),
+                Evidence::Boxes(boxes) => boxes.check(effort, interrupt),
                 Evidence::Unchecked(_) => Finding::NotChecked,
             };
             done();
@@ -145,6 +149,7 @@ impl Evidence {
             Evidence::Refuted(_) => "refuted",
             Evidence::Proved(_) => "proved",
             Evidence::Rank(_) => "rank",
+            Evidence::Boxes(_) => "boxes",
             Evidence::Unchecked(_) => "unchecked",
         }
     }

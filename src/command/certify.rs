@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use dashu::rational::RBig;
 use indicatif::ProgressBar;
 use palmistry::System;
+use palmistry::evidence::{WrittenBoxes, certificate_file};
 use palmistry::expression::Symbol;
 use palmistry::number::parse_decimal;
 use palmistry::observability::region::{Limits, Progress, Region, RegionAnswer, RegionRows};
@@ -59,6 +60,12 @@ pub(crate) struct Certify {
     /// Write certify.json and the pictures curve.svg and map.svg into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Write the largest proved boxes, each with the rows of its minor, to a file that 'palmistry recheck' checks alone.
+    #[arg(long, value_name = "FILE")]
+    verdicts: Option<PathBuf>,
+    /// How many boxes that file holds at most, the largest first.
+    #[arg(long, default_value_t = 2000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    verdict_boxes: u32,
     /// Print one JSON object with 'proved_fraction', 'minor_vanishes_fraction', 'rest_fraction', 'curve' and more.
     #[arg(long)]
     pub json: bool,
@@ -100,6 +107,9 @@ impl Certify {
         let map = self.map_of(&system)?;
         let mut region =
             Region::new(&mut system, rows, &ranges, map).map_err(|why| Unusable::report(why, ""))?;
+        if self.verdicts.is_some() {
+            region.keep_boxes(self.verdict_boxes as usize);
+        }
         if let Some(file) = &self.state {
             resume(&mut region, file)?;
         }
@@ -113,10 +123,23 @@ impl Certify {
             let text = serde_json::to_string_pretty(&object).unwrap_or_default();
             write_whole(&folder.join("certify.json"), &format!("{text}\n"))?;
         }
+        let written = self.write_verdicts(&system, &region)?;
+        if let Some(written) = &written {
+            object["verdict_boxes"] = json!({ "written": written.boxes, "left_out": written.left_out });
+        }
         if self.json {
             print_json(&object);
         } else {
             print_text(&region_text(&answer));
+            if let (Some(file), Some(written)) = (&self.verdicts, written) {
+                print_text(&format!(
+                    "{}: {} of {} proved boxes; {} more are not shown by plain interval arithmetic and left out",
+                    file.display(),
+                    written.boxes,
+                    region.proved_box_count(),
+                    written.left_out
+                ));
+            }
         }
         Ok(if interrupted { Status::NotAsExpected } else { Status::AsExpected })
     }
@@ -152,6 +175,17 @@ impl Certify {
             write_whole(file, &region.saved())?;
         }
         Ok(())
+    }
+
+    /// Writes what the certificate rests on, where that is asked for.
+    fn write_verdicts(&self, system: &System, region: &Region) -> miette::Result<Option<WrittenBoxes>> {
+        let Some(path) = &self.verdicts else { return Ok(None) };
+        let most = self.verdict_boxes as usize;
+        let (file, written) = certificate_file(system, region, most, &INTERRUPTED)
+            .map_err(|why| Unusable::report(why.to_string(), ""))?;
+        let text = file.text().map_err(|why| Unusable::report(why.to_string(), ""))?;
+        write_whole(path, &text)?;
+        Ok(Some(written))
     }
 
     fn map_of(&self, system: &System) -> miette::Result<Option<(Symbol, Symbol)>> {

@@ -16,6 +16,8 @@ use crate::system::{Assignment, System, Value};
 
 /// Where the rows exist.
 pub(super) struct Domain {
+    /// What has to hold, as it was written.
+    pub written: Vec<Guard>,
     /// The factors that have to meet their needs, by their places.
     pub guards: Vec<usize>,
     /// What would have to hold and holds nowhere, in the notation of the proof language: with any of it nothing exists.
@@ -33,7 +35,7 @@ pub(super) fn domain(
     let guards = system.substitute_guards(&written, values);
     let angles = system.angles();
     let is_angle = |symbol| angles.contains(&symbol);
-    let mut found = Domain { guards: Vec::new(), nowhere: Vec::new() };
+    let mut found = Domain { guards: Vec::new(), nowhere: Vec::new(), written };
     for Guard { node, need } in guards {
         let graph = &mut system.graph;
         let node = expand_angles(graph, &[node], is_angle)[0];

@@ -7,6 +7,7 @@ use super::collector::{Collector, Ranges};
 use super::domain::{Domain, domain};
 use super::minors::minors as minors_of;
 use super::part::{Minor, Part};
+use super::proved::{HeldSymbol, RegionRow, WrittenRows};
 use crate::expression::{NodeId, Symbol, expand_angles};
 use crate::number::{Interval, Real, rational_to_f64};
 use crate::observability::{Codistribution, Length, OWN_ROWS, Reduction, Stop};
@@ -49,6 +50,8 @@ pub(super) struct Problem {
     pub remarks: Vec<String>,
     /// What would have to hold for the system and its rows to exist, and holds nowhere.
     pub nowhere: Vec<String>,
+    /// The question as it was written, for those who check the answer.
+    pub written: WrittenRows,
 }
 
 /// More words than this are not taken unless they are asked for.
@@ -67,18 +70,19 @@ impl Problem {
         if system.states.is_empty() || system.outputs.is_empty() {
             return Err(format!("{} declares no states or no outputs", system.name));
         }
-        let (ranges, values) = ranges_of(system, given)?;
+        let RangesAndValues { ranges, values, exactly } = ranges_of(system, given)?;
         let angles = system.angles();
         let is_angle = |symbol: Symbol| angles.contains(&symbol);
         let dimension = system.states.len();
         let (names, flat, order) = rows_of(system, rows, &values)?;
+        let as_written = rows_by_name(&names, &flat, dimension);
         let flat = system.graph.substitute(&flat, &values);
         let flat = expand_angles(&mut system.graph, &flat, is_angle);
         let block = Reduction::new(&system.graph, &flat, dimension);
 
         let mut collector = Collector::default();
         let mut remarks = Vec::new();
-        let Domain { guards, nowhere } = domain(system, rows, &mut collector, &values);
+        let Domain { guards, nowhere, written } = domain(system, rows, &mut collector, &values);
         let mut cleared = Vec::new();
         let columns = block.columns.len();
         for (row, entries) in block.rows.iter().zip(block.entries.chunks(columns.max(1))) {
@@ -103,7 +107,8 @@ impl Problem {
                 let node = collector.products.half_cosine(graph, *place);
                 factors.extend(node.map(|node| collector.expression(node)));
             }
-            minors.push(Minor { rows, factors, below });
+            let places = minor.rows.iter().map(|row| cleared[*row].row).collect();
+            minors.push(Minor { rows, places, factors, below });
         }
         let mut avoid = Vec::new();
         for (text, node) in system.avoid.clone() {
@@ -134,15 +139,34 @@ impl Problem {
             avoid,
             remarks,
             nowhere,
+            written: WrittenRows {
+                rows: as_written,
+                unit_rows: block.unit_rows,
+                guards: written,
+                held: exactly,
+            },
         })
     }
 }
 
+/// Where the symbols are.
+struct RangesAndValues {
+    ranges: Ranges,
+    /// The values that can be put in.
+    values: Assignment,
+    /// All symbols that are held.
+    exactly: Vec<HeldSymbol>,
+}
+
+/// The rows with their names.
+fn rows_by_name(names: &[String], entries: &[NodeId], dimension: usize) -> Vec<RegionRow> {
+    let rows = entries.chunks(dimension).zip(names);
+    rows.map(|(entries, name)| RegionRow { name: name.clone(), entries: entries.to_vec() }).collect()
+}
+
 /// The sides of the box, what the other symbols are, and which of these can be put in exactly.
-fn ranges_of(
-    system: &mut System,
-    given: &BTreeMap<Symbol, (RBig, RBig)>,
-) -> Result<(Ranges, Assignment), String> {
+fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> Result<RangesAndValues, String> {
+    let mut exactly = Vec::new();
     let mut found = Ranges { free: Vec::new(), held: Default::default() };
     let mut values = Vec::new();
     for (symbol, info) in system.symbols().filter(|(_, info)| info.kind != Kind::Imported) {
@@ -150,6 +174,9 @@ fn ranges_of(
         let value = info.default.as_ref().map(|value| (value.clone(), value.clone()));
         let Some((low, high)) = given.get(&symbol).cloned().or(range).or(value) else { continue };
         let name = system.symbol_name(symbol).to_owned();
+        if low == high {
+            exactly.push(HeldSymbol { symbol, value: low.clone() });
+        }
         if low > high {
             return Err(format!("the range of '{name}' is empty: {low} is above {high}"));
         }
@@ -163,7 +190,7 @@ fn ranges_of(
         }
     }
     let values = values.into_iter().map(|(symbol, value)| (symbol, system.graph.rational(value))).collect();
-    Ok((found, values))
+    Ok(RangesAndValues { ranges: found, values, exactly })
 }
 
 /// An angle that is held, give or take what the exact states of [`Locus`](crate::observability::Locus) differ from it:
