@@ -108,6 +108,24 @@ pub enum Doubt {
     OtherRank { found: usize, claimed: usize },
     #[error("the rank is {found} at another state, and not {stated} at almost all")]
     GreaterRank { found: usize, stated: usize },
+    #[error("the digest is another: the file was changed")]
+    DigestDiffers,
+    #[error("a symbol has no range, two ranges, or an empty one")]
+    NoRange,
+    #[error("box {0} does not lie in the whole box, or has no width")]
+    BoxOutside(usize),
+    #[error("box {0} does not come with as many different rows as there are columns")]
+    BoxWithoutMinor(usize),
+    #[error("boxes {first} and {second} overlap")]
+    BoxesOverlap { first: usize, second: usize },
+    #[error("the boxes do not make the volume that is told")]
+    VolumeDiffers,
+    #[error(
+        "full rank could not be shown on all of box {0} by plain interval arithmetic, which does not refute it"
+    )]
+    BoxNotShown(usize),
+    #[error("requirement {requirement} is not met in box {index}: the rows do not exist there")]
+    MissingInBox { index: usize, requirement: usize },
     #[error("at state {state}: {doubt}")]
     AtState { state: usize, doubt: Box<Doubt> },
     #[error("there is nothing in it to be checked")]

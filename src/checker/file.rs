@@ -1,5 +1,6 @@
 //! The verdict file: what was found, and what it rests on, in one JSON object that is checked without any other file.
 
+use super::boxes::CertifiedBoxes;
 use super::claimed_rank::{ClaimedRank, ClaimedWord};
 use super::doubt::{Doubt, Effort, Finding};
 use super::identity::StatedIdentity;
@@ -27,6 +28,8 @@ pub enum Evidence {
     Rank(CertifiedRank),
     /// A minor, of a claim about almost all states.
     ClaimedRank(ClaimedRank),
+    /// Boxes, each with its minor.
+    Boxes(CertifiedBoxes),
     /// Nothing that evaluation could check; in words, why.
     Unchecked(String),
 }
@@ -133,6 +136,7 @@ impl VerdictFile {
                 Evidence::Proved(identity) => identity.check(seed, effort),
                 Evidence::Rank(rank) => rank.check(effort, interrupt),
                 Evidence::ClaimedRank(rank) => rank.check(seed, effort),
+                Evidence::Boxes(boxes) => boxes.check(effort, interrupt),
                 Evidence::Unchecked(_) => Finding::NotChecked,
             };
             done();
@@ -151,6 +155,7 @@ impl Evidence {
             Evidence::Rank(_) => "rank",
             Evidence::ClaimedRank(rank) if rank.word == ClaimedWord::Proved => "proved",
             Evidence::ClaimedRank(_) => "refuted",
+            Evidence::Boxes(_) => "boxes",
             Evidence::Unchecked(_) => "unchecked",
         }
     }

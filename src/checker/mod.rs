@@ -8,6 +8,7 @@
 //!
 //! This floor knows exact numbers ([`crate::number`]) and none of the engines: no graph, no program, no system.
 
+mod boxes;
 mod claimed_rank;
 mod doubt;
 mod evaluation;
@@ -16,9 +17,11 @@ mod file;
 mod identity;
 mod listing;
 mod minor;
+mod piece;
 mod state;
 mod witness;
 
+pub use boxes::{CertifiedBox, CertifiedBoxes, SymbolRange};
 pub use claimed_rank::{ClaimedRank, ClaimedWord};
 pub use doubt::{Doubt, Effort, Finding, Missing};
 pub use evaluation::{Difference, Evaluation, PRECISIONS};

@@ -1,15 +1,18 @@
 //! Floor 4: what verdicts rest on, written down for the checker.
 //!
 //! A [`Lowering`] turns nodes of the graph into a [`crate::checker::Listing`], as they were read and without any
-//! simplification of its own; [`rank_records`] writes the ranks of a sweep, each with its minor and its kernel.
+//! simplification of its own; [`rank_records`] writes the ranks of a sweep, each with its minor and its kernel, [`certificate_file`] proved boxes
+//! with their minors.
 //!
 //! This floor decides nothing: what it writes is checked by code that does not trust it.
 
+mod boxes;
 mod lowering;
 mod minors;
 mod ranks;
 mod statements;
 
+pub use boxes::{WrittenBoxes, certificate_file};
 pub use lowering::{Lowering, exact_coordinate, exact_state};
 pub use minors::largest_minor;
 pub use ranks::rank_records;
