@@ -14,10 +14,13 @@
 mod dice;
 mod expression;
 mod findings;
+mod identities;
 mod library;
 mod number;
 mod point;
 mod rank;
+mod rewriting;
 mod series;
 mod system;
 mod systems;
+mod witness;
