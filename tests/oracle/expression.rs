@@ -1,5 +1,6 @@
 //! Expressions of the witness: a plain tree, its text in the proof language, and its derivative.
 
+use super::number::Number;
 use dashu::rational::RBig;
 
 /// The name of a symbol.
@@ -85,6 +86,34 @@ impl Expression {
         E::Negative(self.into())
     }
 
+    /// A number as an expression; `None` where it has digits only, or pi in a denominator.
+    pub fn of_number(number: &Number) -> Option<E> {
+        match number {
+            Number::Rational(value) => Some(E::Number(value.clone())),
+            Number::Pi(top, bottom) if bottom.len() == 1 => {
+                let term = |(k, c): (usize, &RBig)| {
+                    let c = E::Number(c / &bottom[0]);
+                    if k == 0 { c } else { c.times(E::Pi.power(k as i32)) }
+                };
+                let kept = top.iter().enumerate().filter(|(_, c)| !c.is_zero());
+                kept.map(term).reduce(E::plus)
+            }
+            _ => None,
+        }
+    }
+
+    /// The expression with a symbol replaced.
+    pub fn with(&self, name: Symbol, value: &E) -> E {
+        let mut found = self.clone();
+        for place in (0..self.count()).rev() {
+            found = found.with_part(place, &mut |part| match part {
+                E::Symbol(other) if *other == name => value.clone(),
+                other => other.clone(),
+            });
+        }
+        found
+    }
+
     /// The text in the proof language, each operation in brackets of its own.
     pub fn text(&self) -> String {
         match self {
@@ -157,7 +186,7 @@ impl Expression {
         }
     }
 
-    /// The parts of an expression, outermost first, itself included.
+    /// How many parts an expression has, itself included.
     pub fn count(&self) -> usize {
         1 + match self {
             E::Number(_) | E::Pi | E::Symbol(_) => 0,

@@ -119,7 +119,7 @@ fn some_point(model: &Model, dice: &mut Dice) -> Point {
 fn at_a_point(alphabet: &Alphabet, left: &E, right: &E, dice: &mut Dice) -> Claim {
     let name = alphabet.plain[0];
     let value = if dice.once_in(2) { dice.special() } else { RBig::from(dice.between(-5, 5)) };
-    let put = |e: &E| put(e, name, &E::Number(value.clone()));
+    let put = |e: &E| e.with(name, &E::Number(value.clone()));
     let equation = Equation::new(put(left), put(right));
     let text = format!("(({}) at {{{name} = {value}}}) = {}", left.text(), equation.right.text());
     let points = (0..8)
@@ -138,18 +138,6 @@ fn at_a_point(alphabet: &Alphabet, left: &E, right: &E, dice: &mut Dice) -> Clai
         })
         .collect();
     Claim { class: "at a point", text, equation, points, truth: Truth::Holds }
-}
-
-/// An expression with a symbol replaced.
-fn put(e: &E, name: Symbol, value: &E) -> E {
-    let mut found = e.clone();
-    for place in (0..e.count()).rev() {
-        found = found.with_part(place, &mut |part| match part {
-            E::Symbol(other) if *other == name => value.clone(),
-            other => other.clone(),
-        });
-    }
-    found
 }
 
 fn nowhere(alphabet: &Alphabet, term: &E, dice: &mut Dice) -> Vec<Claim> {

@@ -11,6 +11,10 @@
 //! rational, rational in pi, or of 240 digits. It writes proof files as text, and `library` alone gives them to the
 //! library. See `README.md` beside this file for what is tried.
 
+mod boxes;
+mod condition_sets;
+mod conditions;
+mod determinism;
 mod dice;
 mod expression;
 mod findings;
@@ -19,6 +23,7 @@ mod library;
 mod number;
 mod point;
 mod rank;
+mod rank_sets;
 mod rewriting;
 mod series;
 mod system;

@@ -198,7 +198,8 @@ pub fn threshold(power: usize) -> Float {
 
 /// A rational rounded to [`BITS`] bits.
 pub fn float(value: &RBig) -> Float {
-    value.to_float::<HalfEven, 2>(BITS).value()
+    // zero would come with no precision at all, which functions refuse
+    value.to_float::<HalfEven, 2>(BITS).value().with_precision(BITS).value()
 }
 
 /// Pi as a float.

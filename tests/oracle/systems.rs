@@ -180,18 +180,8 @@ fn hidden(dice: &mut Dice) -> Model {
     // in coordinates p, q with p = x + b(last): p' = a(p), and x' = a(p) - b'(last) last'
     let last = states[n - 1];
     let bend = dice.polynomial(&[last], 2, 2);
-    let moved = |e: &Expression| {
-        let mut moved = e.clone();
-        for place in (0..e.count()).rev() {
-            moved = moved.with_part(place, &mut |part| match part {
-                Expression::Symbol(name) if *name == seen[0] => {
-                    Expression::Symbol(seen[0]).plus(bend.clone())
-                }
-                other => other.clone(),
-            });
-        }
-        moved
-    };
+    let first = Expression::Symbol(seen[0]).plus(bend.clone());
+    let moved = |e: &Expression| e.with(seen[0], &first);
     let last_rate = dice.polynomial(&states, 2, 2);
     let mut rates = Vec::new();
     for (place, _) in seen.iter().enumerate() {
