@@ -1,11 +1,12 @@
 //! Certificates: what lies in a proved box has full rank and is defined, at states drawn densely, and at the zeros and
 //! poles that are known by construction.
 
+use super::condition_sets::ANGLES;
 use super::dice::Dice;
 use super::expression::{Expression, Function, Symbol};
 use super::findings::{Findings, seed};
 use super::library::{Rows, certify};
-use super::number::{Number, Trouble};
+use super::number::{Number, Sign, Trouble};
 use super::point::{Coordinate, Point};
 use super::rank::{rank, ranks};
 use super::series::{Space, series};
@@ -22,7 +23,6 @@ struct Question {
     /// The file's own rows, where these are asked for.
     rows: Option<Vec<Vec<E>>>,
     sides: Vec<Side>,
-    special: Vec<RBig>,
 }
 
 /// Boxes that are looked at in a search.
@@ -69,8 +69,8 @@ fn one_case(case: u64, findings: &mut Findings) {
         let mut point = Point::default();
         let mut at = Vec::new();
         for (name, value) in &state {
-            point.put(name, Coordinate::Number(Number::Rational(value.clone())));
-            at.push(((*name).to_owned(), (value.clone(), value.clone())));
+            point.put(name, Coordinate::Number(value.clone()));
+            at.push(((*name).to_owned(), hull(value)));
         }
         let full = is_full(&question, &point, longest);
         let proved = certificate.proves(&at);
@@ -131,29 +131,54 @@ fn text(question: &Question) -> String {
     text
 }
 
-/// A grid, special values in all combinations with some others, and values drawn at random.
-fn states(question: &Question, dice: &mut Dice) -> Vec<Vec<(Symbol, RBig)>> {
+/// An interval that holds a number.
+fn hull(value: &Number) -> (RBig, RBig) {
+    match value {
+        Number::Rational(value) => (value.clone(), value.clone()),
+        other => {
+            let near = RBig::try_from(other.digits().to_f64().value()).unwrap_or(RBig::ZERO);
+            let room = RBig::from(1) / RBig::from(1i64 << 46);
+            (&near - &room, near + room)
+        }
+    }
+}
+
+/// A value at which something may happen.
+fn special(name: Symbol, dice: &mut Dice) -> Number {
+    if ANGLES.contains(&name) {
+        return Number::turns(RBig::from(dice.between(-4, 4)) / RBig::from(2));
+    }
+    let (top, bottom) = dice.one_of(&[(0, 1), (1, 1), (-1, 1), (2, 1), (1, 2), (-1, 2), (3, 2), (3, 1)]);
+    Number::Rational(RBig::from(top) / RBig::from(bottom))
+}
+
+/// Values on grids, special ones in all combinations with them, and equal ones, where differences of coordinates vanish.
+fn states(question: &Question, dice: &mut Dice) -> Vec<Vec<(Symbol, Number)>> {
+    let inside = |value: &Number, (_, low, high): &Side| {
+        let above = value.subtract(&Number::integer(*low)).sign();
+        let below = Number::integer(*high).subtract(value).sign();
+        ![above, below].contains(&Sign::Negative)
+    };
     let mut found = Vec::new();
     for attempt in 0..60 {
-        let mut state = Vec::new();
-        for (name, low, high) in &question.sides {
-            let inside = |value: &RBig| *value >= RBig::from(*low) && *value <= RBig::from(*high);
-            let special = dice.one_of(&question.special);
-            let value = if attempt % 3 < 2 && dice.once_in(2) && inside(&special) {
+        let mut state: Vec<(Symbol, Number)> = Vec::new();
+        for side in &question.sides {
+            let (name, low, high) = *side;
+            let special = special(name, dice);
+            let value = if attempt % 3 < 2 && dice.once_in(2) && inside(&special, side) {
                 special
             } else {
                 let cells = dice.one_of(&[1i64, 2, 4, 64, 97]);
-                RBig::from(*low) + RBig::from((high - low) * dice.between(0, cells)) / RBig::from(cells)
+                let part = RBig::from((high - low) * dice.between(0, cells)) / RBig::from(cells);
+                Number::Rational(RBig::from(low) + part)
             };
-            state.push((*name, value));
+            state.push((name, value));
         }
-        // on a diagonal, where differences of coordinates vanish
-        if attempt % 5 == 4 && state.len() > 1 {
-            let value = state[0].1.clone();
-            let (_, low, high) = question.sides[1];
-            if value >= RBig::from(low) && value <= RBig::from(high) {
-                state[1].1 = value;
-            }
+        if attempt % 5 == 4
+            && let [(_, first), (_, second)] = state.as_mut_slice()
+            && inside(first, &question.sides[1])
+        {
+            *second = first.clone();
         }
         found.push(state);
     }
@@ -161,18 +186,22 @@ fn states(question: &Question, dice: &mut Dice) -> Vec<Vec<(Symbol, RBig)>> {
 }
 
 fn draw(own: bool, dice: &mut Dice) -> Question {
-    let n = 1 + dice.below(2);
-    let states: Vec<Symbol> = vec!["x", "y"][..n].to_vec();
+    let states: Vec<Symbol> = dice.one_of(&[
+        vec!["x"],
+        vec!["x", "y"],
+        vec!["x", "y"],
+        vec!["phi"],
+        vec!["x", "phi"],
+        vec!["phi", "psi"],
+    ]);
+    let n = states.len();
     let sides: Vec<Side> = states
         .iter()
         .map(|name| {
-            let low = dice.between(-2, 1);
+            let low = dice.between(-2, if ANGLES.contains(name) { 3 } else { 1 });
             (*name, low, low + dice.between(1, 3))
         })
         .collect();
-    let special: Vec<RBig> = [(0, 1), (1, 1), (-1, 1), (2, 1), (1, 2), (-1, 2), (3, 2), (3, 1)]
-        .map(|(a, b)| RBig::from(a) / RBig::from(b))
-        .to_vec();
     let rates = states.iter().map(|_| rate(&states, dice)).collect();
     let mut model = Model {
         fields: vec![Field::new("f", Role::Drift, rates)],
@@ -180,33 +209,57 @@ fn draw(own: bool, dice: &mut Dice) -> Question {
         ..Model::default()
     };
     if own {
-        model.outputs = vec![E::Symbol("x")];
+        model.outputs = vec![doubtless(states[0])];
         let count = n + dice.below(2);
         let entry = |dice: &mut Dice| {
             if dice.once_in(4) { E::integer(dice.one_of(&[0, 1])) } else { doubtful(&states, dice) }
         };
         let rows = (0..count).map(|_| (0..n).map(|_| entry(dice)).collect()).collect();
-        return Question { model, rows: Some(rows), sides, special };
+        return Question { model, rows: Some(rows), sides };
     }
     model.outputs = (0..1 + dice.below(2)).map(|_| doubtful(&states, dice)).collect();
-    Question { model, rows: None, sides, special }
+    Question { model, rows: None, sides }
 }
 
 fn rate(states: &[Symbol], dice: &mut Dice) -> E {
     match dice.below(4) {
         0 => E::integer(dice.one_of(&[0, 1])),
         1 => doubtful(states, dice),
-        _ => dice.polynomial(states, 1, 2),
+        _ => match dice.one_of(states) {
+            name if ANGLES.contains(&name) => doubtless(name),
+            name => dice.polynomial(&[name], 1, 2),
+        },
     }
+}
+
+/// A symbol, or the sine of an angle.
+fn doubtless(name: Symbol) -> E {
+    let symbol = E::Symbol(name);
+    if ANGLES.contains(&name) { symbol.of(Function::Sin) } else { symbol }
 }
 
 /// A term that may be undefined, or constant, or vanish somewhere in a box.
 fn doubtful(states: &[Symbol], dice: &mut Dice) -> E {
-    let x = E::Symbol(dice.one_of(states));
-    let y = E::Symbol(dice.one_of(states));
     let (zero, one) = (|| E::integer(0), || E::integer(1));
+    let mut atom = || {
+        let name = dice.one_of(states);
+        if ANGLES.contains(&name) { dice.wave(&[name]) } else { E::Symbol(name) }
+    };
+    let (x, y) = (atom(), atom());
     let shift = E::Number(dice.special());
     let t = x.clone().minus(shift);
+    if let Some(name) = states.iter().find(|name| ANGLES.contains(name))
+        && dice.once_in(3)
+    {
+        let (sine, cosine) = (E::Symbol(name).of(Function::Sin), E::Symbol(name).of(Function::Cos));
+        return match dice.below(5) {
+            0 => E::integer(2).plus(sine.over(one().plus(cosine))),
+            1 => E::Symbol(name).of(Function::Tan),
+            2 => sine.power(2).over(one().minus(cosine)),
+            3 => sine.clone().over(sine).plus(y),
+            _ => one().minus(cosine).of(Function::Sqrt),
+        };
+    }
     match dice.below(18) {
         0 => x.clone().over(x),
         1 => t.clone().power(2).over(t),

@@ -1,8 +1,8 @@
 //! What was tried, what came of it, and what is wrong: counted, printed, asserted.
 
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// A fault: something that the library says and that is not so.
@@ -53,21 +53,33 @@ impl Findings {
             Some(only) => vec![only],
             None => (0..cases).collect(),
         };
-        let found: Vec<Findings> = chosen
-            .par_iter()
-            .map(|index| {
-                let begin = Instant::now();
-                let mut findings = Findings { case: *index, ..Findings::default() };
-                if catch_unwind(AssertUnwindSafe(|| case(*index, &mut findings))).is_err() {
-                    findings.fault("the oracle itself panicked", "see above", "");
-                }
-                let seconds = begin.elapsed().as_secs_f64();
-                if seconds > LONG {
-                    findings.long.push((*index, seconds));
-                }
-                findings
-            })
-            .collect();
+        let run = |index: u64| {
+            let begin = Instant::now();
+            let mut findings = Findings { case: index, ..Findings::default() };
+            if catch_unwind(AssertUnwindSafe(|| case(index, &mut findings))).is_err() {
+                findings.fault("the oracle itself panicked", "see above", "");
+            }
+            let seconds = begin.elapsed().as_secs_f64();
+            if seconds > LONG {
+                findings.long.push((index, seconds));
+            }
+            findings
+        };
+        // threads of our own: within the library's pool a case would be given others to do while it waits
+        let next = AtomicUsize::new(0);
+        let work = || {
+            let mut done = Vec::new();
+            while let Some(index) = chosen.get(next.fetch_add(1, Ordering::Relaxed)) {
+                done.push(run(*index));
+            }
+            done
+        };
+        let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+        let mut found: Vec<Findings> = std::thread::scope(|scope| {
+            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+            workers.into_iter().filter_map(|worker| worker.join().ok()).flatten().collect()
+        });
+        found.sort_by_key(|findings| findings.case);
         let mut all = Findings::default();
         for findings in found {
             for (key, count) in findings.counts {
