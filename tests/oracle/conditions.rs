@@ -122,7 +122,10 @@ fn claims(set: &Set, dice: &mut Dice) -> Vec<(Equation, bool)> {
     for _ in 0..3 {
         let name = dice.one_of(&PLAIN);
         let angle = E::Symbol(dice.one_of(&ANGLES));
-        let e = match dice.below(6) {
+        let half = |e: E| e.over(E::integer(2));
+        let e = match dice.below(8) {
+            6 => half(angle).of(Function::Cos),
+            7 => half(E::Symbol(name)).of(Function::Sin),
             0 => E::Symbol(name),
             1 => E::Symbol(name).power(2),
             2 => angle.of(Function::Cos),

@@ -16,7 +16,7 @@ use dashu::rational::RBig;
 /// A claim with what we know of it.
 struct Claim {
     class: &'static str,
-    /// As it stands in the file.
+    /// The statement as it stands in the file; a side may be given a name first.
     text: String,
     equation: Equation,
     /// States at which the sides are compared.
@@ -74,17 +74,28 @@ fn one_case(case: u64, findings: &mut Findings) {
     claims.extend(nowhere(&alphabet, &term, &mut dice));
     claims.extend(thin(&alphabet, &mut dice));
     lie(&model, &term, &alphabet, &points, &mut dice, &mut claims);
+    claims.push(determinant(&alphabet, &points, &mut dice));
 
     let mut text = model.text();
-    for (place, claim) in claims.iter().enumerate() {
-        text.push_str(&format!("claim c{place}: {}\n", claim.text));
-    }
+    let entries: Vec<String> = claims
+        .iter()
+        .enumerate()
+        .map(|(place, claim)| {
+            let whole = claim.equation.text();
+            if claim.text == whole && dice.once_in(3) {
+                let (left, right) = (claim.equation.left.text(), claim.equation.right.text());
+                format!("let v{place} = {left}\nclaim c{place}: v{place} = {right}\n")
+            } else {
+                format!("claim c{place}: {}\n", claim.text)
+            }
+        })
+        .collect();
+    text.push_str(&entries.concat());
     match verdicts(&text) {
         Err(why) => findings.fault("a file is not answered", why, &text),
         Ok(said) => {
-            for (claim, said) in claims.iter().zip(&said) {
-                let text = format!("{}claim {}: {}\n", model.text(), said.id, claim.text);
-                judge(claim, said, &text, findings);
+            for ((claim, entry), said) in claims.iter().zip(&entries).zip(&said) {
+                judge(claim, said, &format!("{}{entry}", model.text()), findings);
             }
         }
     }
@@ -92,7 +103,10 @@ fn one_case(case: u64, findings: &mut Findings) {
 
 fn model(dice: &mut Dice) -> Model {
     let states = vec!["x", "y"];
-    let rates = vec![dice.polynomial(&states, 2, 2), dice.polynomial(&states, 1, 2)];
+    let mut rates = vec![dice.polynomial(&states, 2, 2), dice.polynomial(&states, 1, 2)];
+    if dice.once_in(4) {
+        rates[0] = dice.monomial(&states, 1).over(dice.divisor(&states));
+    }
     let mut model = Model { states, fields: vec![Field::new("f", Role::Drift, rates)], ..Model::default() };
     let value = dice.one_of(&[None, Some("2"), Some("0")]);
     model.parameters = vec![("k", value.map(str::to_owned))];
@@ -222,6 +236,27 @@ fn lie(
     push(&alphabet.near_miss(&sum, dice), Truth::Open);
 }
 
+/// A determinant of two rows, written out; multiplied by that of the inverse it is one, unless it vanishes everywhere.
+fn determinant(alphabet: &Alphabet, points: &[Point], dice: &mut Dice) -> Claim {
+    let [a, b, c] = [(); 3].map(|()| alphabet.term(dice));
+    let dependent = dice.once_in(3);
+    let d = if dependent { b.clone().times(c.clone()).over(a.clone()) } else { alphabet.term(dice) };
+    let matrix = format!("[{}, {}; {}, {}]", a.text(), b.text(), c.text(), d.text());
+    let written = a.times(d).minus(b.times(c));
+    let class = "determinant";
+    if dice.once_in(2) {
+        let right = if dice.once_in(2) { alphabet.near_miss(&written, dice) } else { written.clone() };
+        let truth = if right == written { Truth::Holds } else { Truth::Open };
+        let text = format!("det({matrix}) = {}", right.text());
+        let equation = Equation::new(written, right);
+        return Claim { class, text, equation, points: points.to_vec(), truth };
+    }
+    let text = format!("det({matrix})*det(inverse({matrix})) = 1");
+    let left = written.clone().over(written);
+    let truth = if dependent { Truth::Nowhere } else { Truth::Holds };
+    Claim { class, text, equation: Equation::new(left, E::integer(1)), points: points.to_vec(), truth }
+}
+
 fn judge(claim: &Claim, said: &Said, text: &str, findings: &mut Findings) {
     let compared: Vec<Compared> = claim.points.iter().map(|point| claim.equation.at(point)).collect();
     let at = |what: Compared| compared.iter().position(|found| *found == what);
@@ -234,7 +269,9 @@ fn judge(claim: &Claim, said: &Said, text: &str, findings: &mut Findings) {
         return findings.fault("the oracle contradicts itself", detail, text);
     }
     let class = match (claim.class, differs) {
-        ("near miss" | "Lie derivative", None) if claim.truth == Truth::Open => "a miss that may hold",
+        ("near miss" | "Lie derivative" | "determinant", None) if claim.truth == Truth::Open => {
+            "a miss that may hold"
+        }
         (class, _) => class,
     };
     match said.word {

@@ -38,6 +38,7 @@ fn laws_numbers_and_matrices() {
 fn one_case(case: u64, findings: &mut Findings) {
     let mut dice = Dice::new(seed() ^ 0x1a35, case);
     laws(&mut dice, findings);
+    constants(&mut dice, findings);
     numbers(&mut dice, findings);
     matrices(&mut dice, findings);
 }
@@ -132,6 +133,46 @@ fn laws(dice: &mut Dice, findings: &mut Findings) {
     }
 }
 
+/// Equations between constants: what 240 digits say is so.
+fn constants(dice: &mut Dice, findings: &mut Findings) {
+    use Function::{Acos, Asin, Atan, Cos, Exp, Log, Sin, Sqrt};
+    let n = |a: i64, b: i64| E::Number(RBig::from(a) / RBig::from(b));
+    let part = |b: i64| E::Pi.over(E::integer(b));
+    let all = [
+        (part(3).of(Cos), n(1, 2)),
+        (part(6).of(Sin), n(1, 2)),
+        (E::Pi.of(Sin), n(0, 1)),
+        (part(4).of(Sin).power(2), n(1, 2)),
+        (n(1, 1).of(Atan).times(n(4, 1)), E::Pi),
+        // Machin (1706)
+        (n(16, 1).times(n(1, 5).of(Atan)).minus(n(4, 1).times(n(1, 239).of(Atan))), E::Pi),
+        (n(2, 1).of(Sqrt).times(n(3, 1).of(Sqrt)), n(6, 1).of(Sqrt)),
+        (n(4, 1).of(Log), n(2, 1).times(n(2, 1).of(Log))),
+        (n(2, 1).of(Log).of(Exp), n(2, 1)),
+        (n(1, 1).of(Asin), part(2)),
+        (n(-1, 1).of(Acos), E::Pi),
+        (n(9, 4).of(Sqrt), n(3, 2)),
+        (n(5, 1).plus(n(2, 1).times(n(6, 1).of(Sqrt))).of(Sqrt), n(2, 1).of(Sqrt).plus(n(3, 1).of(Sqrt))),
+        (E::Pi, n(355, 113)),
+        (E::Pi.times(n(163, 1).of(Sqrt)).of(Exp), E::Number(RBig::from(262_537_412_640_768_744i64))),
+    ];
+    let (left, right) = dice.one_of(&all);
+    let right = if dice.once_in(2) { right } else { right.plus(n(dice.between(-1, 1), 1_000_000)) };
+    let equation = Equation::new(left, right);
+    let text = format!("system \"drawn\"\nclaim 1: {}\n", equation.text());
+    let truth = equation.at(&Point::default());
+    for said in answered(&text, findings) {
+        match (said.word, truth) {
+            (Word::Proved, Compared::Equal) => findings.count("constants", "proved"),
+            (Word::Refuted, Compared::Differ) => findings.count("constants", "refuted"),
+            (Word::Undecided, _) => findings.undecided("constants", &said.why),
+            (word, truth) => {
+                findings.fault("constants", format!("{word:?}, and {truth:?} in 240 digits"), &text)
+            }
+        }
+    }
+}
+
 fn point(dice: &mut Dice) -> Point {
     let mut found = Point::default();
     for name in SYMBOLS {
@@ -189,9 +230,10 @@ fn numbers(dice: &mut Dice, findings: &mut Findings) {
             findings.fault("a number is said that is not so", format!("{word:?}, {truth:?}"), &line)
         }
     }
-    if e.symbols().contains(&"k") && second.word != Word::Undecided && !cancels(&e, &x, dice) {
-        let detail = format!("{:?}: that is about the default of k, and of no other value", second.word);
-        findings.fault("a parameter's default decides a claim", detail, &format!("{head}{}", claims[1]));
+    // to be refuted at the default is to be refuted
+    if e.symbols().contains(&"k") && second.word == Word::Proved && !cancels(&e, &x, dice) {
+        let detail = "that is so at the default of k, and at few other values";
+        findings.fault("a parameter's default proves a claim", detail, &format!("{head}{}", claims[1]));
     }
 }
 

@@ -130,8 +130,16 @@ fn set(model: &Model, dice: &mut Dice) -> Set {
             branches: values.map(|n| vec![(name, halves(n))]).to_vec(),
         };
     }
-    let x = first.unwrap_or("x");
     let c = E::Number(dice.special());
+    if let Some((name, _)) = model.parameters.first()
+        && dice.once_in(2)
+    {
+        return Set {
+            conditions: vec![Equation::new(E::Symbol(name), c.clone())],
+            branches: vec![vec![(*name, c)]],
+        };
+    }
+    let x = first.unwrap_or("x");
     let Some(y) = plain.get(1).copied() else {
         return Set {
             conditions: vec![Equation::new(E::Symbol(x), c.clone())],

@@ -8,7 +8,7 @@ use super::library::{Word, rank_at, verdicts};
 use super::number::{Number, Trouble};
 use super::point::{Coordinate, Point};
 use super::rank::ranks;
-use super::system::{Field, Model, Role};
+use super::system::{Field, Model, ROLES_ARE_WRITTEN, Role};
 use dashu::rational::RBig;
 
 const NAMES: [Symbol; 6] = ["x", "y", "z", "w", "v", "u"];
@@ -79,6 +79,11 @@ pub fn draw(class: &str, dice: &mut Dice) -> Model {
         let rates = (0..model.states.len()).map(|_| term(class, &model, dice)).collect();
         model.fields.push(Field::new(&name, role, rates));
     }
+    if ROLES_ARE_WRITTEN && dice.once_in(3) {
+        // only differentiated along: it may raise no rank
+        let rates = (0..model.states.len()).map(|_| term(class, &model, dice)).collect();
+        model.fields.push(Field::new("h", Role::Plain, rates));
+    }
     let outputs = 1 + dice.below(2);
     for _ in 0..outputs {
         let output = term(class, &model, dice);
@@ -118,8 +123,9 @@ fn term(class: &str, model: &Model, dice: &mut Dice) -> Expression {
             } else {
                 dice.polynomial(&plain, 1, 2)
             };
-            match dice.below(6) {
+            match dice.below(7) {
                 0 if !plain.is_empty() => dice.polynomial(&plain, 2, 2),
+                6 => Expression::Symbol(dice.one_of(&model.angles)),
                 1 => factor.over(wave.plus(Expression::integer(2))),
                 2 => factor.plus(wave.of_angle_tangent(dice, model)),
                 _ => factor.times(wave),

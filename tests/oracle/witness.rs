@@ -3,7 +3,7 @@
 use super::expression::Expression;
 use super::library::Said;
 use super::number::Number;
-use super::point::{Compared, Point, compare, rational};
+use super::point::{Compared, Coordinate, Point, compare, rational};
 use super::series::value;
 use dashu::rational::RBig;
 
@@ -70,8 +70,19 @@ pub fn examine(said: &Said, claimed: &Equation, conditions: &[Equation]) -> Stan
             }
         }
     }
+    let mut point = point;
     if !claimed.is_covered(&point) {
-        return Standing::Incomplete;
+        if !complete || !any_completion_will_do(claimed, &point) {
+            return Standing::Incomplete;
+        }
+        for name in [claimed.left.symbols(), claimed.right.symbols()].concat() {
+            if point.get(name).is_none() {
+                point.put(name, Coordinate::Number(Number::ONE));
+            }
+        }
+        if claimed.at(&point) == Compared::Undefined {
+            return Standing::Incomplete;
+        }
     }
     match claimed.at(&point) {
         Compared::Differ => {}
@@ -95,6 +106,21 @@ pub fn examine(said: &Said, claimed: &Equation, conditions: &[Equation]) -> Stan
         return Standing::Bad(format!("both sides are printed as {}", shown.left));
     }
     if complete { Standing::Good } else { Standing::Incomplete }
+}
+
+/// Whether the sides differ whatever values the symbols have of which a witness says nothing: then these are needed by
+/// nothing, not even for the sides to exist.
+fn any_completion_will_do(claimed: &Equation, point: &Point) -> bool {
+    let all = [-7, -1, 0, 1, 3].map(|n| Number::Rational(RBig::from(n) / RBig::from(2)));
+    all.iter().all(|value| {
+        let mut point = point.clone();
+        for name in [claimed.left.symbols(), claimed.right.symbols()].concat() {
+            if point.get(name).is_none() {
+                point.put(name, Coordinate::Number(value.clone()));
+            }
+        }
+        claimed.at(&point) == Compared::Differ
+    })
 }
 
 /// Whether a printed value is a number, rounded or not; what is no number is not judged.
