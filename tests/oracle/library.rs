@@ -3,8 +3,8 @@
 use dashu::rational::RBig;
 use palmistry::expression::Symbol;
 use palmistry::number::{Interval, Real};
-use palmistry::observability::Certainty;
 use palmistry::observability::region::{Limits, Region, RegionRows, Standing};
+use palmistry::observability::{BranchAnswer, Certainty};
 use palmistry::{Outcome, RankQuestion, System, Verdict, answer_rank, decide_all};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -85,6 +85,22 @@ pub struct RankSaid {
 
 /// The rank at a state that is given in full; all states are plain numbers, or angles at zero.
 pub fn rank_at(text: &str, at: &[(String, RBig)]) -> Result<RankSaid, String> {
+    let found = rank_of(text, at, &[], 1)?;
+    let [only] = found.as_slice() else { return Err("not one branch".to_owned()) };
+    Ok(only.clone())
+}
+
+/// The ranks at some drawn states of each branch of conditions.
+pub fn rank_where(text: &str, conditions: &[String]) -> Result<Vec<RankSaid>, String> {
+    rank_of(text, &[], conditions, 3)
+}
+
+fn rank_of(
+    text: &str,
+    at: &[(String, RBig)],
+    conditions: &[String],
+    samples: u64,
+) -> Result<Vec<RankSaid>, String> {
     caught(|| {
         let mut system = read(text)?;
         let mut fixed = BTreeMap::new();
@@ -95,28 +111,31 @@ pub fn rank_at(text: &str, at: &[(String, RBig)]) -> Result<RankSaid, String> {
         let answer = answer_rank(
             &mut system,
             &RankQuestion {
-                samples: 1,
+                samples,
                 seed: 1,
                 wanted: Certainty::Certified,
                 digits: None,
                 order: None,
                 fixed,
-                conditions: Vec::new(),
+                conditions: conditions.to_vec(),
                 interrupt: &false.into(),
                 progress: &|_| (),
             },
         )
         .map_err(|error| error.to_string())?;
-        let [branch] = answer.branches.as_slice() else { return Err("not one branch".to_owned()) };
-        let histogram = &branch.full.rank_histogram;
-        Ok(RankSaid {
-            rank: if histogram.len() == 1 { histogram.keys().next().copied() } else { None },
-            certified: branch.full.certified == branch.full.samples && branch.full.samples > 0,
-            order: branch.order,
-            generic: branch.generic_rank,
-            is_final: branch.is_final,
-            poles: branch.full.poles.values().sum(),
-        })
+        let said = |branch: &BranchAnswer| {
+            let full = &branch.full;
+            let histogram = &full.rank_histogram;
+            RankSaid {
+                rank: if histogram.len() == 1 { histogram.keys().next().copied() } else { None },
+                certified: full.certified == full.samples && full.samples > 0,
+                order: branch.order,
+                generic: branch.generic_rank,
+                is_final: branch.is_final,
+                poles: full.poles.values().sum(),
+            }
+        };
+        Ok(answer.branches.iter().map(said).collect())
     })
 }
 

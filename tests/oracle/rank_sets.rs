@@ -4,7 +4,7 @@
 use super::dice::Dice;
 use super::expression::{Expression, Function, Symbol};
 use super::findings::{Findings, seed};
-use super::library::{Said, Word, verdicts};
+use super::library::{Said, Word, rank_where, verdicts};
 use super::number::Trouble;
 use super::point::{Coordinate, Point};
 use super::rank::ranks;
@@ -17,6 +17,16 @@ use dashu::rational::RBig;
 
 /// A way to meet the conditions: values for some symbols, in this order, all others being free.
 type Branch = Vec<(Symbol, E)>;
+
+const CLASSES: [&str; 7] = [
+    "polynomial",
+    "of angles",
+    "late on a set",
+    "polynomial",
+    "rational",
+    "hidden states",
+    "a parameter with a value",
+];
 
 struct Set {
     conditions: Vec<Equation>,
@@ -49,8 +59,7 @@ fn ranks_on_sets() {
 
 fn one_case(case: u64, findings: &mut Findings) {
     let mut dice = Dice::new(seed() ^ 0x5e75, case);
-    let class = ["polynomial", "of angles", "late on a set", "polynomial", "rational", "hidden states"]
-        [case as usize % 6];
+    let class = CLASSES[case as usize % CLASSES.len()];
     let (model, set) = match class {
         "late on a set" => late(&mut dice),
         _ => {
@@ -67,6 +76,7 @@ fn one_case(case: u64, findings: &mut Findings) {
     if set.conditions.len() > 1 {
         orders.push(set.conditions.iter().rev().cloned().collect());
     }
+    sampled(class, &model, &set, &mut dice, findings);
     for rank in 0..=model.states.len() {
         let mut text = model.text();
         for (number, conditions) in orders.iter().enumerate() {
@@ -184,6 +194,49 @@ fn set(model: &Model, dice: &mut Dice) -> Set {
             ],
             branches: vec![vec![(y, zero()), (x, zero())]],
         },
+    }
+}
+
+/// `rank --where`: the ranks that are found at drawn states of each branch are those of a branch of ours, by words of the
+/// same length.
+fn sampled(class: &str, model: &Model, set: &Set, dice: &mut Dice, findings: &mut Findings) {
+    let mut text = format!("{}sample\n", model.text());
+    for name in model.symbols() {
+        text.push_str(&format!("  {name} in [1/2, 3]\n"));
+    }
+    let conditions: Vec<String> = set.conditions.iter().map(Equation::text).collect();
+    let branches = match rank_where(&text, &conditions) {
+        Ok(branches) => branches,
+        Err(why) if why.starts_with("panicked") => return findings.fault("rank --where panics", why, &text),
+        Err(why) => return findings.undecided(&format!("{class}, drawn"), &why),
+    };
+    let mut ours: Vec<Vec<usize>> = Vec::new();
+    for branch in &set.branches {
+        let mut point = dice.generic_point(model);
+        for (name, e) in branch {
+            let Ok(number) = value(e, &point) else { return };
+            point.put(name, Coordinate::Number(number));
+        }
+        let Ok(found) = ranks(model, &point, model.states.len() + 3) else { return };
+        ours.push(found);
+    }
+    for said in &branches {
+        let Some(rank) = said.rank else {
+            findings.count(class, "several ranks at drawn states");
+            continue;
+        };
+        let right = ours.iter().any(|found| {
+            let known = found.get(said.order).or(found.last().filter(|last| **last == model.states.len()));
+            known == Some(&rank)
+        });
+        let long =
+            ours.iter().any(|found| found.len() <= said.order && found.last() != Some(&model.states.len()));
+        if right || long {
+            findings.count(class, "rank at drawn states as ours");
+        } else {
+            let detail = format!("{said:?}; ours on the branches {ours:?}, where {}", conditions.join(", "));
+            findings.fault("a rank at drawn states of a set is another", detail, &text);
+        }
     }
 }
 
