@@ -44,15 +44,15 @@ impl Dice {
         self.one_of(&[1, 1, 1, 2, 3, 5, -1, -1, -2, -3])
     }
 
-    /// A rational of two digits, hardly ever on a special set.
+    /// A short rational, hardly ever on a special set: short, since series multiply what they are given.
     pub fn generic(&mut self) -> RBig {
-        RBig::from(self.between(-97, 97)) / RBig::from(self.one_of(&[7i64, 11, 13, 17]))
-            + RBig::from(1) / RBig::from(19)
+        let top = self.between(3, 43) * self.one_of(&[1i64, -1]);
+        RBig::from(top) / RBig::from(self.one_of(&[1i64, 1, 2, 7]))
     }
 
     /// A positive one.
     pub fn positive(&mut self) -> RBig {
-        RBig::from(self.between(1, 97)) / RBig::from(self.one_of(&[7i64, 11, 13, 17]))
+        RBig::from(self.between(1, 43)) / RBig::from(self.one_of(&[2i64, 3, 7]))
     }
 
     /// A rational at which something may happen.
