@@ -17,7 +17,7 @@
 //!     state phi, omega
 //!     param k = 2
 //!     angle phi
-//!     field f
+//!     drift f
 //!       phi'   = omega
 //!       omega' = -k*sin(phi)
 //!     output phi

@@ -12,9 +12,10 @@ use std::path::PathBuf;
 
 /// Decides the rank of the observability codistribution at sampled states.
 ///
-/// Words of Lie derivatives are added shortest first until the rank stops growing or reaches the dimension. At every
+/// Words of Lie derivatives along the drift and the inputs are added shortest first until the rank stops growing or reaches the dimension. At every
 /// state the rank is computed by singular values and certified by exact arithmetic at that very state. Where the file
-/// defines a matrix named 'rows', its rank is decided at the same states too.
+/// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
+/// the file, and the answer says which; a claim 'rank = n' in a file is about all values.
 #[derive(Args)]
 pub(crate) struct Rank {
     /// The proof file.
