@@ -7,9 +7,11 @@
 //! This floor shares no formula with `proofs/`, and knows nothing of pages or plots.
 
 mod decide;
+mod existence;
 mod identity;
 mod pole;
 mod ranks;
+mod terms;
 mod value;
 mod verdict;
 mod witness;

@@ -110,6 +110,8 @@ pub struct Outcome {
     pub definitions: Vec<(String, String)>,
     /// The verdict on the claim, or on the corrected form.
     pub verdict: Verdict,
+    /// What has to hold for its terms to exist, in words: the verdict is about states at which all of it does.
+    pub domain: Vec<String>,
     /// What the file expects; of a definition nothing.
     pub expected: Option<Expectation>,
     /// Whether everything is as the file expects.

@@ -1,7 +1,8 @@
 //! What a system is.
 
+use super::domain::Domain;
 use super::grammar::ClaimSyntax;
-use crate::expression::{Derivation, Graph, NodeId, Symbol, gradient};
+use crate::expression::{Derivation, Graph, Guard, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -41,6 +42,8 @@ pub struct Field {
     pub name: String,
     /// The states that it moves, and how; all others stand still.
     pub components: Vec<(Symbol, NodeId)>,
+    /// Where each component exists.
+    pub guards: Vec<Vec<Guard>>,
     pub(crate) derivation: Derivation,
 }
 
@@ -109,12 +112,18 @@ pub struct System {
     pub fields: Vec<Field>,
     /// The outputs: how they are written, and what they are.
     pub outputs: Vec<(String, NodeId)>,
+    /// Where each output exists.
+    pub output_guards: Vec<Vec<Guard>>,
     /// What sampled states keep away from being zero.
     pub avoid: Vec<(String, NodeId)>,
     /// The claims, as syntax.
     pub claims: Vec<ClaimSyntax>,
     pub(crate) symbols: BTreeMap<Symbol, SymbolInfo>,
     pub(crate) definitions: BTreeMap<String, Value>,
+    /// Where each definition exists, imported ones included.
+    pub(crate) definition_domains: HashMap<String, Domain>,
+    /// What the terms that are being read need to exist.
+    pub(crate) domain: Domain,
     /// The definitions of this file as they are written.
     pub(crate) definition_texts: BTreeMap<String, String>,
     /// Fields of imported systems, under their full names.

@@ -54,10 +54,13 @@ impl System {
             states: Vec::new(),
             fields: Vec::new(),
             outputs: Vec::new(),
+            output_guards: Vec::new(),
             avoid: Vec::new(),
             claims: Vec::new(),
             symbols: BTreeMap::new(),
             definitions: BTreeMap::new(),
+            definition_domains: HashMap::new(),
+            domain: Default::default(),
             definition_texts: BTreeMap::new(),
             imported_fields: Vec::new(),
             partials: HashMap::new(),
@@ -68,6 +71,7 @@ impl System {
         for claim in system.claims.clone() {
             system.check(&claim)?;
         }
+        system.domain = Default::default();
         if system.title.is_empty() {
             return Err(Problem::new(&(0..0), "the file does not name a system", "here")
                 .help("begin with: system \"what it is\""));
@@ -110,7 +114,7 @@ impl System {
             }
             Item::Let(name, expr) => {
                 self.refuse_taken(&name)?;
-                let value = self.elaborate(&expr)?;
+                let (value, domain) = self.apart(|system| system.elaborate(&expr))?;
                 if value == Value::CodistributionRank {
                     return Err(Problem::new(
                         &expr.span,
@@ -120,6 +124,7 @@ impl System {
                 }
                 let text = self.source[expr.span.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
                 self.definition_texts.insert(name.text.clone(), text);
+                self.definition_domains.insert(name.text.clone(), domain);
                 self.definitions.insert(name.text, value);
             }
             Item::Field { name, components, others_are_zero } => {
@@ -127,7 +132,8 @@ impl System {
             }
             Item::Output(list) => {
                 for expr in list {
-                    let value = self.scalar(&expr)?;
+                    let (value, domain) = self.apart(|system| system.scalar(&expr))?;
+                    self.output_guards.push(self.guards_of(&domain));
                     self.outputs.push((self.source[expr.span.clone()].trim().to_owned(), value));
                 }
             }
@@ -212,6 +218,7 @@ impl System {
             ));
         }
         let mut rates: Vec<(Symbol, _)> = Vec::new();
+        let mut guards = Vec::new();
         for (state, expr) in components {
             let symbol = self.find_symbol(&state.text).filter(|symbol| self.states.contains(symbol));
             let Some(symbol) = symbol else {
@@ -221,7 +228,9 @@ impl System {
                 let message = format!("'{}' is given twice in the field '{}'", state.text, name.text);
                 return Err(Problem::new(&state.span, message, "the second time"));
             }
-            rates.push((symbol, self.scalar(expr)?));
+            let (rate, domain) = self.apart(|system| system.scalar(expr))?;
+            rates.push((symbol, rate));
+            guards.push(self.guards_of(&domain));
         }
         let missing = self.states.iter().find(|state| !rates.iter().any(|(symbol, _)| symbol == *state));
         if let (Some(missing), false) = (missing, others_are_zero) {
@@ -231,7 +240,7 @@ impl System {
                 .help("end it with: others' = 0, if the states that it does not name stand still"));
         }
         let derivation = Derivation::new(rates.iter().copied().collect());
-        self.fields.push(Field { name: name.text, components: rates, derivation });
+        self.fields.push(Field { name: name.text, components: rates, guards, derivation });
         Ok(())
     }
 
@@ -294,6 +303,10 @@ impl System {
         }
         for (name, value) in other.definitions {
             self.definitions.insert(format!("{}.{name}", alias.text), value);
+        }
+        for (name, domain) in other.definition_domains {
+            let domain = domain.under(&alias.text);
+            self.definition_domains.insert(format!("{}.{name}", alias.text), domain);
         }
         Ok(())
     }
