@@ -43,7 +43,7 @@ fn run(stream: &Stream, states: u64, wanted: Certainty) -> (StreamReport, Vec<u6
 /// A small system with one row beside the output x.
 fn small(row: &str, range: &str) -> System {
     let text = format!(
-        "system \"s\" state x, y field f x' = y y' = 0 output x sample x in {range} y in [1, 2] \
+        "system \"s\" state x, y drift f x' = y y' = 0 output x sample x in {range} y in [1, 2] \
          let rows = [1, 0; {row}]"
     );
     System::parse("s.proof", &text, Path::new("")).unwrap()

@@ -1,5 +1,6 @@
 //! From a claim to its outcome.
 
+use super::defaults::at_the_files_values;
 use super::existence::{Existence, existence};
 use super::identity::{OnOneBranch, decide_identity, decide_nearness};
 use super::pole::decide_pole;
@@ -8,13 +9,14 @@ use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict};
 use crate::expression::{NodeId, Symbol, add_guard};
 use crate::observability::{Branch, solve};
-use crate::system::{ClaimBody, ClaimSyntax, Expectation, Statement, System, Value};
+use crate::system::{ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line};
 use dashu::rational::RBig;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Decides all claims of a system, several at a time; the outcomes are in the order of the file and do not depend on
@@ -25,6 +27,10 @@ pub fn decide_all(
     interrupt: &AtomicBool,
     done: &(dyn Fn(&Outcome) + Sync),
 ) -> Vec<Outcome> {
+    let extent = system.extent();
+    // as many copies as claims are decided at once
+    let copies: Mutex<Vec<System>> = Mutex::default();
+    let copies = || copies.lock().unwrap_or_else(PoisonError::into_inner);
     system
         .claims
         .par_iter()
@@ -32,7 +38,11 @@ pub fn decide_all(
             if interrupt.load(Ordering::Relaxed) {
                 return None;
             }
-            let outcome = decide(system, claim, seed);
+            let spare = copies().pop();
+            let mut copy = spare.unwrap_or_else(|| system.clone());
+            let outcome = decide_in(&mut copy, claim, seed);
+            copy.shrink_to(&extent);
+            copies().push(copy);
             done(&outcome);
             Some(outcome)
         })
@@ -41,13 +51,23 @@ pub fn decide_all(
 
 /// Decides one claim. The system is left as it was.
 pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
+    decide_in(&mut system.clone(), claim, seed)
+}
+
+/// Decides one claim in a system that may be added to.
+fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64) -> Outcome {
     let begin = Instant::now();
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id));
-    let mut system = system.clone();
-    let text = |system: &System, statement: &Statement| {
-        let text = system.source.get(statement.span.clone()).unwrap_or_default();
-        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let text = |system: &System, statement: &Statement| in_one_line(&system.source, &statement.span);
+    // other random numbers than those of the verdict: that one stays what it is whatever the file's values are
+    let mut again = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id) ^ 1);
+    let mut special = |system: &mut System, statement: &Statement, verdict: &Verdict| {
+        at_the_files_values(system, statement, verdict, |system, special| {
+            decide_statement(system, special, &mut again).verdict
+        })
     };
+    let mut at_files_values = None;
+    let mut printed_at_files_values = None;
     let mut printed = None;
     let mut domain = Vec::new();
     let mut known = |decided: Decided| {
@@ -56,17 +76,22 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
     };
     let (statement, verdict, expected) = match &claim.body {
         ClaimBody::Claim { statement, expected } => {
-            let verdict = known(decide_statement(&mut system, statement, &mut rng));
-            (text(&system, statement), verdict, Some(*expected))
+            let verdict = known(decide_statement(system, statement, &mut rng));
+            at_files_values = special(system, statement, &verdict);
+            (text(system, statement), verdict, Some(*expected))
         }
         ClaimBody::Erratum { printed: print, corrected } => {
-            printed = Some((text(&system, print), decide_statement(&mut system, print, &mut rng).verdict));
-            let verdict = known(decide_statement(&mut system, corrected, &mut rng));
-            (text(&system, corrected), verdict, Some(Expectation::Proved))
+            let refuted = decide_statement(system, print, &mut rng).verdict;
+            printed_at_files_values = special(system, print, &refuted);
+            printed = Some((text(system, print), refuted));
+            let verdict = known(decide_statement(system, corrected, &mut rng));
+            at_files_values = special(system, corrected, &verdict);
+            (text(system, corrected), verdict, Some(Expectation::Proved))
         }
         ClaimBody::Scan { repaired, .. } => {
-            let verdict = known(decide_statement(&mut system, repaired, &mut rng));
-            (text(&system, repaired), verdict, Some(Expectation::Proved))
+            let verdict = known(decide_statement(system, repaired, &mut rng));
+            at_files_values = special(system, repaired, &verdict);
+            (text(system, repaired), verdict, Some(Expectation::Proved))
         }
         ClaimBody::Definition { text } => (text.clone(), Verdict::Definition { text: text.clone() }, None),
         ClaimBody::Open { reason } => {
@@ -74,9 +99,10 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
         }
     };
     let print_is_wrong = printed.as_ref().is_none_or(|(_, verdict)| verdict.meets(Expectation::Refuted));
-    let mentioned = format!("{statement} {}", printed.as_ref().map_or("", |(text, _)| text));
+    let explanations = system.explanations(&claim.body);
     Outcome {
-        definitions: system.definitions_in(&mentioned),
+        definitions: explanations.definitions,
+        differentiated_along: explanations.fields,
         file: system.name.clone(),
         id: claim.id.clone(),
         ok: expected.is_none_or(|expected| verdict.meets(expected)) && print_is_wrong,
@@ -90,6 +116,9 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
         domain,
         expected,
         remark: claim.remark.clone(),
+        at_files_values,
+        printed_at_files_values,
+        fields: if claim.body.is_about_the_codistribution() { system.roles() } else { Vec::new() },
         seconds: begin.elapsed().as_secs_f64(),
     }
 }
@@ -128,8 +157,7 @@ fn attempt(
     let of_rank = [&left, &right].iter().any(|value| matches!(value, Value::CodistributionRank));
     if of_rank {
         // every Lie derivative of the outputs has to exist
-        let fields: Vec<usize> = (0..system.fields.len()).collect();
-        guards.extend(system.smooth_guards(&fields));
+        guards.extend(system.smooth_guards(&system.moving_fields()));
     }
     guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
     *domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();

@@ -7,6 +7,7 @@
 //! This floor shares no formula with `proofs/`, and knows nothing of pages or plots.
 
 mod decide;
+mod defaults;
 mod existence;
 mod identity;
 mod pole;
@@ -17,6 +18,7 @@ mod verdict;
 mod witness;
 
 pub use decide::{decide, decide_all};
+pub use defaults::AtFilesValues;
 pub use pole::{PoleOrder, pole_order};
 pub use value::{PointValue, ValueError, certified_value, computed_value};
 pub use verdict::{Outcome, Verdict, Witness};

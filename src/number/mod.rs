@@ -102,9 +102,12 @@ pub enum Refusal {
     /// The divisor cannot be told from zero at this precision.
     #[error("the divisor cannot be told from zero at this precision")]
     DivisorNotSeparated,
-    /// The argument lies outside the function's real domain (or may do so, at this precision).
+    /// The argument lies outside the function's real domain, for certain where the arithmetic has bounds.
     #[error("the argument of {} lies outside its domain", .0.name())]
     OutsideDomain(Function),
+    /// The argument cannot be told from one outside the function's real domain at this precision.
+    #[error("the argument of {} cannot be told from one outside its domain at this precision", .0.name())]
+    DomainNotSeparated(Function),
     /// The value exists but this arithmetic cannot hold it.
     #[error("{} has no exact value here", .0.name())]
     NoExactValue(Function),

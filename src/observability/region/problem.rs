@@ -11,7 +11,7 @@ use crate::expression::{Graph, NodeId, Symbol, expand_angles};
 use crate::number::polynomial::Polynomial;
 use crate::number::{Fraction, Interval, Real, rational_to_f64};
 use crate::observability::{Codistribution, Length, OWN_ROWS, Reduction, Stop};
-use crate::system::{Assignment, Kind, System, Value};
+use crate::system::{Assignment, FieldRole, Kind, System, Value};
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
 
@@ -29,6 +29,8 @@ pub enum RegionRows {
 pub(super) struct Problem {
     pub file: String,
     pub title: String,
+    /// The fields that move the states.
+    pub fields: Vec<FieldRole>,
     pub dimension: usize,
     /// The number of columns in which the rows have to be independent, once unit rows are taken out with theirs.
     pub columns: usize,
@@ -118,6 +120,7 @@ impl Problem {
         Ok(Problem {
             file: system.name.clone(),
             title: system.title.clone(),
+            fields: system.roles(),
             dimension,
             columns,
             rows: block.rows.len(),
@@ -201,7 +204,9 @@ fn guard_factors(
     is_angle: impl Fn(Symbol) -> bool + Copy,
 ) -> Vec<usize> {
     let outputs = system.outputs.iter().map(|(_, node)| *node);
-    let rates = system.fields.iter().flat_map(|field| field.components.iter().map(|(_, node)| *node));
+    let moving = system.moving_fields();
+    let rates =
+        moving.iter().flat_map(|field| system.fields[*field].components.iter().map(|(_, node)| *node));
     let roots: Vec<NodeId> = outputs.chain(rates).collect();
     let roots = system.graph.substitute(&roots, values);
     let roots = expand_angles(&mut system.graph, &roots, is_angle);

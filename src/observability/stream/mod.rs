@@ -91,8 +91,7 @@ impl Stream {
         };
         let (entries, avoided) = (put_in(system, rows), put_in(system, &locus.avoided));
         let mut watched = put_in(system, &outputs);
-        let fields: Vec<usize> = (0..system.fields.len()).collect();
-        let guards = system.smooth_guards(&fields);
+        let guards = system.smooth_guards(&system.moving_fields());
         let nodes: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
         let nodes = put_in(system, &nodes);
         let there = guards.iter().zip(nodes).map(|(guard, node)| Guard { node, need: guard.need });
