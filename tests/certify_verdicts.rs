@@ -67,7 +67,11 @@ fn shipped_certificates_are_found_again() {
         assert_eq!(check(&boxes), Finding::Confirmed { times: boxes.boxes.len() }, "{file}");
         assert!(boxes.boxes.len() > 10, "{file}: {} boxes", boxes.boxes.len());
         assert_eq!(boxes.proved_volume.0, region.proved_exactly());
-        assert!(boxes.volume.0 > RBig::from(1) / RBig::from(4), "{file}: {}", boxes.volume.0.to_f64().value());
+        assert!(
+            boxes.volume.0 > RBig::from(1) / RBig::from(4),
+            "{file}: {}",
+            boxes.volume.0.to_f64().value()
+        );
     }
 }
 
@@ -149,7 +153,14 @@ fn a_certificate_is_rechecked_from_its_file_alone() {
     let path = folder.path().join("boxes.json");
     let name = path.to_str().unwrap();
     let output = palmistry(&[
-        "certify", "proofs/moll2002/same_rate.proof", "--boxes", "2000", "--verdicts", name, "--verdict-boxes", "60",
+        "certify",
+        "proofs/moll2002/same_rate.proof",
+        "--boxes",
+        "2000",
+        "--verdicts",
+        name,
+        "--verdict-boxes",
+        "60",
         "--json",
     ]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -160,7 +171,8 @@ fn a_certificate_is_rechecked_from_its_file_alone() {
     assert_eq!(json(&checked)["confirmed"], 1);
     let text = std::fs::read_to_string(&path).unwrap();
     let changed = text.replacen("\"rows\":[0,1", "\"rows\":[1,0", 1);
-    let changed = if changed == text { text.replacen("\"angle\":true", "\"angle\":false", 1) } else { changed };
+    let changed =
+        if changed == text { text.replacen("\"angle\":true", "\"angle\":false", 1) } else { changed };
     assert_ne!(changed, text);
     std::fs::write(&path, changed).unwrap();
     let checked = palmistry(&["recheck", name, "--json"]);

@@ -122,6 +122,10 @@ pub enum Doubt {
     BoxNotShown(usize),
     #[error("requirement {requirement} is not met in box {index}: the rows do not exist there")]
     MissingInBox { index: usize, requirement: usize },
+    #[error("a rank of {found} does not say this of a claim of {claimed}")]
+    OtherRank { found: usize, claimed: usize },
+    #[error("the rank is {found} at another state, and not {stated} at almost all")]
+    GreaterRank { found: usize, stated: usize },
     #[error("at state {state}: {doubt}")]
     AtState { state: usize, doubt: Box<Doubt> },
     #[error("there is nothing in it to be checked")]
@@ -136,6 +140,8 @@ impl Doubt {
         match self {
             Doubt::NotOnTheCircle(_)
             | Doubt::NoValue(_)
+            | Doubt::ConditionNotMet(_)
+            | Doubt::ConditionNotShown(_)
             | Doubt::RequirementNotMet(_)
             | Doubt::RequirementNotShown(_) => Doubt::AtState { state, doubt: Box::new(self) },
             named => named,

@@ -27,7 +27,8 @@ pub struct Evaluation<'c> {
     listing: &'c Listing,
     state: &'c ExactState,
     effort: &'c Effort,
-    exact: Values<Form>,
+    /// Evaluated when it is first asked for: fractions can become long where a few bits tell enough.
+    exact: OnceCell<Values<Form>>,
     enclosed: [OnceCell<Values<Enclosure>>; PRECISIONS.len()],
 }
 
@@ -40,8 +41,12 @@ impl<'c> Evaluation<'c> {
         if let Some((name, _)) = state.iter().find(|(_, value)| !value.is_on_the_circle()) {
             return Err(Doubt::NotOnTheCircle(name.clone()));
         }
+        Ok(Evaluation { listing, state, effort, exact: OnceCell::new(), enclosed: Default::default() })
+    }
+
+    fn evaluate_exactly(&self) -> Values<Form> {
         let (mut circle, mut names) = (Vec::new(), Vec::new());
-        for (name, value) in state {
+        for (name, value) in self.state {
             if let ExactCoordinate::Angle { sin, cos } = value {
                 names.push(name);
                 circle.push((sin.0.clone(), cos.0.clone()));
@@ -49,7 +54,7 @@ impl<'c> Evaluation<'c> {
         }
         let symbol = |place: usize, step: &Step, values: &[Result<Form, Missing>]| {
             let Step::Symbol(name) = step else { return None };
-            Some(match state.get(name) {
+            Some(match self.state.get(name) {
                 None => Err(Missing::Symbol { place }),
                 Some(ExactCoordinate::Number(value)) => Ok(Form::from(value.0.clone())),
                 Some(ExactCoordinate::Angle { .. }) => {
@@ -61,8 +66,7 @@ impl<'c> Evaluation<'c> {
                 }
             })
         };
-        let exact = listing.run(&Exact::new(circle), (effort, 1), symbol);
-        Ok(Evaluation { listing, state, effort, exact, enclosed: Default::default() })
+        self.listing.run(&Exact::new(circle), (self.effort, 1), symbol)
     }
 
     /// The exact value of an operation.
@@ -70,7 +74,8 @@ impl<'c> Evaluation<'c> {
     /// # Errors
     /// Where there is no such operation, or it has no value that can be written down.
     pub fn exact(&self, place: usize) -> Result<&Form, Missing> {
-        self.exact.get(place).ok_or(Missing::Place { place })?.as_ref().map_err(|why| *why)
+        let values = self.exact.get_or_init(|| self.evaluate_exactly());
+        values.get(place).ok_or(Missing::Place { place })?.as_ref().map_err(|why| *why)
     }
 
     /// The rational value of an operation, where it has one.
@@ -92,13 +97,16 @@ impl<'c> Evaluation<'c> {
         let arithmetic = Enclosures::new(bits);
         let known = |place: usize, step: &Step, values: &[Result<Enclosure, Missing>]| {
             let refused = |refusal| Missing::Refused { place, refusal };
-            match self.exact(place) {
+            match self.exact.get().and_then(|values| values.get(place)) {
                 // no enclosure is narrower than the number itself
-                Ok(form) if form.rational().is_some() => {
+                Some(Ok(form)) if form.rational().is_some() => {
                     return form.rational().map(|value| arithmetic.rational(value).map_err(refused));
                 }
-                Err(why) if why.is_certain() || why == Missing::Effort => return Some(Err(why)),
+                Some(Err(why)) if why.is_certain() || *why == Missing::Effort => return Some(Err(*why)),
                 _ => {}
+            }
+            if let Some(value) = self.on_the_circle(step) {
+                return Some(arithmetic.rational(value).map_err(refused));
             }
             let Step::Symbol(name) = step else { return None };
             Some(match self.state.get(name) {
@@ -113,6 +121,22 @@ impl<'c> Evaluation<'c> {
             })
         };
         self.listing.run(&arithmetic, (self.effort, bits as u64 / 8), known)
+    }
+
+    /// The sine or cosine of a symbol that is given by them.
+    fn on_the_circle(&self, step: &Step) -> Option<&RBig> {
+        let Step::Apply(function, angle) = step else { return None };
+        let Step::Symbol(name) = self.listing.steps().get(*angle)? else { return None };
+        match (function, self.state.get(name)?) {
+            (Function::Sin, ExactCoordinate::Angle { sin, .. }) => Some(&sin.0),
+            (Function::Cos, ExactCoordinate::Angle { cos, .. }) => Some(&cos.0),
+            _ => None,
+        }
+    }
+
+    /// What the fewest bits tell, where exact values have not been asked for.
+    pub fn at_first_sight<T>(&self, ask: impl Fn(usize) -> Result<Option<T>, Missing>) -> Option<T> {
+        if self.exact.get().is_some() { None } else { ask(0).ok().flatten() }
     }
 
     /// Goes through the precisions until a question about enclosures has an answer; `None` where none of them has.

@@ -1,6 +1,7 @@
 //! The verdict file: what was found, and what it rests on, in one JSON object that is checked without any other file.
 
 use super::boxes::CertifiedBoxes;
+use super::claimed_rank::{ClaimedRank, ClaimedWord};
 use super::doubt::{Doubt, Effort, Finding};
 use super::identity::StatedIdentity;
 use super::minor::CertifiedRank;
@@ -23,10 +24,12 @@ pub enum Evidence {
     Refuted(Refutation),
     /// An exact argument, which evaluation can try and not repeat.
     Proved(StatedIdentity),
-    /// Minors and kernels.
+    /// Minors and kernels at states.
     Rank(CertifiedRank),
     /// Boxes, each with its minor.
     Boxes(CertifiedBoxes),
+    /// A minor, of a claim about almost all states.
+    ClaimedRank(ClaimedRank),
     /// Nothing that evaluation could check; in words, why.
     Unchecked(String),
 }
@@ -133,6 +136,7 @@ impl VerdictFile {
                 Evidence::Proved(identity) => identity.check(seed, effort),
                 Evidence::Rank(rank) => rank.check(effort, interrupt),
                 Evidence::Boxes(boxes) => boxes.check(effort, interrupt),
+                Evidence::ClaimedRank(rank) => rank.check(seed, effort),
                 Evidence::Unchecked(_) => Finding::NotChecked,
             };
             done();
@@ -150,6 +154,8 @@ impl Evidence {
             Evidence::Proved(_) => "proved",
             Evidence::Rank(_) => "rank",
             Evidence::Boxes(_) => "boxes",
+            Evidence::ClaimedRank(rank) if rank.word == ClaimedWord::Proved => "proved",
+            Evidence::ClaimedRank(_) => "refuted",
             Evidence::Unchecked(_) => "unchecked",
         }
     }

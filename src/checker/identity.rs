@@ -14,7 +14,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 /// So many states are drawn, at so many of which both sides are compared.
-const DRAWN: usize = 60;
+pub(super) const DRAWN: usize = 60;
 const COMPARED: usize = 6;
 
 /// An equation that was proved.

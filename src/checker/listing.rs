@@ -5,7 +5,6 @@ use super::state::Ratio;
 use crate::number::{Arithmetic, Function};
 use dashu::rational::RBig;
 use serde::de::{Error, SeqAccess, Visitor};
-use serde::ser::SerializeSeq;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 
@@ -118,42 +117,18 @@ fn one<A: Arithmetic>(
 
 impl Serialize for Step {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut list = serializer.serialize_seq(None)?;
-        let (word, operands) = match self {
-            Step::Constant(value) => {
-                list.serialize_element("const")?;
-                list.serialize_element(&value.to_string())?;
-                return list.end();
-            }
-            Step::Symbol(name) => {
-                list.serialize_element("symbol")?;
-                list.serialize_element(name)?;
-                return list.end();
-            }
-            Step::Apply(function, a) => {
-                list.serialize_element("apply")?;
-                list.serialize_element(function.name())?;
-                list.serialize_element(a)?;
-                return list.end();
-            }
-            Step::Power(a, n) => {
-                list.serialize_element("power")?;
-                list.serialize_element(a)?;
-                list.serialize_element(n)?;
-                return list.end();
-            }
-            Step::Pi => ("pi", [None, None]),
-            Step::Neg(a) => ("neg", [Some(a), None]),
-            Step::Add(a, b) => ("add", [Some(a), Some(b)]),
-            Step::Sub(a, b) => ("sub", [Some(a), Some(b)]),
-            Step::Mul(a, b) => ("mul", [Some(a), Some(b)]),
-            Step::Div(a, b) => ("div", [Some(a), Some(b)]),
-        };
-        list.serialize_element(word)?;
-        for operand in operands.into_iter().flatten() {
-            list.serialize_element(operand)?;
+        match self {
+            Step::Constant(value) => ("const", value.to_string()).serialize(serializer),
+            Step::Pi => ["pi"].serialize(serializer),
+            Step::Symbol(name) => ("symbol", name).serialize(serializer),
+            Step::Add(a, b) => ("add", a, b).serialize(serializer),
+            Step::Sub(a, b) => ("sub", a, b).serialize(serializer),
+            Step::Mul(a, b) => ("mul", a, b).serialize(serializer),
+            Step::Div(a, b) => ("div", a, b).serialize(serializer),
+            Step::Neg(a) => ("neg", a).serialize(serializer),
+            Step::Power(a, n) => ("power", a, n).serialize(serializer),
+            Step::Apply(function, a) => ("apply", function.name(), a).serialize(serializer),
         }
-        list.end()
     }
 }
 

@@ -1,12 +1,12 @@
 //! A certified rank, by a minor that is not zero and by a kernel that all rows annihilate.
 
-use super::doubt::{Doubt, Effort, Finding};
-use super::evaluation::Evaluation;
+use super::doubt::{Doubt, Effort, Finding, Missing};
+use super::evaluation::{Evaluation, PRECISIONS};
 use super::exact::{Exact, Form};
 use super::listing::Listing;
 use super::state::{ExactState, Ratio};
-use super::witness::{Requirement, holds};
-use crate::number::{Arithmetic, Enclosure, Rationals, Refusal};
+use super::witness::{Requirement, Sides, holds};
+use crate::number::{Arithmetic, Enclosure, Enclosures, Rationals, Refusal};
 use dashu::rational::RBig;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -49,6 +49,9 @@ pub struct CertifiedRank {
     pub words: Vec<String>,
     /// The entries, as places of the listing; a row for each word.
     pub rows: Vec<Vec<usize>>,
+    /// What the states have to meet.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub conditions: Vec<Sides>,
     /// Where the rows exist.
     pub requirements: Vec<Requirement>,
     pub states: Vec<RankedState>,
@@ -57,12 +60,8 @@ pub struct CertifiedRank {
 impl CertifiedRank {
     /// Checks the rank at every state.
     pub fn check(&self, effort: &Effort, interrupt: &AtomicBool) -> Finding {
-        let ragged = self.rows.len() != self.words.len()
-            || self.rows.iter().any(|row| row.len() != self.columns.len())
-            || self.columns.is_empty()
-            || self.columns.len() > MOST_COLUMNS;
-        if ragged || self.states.is_empty() {
-            return Finding::NotConfirmed(if ragged { Doubt::Ragged } else { Doubt::Empty });
+        if let Err(doubt) = self.shape() {
+            return Finding::NotConfirmed(doubt);
         }
         let check = |(index, state): (usize, &RankedState)| match interrupt.load(Ordering::Relaxed) {
             true => Some(Doubt::Interrupted),
@@ -74,22 +73,66 @@ impl CertifiedRank {
         }
     }
 
-    fn check_state(&self, state: usize, found: &RankedState, effort: &Effort) -> Result<(), Doubt> {
-        let (rank, width) = (found.rank, self.columns.len());
+    /// Whether there are states, and every row has an entry a column.
+    pub(super) fn shape(&self) -> Result<(), Doubt> {
+        let width = self.columns.len();
+        let ragged = self.rows.len() != self.words.len()
+            || self.rows.iter().any(|row| row.len() != width)
+            || !(1..=MOST_COLUMNS).contains(&width);
+        match self.states.is_empty() {
+            _ if ragged => Err(Doubt::Ragged),
+            true => Err(Doubt::Empty),
+            false => Ok(()),
+        }
+    }
+
+    /// Whether the rank at a state is at least what is said: its minor is not zero.
+    pub(super) fn is_at_least<'c>(
+        &'c self,
+        state: usize,
+        found: &'c RankedState,
+        effort: &'c Effort,
+    ) -> Result<Evaluation<'c>, Doubt> {
+        let rank = found.rank;
         let different = |places: &[usize], below: usize| {
             let distinct: BTreeSet<usize> = places.iter().copied().filter(|place| *place < below).collect();
             places.len() == rank && distinct.len() == rank
         };
-        if !different(&found.minor.rows, self.rows.len()) || !different(&found.minor.columns, width) {
+        let (rows, columns) = (&found.minor.rows, &found.minor.columns);
+        if !different(rows, self.rows.len()) || !different(columns, self.columns.len()) {
             return Err(Doubt::NoMinor { state, rank });
         }
-        let wanted = width - rank;
+        let values = Evaluation::new(&self.listing, &found.state, effort)?;
+        holds(&values, &self.conditions, &self.requirements)?;
+        self.minor_differs_from_zero(state, &found.minor, &values, effort)?;
+        Ok(values)
+    }
+
+    /// A rank that the matrix has at least at any state; it is the rank where all entries are rational there.
+    pub(super) fn rank_at(&self, state: &ExactState, effort: &Effort) -> Result<usize, Doubt> {
+        let values = Evaluation::new(&self.listing, state, effort)?;
+        holds(&values, &self.conditions, &self.requirements)?;
+        let refused = |refusal| Missing::Refused { place: self.listing.steps().len(), refusal };
+        effort.spend((self.rows.len() * self.columns.len() * self.columns.len()) as u64)?;
+        let rational = |place: &usize| values.rational(*place).cloned();
+        let exact: Option<Vec<Vec<RBig>>> =
+            self.rows.iter().map(|row| row.iter().map(rational).collect()).collect();
+        if let Some(rows) = exact {
+            return Ok(rank(&NUMBERS, rows).map_err(refused)?);
+        }
+        let enclosed = |place: &usize| values.enclosed(*place, 1).cloned();
+        let rows: Vec<Vec<Enclosure>> =
+            self.rows.iter().map(|row| row.iter().map(enclosed).collect()).collect::<Result<_, _>>()?;
+        Ok(rank(&Enclosures::new(PRECISIONS[1]), rows).map_err(refused)?)
+    }
+
+    fn check_state(&self, state: usize, found: &RankedState, effort: &Effort) -> Result<(), Doubt> {
+        let values = self.is_at_least(state, found, effort)?;
+        let width = self.columns.len();
+        let wanted = width - found.rank;
         if found.kernel.len() != wanted || found.kernel.iter().any(|vector| vector.len() != width) {
             return Err(Doubt::KernelSize { state, found: found.kernel.len(), wanted });
         }
-        let values = Evaluation::new(&self.listing, &found.state, effort)?;
-        holds(&values, &[], &self.requirements)?;
-        self.minor_differs_from_zero(state, &found.minor, &values, effort)?;
         let kernel = &found.kernel;
         let square: Vec<Vec<RBig>> =
             kernel.iter().map(|vector| vector.iter().map(|part| part.0.clone()).collect()).collect();
@@ -125,6 +168,19 @@ impl CertifiedRank {
             .collect();
         let work = (places.len() as u64).pow(3);
         effort.spend(work)?;
+        let enclosed = |precision: usize| {
+            let bits = PRECISIONS[precision];
+            effort.spend(work * bits as u64 / 8)?;
+            let rows: Vec<Vec<Enclosure>> = places
+                .iter()
+                .map(|row| row.iter().map(|place| values.enclosed(*place, precision).cloned()).collect())
+                .collect::<Result<_, _>>()?;
+            let full = has_full_rank(&Enclosures::new(bits), rows);
+            Ok(full.ok().filter(|full| *full))
+        };
+        if values.at_first_sight(enclosed) == Some(true) {
+            return Ok(());
+        }
         let rational = |place: &usize| values.rational(*place).cloned();
         let exact: Option<Vec<Vec<RBig>>> =
             places.iter().map(|row| row.iter().map(rational).collect()).collect();
@@ -132,44 +188,33 @@ impl CertifiedRank {
         if let Some(full) = exact.and_then(|rows| has_full_rank(&NUMBERS, rows).ok()) {
             return if full { Ok(()) } else { Err(Doubt::MinorVanishes(state)) };
         }
-        let told = values.climb(|precision| {
-            let bits = super::evaluation::PRECISIONS[precision];
-            effort.spend(work * bits as u64 / 8)?;
-            let rows: Vec<Vec<Enclosure>> = places
-                .iter()
-                .map(|row| row.iter().map(|place| values.enclosed(*place, precision).cloned()).collect())
-                .collect::<Result<_, _>>()?;
-            let full = has_full_rank(&crate::number::Enclosures::new(bits), rows);
-            Ok(full.ok().filter(|full| *full))
-        })?;
-        if told == Some(true) { Ok(()) } else { Err(Doubt::MinorNotTold(state)) }
+        if values.climb(enclosed)? == Some(true) { Ok(()) } else { Err(Doubt::MinorNotTold(state)) }
     }
 }
 
-/// Whether the rows of a matrix, no more than its columns, are independent, by elimination that takes a pivot only where
-/// it is certainly not zero. Over numbers that are always told from zero a *no* is certain; over others only a *yes* is.
-fn has_full_rank<A: Arithmetic>(arithmetic: &A, mut rows: Vec<Vec<A::Number>>) -> Result<bool, Refusal> {
+/// Whether the rows of a matrix are independent; see [`rank`].
+fn has_full_rank<A: Arithmetic>(arithmetic: &A, rows: Vec<Vec<A::Number>>) -> Result<bool, Refusal> {
+    let height = rows.len();
+    Ok(rank(arithmetic, rows)? == height)
+}
+
+/// The rank of a matrix by elimination that takes a pivot only where it is certainly not zero. Over numbers that are always
+/// told from zero it is the rank; over others it is no more than the rank.
+fn rank<A: Arithmetic>(arithmetic: &A, mut rows: Vec<Vec<A::Number>>) -> Result<usize, Refusal> {
     for step in 0..rows.len() {
-        // the columns may be taken in any order: the first entry of the row that is not zero
-        let mut pivot = None;
-        for at in step..rows.len() {
-            let nonzero = |entry: &A::Number| arithmetic.is_zero(entry) == Some(false);
-            if let Some(column) = rows[at].iter().position(nonzero) {
-                pivot = Some((at, column));
-                break;
-            }
-        }
-        let Some((at, column)) = pivot else { return Ok(false) };
+        // any entry will do, of any row and any column: those of earlier pivots are zero
+        let nonzero = |entry: &A::Number| arithmetic.is_zero(entry) == Some(false);
+        let pivots = rows.iter().enumerate().skip(step);
+        let pivot = pivots.filter_map(|(at, row)| Some((at, row.iter().position(nonzero)?))).next();
+        let Some((at, column)) = pivot else { return Ok(step) };
         rows.swap(step, at);
         let (above, below) = rows.split_at_mut(step + 1);
-        let Some(top) = above.last_mut() else { return Ok(false) };
-        let top: &Vec<A::Number> = top;
-        let pivot = top[column].clone();
+        let Some(top) = above.last() else { return Ok(step) };
         for row in below {
             if arithmetic.is_zero(&row[column]) == Some(true) {
                 continue;
             }
-            let factor = arithmetic.div(&row[column], &pivot)?;
+            let factor = arithmetic.div(&row[column], &top[column])?;
             for (index, (entry, above)) in row.iter_mut().zip(top).enumerate() {
                 *entry = if index == column {
                     // what elimination makes zero is zero, however wide its enclosure
@@ -180,7 +225,7 @@ fn has_full_rank<A: Arithmetic>(arithmetic: &A, mut rows: Vec<Vec<A::Number>>) -
             }
         }
     }
-    Ok(true)
+    Ok(rows.len())
 }
 
 /// Whether the product of a row and a vector is zero; `None` where that is not told.

@@ -3,12 +3,13 @@
 //! An engine that refutes, certifies or proves writes down what its verdict rests on: a [`Listing`] of operations as plain
 //! data, a state in exact numbers, the two sides, a minor. The checker reads that and evaluates it again, naively, one
 //! operation after the other: a [`Refutation`] at its witness, a [`CertifiedRank`] by its minor and its kernel, a
-//! [`StatedIdentity`] at states of its own choice. It cannot check the step from a file's text to expressions and their
+//! [`StatedIdentity`] and a [`ClaimedRank`] at states of its own choice. It cannot check the step from a file's text to expressions and their
 //! derivatives; what it can and cannot check is told in `book/verdicts.md`.
 //!
 //! This floor knows exact numbers ([`crate::number`]) and none of the engines: no graph, no program, no system.
 
 mod boxes;
+mod claimed_rank;
 mod doubt;
 mod evaluation;
 mod exact;
@@ -21,6 +22,7 @@ mod state;
 mod witness;
 
 pub use boxes::{CertifiedBox, CertifiedBoxes, SymbolRange};
+pub use claimed_rank::{ClaimedRank, ClaimedWord};
 pub use doubt::{Doubt, Effort, Finding, Missing};
 pub use evaluation::{Difference, Evaluation, PRECISIONS};
 pub use exact::{Exact, Form};

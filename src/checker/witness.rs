@@ -130,13 +130,17 @@ pub(super) fn holds(
 impl Requirement {
     /// Whether it is met; `None` where that is not told.
     fn is_met(self, values: &Evaluation<'_>) -> Result<Option<bool>, Missing> {
-        if let Some(value) = values.rational(self.step) {
-            return Ok(self.kind.between(value, value));
-        }
-        values.climb(|precision| {
+        let enclosed = |precision| {
             let value = values.enclosed(self.step, precision)?;
             Ok(self.kind.between(&value.low(), &value.high()))
-        })
+        };
+        if let Some(told) = values.at_first_sight(enclosed) {
+            return Ok(Some(told));
+        }
+        match values.rational(self.step) {
+            Some(value) => Ok(self.kind.between(value, value)),
+            None => values.climb(enclosed),
+        }
     }
 }
 

@@ -7,6 +7,7 @@
 //! This floor shares no formula with `proofs/`, and knows nothing of pages or plots.
 
 mod decide;
+mod evidence;
 mod existence;
 mod identity;
 mod pole;
@@ -16,7 +17,8 @@ mod value;
 mod verdict;
 mod witness;
 
-pub use decide::{decide, decide_all};
+pub use decide::{decide, decide_all, decide_all_keeping};
+pub use evidence::Kept;
 pub use pole::{PoleOrder, pole_order};
 pub use value::{PointValue, ValueError, certified_value, computed_value};
 pub use verdict::{Outcome, Verdict, Witness};

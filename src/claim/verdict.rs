@@ -1,5 +1,6 @@
 //! What a claim can come to.
 
+use crate::checker::{Refutation, VerdictRecord};
 use crate::observability::StateInWords;
 use crate::system::Expectation;
 
@@ -14,6 +15,8 @@ pub struct Witness {
     pub right: String,
     /// Which entry differs, where matrices were compared: row and column, counted from one.
     pub entry: Option<(usize, usize)>,
+    /// What the checker needs to find it again, and did; of an equation.
+    pub refutation: Option<Box<Refutation>>,
 }
 
 /// What is known of a statement.
@@ -116,6 +119,8 @@ pub struct Outcome {
     pub expected: Option<Expectation>,
     /// Whether everything is as the file expects.
     pub ok: bool,
+    /// What the verdicts rest on, for a verdict file; empty where it was not to be kept.
+    pub evidence: Vec<VerdictRecord>,
     /// The remark in the file.
     pub remark: Option<String>,
     /// How long it took.

@@ -3,8 +3,10 @@
 use super::output::{INTERRUPTED, print_json, print_text, progress, proof_files, write_whole};
 use super::{Status, Unusable};
 use clap::Args;
+use palmistry::checker::VerdictFile;
+use palmistry::claim::{Kept, decide_all_keeping};
 use palmistry::report::{claim_json, claim_line, junit};
-use palmistry::{Outcome, System, decide_all};
+use palmistry::{Outcome, System};
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -24,6 +26,9 @@ pub(crate) struct Prove {
     /// Write the outcomes as JUnit XML, for a CI system.
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
+    /// Write what the verdicts rest on to a file that 'palmistry recheck' checks alone.
+    #[arg(long, value_name = "FILE")]
+    verdicts: Option<PathBuf>,
     /// Seed of the random points.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -43,16 +48,22 @@ impl Prove {
                 "add a line such as: claim 1: L(f, x) = v",
             ));
         }
+        let kept = if self.verdicts.is_some() { Kept::Evidence } else { Kept::Verdicts };
         let bar = progress(claims as u64, "deciding claims");
         let outcomes: Vec<Outcome> = systems
             .iter()
-            .flat_map(|system| decide_all(system, self.seed, &INTERRUPTED, &|_| bar.inc(1)))
+            .flat_map(|system| decide_all_keeping(kept, system, self.seed, &INTERRUPTED, &|_| bar.inc(1)))
             .collect();
         bar.finish_and_clear();
         let interrupted = INTERRUPTED.load(Ordering::Relaxed);
         let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
         if let Some(path) = &self.junit {
             write_whole(path, &junit(&outcomes)?)?;
+        }
+        if let Some(path) = &self.verdicts {
+            let records = outcomes.iter().flat_map(|outcome| outcome.evidence.iter().cloned()).collect();
+            let text = VerdictFile::new(self.seed, records).text();
+            write_whole(path, &text.map_err(|why| Unusable::report(why.to_string(), ""))?)?;
         }
         if self.json {
             print_json(&json!({

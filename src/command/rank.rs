@@ -71,7 +71,7 @@ impl Rank {
                 digits: self.digits.map(usize::from),
                 order: self.order.map(usize::from),
                 fixed,
-                conditions: self.conditions,
+                conditions: self.conditions.clone(),
                 recorded: if self.verdicts.is_some() { self.verdict_states } else { 0 },
                 interrupt: &INTERRUPTED,
                 progress: &|done| bar.set_position(done),
@@ -80,7 +80,7 @@ impl Rank {
         bar.finish_and_clear();
         let answer = answer.map_err(|why| Unusable::report(why, ""))?;
         if let Some(path) = &self.verdicts {
-            let records = rank_records(&mut system, &answer);
+            let records = rank_records(&mut system, &answer, &self.conditions);
             let text = records.map_err(|why| why.to_string()).and_then(|records| {
                 VerdictFile::new(self.seed, records).text().map_err(|why| why.to_string())
             });

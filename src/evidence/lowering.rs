@@ -5,6 +5,7 @@ use crate::checker::{
 };
 use crate::expression::{Graph, Guard, Need, Node, NodeId};
 use crate::observability::{Coordinate, State};
+use dashu::rational::RBig;
 use std::collections::HashMap;
 
 /// A listing that grows as nodes are asked for.
@@ -88,6 +89,14 @@ impl<'g> Lowering<'g> {
             Need::InsideOne => RequirementKind::InsideOne,
         };
         Ok(Requirement { kind, step: self.place(guard.node)? })
+    }
+
+    /// A node that is to be zero, beside a zero.
+    ///
+    /// # Errors
+    /// Where the listing becomes too long.
+    pub fn vanishing(&mut self, node: NodeId) -> Result<Sides, Missing> {
+        Ok(Sides { left: self.place(node)?, right: self.listing.push(Step::Constant(RBig::ZERO))? })
     }
 
     /// The listing.

@@ -9,7 +9,7 @@ use crate::observability::{State, independent_rows};
 const BITS: usize = 512;
 
 /// Rows and columns of the largest minor that is found, at a state at which a program gives all entries, row by row.
-pub(super) fn minor(program: &Program, columns: usize, state: &State, field: PrimeField) -> Option<Minor> {
+pub fn largest_minor(program: &Program, columns: usize, state: &State, field: PrimeField) -> Option<Minor> {
     over(&field, program, columns, state).or_else(|| over(&Enclosures::new(BITS), program, columns, state))
 }
 

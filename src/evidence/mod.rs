@@ -10,7 +10,19 @@ mod boxes;
 mod lowering;
 mod minors;
 mod ranks;
+mod statements;
 
 pub use boxes::{WrittenBoxes, certificate_file};
 pub use lowering::{Lowering, exact_coordinate, exact_state};
+pub use minors::largest_minor;
 pub use ranks::rank_records;
+pub use statements::StatementAt;
+
+/// Why evidence could not be written down.
+#[derive(Debug, thiserror::Error)]
+pub enum NotWritten {
+    #[error("what the verdict rests on is too long to be written down: {0}")]
+    TooLong(#[from] crate::checker::Missing),
+    #[error("a condition cannot be read: {0}")]
+    Condition(String),
+}

@@ -1,11 +1,12 @@
 //! The ranks of a sweep, each with the minor and the kernel by which it is checked.
 
+use super::NotWritten;
 use super::lowering::{Lowering, exact_state};
-use super::minors::minor;
+use super::minors::largest_minor;
 use crate::checker::{CertifiedRank, Evidence, Missing, RankedState, Ratio, VerdictRecord};
 use crate::expression::{Guard, NodeId, Program, Symbol, expand_angles};
 use crate::number::PrimeField;
-use crate::observability::{OWN_ROWS, RankAnswer, RecordedState, SweepReport, TakenRow};
+use crate::observability::{OWN_ROWS, RankAnswer, RecordedState, SweepReport, TakenRow, parse_condition};
 use crate::system::System;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -16,8 +17,19 @@ use std::collections::BTreeSet;
 /// file's own rows where it has some.
 ///
 /// # Errors
-/// Where there are more operations than a listing holds.
-pub fn rank_records(system: &mut System, answer: &RankAnswer) -> Result<Vec<VerdictRecord>, Missing> {
+/// Where there are more operations than a listing holds, or a condition cannot be read.
+pub fn rank_records(
+    system: &mut System,
+    answer: &RankAnswer,
+    conditions: &[String],
+) -> Result<Vec<VerdictRecord>, NotWritten> {
+    // as they were read, and not as they were solved
+    let mut met = Vec::new();
+    for text in conditions {
+        let equation = parse_condition(text).map_err(NotWritten::Condition)?;
+        let mut side = |expr| system.scalar(expr).map_err(|problem| NotWritten::Condition(problem.message));
+        met.push((side(&equation.left)?, side(&equation.right)?));
+    }
     let all_fields: Vec<usize> = (0..system.fields.len()).collect();
     let smooth = system.smooth_guards(&all_fields);
     let own = system.definition_guards(OWN_ROWS);
@@ -37,7 +49,7 @@ pub fn rank_records(system: &mut System, answer: &RankAnswer) -> Result<Vec<Verd
                 file: answer.file.clone(),
                 id: id.to_owned(),
                 statement: format!("the rank of {what}, {place}"),
-                evidence: Evidence::Rank(certified_rank(system, rows, report, guards, answer.seed)?),
+                evidence: Evidence::Rank(certified_rank(system, rows, report, (&met, guards), answer.seed)?),
             });
         }
     }
@@ -48,7 +60,7 @@ fn certified_rank(
     system: &mut System,
     rows: &[TakenRow],
     report: &SweepReport,
-    guards: &[Guard],
+    (met, guards): (&[(NodeId, NodeId)], &[Guard]),
     seed: u64,
 ) -> Result<CertifiedRank, Missing> {
     let angles = system.angles();
@@ -63,7 +75,7 @@ fn certified_rank(
         state: exact_state(graph, &recorded.state),
         rank: recorded.rank,
         // a minor that is too small, or none, is seen by the checker
-        minor: minor(&program, width, &recorded.state, field).unwrap_or_default(),
+        minor: largest_minor(&program, width, &recorded.state, field).unwrap_or_default(),
         kernel: recorded.unseen.iter().map(|v| v.iter().cloned().map(Ratio).collect()).collect(),
     };
     let mut states: Vec<RankedState> = report.recorded.par_iter().map(with_minor).collect();
@@ -82,11 +94,14 @@ fn certified_rank(
         let entries = rows[*row].entries.iter();
         places.push(entries.map(|entry| lowering.place(*entry)).collect::<Result<Vec<_>, _>>()?);
     }
+    let conditions =
+        met.iter().map(|(left, right)| lowering.sides(*left, *right)).collect::<Result<_, _>>()?;
     let requirements = guards.iter().map(|guard| lowering.requirement(*guard)).collect::<Result<_, _>>()?;
     Ok(CertifiedRank {
         columns: system.states.iter().map(|state| graph.symbol_name(*state).to_owned()).collect(),
         words: kept.iter().map(|row| rows[*row].word.clone()).collect(),
         rows: places,
+        conditions,
         requirements,
         listing: lowering.finish(),
         states,
