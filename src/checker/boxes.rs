@@ -271,9 +271,8 @@ impl CertifiedBoxes {
 /// A part of the whole, rounded down.
 fn part_in_words(part: &RBig) -> String {
     let millionths = (part * RBig::from(1_000_000)).floor();
-    let text = format!("{millionths:07}");
-    let (whole, fraction) = text.split_at(text.len() - 6);
-    format!("{whole}.{fraction}")
+    let millionths = u64::try_from(millionths).unwrap_or(0);
+    format!("{}.{:06}", millionths / 1_000_000, millionths % 1_000_000)
 }
 
 /// What part of the whole box some boxes make that do not overlap.
