@@ -17,7 +17,7 @@
 //!     state phi, omega
 //!     param k = 2
 //!     angle phi
-//!     field f
+//!     drift f
 //!       phi'   = omega
 //!       omega' = -k*sin(phi)
 //!     output phi
@@ -32,6 +32,9 @@
 //!
 //! Beside these stand [`tradeoff`], speed against accuracy and the extremes, and [`verification`], the main job.
 //! Each module is a floor and imports only from those above it here.
+
+// files: read within bounds, written whole or not at all
+pub mod file;
 
 // what a value can be
 pub mod number;

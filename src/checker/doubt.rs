@@ -104,6 +104,10 @@ pub enum Doubt {
     NotAnnihilated { state: usize, row: usize, vector: usize },
     #[error("row {row} cannot be shown to annihilate vector {vector} of the kernel of state {state}")]
     NotShownAnnihilated { state: usize, row: usize, vector: usize },
+    #[error("a rank of {found} does not say this of a claim of {claimed}")]
+    OtherRank { found: usize, claimed: usize },
+    #[error("the rank is {found} at another state, and not {stated} at almost all")]
+    GreaterRank { found: usize, stated: usize },
     #[error("the digest is another: the file was changed")]
     DigestDiffers,
     #[error("a symbol has no range, two ranges, or an empty one")]
@@ -122,10 +126,6 @@ pub enum Doubt {
     BoxNotShown(usize),
     #[error("requirement {requirement} is not met in box {index}: the rows do not exist there")]
     MissingInBox { index: usize, requirement: usize },
-    #[error("a rank of {found} does not say this of a claim of {claimed}")]
-    OtherRank { found: usize, claimed: usize },
-    #[error("the rank is {found} at another state, and not {stated} at almost all")]
-    GreaterRank { found: usize, stated: usize },
     #[error("at state {state}: {doubt}")]
     AtState { state: usize, doubt: Box<Doubt> },
     #[error("there is nothing in it to be checked")]

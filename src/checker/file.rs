@@ -26,10 +26,10 @@ pub enum Evidence {
     Proved(StatedIdentity),
     /// Minors and kernels at states.
     Rank(CertifiedRank),
-    /// Boxes, each with its minor.
-    Boxes(CertifiedBoxes),
     /// A minor, of a claim about almost all states.
     ClaimedRank(ClaimedRank),
+    /// Boxes, each with its minor.
+    Boxes(CertifiedBoxes),
     /// Nothing that evaluation could check; in words, why.
     Unchecked(String),
 }
@@ -135,8 +135,8 @@ impl VerdictFile {
                 Evidence::Refuted(refutation) => refutation.check(effort),
                 Evidence::Proved(identity) => identity.check(seed, effort),
                 Evidence::Rank(rank) => rank.check(effort, interrupt),
-                Evidence::Boxes(boxes) => boxes.check(effort, interrupt),
                 Evidence::ClaimedRank(rank) => rank.check(seed, effort),
+                Evidence::Boxes(boxes) => boxes.check(effort, interrupt),
                 Evidence::Unchecked(_) => Finding::NotChecked,
             };
             done();
@@ -153,9 +153,9 @@ impl Evidence {
             Evidence::Refuted(_) => "refuted",
             Evidence::Proved(_) => "proved",
             Evidence::Rank(_) => "rank",
-            Evidence::Boxes(_) => "boxes",
             Evidence::ClaimedRank(rank) if rank.word == ClaimedWord::Proved => "proved",
             Evidence::ClaimedRank(_) => "refuted",
+            Evidence::Boxes(_) => "boxes",
             Evidence::Unchecked(_) => "unchecked",
         }
     }

@@ -1,5 +1,6 @@
 //! From a claim to its outcome.
 
+use super::defaults::at_the_files_values;
 use super::evidence::{Kept, Nearness, RankedMatrix, claimed_rank, identity, nearness};
 use super::existence::{Existence, existence};
 
@@ -11,13 +12,14 @@ use super::verdict::{Outcome, Verdict, Witness};
 use crate::checker::{Evidence, VerdictRecord};
 use crate::expression::{NodeId, Symbol, add_guard};
 use crate::observability::{Branch, solve};
-use crate::system::{ClaimBody, ClaimSyntax, Expectation, Statement, System, Value};
+use crate::system::{ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line};
 use dashu::rational::RBig;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Decides all claims of a system, several at a time; the outcomes are in the order of the file and do not depend on
@@ -39,6 +41,10 @@ pub fn decide_all_keeping(
     interrupt: &AtomicBool,
     done: &(dyn Fn(&Outcome) + Sync),
 ) -> Vec<Outcome> {
+    let extent = system.extent();
+    // as many copies as claims are decided at once
+    let copies: Mutex<Vec<System>> = Mutex::default();
+    let copies = || copies.lock().unwrap_or_else(PoisonError::into_inner);
     system
         .claims
         .par_iter()
@@ -46,7 +52,11 @@ pub fn decide_all_keeping(
             if interrupt.load(Ordering::Relaxed) {
                 return None;
             }
-            let outcome = decide_keeping(kept, system, claim, seed);
+            let spare = copies().pop();
+            let mut copy = spare.unwrap_or_else(|| system.clone());
+            let outcome = decide_in(&mut copy, claim, seed, kept);
+            copy.shrink_to(&extent);
+            copies().push(copy);
             done(&outcome);
             Some(outcome)
         })
@@ -55,18 +65,24 @@ pub fn decide_all_keeping(
 
 /// Decides one claim. The system is left as it was.
 pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
-    decide_keeping(Kept::Verdicts, system, claim, seed)
+    decide_in(&mut system.clone(), claim, seed, Kept::Verdicts)
 }
 
-fn decide_keeping(kept: Kept, system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
+/// Decides one claim in a system that may be added to.
+fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) -> Outcome {
     let begin = Instant::now();
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id));
-    let mut system = system.clone();
     let system_name = system.name.clone();
-    let text = |system: &System, statement: &Statement| {
-        let text = system.source.get(statement.span.clone()).unwrap_or_default();
-        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let text = |system: &System, statement: &Statement| in_one_line(&system.source, &statement.span);
+    // other random numbers than those of the verdict: that one stays what it is whatever the file's values are
+    let mut again = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id) ^ 1);
+    let mut special = |system: &mut System, statement: &Statement, verdict: &Verdict| {
+        at_the_files_values(system, statement, verdict, |system, special| {
+            decide_statement(system, special, Kept::Verdicts, &mut again).verdict
+        })
     };
+    let mut at_files_values = None;
+    let mut printed_at_files_values = None;
     let mut printed = None;
     let mut domain = Vec::new();
     let mut evidence = Vec::new();
@@ -83,22 +99,26 @@ fn decide_keeping(kept: Kept, system: &System, claim: &ClaimSyntax, seed: u64) -
     };
     let (statement, verdict, expected) = match &claim.body {
         ClaimBody::Claim { statement, expected } => {
-            let text = text(&system, statement);
-            let verdict = known(decide_statement(&mut system, statement, kept, &mut rng), &text, "");
+            let text = text(system, statement);
+            let verdict = known(decide_statement(system, statement, kept, &mut rng), &text, "");
+            at_files_values = special(system, statement, &verdict);
             (text, verdict, Some(*expected))
         }
         ClaimBody::Erratum { printed: print, corrected } => {
-            let as_printed = text(&system, print);
-            let wrong = decide_statement(&mut system, print, kept, &mut rng);
-            printed = Some((as_printed.clone(), known(wrong, &as_printed, " as printed")));
-            let text = text(&system, corrected);
-            let verdict =
-                known(decide_statement(&mut system, corrected, kept, &mut rng), &text, " corrected");
+            let as_printed = text(system, print);
+            let wrong = decide_statement(system, print, kept, &mut rng);
+            let refuted = known(wrong, &as_printed, " as printed");
+            printed_at_files_values = special(system, print, &refuted);
+            printed = Some((as_printed, refuted));
+            let text = text(system, corrected);
+            let verdict = known(decide_statement(system, corrected, kept, &mut rng), &text, " corrected");
+            at_files_values = special(system, corrected, &verdict);
             (text, verdict, Some(Expectation::Proved))
         }
         ClaimBody::Scan { repaired, .. } => {
-            let text = text(&system, repaired);
-            let verdict = known(decide_statement(&mut system, repaired, kept, &mut rng), &text, "");
+            let text = text(system, repaired);
+            let verdict = known(decide_statement(system, repaired, kept, &mut rng), &text, "");
+            at_files_values = special(system, repaired, &verdict);
             (text, verdict, Some(Expectation::Proved))
         }
         ClaimBody::Definition { text } => (text.clone(), Verdict::Definition { text: text.clone() }, None),
@@ -107,9 +127,10 @@ fn decide_keeping(kept: Kept, system: &System, claim: &ClaimSyntax, seed: u64) -
         }
     };
     let print_is_wrong = printed.as_ref().is_none_or(|(_, verdict)| verdict.meets(Expectation::Refuted));
-    let mentioned = format!("{statement} {}", printed.as_ref().map_or("", |(text, _)| text));
+    let explanations = system.explanations(&claim.body);
     Outcome {
-        definitions: system.definitions_in(&mentioned),
+        definitions: explanations.definitions,
+        differentiated_along: explanations.fields,
         file: system.name.clone(),
         id: claim.id.clone(),
         ok: expected.is_none_or(|expected| verdict.meets(expected)) && print_is_wrong,
@@ -124,6 +145,9 @@ fn decide_keeping(kept: Kept, system: &System, claim: &ClaimSyntax, seed: u64) -
         evidence,
         expected,
         remark: claim.remark.clone(),
+        at_files_values,
+        printed_at_files_values,
+        fields: if claim.body.is_about_the_codistribution() { system.roles() } else { Vec::new() },
         seconds: begin.elapsed().as_secs_f64(),
     }
 }
@@ -185,8 +209,7 @@ fn attempt(
     let of_rank = [&left, &right].iter().any(|value| matches!(value, Value::CodistributionRank));
     if of_rank {
         // every Lie derivative of the outputs has to exist
-        let fields: Vec<usize> = (0..system.fields.len()).collect();
-        guards.extend(system.smooth_guards(&fields));
+        guards.extend(system.smooth_guards(&system.moving_fields()));
     }
     guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
     notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();

@@ -1,7 +1,8 @@
 //! `palmistry rank`: is the state seen in the outputs?
 
 use super::arguments::{Wanted, assignments};
-use super::output::{INTERRUPTED, print_json, print_text, progress, write_whole};
+use super::interrupt::{INTERRUPTED, begin_to_tell};
+use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
@@ -14,9 +15,10 @@ use std::path::PathBuf;
 
 /// Decides the rank of the observability codistribution at sampled states.
 ///
-/// Words of Lie derivatives are added shortest first until the rank stops growing or reaches the dimension. At every
+/// Words of Lie derivatives along the drift and the inputs are added shortest first until the rank stops growing or reaches the dimension. At every
 /// state the rank is computed by singular values and certified by exact arithmetic at that very state. Where the file
-/// defines a matrix named 'rows', its rank is decided at the same states too.
+/// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
+/// the file, and the answer says which; a claim 'rank = n' in a file is about all values.
 #[derive(Args)]
 pub(crate) struct Rank {
     /// The proof file.
@@ -79,18 +81,16 @@ impl Rank {
         );
         bar.finish_and_clear();
         let answer = answer.map_err(|why| Unusable::report(why, ""))?;
+        begin_to_tell();
+        let mut files = Files::default();
         if let Some(path) = &self.verdicts {
             let records = rank_records(&mut system, &answer, &self.conditions);
             let text = records.map_err(|why| why.to_string()).and_then(|records| {
                 VerdictFile::new(self.seed, records).text().map_err(|why| why.to_string())
             });
-            write_whole(path, &text.map_err(|why| Unusable::report(why, ""))?)?;
+            files.text(path, &text.map_err(|why| Unusable::report(why, ""))?);
         }
-        if self.json {
-            print_json(&rank_json(&answer));
-        } else {
-            print_text(&rank_text(&answer));
-        }
-        Ok(if answer.interrupted() { Status::NotAsExpected } else { Status::AsExpected })
+        let status = if answer.interrupted() { Status::NotAsExpected } else { Status::AsExpected };
+        files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
     }
 }

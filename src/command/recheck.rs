@@ -1,6 +1,7 @@
 //! `palmistry recheck`: verdicts of a file, evaluated again by the checker alone.
 
-use super::output::{INTERRUPTED, print_json, print_text, progress};
+use super::interrupt::INTERRUPTED;
+use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::{CheckedVerdict, Effort, Evidence, Finding, LARGEST_FILE, VerdictFile};
@@ -39,29 +40,27 @@ impl Recheck {
             checked.iter().filter(|verdict| matches!(verdict.finding, Finding::NotConfirmed(_))).count();
         let words = ["confirmed", "consistent", "not checked", "NOT CONFIRMED"];
         let count = |word: &str| checked.iter().filter(|verdict| verdict.finding.word() == word).count();
-        if self.json {
-            print_json(&json!({
-                "ok": failed == 0,
-                "tool": file.tool,
-                "confirmed": count("confirmed"),
-                "consistent": count("consistent"),
-                "not_checked": count("not checked"),
-                "not_confirmed": failed,
-                "verdicts": checked.iter().map(verdict_json).collect::<Vec<_>>(),
-            }));
-        } else {
-            for verdict in &checked {
-                print_text(&verdict_line(verdict));
-            }
+        let object = json!({
+            "ok": failed == 0,
+            "tool": file.tool,
+            "confirmed": count("confirmed"),
+            "consistent": count("consistent"),
+            "not_checked": count("not checked"),
+            "not_confirmed": failed,
+            "verdicts": checked.iter().map(verdict_json).collect::<Vec<_>>(),
+        });
+        let in_words = || {
             let counts: Vec<String> = words
                 .iter()
                 .map(|word| (count(word), word))
                 .filter(|(count, _)| *count > 0)
                 .map(|(count, word)| format!("{count} {word}"))
                 .collect();
-            print_text(&format!("{} verdicts: {}", checked.len(), counts.join(", ")));
-        }
-        Ok(if failed == 0 { Status::AsExpected } else { Status::NotAsExpected })
+            let lines: Vec<String> = checked.iter().map(verdict_line).collect();
+            format!("{}\n{} verdicts: {}", lines.join("\n"), checked.len(), counts.join(", "))
+        };
+        let status = if failed == 0 { Status::AsExpected } else { Status::NotAsExpected };
+        Files::default().print(Form::of(self.json), object, in_words, status)
     }
 }
 

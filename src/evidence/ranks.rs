@@ -30,8 +30,7 @@ pub fn rank_records(
         let mut side = |expr| system.scalar(expr).map_err(|problem| NotWritten::Condition(problem.message));
         met.push((side(&equation.left)?, side(&equation.right)?));
     }
-    let all_fields: Vec<usize> = (0..system.fields.len()).collect();
-    let smooth = system.smooth_guards(&all_fields);
+    let smooth = system.smooth_guards(&system.moving_fields());
     let own = system.definition_guards(OWN_ROWS);
     let mut records = Vec::new();
     for branch in &answer.branches {

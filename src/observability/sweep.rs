@@ -126,8 +126,7 @@ pub fn sweep(
     let quick = expand_angles(&mut system.graph, quick, is_angle);
     let all = expand_angles(&mut system.graph, all, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-    let fields: Vec<usize> = (0..system.fields.len()).collect();
-    let mut guards = system.smooth_guards(&fields);
+    let mut guards = system.smooth_guards(&system.moving_fields());
     // a stream watches what outputs and fields need; what the rows need beside that is looked at state by state
     let watched = options
         .guards

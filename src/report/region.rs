@@ -1,5 +1,6 @@
 //! Certificates on regions, as JSON and as text.
 
+use super::ranks::{fields_json, fields_text};
 use crate::number::rational_from_f64;
 use crate::observability::AVOIDED;
 use crate::observability::region::{OpenBox, PartAnswer, RegionAnswer, Standing, Vanishing};
@@ -57,6 +58,7 @@ pub fn region_json(answer: &RegionAnswer) -> Value {
     json!({
         "file": answer.file,
         "title": answer.title,
+        "fields": fields_json(&answer.fields),
         "dimension": answer.dimension,
         "order": answer.order,
         "rows": answer.rows,
@@ -104,7 +106,7 @@ pub fn region_text(answer: &RegionAnswer) -> String {
     let mut out = format!("{}: {} states", answer.title, answer.dimension);
     match answer.order {
         Some(order) => {
-            let _ = writeln!(out, ", words of up to {order} fields");
+            let _ = writeln!(out, ", words of up to {order} fields ({})", fields_text(&answer.fields));
         }
         None => out.push_str(", the file's own choice of rows\n"),
     }

@@ -73,8 +73,7 @@ pub(super) fn domain(
 
 /// The guards of outputs and fields, and those of the file's own rows where these are asked for.
 fn guards_of(system: &System, rows: RegionRows) -> Vec<Guard> {
-    let every_field: Vec<usize> = (0..system.fields.len()).collect();
-    let mut found = system.smooth_guards(&every_field);
+    let mut found = system.smooth_guards(&system.moving_fields());
     if rows == RegionRows::Own {
         let mut own = system.definition_guards(OWN_ROWS);
         if let Some(Value::Matrix(matrix)) = system.definition(OWN_ROWS) {

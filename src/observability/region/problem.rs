@@ -11,7 +11,7 @@ use super::proved::{HeldSymbol, RegionRow, WrittenRows};
 use crate::expression::{NodeId, Symbol, expand_angles};
 use crate::number::{Interval, Real, rational_to_f64};
 use crate::observability::{Codistribution, Length, OWN_ROWS, Reduction, Stop};
-use crate::system::{Assignment, Kind, System, Value};
+use crate::system::{Assignment, FieldRole, Kind, System, Value};
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
 
@@ -29,6 +29,8 @@ pub enum RegionRows {
 pub(super) struct Problem {
     pub file: String,
     pub title: String,
+    /// The fields that move the states.
+    pub fields: Vec<FieldRole>,
     pub dimension: usize,
     /// The number of columns in which the rows have to be independent, once unit rows are taken out with theirs.
     pub columns: usize,
@@ -127,6 +129,7 @@ impl Problem {
         Ok(Problem {
             file: system.name.clone(),
             title: system.title.clone(),
+            fields: system.roles(),
             dimension,
             columns,
             rows: block.rows.len(),

@@ -118,6 +118,7 @@ impl Region {
         RegionAnswer {
             file: problem.file.clone(),
             title: problem.title.clone(),
+            fields: problem.fields.clone(),
             dimension: problem.dimension,
             columns: problem.columns,
             rows: problem.rows,
