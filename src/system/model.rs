@@ -172,7 +172,7 @@ impl System {
     }
 
     /// The field of a name, imported ones included.
-    pub(crate) fn field(&self, name: &str) -> Option<&Field> {
+    pub(crate) fn named_field(&self, name: &str) -> Option<&Field> {
         match self.field_places.get(name)? {
             FieldPlace::Own(place) => self.fields.get(*place),
             FieldPlace::Imported(place) => self.imported_fields.get(*place),

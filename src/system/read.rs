@@ -228,7 +228,7 @@ impl System {
         components: &[(Name, Expr)],
         others_are_zero: bool,
     ) -> Result<(), Problem> {
-        if self.field(&name.text).is_some() {
+        if self.named_field(&name.text).is_some() {
             return Err(Problem::new(
                 &name.span,
                 format!("there is a field '{}' already", name.text),
