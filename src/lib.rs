@@ -17,7 +17,7 @@
 //!     state phi, omega
 //!     param k = 2
 //!     angle phi
-//!     field f
+//!     drift f
 //!       phi'   = omega
 //!       omega' = -k*sin(phi)
 //!     output phi
@@ -45,8 +45,14 @@ pub mod expression;
 // a system, and how it is read from a proof file
 pub mod system;
 
+// what was found, evaluated again by code that shares nothing with what found it
+pub mod checker;
+
 // Lie derivatives, codistribution, rank at sampled states
 pub mod observability;
+
+// what verdicts rest on, written down for the checker
+pub mod evidence;
 
 // claims, the engines that decide them, verdicts
 pub mod claim;

@@ -102,7 +102,7 @@ fn an_error_in_json_has_its_line_and_column() {
 #[test]
 fn depth_and_length_are_survived() {
     let try_it = |expression: &str| {
-        let text = format!("system \"s\" state x field f x' = x^2 output x claim 1: {expression} = 0");
+        let text = format!("system \"s\" state x drift f x' = x^2 output x claim 1: {expression} = 0");
         if let Ok(system) = System::parse("deep.proof", &text, Path::new("")) {
             decide_all(&system, 1, &false.into(), &|_| ());
         }
@@ -234,7 +234,7 @@ proptest! {
 
     #[test]
     fn no_pile_of_scraps_makes_it_panic(text in scraps()) {
-        let text = format!("system \"s\" state x, y param k = 2, a angle a field f x' = y y' = -k*x + sin(a) output x {text}");
+        let text = format!("system \"s\" state x, y param k = 2, a angle a drift f x' = y y' = -k*x + sin(a) output x {text}");
         if let Ok(system) = System::parse("scraps.proof", &text, Path::new("")) {
             decide_all(&system, 1, &false.into(), &|_| ());
         }
@@ -253,7 +253,7 @@ proptest! {
     /// Whatever stands between '--at' and its end.
     #[test]
     fn no_expression_makes_it_panic(text in scraps()) {
-        let mut system = System::parse("e.proof", "system \"s\" state x, y field f x' = y y' = x", Path::new("")).unwrap();
+        let mut system = System::parse("e.proof", "system \"s\" state x, y drift f x' = y y' = x", Path::new("")).unwrap();
         let _ = system.evaluate_text(&text);
         let _ = palmistry::number::parse_decimal(&text);
         let _ = palmistry::observability::parse_condition(&text);

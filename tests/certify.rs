@@ -149,7 +149,7 @@ fn enclosed(state: &BTreeMap<Symbol, Coordinate>, symbol: Symbol) -> Option<Inte
 fn a_curve_on_which_the_rank_drops_is_left_out_everywhere() {
     // the differential of z y - z x^3 + z x by z, with x and y seen
     let mut system = system(
-        "state x, y, z field f x' = 0 y' = 0 z' = 0 output x, y, z*(y - x^3 + x)
+        "state x, y, z drift f x' = 0 y' = 0 z' = 0 output x, y, z*(y - x^3 + x)
          sample x in [-2, 2] y in [-2, 2] z in [1, 2]",
     );
     let (region, answer) = searched(&mut system, ALL, 20_000);
@@ -199,7 +199,7 @@ fn a_curve_on_which_the_rank_drops_is_left_out_everywhere() {
 #[test]
 fn squares_are_recognised() {
     let mut system = system(
-        "state x, y, z field f x' = 0 y' = 0 z' = 0 output x, y, z*(x^2 + x*y + y^2)
+        "state x, y, z drift f x' = 0 y' = 0 z' = 0 output x, y, z*(x^2 + x*y + y^2)
          sample x in [-1, 2] y in [-1, 2] z in [1, 2]",
     );
     let (_, answer) = searched(&mut system, ALL, 400);
@@ -211,13 +211,13 @@ fn squares_are_recognised() {
 fn of_an_unobservable_system_nothing_is_proved() {
     for text in [
         // a point on a circle, seen by its distance
-        "state x, y field f x' = -y y' = x output x^2 + y^2 sample x in [1, 2] y in [1, 2]",
+        "state x, y drift f x' = -y y' = x output x^2 + y^2 sample x in [1, 2] y in [1, 2]",
         // a state that enters no output
-        "state x, y field f x' = x y' = y output x sample x in [1, 2] y in [1, 2]",
+        "state x, y drift f x' = x y' = y output x sample x in [1, 2] y in [1, 2]",
         // two states that are seen by their sum only
-        "state x, y field f x' = x y' = y output x + y sample x in [1, 2] y in [1, 2]",
+        "state x, y drift f x' = x y' = y output x + y sample x in [1, 2] y in [1, 2]",
         // fixed palms without torques (Moll 2002, after 4.74)
-        "state a, b, w field f a' = 0 b' = 0 w' = 0 output a*w, b*w sample a in [1, 2] b in [1, 2] w in [1, 2]",
+        "state a, b, w drift f a' = 0 b' = 0 w' = 0 output a*w, b*w sample a in [1, 2] b in [1, 2] w in [1, 2]",
     ] {
         let (region, answer) = searched(&mut system(text), ALL, 1000);
         assert_eq!(answer.proved, 0.0, "{text}");
@@ -230,7 +230,7 @@ fn of_an_unobservable_system_nothing_is_proved() {
 /// Unobservable in a way that no exact arithmetic here knows: exp(x) exp(-x) - 1 is zero everywhere.
 #[test]
 fn what_is_zero_unknown_to_us_is_not_proved_to_be_something_else() {
-    let text = "state x, y field f x' = 0 y' = 0 output x, (exp(x)*exp(-x) - 1)*y
+    let text = "state x, y drift f x' = 0 y' = 0 output x, (exp(x)*exp(-x) - 1)*y
                 sample x in [1, 2] y in [1, 2]";
     let (_, answer) = searched(&mut system(text), ALL, 3000);
     assert_eq!(answer.proved, 0.0);
@@ -240,13 +240,13 @@ fn what_is_zero_unknown_to_us_is_not_proved_to_be_something_else() {
 #[test]
 fn a_regular_system_is_proved_on_all_of_its_box() {
     for text in [
-        "state x, v field f x' = v v' = -x output x sample x in [-1, 1] v in [-1, 1]",
-        "state x, v field f x' = v v' = -sin(x) output x sample x in [-3, 3] v in [-1, 1]",
-        "state x, y field f x' = 0 y' = 0 output exp(x + y), x - y sample x in [-2, 2] y in [-2, 2]",
-        "state x, phi angle phi field f x' = 0 phi' = 0 output x*sin(phi), x*cos(phi)
+        "state x, v drift f x' = v v' = -x output x sample x in [-1, 1] v in [-1, 1]",
+        "state x, v drift f x' = v v' = -sin(x) output x sample x in [-3, 3] v in [-1, 1]",
+        "state x, y drift f x' = 0 y' = 0 output exp(x + y), x - y sample x in [-2, 2] y in [-2, 2]",
+        "state x, phi angle phi drift f x' = 0 phi' = 0 output x*sin(phi), x*cos(phi)
          sample x in [1, 2] phi in [-7, 7]",
-        "state x, y field f x' = 0 y' = 0 output sqrt(x), log(y)*sqrt(x) sample x in [1, 2] y in [1, 2]",
-        "state x, y field f x' = 0 y' = 0 output x, atan(y) + asin(y/3) sample x in [1, 2] y in [-2, 2]",
+        "state x, y drift f x' = 0 y' = 0 output sqrt(x), log(y)*sqrt(x) sample x in [1, 2] y in [1, 2]",
+        "state x, y drift f x' = 0 y' = 0 output x, atan(y) + asin(y/3) sample x in [1, 2] y in [-2, 2]",
     ] {
         let (region, answer) = searched(&mut system(text), ALL, 20_000);
         assert_eq!(answer.proved, 1.0, "{text}");
@@ -260,7 +260,7 @@ fn a_regular_system_is_proved_on_all_of_its_box() {
 #[test]
 fn poles_and_undefined_states_are_not_proved() {
     let (region, answer) = searched(
-        &mut system("state x, y field f x' = 0 y' = 0 output x, y/x sample x in [-1, 1] y in [1, 2]"),
+        &mut system("state x, y drift f x' = 0 y' = 0 output x, y/x sample x in [-1, 1] y in [1, 2]"),
         ALL,
         5000,
     );
@@ -270,7 +270,7 @@ fn poles_and_undefined_states_are_not_proved() {
     );
     assert_ne!(region.standing(|_| Some(Interval::ZERO.hull(Interval::ONE))), Some(Standing::Proved));
     // sin(phi) = 0 in the middle of the box, at a half turn, where the tangent of the half angle is infinite
-    let text = "state x, phi angle phi field f x' = 0 phi' = 0 output phi, x/sin(phi)
+    let text = "state x, phi angle phi drift f x' = 0 phi' = 0 output phi, x/sin(phi)
                 sample x in [1, 2] phi in [2, 4]";
     let mut turned = system(text);
     let (region, answer) = searched(&mut turned, ALL, 5000);
@@ -279,7 +279,7 @@ fn poles_and_undefined_states_are_not_proved() {
         |symbol| Some(if turned.is_angle(symbol) { Interval::pi() } else { Interval::point(1.5) });
     assert_ne!(region.standing(half_turn), Some(Standing::Proved));
     // half of the box has no logarithm
-    let text = "state x field f x' = 0 output log(x) + x sample x in [-1, 1]";
+    let text = "state x drift f x' = 0 output log(x) + x sample x in [-1, 1]";
     let (_, answer) = searched(&mut system(text), ALL, 5000);
     assert!(answer.proved > 0.499 && answer.proved <= 0.5, "{}", answer.proved);
     assert!(answer.rest >= 0.5);
@@ -288,7 +288,7 @@ fn poles_and_undefined_states_are_not_proved() {
 /// A rank that drops at a half turn, where the tangent of the half angle is infinite: 1 + cos(phi) has its zero there.
 #[test]
 fn a_half_turn_is_seen() {
-    let text = "state x, phi angle phi field f x' = 0 phi' = 0 output phi, x*(1 + cos(phi))
+    let text = "state x, phi angle phi drift f x' = 0 phi' = 0 output phi, x*(1 + cos(phi))
                 sample x in [1, 2] phi in [2, 4]";
     let mut system = system(text);
     let (region, answer) = searched(&mut system, ALL, 2000);
@@ -301,12 +301,12 @@ fn a_half_turn_is_seen() {
 /// What sampled states keep away from counts for the whole and not for what is sampled.
 #[test]
 fn avoided_neighbourhoods_are_told_from_the_rest() {
-    let text = "state x, y field f x' = 0 y' = 0 output x, y/x sample x in [-1, 1] y in [1, 2] avoid x";
+    let text = "state x, y drift f x' = 0 y' = 0 output x, y/x sample x in [-1, 1] y in [1, 2] avoid x";
     let (_, answer) = searched(&mut system(text), ALL, 300);
     assert!(answer.proved < 1.0);
     assert_eq!(answer.proved_of_sampled, 1.0);
     // |x - y| < 0.05 is a band across the square, with a part of 0.0975 of it; outside of it all is proved in the end
-    let text = "state x, y field f x' = 0 y' = 0 output x - y, 1/(x - y)^2 + y sample x in [0, 1] y in [0, 1] avoid x - y";
+    let text = "state x, y drift f x' = 0 y' = 0 output x - y, 1/(x - y)^2 + y sample x in [0, 1] y in [0, 1] avoid x - y";
     let (_, answer) = searched(&mut system(text), ALL, 20_000);
     assert!(answer.proved < 1.0 && answer.proved_of_sampled > 0.99, "{answer:?}");
 }
@@ -441,7 +441,7 @@ fn what_cannot_be_asked_is_refused_with_advice() {
         assert!(words.contains(advice), "{arguments:?}: {words}");
     }
     let folder = folder();
-    let file = write(&folder, "free.proof", "system \"s\" state x field f x' = 0 output x^2");
+    let file = write(&folder, "free.proof", "system \"s\" state x drift f x' = 0 output x^2");
     let output = palmistry(&["certify", file.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("--box"));

@@ -139,7 +139,7 @@ fn known_statements_have_their_verdicts() {
     ];
     for (verdict, statement) in cases {
         let text = format!(
-            "system \"facts\" state x, y param a, b, k = 2 angle a, b field f x' = y y' = -k*x claim 1: {statement}"
+            "system \"facts\" state x, y param a, b, k = 2 angle a, b drift f x' = y y' = -k*x claim 1: {statement}"
         );
         let system =
             System::parse("facts.proof", &text, Path::new("")).unwrap_or_else(|e| panic!("{statement}: {e}"));

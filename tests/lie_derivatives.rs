@@ -167,7 +167,7 @@ fn intervals_enclose_the_exact_differential() {
 /// derivative, and the double-double would end after sixteen digits.
 #[test]
 fn constants_of_a_program_keep_their_digits_within_duals() {
-    let text = "system \"third\" state x field f x' = x/3 + 1/7 output x";
+    let text = "system \"third\" state x drift f x' = x/3 + 1/7 output x";
     let system = System::parse("third.proof", text, Path::new("")).unwrap();
     let (x, h) = (system.find_symbol("x").unwrap(), system.outputs[0].1);
     let ninth = RBig::from_parts(1.into(), 9u8.into());
@@ -201,7 +201,7 @@ fn any_number_that_num_dual_knows_will_do() {
 /// The harmonic oscillator: L_f^k x is x, y, -x, -y, x, ... exactly, at any order and by both routes.
 #[test]
 fn a_circle_comes_back_to_itself() {
-    let text = "system \"circle\" state x, y field f x' = y y' = -x output x";
+    let text = "system \"circle\" state x, y drift f x' = y y' = -x output x";
     let mut system = System::parse("circle.proof", text, Path::new("")).unwrap();
     let (x, y) = (system.find_symbol("x").unwrap(), system.find_symbol("y").unwrap());
     let point = HashMap::from([(x, 0.25), (y, 3.0)]);

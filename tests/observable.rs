@@ -66,7 +66,7 @@ fn two_questions_have_two_answers() {
 /// the singular values are 3/sqrt(5) and 1/sqrt(5) and the condition is 3 (digits of the root: mpmath 1.3).
 #[test]
 fn digits_of_the_worst_state_in_closed_form() {
-    let text = "system \"linear\" state x, y field f x' = y y' = 0 output 4*x + y, x + y \
+    let text = "system \"linear\" state x, y drift f x' = y y' = 0 output 4*x + y, x + y \
                 sample x in [0, 1] y in [0, 1]";
     let folder = folder();
     let file = write(&folder, "linear.proof", text);
@@ -144,7 +144,7 @@ fn an_unobservable_system_is_said_to_be_one() {
         system "A point on a circle, seen by its distance"
         state x, y
         param k = 3
-        field f
+        drift f
           x' = -k*y
           y' = k*x
         output x^2 + y^2
@@ -170,7 +170,7 @@ fn a_pause_of_the_rank_is_not_taken_for_its_end() {
     let text = r#"
         system "A pause"
         state x, z
-        field f  x' = 1  z' = 0
+        drift f  x' = 1  z' = 0
         output x, x^5*z
         claim at_large: rank = 2
         claim paused expect undecided: rank = 1 where x = 0
@@ -188,7 +188,7 @@ fn parameters_that_are_held_are_held_everywhere() {
     let folder = folder();
     for param in ["param k = 0", "param k sample k in [0, 0]"] {
         let text = format!(
-            "system \"held\" state x, y, z {param} field f x' = y y' = z z' = 0 output x, k*z
+            "system \"held\" state x, y, z {param} drift f x' = y y' = z z' = 0 output x, k*z
              sample x in [1, 2] y in [1, 2] z in [1, 2]"
         );
         let file = write(&folder, "held.proof", text);
@@ -202,7 +202,7 @@ fn parameters_that_are_held_are_held_everywhere() {
 #[test]
 fn a_state_without_output_is_left_out() {
     let folder = folder();
-    let text = "system \"log\" state x field f x' = 0 output log(x - 5) sample x in [1, 2]";
+    let text = "system \"log\" state x drift f x' = 0 output log(x - 5) sample x in [1, 2]";
     let file = write(&folder, "log.proof", text);
     let found = rank(&[file.to_str().unwrap(), "--samples", "10"]);
     assert_eq!(found["samples"], 0);
@@ -215,7 +215,7 @@ fn a_state_without_output_is_left_out() {
 #[test]
 fn a_guess_is_not_called_final() {
     let folder = folder();
-    let text = "system \"exp\" state x, y field f x' = 0 y' = 0 output x, (exp(x)*exp(-x) - 1)*y
+    let text = "system \"exp\" state x, y drift f x' = 0 y' = 0 output x, (exp(x)*exp(-x) - 1)*y
                 sample x in [1, 2] y in [1, 2]";
     let file = write(&folder, "exp.proof", text);
     assert_eq!(rank(&[file.to_str().unwrap(), "--samples", "10"])["longer_words_cannot_raise_it"], false);
@@ -225,7 +225,7 @@ fn a_guess_is_not_called_final() {
 #[test]
 fn a_rank_that_whole_turns_change_is_not_decided() {
     let folder = folder();
-    let text = "system \"half turns\" state x, y, phi angle phi field f x' = 0 y' = 0 phi' = 0
+    let text = "system \"half turns\" state x, y, phi angle phi drift f x' = 0 y' = 0 phi' = 0
                 output x, phi, y*(cos(phi/2) - 1) sample x in [1, 2] y in [1, 2] phi in [-1, 1]
                 claim 1 expect undecided: rank = 2 where sin(phi) = 0
                 claim 2 expect undecided: rank = 3 where sin(phi) = 0";

@@ -12,11 +12,11 @@ const OSCILLATOR: &str = r#"
     system "An oscillator whose place is seen"
     state x, v, w
     param u = 0
-    field f
+    drift f
       x' = v
       v' = -w^2*x
       w' = 0
-    field g
+    input g
       v' = 1
       others' = 0
     output x
@@ -155,7 +155,7 @@ fn a_high_gain_observer_forgets_its_first_guess() {
         system "An oscillator about an unknown place"
         state x, v, b
         param w = 2
-        field f
+        drift f
           x' = v
           v' = -w^2*x + b
           b' = 0
@@ -182,7 +182,7 @@ fn what_cannot_be_told_apart_is_said_to_be_unseen() {
     let text = r#"
         system "Two springs"
         state x, v, a, b
-        field f
+        drift f
           x' = v
           v' = -(a + b)*x
           others' = 0

@@ -95,10 +95,10 @@ fn gradients_and_partial_derivatives_are_identical() {
 const FUNCTIONS: &str = r#"
     system "every function, moved by a field of two states"
     state x, y
-    field f
+    drift f
       x' = x*y + exp(-x) - sqrt(1 + y^2)/3
       y' = sin(x + y) - log(2 + x^2)*cos(y)
-    field g
+    input g
       x' = atan(x*y) + asin(y/5)^3
       y' = acos(x/7) - (x + 2)^(-2) + pi
     output x*sin(y), atan(x)/y

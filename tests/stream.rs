@@ -43,7 +43,7 @@ fn run(stream: &Stream, states: u64, wanted: Certainty) -> (StreamReport, Vec<u6
 /// A small system with one row beside the output x.
 fn small(row: &str, range: &str) -> System {
     let text = format!(
-        "system \"s\" state x, y field f x' = y y' = 0 output x sample x in {range} y in [1, 2] \
+        "system \"s\" state x, y drift f x' = y y' = 0 output x sample x in {range} y in [1, 2] \
          let rows = [1, 0; {row}]"
     );
     System::parse("s.proof", &text, Path::new("")).unwrap()
@@ -108,7 +108,11 @@ fn the_same_result_on_any_number_of_threads_and_any_processor() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         assert_eq!(pool.install(|| run(&all, 30_001, Certainty::Certified)), first, "{threads} threads");
     }
-    assert_eq!(run(&all.with(Instructions::Portable), 30_001, Certainty::Certified), first);
+    let mut all = all;
+    for instructions in Instructions::ALL {
+        all = all.with(instructions);
+        assert_eq!(run(&all, 30_001, Certainty::Certified), first, "{instructions:?}");
+    }
 }
 
 #[test]

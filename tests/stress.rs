@@ -17,7 +17,7 @@ use std::sync::atomic::AtomicBool;
 const EQUAL_ROWS: &str = r#"
 system "Two rows that become one"
 state x, y
-field f
+drift f
   x' = 1
   others' = 0
 output y
@@ -32,7 +32,7 @@ let rows = [1, 1; 1, 1 + x]
 const DIVISOR: &str = r#"
 system "A divisor and a power"
 state x, y
-field f
+drift f
   x' = 1
   others' = 0
 output y
@@ -199,9 +199,9 @@ fn pictures_are_written() {
 fn a_file_that_cannot_be_used_is_said_to_be_so() {
     let folder = folder();
     for (text, expected) in [
-        ("system \"nothing is seen\"\nstate x\nfield f\n  x' = 1\n", "no states or no outputs"),
+        ("system \"nothing is seen\"\nstate x\ndrift f\n  x' = 1\n", "no states or no outputs"),
         (
-            "system \"nowhere\"\nstate x, y\nfield f\n  x' = y^2\n  others' = 0\noutput x*y\n",
+            "system \"nowhere\"\nstate x, y\ndrift f\n  x' = y^2\n  others' = 0\noutput x*y\n",
             "nothing says where",
         ),
         ("sistem", "line 1"),

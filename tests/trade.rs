@@ -117,7 +117,7 @@ fn nothing_is_left_out_in_silence() {
 #[test]
 fn a_short_rank_is_taken_for_full_by_noise() {
     let system = parsed(
-        "system \"one output twice\" state x, y field f others' = 0 output x*y^2, (x*y^2)^3
+        "system \"one output twice\" state x, y drift f others' = 0 output x*y^2, (x*y^2)^3
          sample x in [1, 2] y in [1, 2]",
     );
     let found = measure(&system, 100);
@@ -148,7 +148,7 @@ fn a_short_rank_is_taken_for_full_by_noise() {
 #[test]
 fn what_is_not_possible_is_said_with_its_reason() {
     let system = parsed(
-        "system \"an exponential\" state x, y field f x' = y y' = exp(x) output x*y
+        "system \"an exponential\" state x, y drift f x' = y y' = exp(x) output x*y
          sample x in [1, 2] y in [1, 2] let rows = [d(x*y); d(exp(x) + y)]",
     );
     let found = measure(&system, 50);
@@ -210,11 +210,11 @@ fn the_front_is_one() {
 #[test]
 fn what_cannot_be_measured_is_refused_in_words() {
     let folder = folder();
-    let empty = write(&folder, "empty.proof", "system \"nothing is seen\" state x field f x' = x");
+    let empty = write(&folder, "empty.proof", "system \"nothing is seen\" state x drift f x' = x");
     let output = palmistry(&["trade", empty.to_str().unwrap(), "--json"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(json(&output)["error"]["message"].as_str().unwrap().contains("no states or no outputs"));
-    let unbounded = write(&folder, "unbounded.proof", "system \"no box\" state x field f x' = x output x^2");
+    let unbounded = write(&folder, "unbounded.proof", "system \"no box\" state x drift f x' = x output x^2");
     let output = palmistry(&["trade", unbounded.to_str().unwrap(), "--json"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(json(&output)["error"]["message"].as_str().unwrap().contains("nothing says where 'x'"));

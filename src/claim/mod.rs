@@ -7,6 +7,8 @@
 //! This floor shares no formula with `proofs/`, and knows nothing of pages or plots.
 
 mod decide;
+mod defaults;
+mod evidence;
 mod existence;
 mod identity;
 mod pole;
@@ -16,7 +18,9 @@ mod value;
 mod verdict;
 mod witness;
 
-pub use decide::{decide, decide_all};
+pub use decide::{decide, decide_all, decide_all_keeping};
+pub use defaults::AtFilesValues;
+pub use evidence::Kept;
 pub use pole::{PoleOrder, pole_order};
 pub use value::{PointValue, ValueError, certified_value, computed_value};
 pub use verdict::{Outcome, Verdict, Witness};

@@ -101,6 +101,7 @@ fn decide(system: &mut System, rows: &Rows<'_>, claimed: usize, rng: &mut impl R
                 left: rank.to_string(),
                 right: claimed.to_string(),
                 entry: None,
+                refutation: None,
             };
             Verdict::Refuted { engine: format!("{RANDOM_PRIMES}{}", rows.scope), witness }
         }

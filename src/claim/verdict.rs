@@ -1,7 +1,9 @@
 //! What a claim can come to.
 
+use super::defaults::AtFilesValues;
+use crate::checker::{Refutation, VerdictRecord};
 use crate::observability::StateInWords;
-use crate::system::Expectation;
+use crate::system::{Expectation, FieldRole};
 
 /// A state in exact numbers at which a statement fails.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +16,8 @@ pub struct Witness {
     pub right: String,
     /// Which entry differs, where matrices were compared: row and column, counted from one.
     pub entry: Option<(usize, usize)>,
+    /// What the checker needs to find it again, and did; of an equation.
+    pub refutation: Option<Box<Refutation>>,
 }
 
 /// What is known of a statement.
@@ -106,8 +110,10 @@ pub struct Outcome {
     pub printed: Option<(String, Verdict)>,
     /// The text as the scanner left it; of a scanning fault only.
     pub scanned: Option<String>,
-    /// The abbreviations that these statements use: name and meaning.
+    /// The abbreviations that these statements use, those of imported files too: name and meaning, as it is written.
     pub definitions: Vec<(String, String)>,
+    /// The fields along which these statements differentiate: name and components, as they are written.
+    pub differentiated_along: Vec<(String, String)>,
     /// The verdict on the claim, or on the corrected form.
     pub verdict: Verdict,
     /// What has to hold for its terms to exist, in words: the verdict is about states at which all of it does.
@@ -116,8 +122,16 @@ pub struct Outcome {
     pub expected: Option<Expectation>,
     /// Whether everything is as the file expects.
     pub ok: bool,
+    /// What the verdicts rest on, for a verdict file; empty where it was not to be kept.
+    pub evidence: Vec<VerdictRecord>,
     /// The remark in the file.
     pub remark: Option<String>,
+    /// What the statement comes to at the file's values of its parameters, where that is another word.
+    pub at_files_values: Option<AtFilesValues>,
+    /// The same for the printed form of an erratum.
+    pub printed_at_files_values: Option<AtFilesValues>,
+    /// The fields of which words are made, where the claim is about the rank of the codistribution.
+    pub fields: Vec<FieldRole>,
     /// How long it took.
     pub seconds: f64,
 }

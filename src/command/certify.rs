@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 use dashu::rational::RBig;
 use indicatif::ProgressBar;
 use palmistry::System;
+use palmistry::evidence::{WrittenBoxes, certificate_file};
 use palmistry::expression::Symbol;
 use palmistry::file::{note, read_text};
 use palmistry::observability::region::{Limits, Progress, Region, RegionAnswer, RegionRows};
@@ -60,6 +61,12 @@ pub(crate) struct Certify {
     /// Write certify.json and the pictures curve.svg and map.svg into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Write the largest proved boxes, each with the rows of its minor, to a file that 'palmistry recheck' checks alone.
+    #[arg(long, value_name = "FILE")]
+    verdicts: Option<PathBuf>,
+    /// How many boxes that file holds at most, the largest first.
+    #[arg(long, default_value_t = 2000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    verdict_boxes: u32,
     /// Print one JSON object with 'proved_fraction', 'minor_vanishes_fraction', 'rest_fraction', 'curve' and more.
     #[arg(long)]
     pub json: bool,
@@ -104,6 +111,9 @@ impl Certify {
         let map = self.map_of(&system)?;
         let mut region =
             Region::new(&mut system, rows, &ranges, map).map_err(|why| Unusable::report(why, ""))?;
+        if self.verdicts.is_some() {
+            region.keep_boxes(self.verdict_boxes as usize);
+        }
         if let Some(file) = &self.state {
             if file.exists() && !file.is_file() {
                 let message = format!("{} is no file that a state could be kept in", file.display());
@@ -121,8 +131,25 @@ impl Certify {
             pictures(&answer, folder, &mut files);
             files.json(&folder.join("certify.json"), &object);
         }
+        let written = self.write_verdicts(&system, &region, &mut files)?;
+        if let Some(written) = &written {
+            object["verdict_boxes"] = json!({ "written": written.boxes, "left_out": written.left_out });
+        }
         let status = if interrupted() { Status::NotAsExpected } else { Status::AsExpected };
-        files.print(Form::of(self.json), object, || region_text(&answer), status)
+        let in_words = || {
+            let text = region_text(&answer);
+            match (&self.verdicts, &written) {
+                (Some(file), Some(written)) => format!(
+                    "{text}\n{}: {} of {} proved boxes; {} more are not shown by plain interval arithmetic and left out",
+                    file.display(),
+                    written.boxes,
+                    region.proved_box_count(),
+                    written.left_out
+                ),
+                _ => text,
+            }
+        };
+        files.print(Form::of(self.json), object, in_words, status)
     }
 
     /// Spends the budget, and keeps the state on the way.
@@ -158,6 +185,22 @@ impl Certify {
         if let Some(file) = &self.state {
             files.text(file, &region.saved());
         }
+    }
+
+    /// Writes what the certificate rests on, where that is asked for.
+    fn write_verdicts(
+        &self,
+        system: &System,
+        region: &Region,
+        files: &mut Files,
+    ) -> miette::Result<Option<WrittenBoxes>> {
+        let Some(path) = &self.verdicts else { return Ok(None) };
+        let most = self.verdict_boxes as usize;
+        let (file, written) = certificate_file(system, region, most, &INTERRUPTED)
+            .map_err(|why| Unusable::report(why.to_string(), ""))?;
+        let text = file.text().map_err(|why| Unusable::report(why.to_string(), ""))?;
+        files.text(path, &text);
+        Ok(Some(written))
     }
 
     fn map_of(&self, system: &System) -> miette::Result<Option<(Symbol, Symbol)>> {

@@ -12,6 +12,7 @@ mod observe;
 mod output;
 mod prove;
 mod rank;
+mod recheck;
 mod stress;
 mod threads;
 mod trade;
@@ -42,6 +43,7 @@ enum Verb {
     Verify(verify::Verify),
     Prove(prove::Prove),
     Rank(rank::Rank),
+    Recheck(recheck::Recheck),
     Certify(certify::Certify),
     Trade(trade::Trade),
     Stress(stress::Stress),
@@ -105,6 +107,7 @@ impl Verb {
             Verb::Verify(verb) => verb.json,
             Verb::Prove(verb) => verb.json,
             Verb::Rank(verb) => verb.json,
+            Verb::Recheck(verb) => verb.json,
             Verb::Certify(verb) => verb.json,
             Verb::Trade(verb) => verb.json,
             Verb::Stress(verb) => verb.json,
@@ -121,6 +124,7 @@ impl Verb {
             Verb::Verify(verb) => verb.run(),
             Verb::Prove(verb) => verb.run(),
             Verb::Rank(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Recheck(verb) => verb.run(),
             Verb::Certify(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Trade(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Stress(verb) => verb.run(),

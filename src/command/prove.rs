@@ -4,8 +4,10 @@ use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
 use super::output::{Files, Form, progress, proof_files};
 use super::{Status, Unusable};
 use clap::Args;
+use palmistry::checker::VerdictFile;
+use palmistry::claim::{Kept, decide_all_keeping};
 use palmistry::report::{claim_json, claim_line, junit};
-use palmistry::{Outcome, System, decide_all};
+use palmistry::{Outcome, System};
 use serde_json::json;
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -27,6 +29,9 @@ pub(crate) struct Prove {
     /// Write the outcomes as JUnit XML, for a CI system.
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
+    /// Write what the verdicts rest on to a file that 'palmistry recheck' checks alone.
+    #[arg(long, value_name = "FILE")]
+    verdicts: Option<PathBuf>,
     /// Seed of the random points.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -78,13 +83,14 @@ impl Prove {
             decided.claims = claims;
             decided.places = names.into_iter().zip(0..).collect();
         }
+        let kept = if self.verdicts.is_some() { Kept::Evidence } else { Kept::Verdicts };
         let bar = progress(claims as u64, "deciding claims");
         for system in &systems {
             let done = |outcome: &Outcome| {
                 hold(decided).outcomes.push(outcome.clone());
                 bar.inc(1);
             };
-            decide_all(system, self.seed, &INTERRUPTED, &done);
+            decide_all_keeping(kept, system, self.seed, &INTERRUPTED, &done);
         }
         bar.finish_and_clear();
         Ok(())
@@ -99,6 +105,11 @@ impl Prove {
         let mut files = Files::default();
         if let Some(path) = &self.junit {
             files.text(path, &junit(&outcomes)?);
+        }
+        if let Some(path) = &self.verdicts {
+            let records = outcomes.iter().flat_map(|outcome| outcome.evidence.iter().cloned()).collect();
+            let text = VerdictFile::new(self.seed, records).text();
+            files.text(path, &text.map_err(|why| Unusable::report(why.to_string(), ""))?);
         }
         let object = json!({
             "ok": failed == 0 && !interrupted(),

@@ -94,7 +94,10 @@ impl Experiment {
         let task = Task::new(&self.system, &self.sought, &self.signals, interrupt);
         let mut task = task.map_err(|error| {
             let place = match error {
-                ModelError::NoField { .. } | ModelError::NoSymbol { .. } => "observer.inputs",
+                ModelError::NoField { .. } | ModelError::NoSymbol { .. } | ModelError::NotAnInput { .. } => {
+                    "observer.inputs"
+                }
+                ModelError::NoMotion { .. } => "model",
                 ModelError::Pole { .. } | ModelError::NotFinite { .. } => "observer.known",
                 _ => "observer.estimate",
             };

@@ -74,14 +74,20 @@ pub(crate) fn stop<T>(at: usize, what: impl Into<String>, help: Option<String>) 
     Err(ErrMode::Cut(Expected { what: what.into(), at, help }))
 }
 
+/// Whether a character ends a line, and with it a comment: whatever some editor shows as the end of a line, so that nothing
+/// that is shown below a comment is read as a part of it.
+pub(crate) fn ends_a_line(c: char) -> bool {
+    matches!(c, '\n' | '\r' | '\u{b}' | '\u{c}' | '\u{1c}'..='\u{1e}' | '\u{85}' | '\u{2028}' | '\u{2029}')
+}
+
 /// White space and comments, which run from `#` to the end of the line.
 pub(crate) fn blank(input: &mut Text<'_>) -> Read<()> {
     loop {
-        take_while(0.., char::is_whitespace).void().parse_next(input)?;
+        take_while(0.., |c: char| c.is_whitespace() || ends_a_line(c)).void().parse_next(input)?;
         if opt(literal("#")).parse_next(input)?.is_none() {
             return Ok(());
         }
-        take_till(0.., '\n').void().parse_next(input)?;
+        take_till(0.., ends_a_line).void().parse_next(input)?;
     }
 }
 
@@ -91,7 +97,7 @@ pub(crate) fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<
 }
 
 /// Words that begin something and so cannot be names.
-pub(crate) const RESERVED: [&str; 25] = [
+pub(crate) const RESERVED: [&str; 27] = [
     "system",
     "cite",
     "use",
@@ -99,6 +105,8 @@ pub(crate) const RESERVED: [&str; 25] = [
     "param",
     "angle",
     "let",
+    "drift",
+    "input",
     "field",
     "output",
     "sample",
@@ -128,6 +136,11 @@ fn word<'a>(input: &mut Text<'a>) -> Read<(&'a str, Span)> {
         .take()
         .with_span()
         .parse_next(input)
+}
+
+/// A closing bracket, and the blank after it; where the bracket ends.
+fn closing<'a>(text: &'static str) -> impl Parser<Text<'a>, usize, ErrMode<Expected>> {
+    (literal(text).span(), blank).map(|(span, ())| span.end)
 }
 
 /// One of the reserved words, and the blank after it.
@@ -210,8 +223,7 @@ fn bracketed(input: &mut Text<'_>) -> Read<Expr> {
     let begin = input.current_token_start();
     sign("(").parse_next(input)?;
     let inner = within(input, cut_err(sum))?;
-    let end = input.current_token_start() + 1;
-    cut_err(sign(")")).context("')' or an operator").parse_next(input)?;
+    let end = cut_err(closing(")")).context("')' or an operator").parse_next(input)?;
     Ok(Expr { span: begin..end, ..inner })
 }
 
@@ -220,8 +232,7 @@ fn matrix(input: &mut Text<'_>) -> Read<Expr> {
     sign("[").parse_next(input)?;
     let row = |input: &mut Text<'_>| -> Read<Vec<Expr>> { separated(1.., sum, sign(",")).parse_next(input) };
     let rows: Vec<Vec<Expr>> = within(input, cut_err(separated(1.., row, sign(";"))))?;
-    let end = input.current_token_start() + 1;
-    cut_err(sign("]"))
+    let end = cut_err(closing("]"))
         .context("']', ',' between the entries of a row, or ';' between rows")
         .parse_next(input)?;
     Ok(Expr { kind: ExprKind::Matrix(rows), span: begin..end })
@@ -234,13 +245,12 @@ fn name_or_call(input: &mut Text<'_>) -> Read<Expr> {
         return Ok(Expr { kind: ExprKind::Name(name.text), span: name.span });
     }
     let arguments: Vec<Expr> = within(input, cut_err(separated(1.., sum, sign(","))))?;
-    let end = input.current_token_start() + 1;
-    cut_err(sign(")")).context("')' or ',' in the list of arguments").parse_next(input)?;
+    let end = cut_err(closing(")")).context("')' or ',' in the list of arguments").parse_next(input)?;
     Ok(Expr { kind: ExprKind::Call(name.text, arguments), span: name.span.start..end })
 }
 
-/// `name = value, ...` in braces
-fn assignments(input: &mut Text<'_>) -> Read<Vec<(Name, Expr)>> {
+/// `name = value, ...` in braces, and where they end
+fn assignments(input: &mut Text<'_>) -> Read<(Vec<(Name, Expr)>, usize)> {
     let one = |input: &mut Text<'_>| -> Read<(Name, Expr)> {
         let name = name.context("a name to give a value to").parse_next(input)?;
         cut_err(sign("=")).context("'=' and a value").parse_next(input)?;
@@ -248,8 +258,8 @@ fn assignments(input: &mut Text<'_>) -> Read<Vec<(Name, Expr)>> {
     };
     cut_err(sign("{")).context("'{' and a list of name = value").parse_next(input)?;
     let list = within(input, cut_err(separated(1.., one, sign(","))))?;
-    cut_err(sign("}")).context("'}' or ','").parse_next(input)?;
-    Ok(list)
+    let end = cut_err(closing("}")).context("'}' or ','").parse_next(input)?;
+    Ok((list, end))
 }
 
 fn primary(input: &mut Text<'_>) -> Read<Expr> {
@@ -260,8 +270,8 @@ fn primary(input: &mut Text<'_>) -> Read<Expr> {
 fn factor(input: &mut Text<'_>) -> Read<Expr> {
     let mut value = power(input)?;
     while opt(keyword("at")).parse_next(input)?.is_some() {
-        let list = assignments(input)?;
-        let span = value.span.start..input.current_token_start();
+        let (list, end) = assignments(input)?;
+        let span = value.span.start..end;
         value = Expr { kind: ExprKind::At(Box::new(value), list), span };
         if input.state.0.get() + at_depth(&value) > DEEPEST {
             return stop(input.current_token_start(), "fewer 'at' after one another", None);
@@ -285,24 +295,26 @@ fn power(input: &mut Text<'_>) -> Read<Expr> {
         return Ok(base);
     }
     let at = input.current_token_start();
-    let bare = |input: &mut Text<'_>| -> Read<Option<i32>> {
+    // the exponent, if it is not too large, and where it ends
+    let bare = |input: &mut Text<'_>| -> Read<(Option<i32>, usize)> {
         let minus = opt(sign("-")).parse_next(input)?.is_some();
         let digits = take_while(1.., |c: char| c.is_ascii_digit()).parse_next(input)?;
         not(one_of(['.', '_'])).parse_next(input)?;
+        let end = input.current_token_start();
         blank(input)?;
         let value = digits.parse::<i32>().ok().filter(|n| *n <= LARGEST_EXPONENT);
-        Ok(value.map(|n| if minus { -n } else { n }))
+        Ok((value.map(|n| if minus { -n } else { n }), end))
     };
-    let in_brackets = (sign("("), bare, sign(")")).map(|((), n, ())| n);
+    let in_brackets = (sign("("), bare, closing(")")).map(|((), (n, _), end)| (n, end));
     match opt(alt((in_brackets, bare))).parse_next(input)? {
-        Some(Some(n)) => {
+        Some((Some(n), end)) => {
             if opt(sign("^")).parse_next(input)?.is_some() {
                 return stop(at, "one exponent; write (a^b)^c with its brackets", None);
             }
-            let span = base.span.start..input.current_token_start();
+            let span = base.span.start..end;
             Ok(Expr { kind: ExprKind::Power(Box::new(base), n), span })
         }
-        Some(None) => stop(at, format!("an exponent of at most {LARGEST_EXPONENT}"), None),
+        Some((None, _)) => stop(at, format!("an exponent of at most {LARGEST_EXPONENT}"), None),
         None => stop(
             at,
             "an integer as exponent, as in x^2 or x^(-1)",
@@ -311,21 +323,33 @@ fn power(input: &mut Text<'_>) -> Read<Expr> {
     }
 }
 
-/// Factors. A minus before the first binds weaker than the power: `-x^2` is `-(x^2)`.
-fn product(input: &mut Text<'_>) -> Read<(bool, Expr)> {
+/// Signs before a term or a factor, if there are any: whether they amount to a minus.
+fn signs(input: &mut Text<'_>) -> Read<bool> {
     let mut negative = false;
     while let Some(minus) = opt(alt((sign("-").value(true), sign("+").value(false)))).parse_next(input)? {
         negative ^= minus;
     }
+    Ok(negative)
+}
+
+/// An expression with the signs before it, which begin at `begin`: its span holds them.
+fn signed(negative: bool, begin: usize, inner: Expr) -> Expr {
+    let span = begin..inner.span.end;
+    if negative { Expr { kind: ExprKind::Sum(vec![(true, inner)]), span } } else { Expr { span, ..inner } }
+}
+
+/// Factors, and whether the signs before the first amount to a minus. That binds weaker than the power and the product:
+/// `-x^2*y` is `-(x^2*y)`. The signs of a later factor, as in `a * -b`, belong to it.
+fn product(input: &mut Text<'_>) -> Read<(bool, Expr)> {
+    let negative = signs(input)?;
     let first = factor(input)?;
     let begin = first.span.start;
     let mut factors = vec![(false, first)];
     while let Some(divides) = opt(alt((sign("*").value(false), sign("/").value(true)))).parse_next(input)? {
-        // a sign is allowed before a factor too: a * -b
-        while let Some(minus) = opt(alt((sign("-").value(true), sign("+").value(false)))).parse_next(input)? {
-            negative ^= minus;
-        }
-        factors.push((divides, cut_err(factor).parse_next(input)?));
+        let begin = input.current_token_start();
+        let negative = signs(input)?;
+        let value = cut_err(factor).parse_next(input)?;
+        factors.push((divides, signed(negative, begin, value)));
     }
     let value = if factors.len() == 1 {
         factors.remove(0).1
@@ -336,17 +360,20 @@ fn product(input: &mut Text<'_>) -> Read<(bool, Expr)> {
     Ok((negative, value))
 }
 
-/// An expression.
+/// An expression. Its span is all of its text, a sign before the first term included; the span of a later term holds the
+/// signs that are its own, and not the one that joins it.
 pub(crate) fn sum(input: &mut Text<'_>) -> Read<Expr> {
+    let begin = input.current_token_start();
     let first = product(input)?;
-    let begin = first.1.span.start;
     let mut terms = vec![first];
     while let Some(minus) = opt(alt((sign("+").value(false), sign("-").value(true)))).parse_next(input)? {
+        let begin = input.current_token_start();
         let (negative, value) = cut_err(product).parse_next(input)?;
-        terms.push((negative ^ minus, value));
+        terms.push((minus, signed(negative, begin, value)));
     }
-    if terms.len() == 1 && !terms[0].0 {
-        return Ok(terms.remove(0).1);
+    if terms.len() == 1 {
+        let (negative, value) = terms.remove(0);
+        return Ok(signed(negative, begin, value));
     }
     let end = terms.last().map_or(begin, |(_, t)| t.span.end);
     Ok(Expr { kind: ExprKind::Sum(terms), span: begin..end })

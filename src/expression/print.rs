@@ -2,35 +2,95 @@
 
 use super::graph::{Graph, Node, NodeId};
 
-/// Deeper than this an expression is cut short in a message.
-const DEEPEST: usize = 24;
-/// And longer than this.
-const LONGEST: usize = 400;
+/// Longer texts than this are not written: nobody reads them, and an expression whose parts are shared many times over may
+/// have a text that fits no memory.
+const LONGEST: usize = 4000;
 
 /// How tightly an expression holds together.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Binding {
     Sum,
     Product,
+    Power,
     Atom,
 }
 
+/// What is still to be written.
+enum Pending {
+    Sign(&'static str),
+    Exponent(String),
+    Expression(NodeId, Binding),
+}
+
 impl Graph {
-    /// The expression in the notation of the proof language, cut short where it is long.
+    /// The expression in the notation of the proof language, whole. Where its text would be longer than anybody reads, it is
+    /// described instead: never cut, since what is left of a formula is another formula.
     pub fn text(&self, id: NodeId) -> String {
         let mut out = String::new();
-        self.write(id, Binding::Sum, 0, &mut out);
+        let mut pending = vec![Pending::Expression(id, Binding::Sum)];
+        while let Some(next) = pending.pop() {
+            match next {
+                Pending::Sign(sign) => out.push_str(sign),
+                Pending::Exponent(exponent) => out.push_str(&exponent),
+                Pending::Expression(id, around) => self.write(id, around, &mut pending, &mut out),
+            }
+            if out.len() > LONGEST {
+                return self.description(id);
+            }
+        }
         out
     }
 
-    fn write(&self, id: NodeId, around: Binding, depth: usize, out: &mut String) {
-        if depth > DEEPEST || out.len() > LONGEST {
-            out.push_str("...");
-            return;
+    /// An expression that is too long to write.
+    fn description(&self, id: NodeId) -> String {
+        let names: Vec<&str> =
+            self.symbols_of([id]).into_iter().map(|symbol| self.symbol_name(symbol)).collect();
+        format!("(an expression of {} operations in {})", self.reachable([id]).len(), names.join(", "))
+    }
+
+    /// Writes what comes first and leaves the rest pending, so that no depth of an expression exhausts the stack.
+    fn write(&self, id: NodeId, around: Binding, pending: &mut Vec<Pending>, out: &mut String) {
+        let binding = self.binding(id);
+        if binding < around {
+            out.push('(');
+            pending.push(Pending::Sign(")"));
         }
-        let binding = match self.node(id) {
+        let mut two = |a: NodeId, left: Binding, sign: &'static str, b: NodeId, right: Binding| {
+            pending.push(Pending::Expression(b, right));
+            pending.push(Pending::Sign(sign));
+            pending.push(Pending::Expression(a, left));
+        };
+        match self.node(id) {
+            Node::Constant(index) => out.push_str(&self.constant_at(index).to_string()),
+            Node::Pi => out.push_str("pi"),
+            Node::Symbol(symbol) => out.push_str(self.symbol_name(symbol)),
+            Node::Add(a, b) => two(a, Binding::Sum, " + ", b, Binding::Product),
+            Node::Sub(a, b) => two(a, Binding::Sum, " - ", b, Binding::Product),
+            Node::Mul(a, b) => two(a, Binding::Product, "*", b, Binding::Power),
+            Node::Div(a, b) => two(a, Binding::Product, "/", b, Binding::Power),
+            Node::Neg(a) => {
+                out.push('-');
+                pending.push(Pending::Expression(a, Binding::Product));
+            }
+            Node::Power(a, n) => {
+                let exponent = if n < 0 { format!("^({n})") } else { format!("^{n}") };
+                pending.push(Pending::Exponent(exponent));
+                pending.push(Pending::Expression(a, Binding::Atom));
+            }
+            Node::Apply(function, a) => {
+                out.push_str(function.name());
+                out.push('(');
+                pending.push(Pending::Sign(")"));
+                pending.push(Pending::Expression(a, Binding::Sum));
+            }
+        }
+    }
+
+    fn binding(&self, id: NodeId) -> Binding {
+        match self.node(id) {
             Node::Add(..) | Node::Sub(..) | Node::Neg(_) => Binding::Sum,
             Node::Mul(..) | Node::Div(..) => Binding::Product,
+            Node::Power(..) => Binding::Power,
             Node::Constant(index) => {
                 let value = self.constant_at(index);
                 if !value.denominator().is_one() {
@@ -41,42 +101,7 @@ impl Graph {
                     Binding::Atom
                 }
             }
-            _ => Binding::Atom,
-        };
-        let brackets = binding < around;
-        if brackets {
-            out.push('(');
-        }
-        let mut two = |a: NodeId, left: Binding, sign: &str, b: NodeId, right: Binding| {
-            self.write(a, left, depth + 1, out);
-            out.push_str(sign);
-            self.write(b, right, depth + 1, out);
-        };
-        match self.node(id) {
-            Node::Constant(index) => out.push_str(&self.constant_at(index).to_string()),
-            Node::Pi => out.push_str("pi"),
-            Node::Symbol(symbol) => out.push_str(self.symbol_name(symbol)),
-            Node::Add(a, b) => two(a, Binding::Sum, " + ", b, Binding::Product),
-            Node::Sub(a, b) => two(a, Binding::Sum, " - ", b, Binding::Product),
-            Node::Mul(a, b) => two(a, Binding::Product, "*", b, Binding::Atom),
-            Node::Div(a, b) => two(a, Binding::Product, "/", b, Binding::Atom),
-            Node::Neg(a) => {
-                out.push('-');
-                self.write(a, Binding::Product, depth + 1, out);
-            }
-            Node::Power(a, n) => {
-                self.write(a, Binding::Atom, depth + 1, out);
-                out.push_str(&if n < 0 { format!("^({n})") } else { format!("^{n}") });
-            }
-            Node::Apply(function, a) => {
-                out.push_str(function.name());
-                out.push('(');
-                self.write(a, Binding::Sum, depth + 1, out);
-                out.push(')');
-            }
-        }
-        if brackets {
-            out.push(')');
+            Node::Pi | Node::Symbol(_) | Node::Apply(..) => Binding::Atom,
         }
     }
 }

@@ -41,7 +41,7 @@ pub use factorisation::{Factorisation, primitive, split};
 pub use float::Floats;
 pub use fraction::{Factors, Fraction, Fractions};
 pub use interval::Interval;
-pub use lanes::{Instructions, Lanes, Task, Vectorised};
+pub use lanes::{Instructions, Lanes, MOST_LANES, Task, Vectorised};
 pub use laurent::{Laurent, Series};
 pub use rational::{Rationals, display_rational, parse_decimal, rational_from_f64, rational_to_f64};
 pub use real::Real;

@@ -92,12 +92,15 @@ impl Codistribution {
     /// the dimension, or until they are long enough.
     ///
     /// # Errors
-    /// In words, where every state of the locus is a pole or an angle is met outside sines and cosines.
+    /// In words, where no field is a drift or an input, every state of the locus is a pole or an angle is met outside sines
+    /// and cosines.
     pub fn new(
         system: &mut System,
         conditions: &Assignment,
         length: Length,
     ) -> Result<Codistribution, String> {
+        system.require_motion()?;
+        let fields = system.moving_fields();
         let dimension = system.states.len();
         let invariant = is_invariant(system, conditions);
         let ceiling = if invariant { dimension } else { rank_around(system, conditions, length)? };
@@ -120,7 +123,7 @@ impl Codistribution {
             .collect();
         for order in 0..=longest {
             if order > 0 {
-                if result.words.len() + last.len() * system.fields.len() > most {
+                if result.words.len() + last.len() * fields.len() > most {
                     result.stop = Stop::TooMany;
                     break;
                 }
@@ -195,14 +198,14 @@ fn rank_around(system: &mut System, conditions: &Assignment, length: Length) -> 
     Ok(if around.is_final() { around.generic_rank() } else { states.len() })
 }
 
-/// Whether every field is tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
+/// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
 fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
     let mut solved: Vec<_> = conditions.iter().map(|(symbol, value)| (*symbol, *value)).collect();
     solved.sort_unstable();
     solved.into_iter().all(|(symbol, value)| {
         let left = system.graph.symbol(symbol);
         let difference = system.graph.sub(left, value);
-        (0..system.fields.len()).all(|field| {
+        system.moving_fields().into_iter().all(|field| {
             let rate = system.lie_derivative(field, difference);
             let on_the_set = system.graph.substitute(&[rate], conditions)[0];
             vanishes(system, on_the_set)
@@ -210,10 +213,10 @@ fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
     })
 }
 
-/// All words with one more field in front, but those whose value is a constant.
+/// All words with the drift or an input more in front, but those whose value is a constant.
 fn longer(system: &mut System, words: &[(Word, NodeId)]) -> Vec<(Word, NodeId)> {
     let mut found = Vec::new();
-    for field in 0..system.fields.len() {
+    for field in system.moving_fields() {
         for (word, value) in words {
             let derivative = system.lie_derivative(field, *value);
             if system.graph.constant_value(derivative).is_none() {

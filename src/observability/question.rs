@@ -8,7 +8,7 @@ use super::sweep::{SweepOptions, SweepReport, sweep};
 use crate::expression::parse::{Depth, equation, read_all};
 use crate::expression::syntax::Equation;
 use crate::expression::{NodeId, Symbol};
-use crate::system::{Kind, SymbolInfo, System, Value};
+use crate::system::{Assignment, FieldRole, Kind, SymbolInfo, System, Value};
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -28,16 +28,29 @@ pub struct RankQuestion<'a> {
     pub fixed: BTreeMap<Symbol, RBig>,
     /// Conditions in the language, such as `sin(phi1) = 0`.
     pub conditions: Vec<String>,
+    /// How many of the states are recorded with their certified rank, for a verdict file.
+    pub recorded: u64,
     /// Set from outside to stop early.
     pub interrupt: &'a AtomicBool,
     /// Called with the number of states done.
     pub progress: &'a (dyn Fn(u64) + Sync),
 }
 
+/// A row whose rank was decided.
+pub struct TakenRow {
+    /// The word of which it is the differential; of the file's own rows, their number, counted from one.
+    pub word: String,
+    /// Its entries, one for each state of the system.
+    pub entries: Vec<NodeId>,
+}
+
 /// What was found on one branch of the conditions.
 pub struct BranchAnswer {
     /// The conditions, solved, in words.
     pub conditions: Vec<String>,
+    /// The parameters that the rank depends on and the file gives a value to: they were held at it. A claim about the rank is
+    /// about all values.
+    pub held: Vec<(String, RBig)>,
     /// The words that were needed, as a paper writes them.
     pub words: Vec<String>,
     /// The length of the longest word taken, and why no longer ones were.
@@ -51,6 +64,10 @@ pub struct BranchAnswer {
     pub full: SweepReport,
     /// The rank of the file's own choice of rows at the same states, where it defines a matrix `rows`.
     pub rows: Option<SweepReport>,
+    /// The rows of the full codistribution.
+    pub taken: Vec<TakenRow>,
+    /// The file's own rows.
+    pub own: Vec<TakenRow>,
 }
 
 /// What was found.
@@ -59,6 +76,8 @@ pub struct RankAnswer {
     pub file: String,
     pub title: String,
     pub outputs: usize,
+    /// The fields that the words take.
+    pub fields: Vec<FieldRole>,
     pub seed: u64,
     pub dimension: usize,
     pub branches: Vec<BranchAnswer>,
@@ -88,6 +107,26 @@ fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol
     system.symbols().filter_map(held).collect()
 }
 
+/// The parameters with a value in the file, and no other from the question, that outputs, fields and own rows mention.
+fn held_parameters<'a>(
+    system: &System,
+    question: &RankQuestion<'_>,
+    solved: &Assignment,
+    own: impl Iterator<Item = &'a NodeId>,
+) -> Vec<(String, RBig)> {
+    let mut nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).chain(own.copied()).collect();
+    for field in system.moving_fields() {
+        nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
+    }
+    let mentioned = system.graph.symbols_of(nodes);
+    let held = |(symbol, info): (Symbol, &SymbolInfo)| {
+        let value = info.default.clone().filter(|_| info.range.is_none() && mentioned.contains(&symbol))?;
+        let given = question.fixed.contains_key(&symbol) || solved.contains_key(&symbol);
+        (!given).then(|| (system.symbol_name(symbol).to_owned(), value))
+    };
+    system.symbols().filter_map(held).collect()
+}
+
 /// Reads a condition such as `sin(phi1) = 0`.
 ///
 /// # Errors
@@ -100,11 +139,12 @@ pub fn parse_condition(text: &str) -> Result<Equation, String> {
 /// Answers a question about the rank of a system's observability codistribution.
 ///
 /// # Errors
-/// In words: no states or outputs, conditions that cannot be solved, a pole everywhere, an empty sample box.
+/// In words: no states or outputs, no drift or input, conditions that cannot be solved, a pole everywhere, an empty sample box.
 pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<RankAnswer, String> {
     if system.states.is_empty() || system.outputs.is_empty() {
         return Err(format!("{} declares no states or no outputs", system.name));
     }
+    system.require_motion()?;
     let mut equations = Vec::new();
     for text in &question.conditions {
         equations.push(parse_condition(text)?);
@@ -156,6 +196,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             guards: &[],
             wanted: question.wanted,
             digits: question.digits,
+            recorded: question.recorded,
             interrupt: question.interrupt,
             progress: question.progress,
         };
@@ -167,8 +208,20 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             }
             None => None,
         };
+        let word = |(word, entries): (&super::Word, &Vec<NodeId>)| TakenRow {
+            word: word.text(system),
+            entries: entries.clone(),
+        };
+        let numbered = |(index, entries): (usize, &[NodeId])| TakenRow {
+            word: format!("row {}", index + 1),
+            entries: entries.to_vec(),
+        };
+        let own_rows = own.as_deref().unwrap_or_default().chunks(system.states.len());
         answers.push(BranchAnswer {
+            taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
+            own: own_rows.enumerate().map(numbered).collect(),
             conditions: locus.conditions.clone(),
+            held: held_parameters(system, question, &branch.values, own.iter().flatten()),
             words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
             order: codistribution.order,
             stop: codistribution.stop,
@@ -182,6 +235,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         file: system.name.clone(),
         title: system.title.clone(),
         outputs: system.outputs.len(),
+        fields: system.roles(),
         seed: question.seed,
         dimension: system.states.len(),
         branches: answers,

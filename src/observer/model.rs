@@ -3,7 +3,7 @@
 use super::Signals;
 use crate::expression::{Input, NodeId, Program, Symbol};
 use crate::number::{rational_from_f64, rational_to_f64};
-use crate::system::{Kind, System};
+use crate::system::{Kind, Role, System};
 use std::collections::{BTreeMap, HashMap};
 
 /// Why a system gives no model.
@@ -15,6 +15,14 @@ pub enum ModelError {
     /// A field is unknown.
     #[error("the system has no field '{name}'; its fields are {fields}")]
     NoField { name: String, fields: String },
+    /// A field that nothing drives.
+    #[error(
+        "'{role} {name}' is no input of the system; write 'input {name}' in its file if something drives it"
+    )]
+    NotAnInput { name: String, role: &'static str },
+    /// No field says how the states move.
+    #[error("{why}")]
+    NoMotion { why: String },
     /// A symbol is unknown.
     #[error("the system declares no '{name}'")]
     NoSymbol { name: String },
@@ -44,7 +52,7 @@ pub struct ModelQuestion {
     pub followed: Vec<String>,
     /// Constants that are told, by the names of states or parameters; they come before columns and defaults.
     pub known: BTreeMap<String, f64>,
-    /// Input fields and the symbols that drive them: `x' = f + sum u_j g_j`, `f` being the system's first field.
+    /// Input fields and the symbols that drive them: `x' = f + sum u_j g_j`, `f` being the system's drift.
     pub inputs: Vec<(String, String)>,
 }
 
@@ -199,10 +207,15 @@ fn totals(
     inputs: &[(String, String)],
 ) -> Result<(Vec<NodeId>, Outputs), ModelError> {
     let list = || system.fields.iter().map(|field| field.name.as_str()).collect::<Vec<_>>().join(", ");
+    system.require_motion().map_err(|why| ModelError::NoMotion { why })?;
     let mut driven = Vec::new();
     for (field, symbol) in inputs {
         let place = system.fields.iter().position(|other| other.name == *field);
         let place = place.ok_or_else(|| ModelError::NoField { name: field.clone(), fields: list() })?;
+        let role = system.fields[place].role;
+        if role != Role::Input {
+            return Err(ModelError::NotAnInput { name: field.clone(), role: role.name() });
+        }
         let missing = || ModelError::NoSymbol { name: symbol.clone() };
         driven.push((place, system.find_symbol(symbol).ok_or_else(missing)?));
     }
@@ -212,7 +225,7 @@ fn totals(
             let found = system.fields.get(field)?.components.iter().find(|(other, _)| other == symbol)?;
             Some(found.1)
         };
-        let drift = component(system, 0);
+        let drift = system.drift().and_then(|drift| component(system, drift));
         let mut rate = drift.unwrap_or_else(|| system.graph.integer(0));
         for (field, input) in &driven {
             if let Some(moved) = component(system, *field) {

@@ -1,7 +1,9 @@
 //! Outcomes of claims, in three notations.
 
-use crate::claim::{Outcome, Verdict, Witness};
-use crate::number::{parse_decimal, rational_to_f64};
+use super::ranks::{fields_json, fields_text};
+use crate::claim::{AtFilesValues, Outcome, Verdict, Witness};
+use crate::number::{parse_decimal, rational_to_f64, round_to_decimal};
+use dashu::rational::RBig;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde_json::{Value, json};
 
@@ -49,12 +51,25 @@ pub fn claim_json(outcome: &Outcome) -> Value {
         object["definitions"] =
             outcome.definitions.iter().map(|(name, text)| (name.clone(), json!(text))).collect();
     }
+    if let Some(special) = &outcome.at_files_values {
+        object["at_the_files_values"] = special_json(special);
+    }
+    if !outcome.fields.is_empty() {
+        object["fields"] = fields_json(&outcome.fields);
+    }
+    if !outcome.differentiated_along.is_empty() {
+        object["differentiated_along"] =
+            outcome.differentiated_along.iter().map(|(name, text)| (name.clone(), json!(text))).collect();
+    }
     if let Some(scanned) = &outcome.scanned {
         object["scanned"] = json!(scanned);
     }
     if let Some((statement, verdict)) = &outcome.printed {
         let mut printed = verdict_json(verdict);
         printed["statement"] = json!(statement);
+        if let Some(special) = &outcome.printed_at_files_values {
+            printed["at_the_files_values"] = special_json(special);
+        }
         if let Verdict::Refuted { witness, .. } = verdict {
             object["witness"] = witness_json(witness);
         }
@@ -90,10 +105,52 @@ pub(crate) fn with_decimal(value: &str) -> String {
     }
 }
 
+fn special_json(special: &AtFilesValues) -> Value {
+    json!({ "values": values_json(&special.values), "verdict": special.word })
+}
+
+/// Names and exact values, as people write them.
+pub(crate) fn values_json(values: &[(String, RBig)]) -> Value {
+    let each = values.iter().map(|(name, value)| (name.clone(), json!(plain_number(value))));
+    each.collect::<serde_json::Map<_, _>>().into()
+}
+
+/// The same in words: `g = -9.81, m = 1`.
+pub(crate) fn values_text(values: &[(String, RBig)]) -> String {
+    let each: Vec<String> =
+        values.iter().map(|(name, value)| format!("{name} = {}", plain_number(value))).collect();
+    each.join(", ")
+}
+
+/// A rational as a decimal where a short one is exact, else as a fraction.
+pub(crate) fn plain_number(value: &RBig) -> String {
+    let decimal = round_to_decimal(value, 20);
+    let short = match decimal.contains('.') && !decimal.contains('e') {
+        true => decimal.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => decimal,
+    };
+    if parse_decimal(&short).as_ref() == Some(value) { short } else { value.to_string() }
+}
+
+/// That a statement has another verdict where its parameters have the values of the file.
+pub(crate) fn special_text(special: &AtFilesValues) -> String {
+    format!("at the file's values {} it is {}", values_text(&special.values), special.word)
+}
+
+/// What the names in a claim's statements stand for, a line each, in the notation of the language.
+pub(crate) fn explanations(outcome: &Outcome) -> Vec<String> {
+    let definitions = outcome.definitions.iter().map(|(name, text)| format!("{name} = {text}"));
+    let fields = outcome.differentiated_along.iter().map(|(name, text)| format!("field {name}  {text}"));
+    definitions.chain(fields).collect()
+}
+
 /// An outcome as a line for the terminal, with a second one where there is something to explain.
 pub fn claim_line(outcome: &Outcome) -> String {
     let mark = if outcome.ok { "ok  " } else { "FAIL" };
     let mut line = format!("  {mark} {:<10} {}", outcome.word(), outcome.id);
+    if !outcome.fields.is_empty() {
+        line.push_str(&format!("  [{}]", fields_text(&outcome.fields)));
+    }
     let explain = |verdict: &Verdict| match verdict {
         Verdict::Proved { log2_error, .. } if *log2_error == f64::NEG_INFINITY => "certain".to_owned(),
         Verdict::Proved { log2_error, .. } => {
@@ -117,6 +174,9 @@ pub fn claim_line(outcome: &Outcome) -> String {
                 verdict.word(),
                 explain(verdict)
             ));
+            if let Some(special) = &outcome.printed_at_files_values {
+                line.push_str(&format!("\n                    {}", special_text(special)));
+            }
             let corrected = &outcome.verdict;
             line.push_str(&format!(
                 "\n         corrected  {}\n                    {}: {}",
@@ -125,6 +185,9 @@ pub fn claim_line(outcome: &Outcome) -> String {
                 explain(corrected)
             ));
         }
+    }
+    if let Some(special) = &outcome.at_files_values {
+        line.push_str(&format!("\n         {}", special_text(special)));
     }
     if !outcome.ok {
         line.push_str(&format!("\n         expected: {}", outcome.expected_word()));

@@ -1,7 +1,7 @@
 //! The errata as a text that a code host shows: for each the equation as printed, as it should be, and a state in exact
 //! numbers with both values.
 
-use super::claims::{error_bound, with_decimal};
+use super::claims::{error_bound, explanations, special_text, with_decimal};
 use crate::claim::{Outcome, Verdict, Witness};
 use crate::verification::{Equation, equations, in_order_of_the_thesis};
 use std::fmt::Write;
@@ -52,6 +52,9 @@ fn erratum(outcome: &Outcome, out: &mut String) {
     if let Verdict::Refuted { witness, .. } = refutation {
         let _ = writeln!(out, "{}\n", in_words(witness));
     }
+    if let Some(special) = &outcome.printed_at_files_values {
+        let _ = writeln!(out, "Of the printed form: {}.\n", special_text(special));
+    }
     if let Verdict::Proved { log2_error, .. } = &outcome.verdict {
         let certainty = match *log2_error {
             f64::NEG_INFINITY => "The corrected form is proved.".to_owned(),
@@ -62,6 +65,9 @@ fn erratum(outcome: &Outcome, out: &mut String) {
         };
         let _ = writeln!(out, "{certainty}\n");
     }
+    if let Some(special) = &outcome.at_files_values {
+        let _ = writeln!(out, "Of the corrected form: {}.\n", special_text(special));
+    }
     if let Some(remark) = &outcome.remark {
         let _ = writeln!(out, "{remark}\n");
     }
@@ -69,9 +75,8 @@ fn erratum(outcome: &Outcome, out: &mut String) {
 
 /// What the abbreviations of a statement mean.
 fn definitions(outcome: &Outcome, out: &mut String) {
-    if !outcome.definitions.is_empty() {
-        let lines: Vec<String> =
-            outcome.definitions.iter().map(|(name, text)| format!("{name} = {text}")).collect();
+    let lines = explanations(outcome);
+    if !lines.is_empty() {
         let _ = writeln!(out, "where\n\n{}", block(&lines.join("\n")));
     }
 }

@@ -1,10 +1,11 @@
 //! The page that the main job writes: one file, with its plots and nothing from elsewhere.
 
-use super::claims::{error_bound, witness_line};
+use super::claims::{error_bound, explanations, special_text, witness_line};
 use super::extremes::extremes;
 use super::observe::Observed;
 use super::observe_section::observed_section;
 use super::plot;
+use super::ranks::fields_text;
 use super::verification::ranks_in_words;
 use crate::claim::{Outcome, Verdict};
 use crate::observability::RankAnswer;
@@ -90,13 +91,16 @@ fn errata(outcomes: &[Outcome]) -> Markup {
                     @if let Some((statement, verdict)) = &outcome.printed {
                         p.printed { span.label { "printed" } code { (statement) } }
                         p { span.label { (verdict.word()) } (explain(verdict)) }
+                        @if let Some(special) = &outcome.printed_at_files_values { p { (special_text(special)) } }
                     }
                     p.corrected { span.label { "corrected" } code { (outcome.statement) } }
                     p { span.label { (outcome.verdict.word()) } (explain(&outcome.verdict)) }
-                    @if !outcome.definitions.is_empty() {
+                    @if let Some(special) = &outcome.at_files_values { p { (special_text(special)) } }
+                    @let lines = explanations(outcome);
+                    @if !lines.is_empty() {
                         details {
                             summary { "what the names mean" }
-                            @for (name, text) in &outcome.definitions { div { code { (name) " = " (text) } } }
+                            @for line in lines { div { code { (line) } } }
                         }
                     }
                     @if let Some(remark) = &outcome.remark { p.remark { (remark) } }
@@ -375,7 +379,11 @@ fn all_claims(outcomes: &[Outcome]) -> Markup {
                             td { (outcome.id) }
                             td { (outcome.word()) }
                             td.words { code { (outcome.statement) } @if let Some(remark) = &outcome.remark { p.remark { (remark) } } }
-                            td.words { (explain(&outcome.verdict)) }
+                            td.words {
+                                (explain(&outcome.verdict))
+                                @if let Some(special) = &outcome.at_files_values { p { (special_text(special)) } }
+                                @if !outcome.fields.is_empty() { p { (fields_text(&outcome.fields)) } }
+                            }
                         }
                     }
                 }

@@ -1,8 +1,10 @@
 //! Answers about ranks, as JSON and as text.
 
+use super::claims::{values_json, values_text};
 use crate::observability::{
     BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, Spectrum, Stop, SweepReport,
 };
+use crate::system::FieldRole;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -13,6 +15,18 @@ fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
         .map(|(rank, count)| (rank.to_string(), json!(count)))
         .collect::<serde_json::Map<_, _>>()
         .into()
+}
+
+/// The fields of which words are made, each with its role.
+pub(crate) fn fields_json(fields: &[FieldRole]) -> Value {
+    fields.iter().map(|field| json!({ "name": field.name, "role": field.role.name() })).collect()
+}
+
+/// The same in words: `drift f, input g1`.
+pub(crate) fn fields_text(fields: &[FieldRole]) -> String {
+    let each: Vec<String> =
+        fields.iter().map(|field| format!("{} {}", field.role.name(), field.name)).collect();
+    each.join(", ")
 }
 
 /// JSON has no infinity; a gap without bound is null.
@@ -115,6 +129,7 @@ pub(crate) fn stop_text(stop: Stop) -> &'static str {
 fn branch_json(branch: &BranchAnswer) -> Value {
     let mut object = sweep_json(&branch.full);
     object["conditions"] = json!(branch.conditions);
+    object["held_at_the_files_values"] = values_json(&branch.held);
     object["words"] = json!(branch.words);
     object["order"] = json!(branch.order);
     object["stopped_because"] = json!(stop_text(branch.stop));
@@ -129,6 +144,7 @@ pub fn rank_json(answer: &RankAnswer) -> Value {
     let mut branches: Vec<Value> = answer.branches.iter().map(branch_json).collect();
     let mut object = if branches.len() == 1 { branches.remove(0) } else { total_json(answer, branches) };
     object["file"] = json!(answer.file);
+    object["fields"] = fields_json(&answer.fields);
     object["dimension"] = json!(answer.dimension);
     object["seed"] = json!(answer.seed);
     object
@@ -230,9 +246,17 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
 /// An answer as text.
 pub fn rank_text(answer: &RankAnswer) -> String {
     let mut out = format!("{}: {} states, {} outputs\n", answer.title, answer.dimension, answer.outputs);
+    let _ = writeln!(out, "fields: {}", fields_text(&answer.fields));
     for branch in &answer.branches {
         if !branch.conditions.is_empty() {
             let _ = writeln!(out, "where {}", branch.conditions.join(", "));
+        }
+        if !branch.held.is_empty() {
+            let _ = writeln!(
+                out,
+                "held at the file's values: {} (a claim 'rank = n' is about all values)",
+                values_text(&branch.held)
+            );
         }
         let _ = writeln!(out, "words that were needed: {}", branch.words.join(", "));
         let _ =

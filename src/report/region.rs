@@ -1,5 +1,6 @@
 //! Certificates on regions, as JSON and as text.
 
+use super::ranks::{fields_json, fields_text};
 use crate::number::rational_from_f64;
 use crate::observability::AVOIDED;
 use crate::observability::region::{OpenBox, PartAnswer, RegionAnswer, Standing, Vanishing};
@@ -57,6 +58,7 @@ pub fn region_json(answer: &RegionAnswer) -> Value {
     json!({
         "file": answer.file,
         "title": answer.title,
+        "fields": fields_json(&answer.fields),
         "dimension": answer.dimension,
         "order": answer.order,
         "rows": answer.rows,
@@ -81,6 +83,7 @@ pub fn region_json(answer: &RegionAnswer) -> Value {
         "largest_open_boxes": answer.largest.iter().map(open_json).collect::<Vec<_>>(),
         "curve": answer.curve.iter().map(|p| json!({ "boxes": p.boxes, "seconds": p.seconds, "proved_fraction": p.proved })).collect::<Vec<_>>(),
         "remarks": answer.remarks,
+        "holds_nowhere": answer.nowhere,
     })
 }
 
@@ -103,9 +106,18 @@ pub fn region_text(answer: &RegionAnswer) -> String {
     let mut out = format!("{}: {} states", answer.title, answer.dimension);
     match answer.order {
         Some(order) => {
-            let _ = writeln!(out, ", words of up to {order} fields");
+            let _ = writeln!(out, ", words of up to {order} fields ({})", fields_text(&answer.fields));
         }
         None => out.push_str(", the file's own choice of rows\n"),
+    }
+    if !answer.nowhere.is_empty() {
+        let guards: Vec<String> = answer.nowhere.iter().map(|guard| shortened(guard)).collect();
+        let _ = writeln!(
+            out,
+            "nothing is proved: the system or its rows exist nowhere, since {} would have to hold",
+            guards.join(" and ")
+        );
+        return out.trim_end().to_owned();
     }
     if answer.minors.is_empty() {
         let _ = writeln!(

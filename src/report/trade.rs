@@ -1,5 +1,6 @@
 //! Speed against accuracy, as JSON and as text; the picture is in `trade_plot`.
 
+use super::ranks::{fields_json, fields_text};
 use crate::tradeoff::{Combination, DerivativeResult, Digits, LeftOut, Trade};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -62,6 +63,7 @@ pub fn trade_json(trade: &Trade) -> Value {
     json!({
         "file": trade.file,
         "title": trade.title,
+        "fields": fields_json(&trade.fields),
         "rows_from": trade.rows,
         "words": trade.words,
         "rows": trade.size.0,
@@ -139,7 +141,7 @@ pub fn trade_text(trade: &Trade) -> String {
     let mut out = String::new();
     let ranks: Vec<String> =
         trade.certified_ranks.iter().map(|(rank, count)| format!("{rank} at {count} states")).collect();
-    let _ = writeln!(out, "{}", trade.title);
+    let _ = writeln!(out, "{}\nfields: {}", trade.title, fields_text(&trade.fields));
     let _ = writeln!(
         out,
         "rows: {}, {} by {}, {} entries vary; {} states of the sample box, seed {}",

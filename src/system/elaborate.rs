@@ -339,6 +339,7 @@ impl System {
         }
         if names.is_empty() {
             states = self.states.clone();
+            self.states_are_final = true;
         }
         if states.is_empty() {
             return Err(Problem::new(span, "there is no state to differentiate by", "here")

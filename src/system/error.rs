@@ -23,12 +23,13 @@ pub struct ReadError {
 }
 
 impl ReadError {
-    /// The line and the column of the place, both counted from one.
+    /// The line and the column of the place, in characters, both counted from one.
     pub fn line_and_column(&self) -> (usize, usize) {
-        let before =
-            &self.source_code.inner().as_bytes()[..self.span.offset().min(self.source_code.inner().len())];
-        let line = before.iter().filter(|b| **b == b'\n').count() + 1;
-        let column = before.iter().rev().take_while(|b| **b != b'\n').count() + 1;
+        let text = self.source_code.inner();
+        // the place is on the boundary of a character, or at the end
+        let before = text.get(..self.span.offset()).unwrap_or(text);
+        let line = before.matches('\n').count() + 1;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
         (line, column)
     }
 }

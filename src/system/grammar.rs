@@ -1,10 +1,11 @@
 //! The grammar of a proof file, without the meaning of its names. The README documents it; it is a public interface.
 
+use super::model::Role;
 use crate::expression::Expected;
 use crate::expression::parse::{
-    Depth, Read, Text, blank, equation, keyword, name, read_all, sign, stop, sum,
+    Depth, Read, Text, blank, ends_a_line, equation, keyword, name, read_all, sign, stop, sum,
 };
-use crate::expression::syntax::{Equation, Expr, Name, Span};
+use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};
 use winnow::error::{ErrMode, ParserError};
 use winnow::prelude::*;
@@ -14,13 +15,13 @@ use winnow::token::{literal, take_till, take_while};
 /// One entry of a file.
 #[derive(Clone, Debug)]
 pub(crate) enum Item {
-    System { title: String, cite: Option<String> },
+    System { title: String, cite: Option<String>, span: Span },
     Use { alias: Name, path: String, span: Span },
     State(Vec<Name>),
     Param(Vec<(Name, Option<Expr>)>),
     Angle(Vec<Name>),
     Let(Name, Expr),
-    Field { name: Name, components: Vec<(Name, Expr)>, others_are_zero: bool },
+    Field { role: Role, name: Name, components: Vec<(Name, Expr)>, others_are_zero: bool },
     Output(Vec<Expr>),
     Sample { ranges: Vec<(Name, Expr, Expr)>, avoid: Vec<Expr> },
     Claim(Box<ClaimSyntax>),
@@ -71,6 +72,12 @@ impl ClaimBody {
             ClaimBody::Definition { .. } | ClaimBody::Open { .. } => Vec::new(),
         }
     }
+
+    /// Whether a statement is about `rank`, the rank of the observability codistribution.
+    pub fn is_about_the_codistribution(&self) -> bool {
+        let is_rank = |side: &Expr| matches!(&side.kind, ExprKind::Name(name) if name == "rank");
+        self.statements().iter().any(|s| is_rank(&s.equation.left) || is_rank(&s.equation.right))
+    }
 }
 
 /// A claim or an erratum as it stands in the file.
@@ -100,10 +107,10 @@ fn names(input: &mut Text<'_>) -> Read<Vec<Name>> {
 }
 
 fn system(input: &mut Text<'_>) -> Read<Item> {
-    keyword("system").parse_next(input)?;
+    let span = keyword("system").parse_next(input)?;
     let title = cut_err(quoted).parse_next(input)?;
     let cite = opt(preceded(keyword("cite"), cut_err(quoted))).parse_next(input)?;
-    Ok(Item::System { title, cite })
+    Ok(Item::System { title, cite, span })
 }
 
 fn import(input: &mut Text<'_>) -> Read<Item> {
@@ -131,7 +138,12 @@ fn definition(input: &mut Text<'_>) -> Read<Item> {
 }
 
 fn field(input: &mut Text<'_>) -> Read<Item> {
-    keyword("field").parse_next(input)?;
+    let role = alt((
+        keyword("drift").value(Role::Drift),
+        keyword("input").value(Role::Input),
+        keyword("field").value(Role::Other),
+    ))
+    .parse_next(input)?;
     let title = cut_err(name).context("the field's name").parse_next(input)?;
     let component = |input: &mut Text<'_>| -> Read<(Name, Expr)> {
         let name = name(input)?;
@@ -144,9 +156,7 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     while let Some((state, value)) = opt(component).parse_next(input)? {
         if state.text == "others" {
             match value.kind {
-                crate::expression::syntax::ExprKind::Number(ref zero) if zero.is_zero() => {
-                    others_are_zero = true
-                }
+                ExprKind::Number(ref zero) if zero.is_zero() => others_are_zero = true,
                 _ => {
                     return stop(
                         value.span.start,
@@ -159,7 +169,7 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
             components.push((state, value));
         }
     }
-    Ok(Item::Field { name: title, components, others_are_zero })
+    Ok(Item::Field { role, name: title, components, others_are_zero })
 }
 
 fn sample(input: &mut Text<'_>) -> Read<Item> {
@@ -269,7 +279,7 @@ fn remark_only(input: &mut Text<'_>) -> Read<Item> {
     Ok(Item::Claim(Box::new(ClaimSyntax { id: id.text, span: id.span, body, remark: None })))
 }
 
-const ENTRY: &str = "one of: system, use, state, param, angle, let, field, output, sample, claim, erratum, scan, \
+const ENTRY: &str = "one of: system, use, state, param, angle, let, drift, input, field, output, sample, claim, erratum, scan, \
                      definition, undecided";
 
 fn item(input: &mut Text<'_>) -> Read<Item> {
@@ -288,13 +298,15 @@ fn item(input: &mut Text<'_>) -> Read<Item> {
 }
 
 /// The words that begin an entry.
-const ENTRIES: [&str; 14] = [
+const ENTRIES: [&str; 16] = [
     "system",
     "use",
     "state",
     "param",
     "angle",
     "let",
+    "drift",
+    "input",
     "field",
     "output",
     "sample",
@@ -308,7 +320,7 @@ const ENTRIES: [&str; 14] = [
 /// What to say where no entry begins.
 fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {
     let mut error = Expected::from_input(input);
-    let line = text[..error.at].rfind('\n').map_or(0, |newline| newline + 1);
+    let line = text[..error.at].rfind(ends_a_line).map_or(0, |end| end + 1);
     let word: String = text[error.at..].chars().take_while(|c| c.is_alphanumeric()).collect();
     if after_an_entry && !text[line..error.at].trim().is_empty() {
         error.what = "an operator, or the next entry on a line of its own".to_owned();

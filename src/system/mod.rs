@@ -15,9 +15,13 @@ mod grammar;
 mod matrices;
 mod model;
 mod read;
+mod written;
 
 pub use error::ReadError;
 pub(crate) use error::{Problem, nearest};
 pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement};
-pub use model::{Assignment, Field, Kind, Matrix, Range, SymbolInfo, System, Value};
+pub use model::{
+    Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,
+};
 pub(crate) use read::load;
+pub(crate) use written::in_one_line;

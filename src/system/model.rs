@@ -1,10 +1,13 @@
 //! What a system is.
 
 use super::domain::Domain;
-use super::grammar::ClaimSyntax;
+use super::error::Problem;
+use super::grammar::{ClaimBody, ClaimSyntax};
+use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};
+use crate::expression::syntax::Span;
 use crate::expression::{Derivation, Graph, Guard, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 
 /// What a symbol is in its system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,15 +39,59 @@ pub struct SymbolInfo {
     pub range: Option<Range>,
 }
 
+/// What a vector field is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// How the states move by themselves; a system has at most one.
+    Drift,
+    /// How they move besides where something drives them: `x' = f + u g`.
+    Input,
+    /// Only differentiated along, as in `L(f, e)`: no rank and no observer knows of it.
+    Other,
+}
+
+impl Role {
+    /// The word that declares a field of this role.
+    pub fn name(self) -> &'static str {
+        match self {
+            Role::Drift => "drift",
+            Role::Input => "input",
+            Role::Other => "field",
+        }
+    }
+}
+
 /// A vector field: `x' = component` for each state that it moves.
 #[derive(Clone, Debug)]
 pub struct Field {
     pub name: String,
+    /// What it is for. Fields of imported systems keep theirs.
+    pub role: Role,
+    /// Where its name stands in the text of its file.
+    pub span: Span,
     /// The states that it moves, and how; all others stand still.
     pub components: Vec<(Symbol, NodeId)>,
     /// Where each component exists.
     pub guards: Vec<Vec<Guard>>,
+    /// Its components as they are written.
+    pub(crate) written: Written,
     pub(crate) derivation: Derivation,
+}
+
+/// What names stand for, as it is written: name and text of each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Explanations {
+    /// Definitions: `name = text`.
+    pub definitions: Vec<(String, String)>,
+    /// Fields along which something is differentiated; the text is a list of `x' = rate`.
+    pub fields: Vec<(String, String)>,
+}
+
+/// A field that takes part in a rank, for reports.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FieldRole {
+    pub name: String,
+    pub role: Role,
 }
 
 /// Where a field is, among those of its file or among the imported ones.
@@ -115,7 +162,7 @@ pub struct System {
     pub graph: Graph,
     /// The states, in the order in which the file names them.
     pub states: Vec<Symbol>,
-    /// The vector fields of this file, in order; the first is the drift by custom.
+    /// The vector fields of this file, of any role, in order. Words of Lie derivatives name fields by their places here.
     pub fields: Vec<Field>,
     /// The outputs: how they are written, and what they are.
     pub outputs: Vec<(String, NodeId)>,
@@ -131,13 +178,19 @@ pub struct System {
     pub(crate) definition_domains: HashMap<String, Domain>,
     /// What the terms that are being read need to exist.
     pub(crate) domain: Domain,
-    /// The definitions of this file as they are written.
-    pub(crate) definition_texts: BTreeMap<String, String>,
+    /// The definitions as they are written, imported ones under their full names.
+    pub(crate) written: BTreeMap<String, Written>,
     /// Fields of imported systems, under their full names.
     pub(crate) imported_fields: Vec<Field>,
     /// Where the field of a name is.
     pub(crate) field_places: HashMap<String, FieldPlace>,
     pub(crate) partials: HashMap<Symbol, Derivation>,
+    /// Whether something has been differentiated by all states: then these are all that there are.
+    pub(crate) states_are_final: bool,
+    /// The names that this file gives to imported systems.
+    pub(crate) aliases: Vec<String>,
+    /// The symbols that this file gives a range to.
+    pub(crate) sampled: HashSet<Symbol>,
 }
 
 impl System {
@@ -166,13 +219,18 @@ impl System {
         self.graph.symbol_name(symbol)
     }
 
+    /// The names of the states, in their order.
+    pub(crate) fn state_names(&self) -> Vec<String> {
+        self.states.iter().map(|state| self.symbol_name(*state).to_owned()).collect()
+    }
+
     /// The symbol of a name, if the file declares it.
     pub fn find_symbol(&self, name: &str) -> Option<Symbol> {
         self.graph.find_symbol(name).filter(|symbol| self.symbols.contains_key(symbol))
     }
 
     /// The field of a name, imported ones included.
-    pub(crate) fn named_field(&self, name: &str) -> Option<&Field> {
+    pub(crate) fn field(&self, name: &str) -> Option<&Field> {
         match self.field_places.get(name)? {
             FieldPlace::Own(place) => self.fields.get(*place),
             FieldPlace::Imported(place) => self.imported_fields.get(*place),
@@ -187,26 +245,112 @@ impl System {
         }
     }
 
+    /// The places of the fields that move the states: the drift and the inputs, in the order of the file. Ranks are made
+    /// of these.
+    pub fn moving_fields(&self) -> Vec<usize> {
+        (0..self.fields.len()).filter(|field| self.fields[*field].role != Role::Other).collect()
+    }
+
+    /// The place of the drift among [`System::fields`].
+    pub fn drift(&self) -> Option<usize> {
+        self.fields.iter().position(|field| field.role == Role::Drift)
+    }
+
+    /// Name and role of the fields that move the states, in the order of the file.
+    pub fn roles(&self) -> Vec<FieldRole> {
+        let role =
+            |field: usize| FieldRole { name: self.fields[field].name.clone(), role: self.fields[field].role };
+        self.moving_fields().into_iter().map(role).collect()
+    }
+
+    /// Nothing, where a field moves the states.
+    ///
+    /// # Errors
+    /// In words, with the line and the word to add, where no field is a drift or an input: a rank of such a system would be
+    /// that of its outputs alone, or of fields that were declared for something else.
+    pub fn require_motion(&self) -> Result<(), String> {
+        match self.no_motion() {
+            None => Ok(()),
+            Some(problem) => {
+                let line = self.source.as_bytes()[..problem.span.start.min(self.source.len())]
+                    .iter()
+                    .filter(|byte| **byte == b'\n')
+                    .count()
+                    + 1;
+                let place = if self.fields.is_empty() {
+                    self.name.clone()
+                } else {
+                    format!("{}, line {line}", self.name)
+                };
+                Err(format!("{place}: {}; {}", problem.message, problem.help.unwrap_or_default()))
+            }
+        }
+    }
+
+    /// What is wrong with a rank where no field moves the states, at the first field, else at the beginning of the file.
+    pub(crate) fn no_motion(&self) -> Option<Problem> {
+        if !self.moving_fields().is_empty() {
+            return None;
+        }
+        let problem = match self.fields.first() {
+            Some(field) => {
+                let name = &field.name;
+                let message = format!(
+                    "'field {name}' is only differentiated along, and a rank needs a drift or an input"
+                );
+                Problem::new(&field.span, message, "neither drift nor input").help(format!(
+                    "write 'drift {name}' where the states move so by themselves, 'input {name}' where something drives them"
+                ))
+            }
+            None => {
+                let message =
+                    "a rank needs a drift or an input, and the file declares no field that moves its states";
+                Problem::new(&(0..0), message, "")
+                    .help("write \"drift f  others' = 0\" where the states rest")
+            }
+        };
+        Some(problem)
+    }
+
     /// The names that a definition of the file has given.
     pub fn definition(&self, name: &str) -> Option<&Value> {
         self.definitions.get(name)
     }
 
-    /// The definitions of this file that a text mentions, and those that they mention in turn: name and text, in the
-    /// order in which they are met.
-    pub fn definitions_in(&self, text: &str) -> Vec<(String, String)> {
-        let mut found: Vec<(String, String)> = Vec::new();
-        let mut met: HashSet<&str> = HashSet::new();
-        let mut texts = vec![text];
-        while let Some(text) = texts.pop() {
-            let words = text.split(|c: char| !c.is_alphanumeric() && c != '_' && c != '.');
-            for word in words.filter(|word| !word.is_empty()) {
-                if let Some((name, definition)) = self.definition_texts.get_key_value(word)
-                    && met.insert(name)
-                {
-                    found.push((name.clone(), definition.clone()));
-                    texts.push(definition);
+    /// What the names in the statements of a claim stand for: definitions and fields, and those that they mention in turn,
+    /// in the order in which they are met; imported ones under the names that they have here.
+    pub fn explanations(&self, body: &ClaimBody) -> Explanations {
+        let states = self.state_names();
+        let is_definition = |name: &str| self.definitions.contains_key(name);
+        let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
+        let mut places = Vec::new();
+        for statement in body.statements() {
+            for equation in [&statement.equation].into_iter().chain(&statement.conditions) {
+                places_in_equation(&scope, equation, &mut places);
+            }
+        }
+        places.sort_by_key(|(span, _)| span.start);
+        let mention = |(_, insert): Place| match insert {
+            Insert::Mention(mention) => Some(mention),
+            Insert::States(_) => None,
+        };
+        let mut waiting: VecDeque<Mention> = places.into_iter().filter_map(mention).collect();
+        let mut found = Explanations::default();
+        let mut met = HashSet::new();
+        while let Some(mention) = waiting.pop_front() {
+            if !met.insert(mention.clone()) {
+                continue;
+            }
+            let (list, name, written) = match mention {
+                Mention::Definition(name) => (&mut found.definitions, name.clone(), self.written.get(&name)),
+                Mention::Field(name) => {
+                    let field = self.field(&name);
+                    (&mut found.fields, name, field.map(|field| &field.written))
                 }
+            };
+            if let Some(written) = written {
+                list.push((name, written.text()));
+                waiting.extend(written.mentions());
             }
         }
         found

@@ -3,10 +3,13 @@
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Item, parse_file};
-use super::model::{Field, FieldPlace, Kind, Range, SymbolInfo, System, Value};
+use super::model::{Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
+use super::written::{Scope, Written, in_one_line, places_in};
+use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Expr, Name, Span};
 use crate::expression::{Derivation, Graph, Symbol, parse_expression};
 use crate::file::{ReadFailure, read_text};
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -37,11 +40,11 @@ impl System {
     /// # Errors
     /// What is wrong with the text, and where.
     pub fn parse(name: &str, text: &str, folder: &Path) -> Result<System, ReadError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let text = with_plain_line_ends(text);
         let mut reading = Reading::default();
         reading.open.extend(Path::new(name).canonicalize());
-        System::build(name, text, folder, Graph::default(), &mut reading)
-            .map_err(|problem| problem.locate(name, text))
+        System::build(name, &text, folder, Graph::default(), &mut reading)
+            .map_err(|problem| problem.locate(name, &text))
     }
 
     /// The value of an expression that is not in the file but asked of it from outside.
@@ -49,6 +52,7 @@ impl System {
     /// # Errors
     /// What is wrong with the expression, and where in it.
     pub fn evaluate_text(&mut self, text: &str) -> Result<Value, ReadError> {
+        let text = &with_plain_line_ends(text);
         let expr = parse_expression(text).map_err(|e| expected(e).locate("expression", text))?;
         self.elaborate(&expr).map_err(|problem| problem.locate("expression", text))
     }
@@ -60,6 +64,7 @@ impl System {
         graph: Graph,
         reading: &mut Reading,
     ) -> Result<System, Problem> {
+        refuse_reordering(text)?;
         let items = parse_file(text).map_err(expected)?;
         let mut system = System {
             title: String::new(),
@@ -77,10 +82,13 @@ impl System {
             definitions: BTreeMap::new(),
             definition_domains: HashMap::new(),
             domain: Default::default(),
-            definition_texts: BTreeMap::new(),
+            written: BTreeMap::new(),
             imported_fields: Vec::new(),
             field_places: HashMap::new(),
             partials: HashMap::new(),
+            states_are_final: false,
+            aliases: Vec::new(),
+            sampled: HashSet::new(),
         };
         let mut ids = HashSet::new();
         for item in items {
@@ -105,13 +113,31 @@ impl System {
 
     fn enter(&mut self, item: Item, folder: &Path, reading: &mut Reading) -> Result<(), Problem> {
         match item {
-            Item::System { title, cite } => (self.title, self.cite) = (title, cite),
+            Item::System { title, cite, span } => {
+                if !self.title.is_empty() {
+                    let message = format!("the file describes a system already: \"{}\"", self.title);
+                    return Err(
+                        Problem::new(&span, message, "the second one").help("one file holds one system")
+                    );
+                }
+                if title.is_empty() {
+                    return Err(Problem::new(&span, "a system needs a title", "this is empty"));
+                }
+                (self.title, self.cite) = (title, cite);
+            }
             Item::Use { alias, path, span } => self.import(&alias, &folder.join(path), &span, reading)?,
             Item::State(names) => {
                 for name in names {
                     if let Some(field) = self.fields.first() {
                         let message = format!("the field '{}' above does not know of this state", field.name);
                         return Err(Problem::new(&name.span, message, "declare states before fields"));
+                    }
+                    if self.states_are_final {
+                        let message = format!(
+                            "something above is differentiated by all states, and '{}' is none yet",
+                            name.text
+                        );
+                        return Err(Problem::new(&name.span, message, "declare states before 'd(...)'"));
                     }
                     let symbol = self.declare(&name, Kind::State)?;
                     self.states.push(symbol);
@@ -138,6 +164,11 @@ impl System {
             }
             Item::Let(name, expr) => {
                 self.refuse_taken(&name)?;
+                if self.find_symbol(&name.text).is_some() {
+                    let message = format!("'{}' is a symbol of an imported system", name.text);
+                    return Err(Problem::new(&name.span, message, "a definition of this name would hide it")
+                        .help("choose another name, or declare the symbol with 'param'"));
+                }
                 let (value, domain) = self.apart(|system| system.elaborate(&expr))?;
                 if value == Value::CodistributionRank {
                     return Err(Problem::new(
@@ -146,19 +177,25 @@ impl System {
                         "claim it as it is",
                     ));
                 }
-                let text = self.source[expr.span.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
-                self.definition_texts.insert(name.text.clone(), text);
+                self.written.insert(name.text.clone(), self.written_as(&expr.span, [&expr]));
                 self.definition_domains.insert(name.text.clone(), domain);
                 self.definitions.insert(name.text, value);
             }
-            Item::Field { name, components, others_are_zero } => {
-                self.field(name, &components, others_are_zero)?
+            Item::Field { role, name, components, others_are_zero } => {
+                self.enter_field(role, name, &components, others_are_zero)?
             }
             Item::Output(list) => {
                 for expr in list {
                     let (value, domain) = self.apart(|system| system.scalar(&expr))?;
-                    self.output_guards.push(self.guards_of(&domain));
-                    self.outputs.push((self.source[expr.span.clone()].trim().to_owned(), value));
+                    // what is seen twice is seen once: a second time it would count as a measurement of its own
+                    let guards = self.guards_of(&domain);
+                    match self.outputs.iter().position(|(_, known)| *known == value) {
+                        Some(place) => self.output_guards[place].extend(guards),
+                        None => {
+                            self.output_guards.push(guards);
+                            self.outputs.push((in_one_line(&self.source, &expr.span), value));
+                        }
+                    }
                 }
             }
             Item::Sample { ranges, avoid } => self.sample(&ranges, &avoid)?,
@@ -177,6 +214,20 @@ impl System {
                 (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
                 (left, right) => matches!(left, Value::Scalar(_)) || matches!(right, Value::Scalar(_)),
             };
+            let of_codistribution =
+                matches!(values, (Value::CodistributionRank, _) | (_, Value::CodistributionRank));
+            if of_codistribution
+                && !self.states.is_empty()
+                && !self.outputs.is_empty()
+                && let Some(problem) = self.no_motion()
+            {
+                let span = if self.fields.is_empty() { statement.span.clone() } else { problem.span.clone() };
+                return Err(Problem {
+                    span,
+                    message: format!("claim {}: {}", claim.id, problem.message),
+                    ..problem
+                });
+            }
             if !comparable {
                 let message = format!("{} cannot equal {}", values.0.describe(), values.1.describe());
                 return Err(Problem::new(&statement.span, message, "this claim"));
@@ -199,7 +250,7 @@ impl System {
         let declared = self.find_symbol(&name.text).and_then(|symbol| self.symbols.get(&symbol));
         let taken = declared.is_some_and(|info| info.kind != Kind::Imported)
             || self.definitions.contains_key(&name.text)
-            || ["pi", "rank"].contains(&name.text.as_str());
+            || ["pi", "rank", "others"].contains(&name.text.as_str());
         if taken {
             return Err(Problem::new(
                 &name.span,
@@ -222,18 +273,30 @@ impl System {
         Ok(symbol)
     }
 
-    fn field(
+    fn enter_field(
         &mut self,
+        role: Role,
         name: Name,
         components: &[(Name, Expr)],
         others_are_zero: bool,
     ) -> Result<(), Problem> {
-        if self.named_field(&name.text).is_some() {
+        if name.text.contains('.') {
+            let message = "a name with a dot belongs to an imported system";
+            return Err(Problem::new(&name.span, message, "choose one without"));
+        }
+        if self.field(&name.text).is_some() {
             return Err(Problem::new(
                 &name.span,
                 format!("there is a field '{}' already", name.text),
                 "the second one",
             ));
+        }
+        if let (Role::Drift, Some(first)) = (role, self.drift()) {
+            let message = format!("there is a drift '{}' already", self.fields[first].name);
+            return Err(Problem::new(&name.span, message, "the second one").help(format!(
+                "write 'input {0}' if it is driven, 'field {0}' if it is only differentiated along",
+                name.text
+            )));
         }
         let mut rates: Vec<(Symbol, _)> = Vec::new();
         let mut moved: HashSet<Symbol> = HashSet::new();
@@ -260,10 +323,37 @@ impl System {
             return Err(Problem::new(&name.span, message, "this field")
                 .help("end it with: others' = 0, if the states that it does not name stand still"));
         }
+        let written = match (components.first(), components.last()) {
+            (Some((first, _)), Some((_, last))) => {
+                self.written_as(&(first.span.start..last.span.end), components.iter().map(|(_, expr)| expr))
+            }
+            _ => Written::default(),
+        };
+        let written = if others_are_zero { written.followed_by("others' = 0") } else { written };
         let derivation = Derivation::new(rates.iter().copied().collect());
         self.field_places.insert(name.text.clone(), FieldPlace::Own(self.fields.len()));
-        self.fields.push(Field { name: name.text, components: rates, guards, derivation });
+        self.fields.push(Field {
+            name: name.text,
+            role,
+            span: name.span,
+            components: rates,
+            guards,
+            written,
+            derivation,
+        });
         Ok(())
+    }
+
+    /// Some expressions as they are written, within a span that holds them all.
+    fn written_as<'a>(&self, span: &Span, expressions: impl IntoIterator<Item = &'a Expr>) -> Written {
+        let states = self.state_names();
+        let is_definition = |name: &str| self.definitions.contains_key(name);
+        let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
+        let mut places = Vec::new();
+        for expr in expressions {
+            places_in(&scope, expr, &mut places);
+        }
+        Written::new(&self.source, span, places)
     }
 
     fn sample(&mut self, ranges: &[(Name, Expr, Expr)], avoid: &[Expr]) -> Result<(), Problem> {
@@ -280,13 +370,18 @@ impl System {
                     "low above high",
                 ));
             }
+            // a range that came with an import may be replaced, one of this file not
+            if !self.sampled.insert(symbol) {
+                let message = format!("'{}' has a range already", name.text);
+                return Err(Problem::new(&name.span, message, "the second one"));
+            }
             if let Some(info) = self.symbols.get_mut(&symbol) {
                 info.range = Some(range);
             }
         }
         for expr in avoid {
             let value = self.scalar(expr)?;
-            self.avoid.push((self.source[expr.span.clone()].trim().to_owned(), value));
+            self.avoid.push((in_one_line(&self.source, &expr.span), value));
         }
         Ok(())
     }
@@ -309,6 +404,17 @@ impl System {
             return Err(refuse(format!("the file imports itself: {}", names.join(" -> ")))
                 .help("put what both need into a third file, and import that"));
         }
+        if alias.text.contains('.') {
+            let message = "a name with a dot belongs to what an imported system imports";
+            return Err(Problem::new(&alias.span, message, "choose one without"));
+        }
+        if self.aliases.contains(&alias.text) {
+            let message = format!("'{}' is the name of an imported system already", alias.text);
+            return Err(
+                Problem::new(&alias.span, message, "the second one").help("choose another name for this one")
+            );
+        }
+        self.aliases.push(alias.text.clone());
         let other = match reading.done.get(&place) {
             Some(known) => known.clone(),
             None if reading.open.len() > DEEPEST_IMPORT => {
@@ -331,16 +437,40 @@ impl System {
             );
         }
         for (symbol, info) in &other.symbols {
-            let new = || SymbolInfo { kind: Kind::Imported, ..info.clone() };
-            let known = self.symbols.entry(*symbol).or_insert_with(new);
-            known.is_angle |= info.is_angle;
+            if self.definitions.contains_key(self.graph.symbol_name(*symbol)) {
+                let hidden = self.graph.symbol_name(*symbol);
+                let message = format!("'{hidden}' is a definition above, and a symbol of {}", path.display());
+                return Err(Problem::new(span, message, "imported here")
+                    .help("choose another name for the definition"));
+            }
+            match self.symbols.entry(*symbol) {
+                Entry::Vacant(place) => {
+                    place.insert(SymbolInfo { kind: Kind::Imported, ..info.clone() });
+                }
+                Entry::Occupied(mut place) => {
+                    let known = place.get_mut();
+                    known.is_angle |= info.is_angle;
+                    // where imported files differ neither speaks for this one
+                    if known.kind == Kind::Imported {
+                        known.default =
+                            known.default.take().filter(|value| Some(value) == info.default.as_ref());
+                        let own = self.sampled.contains(symbol);
+                        known.range =
+                            known.range.take().filter(|range| own || Some(range) == info.range.as_ref());
+                    }
+                }
+            }
         }
         for field in other.fields.iter().chain(&other.imported_fields) {
             let name = format!("{}.{}", alias.text, field.name);
             // of two of one name the first is meant
             let place = FieldPlace::Imported(self.imported_fields.len());
             self.field_places.entry(name.clone()).or_insert(place);
-            self.imported_fields.push(Field { name, ..field.clone() });
+            let written = field.written.clone().under(&alias.text);
+            self.imported_fields.push(Field { name, written, ..field.clone() });
+        }
+        for (name, written) in &other.written {
+            self.written.insert(format!("{}.{name}", alias.text), written.clone().under(&alias.text));
         }
         for (name, value) in &other.definitions {
             self.definitions.insert(format!("{}.{name}", alias.text), value.clone());
@@ -356,6 +486,7 @@ impl System {
     fn import_anew(&mut self, path: &Path, span: &Span, reading: &mut Reading) -> Result<System, Problem> {
         let name = path.display().to_string();
         let text = load(path).map_err(|message| Problem::new(span, message, "this file"))?;
+        let text = with_plain_line_ends(&text);
         let folder = path.parent().unwrap_or(Path::new(""));
         let graph = std::mem::take(&mut self.graph);
         let mut other = System::build(&name, &text, folder, graph, reading).map_err(|problem| {
@@ -386,6 +517,33 @@ struct Reading {
 /// The last part of a path, for messages.
 fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// A text in which every line ends with a line feed, whatever its editor took for the end of a line, and without a
+/// byte-order mark: so that the reader, the error and the person who looks count the same lines.
+fn with_plain_line_ends(text: &str) -> String {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut plain = String::with_capacity(text.len());
+    let mut characters = text.chars().peekable();
+    while let Some(c) = characters.next() {
+        // a carriage return before a line feed stays, and is blank
+        let within_an_end = c == '\r' && characters.peek() == Some(&'\n');
+        plain.push(if ends_a_line(c) && !within_an_end { '\n' } else { c });
+    }
+    plain
+}
+
+/// Refuses characters that make a text look other than it is read: marks of the direction of writing, behind which an
+/// editor shows a claim as a comment or a comment as a claim.
+fn refuse_reordering(text: &str) -> Result<(), Problem> {
+    let reorders = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}');
+    match text.char_indices().find(|(_, c)| reorders(*c)) {
+        None => Ok(()),
+        Some((at, c)) => {
+            let message = format!("U+{:04X} changes the order in which the text is shown", c as u32);
+            Err(Problem::new(&(at..at + c.len_utf8()), message, "an invisible character").help("remove it"))
+        }
+    }
 }
 
 /// The text of a file, or what is wrong with it in words. A byte-order mark is no part of it.

@@ -107,7 +107,7 @@ mod tests {
     use crate::system::System;
     use std::path::Path;
 
-    const PLANE: &str = "system \"plane\" state x, y field f x' = sin(x*y)/y y' = x^2/y output x*y^3";
+    const PLANE: &str = "system \"plane\" state x, y drift f x' = sin(x*y)/y y' = x^2/y output x*y^3";
 
     /// The errors of a differential, beside that of the graph at the same point.
     fn errors(difference: Difference, order: usize) -> Vec<f64> {

@@ -3,7 +3,7 @@
 
 use crate::expression::{Input, Loaded, NodeId, Program, Symbol};
 use crate::number::{Arithmetic, Refusal};
-use crate::system::System;
+use crate::system::{Role, System};
 
 /// A program whose inputs are places of a point.
 #[derive(Clone, Debug)]
@@ -17,15 +17,18 @@ struct Function {
 pub struct PointPrograms {
     symbols: Vec<Symbol>,
     states: Vec<usize>,
-    /// The places that each field moves, and its rates.
+    /// The places that each field of the system moves, and its rates; of fields that are only differentiated along none.
     fields: Vec<(Vec<usize>, Function)>,
     functions: Vec<Function>,
 }
 
 impl PointPrograms {
-    /// All fields of a system, and these functions.
+    /// The drift and the inputs of a system, and these functions.
     pub fn new(system: &System, functions: &[NodeId]) -> PointPrograms {
-        let components = |field: usize| system.fields[field].components.iter();
+        let components = |field: usize| {
+            let field = &system.fields[field];
+            if field.role == Role::Other { [].iter() } else { field.components.iter() }
+        };
         let mut symbols = system.graph.symbols_of(functions.iter().copied());
         for field in 0..system.fields.len() {
             symbols.extend(system.graph.symbols_of(components(field).map(|(_, node)| *node)));

@@ -5,7 +5,7 @@ use crate::claim::{PointValue, certified_value};
 use crate::expression::syntax::{Expr, ExprKind};
 use crate::expression::{Expansion, NodeId, Symbol, expand};
 use crate::number::{parse_decimal, rational_to_f64, round_to_decimal};
-use crate::system::{ClaimBody, System, Value};
+use crate::system::{ClaimBody, System, Value, in_one_line};
 use crate::tradeoff::{RoundingStudy, study_rounding};
 use dashu::rational::RBig;
 use std::collections::HashMap;
@@ -69,7 +69,7 @@ pub fn printed_values(system: &System, seed: u64) -> Result<Appendix, String> {
         let ClaimBody::Erratum { printed, .. } = &claim.body else { continue };
         let ExprKind::At(inner, _) = &printed.equation.left.kind else { continue };
         let ExprKind::Number(_) = &printed.equation.right.kind else { continue };
-        if system.source[inner.span.clone()].trim() == MATRIX {
+        if in_one_line(&system.source, &inner.span) == MATRIX {
             let (left, right) = (&printed.equation.left, &printed.equation.right);
             values.push(examine(&mut system, &claim.id, determinant, &expansion, left, right, seed)?);
         }
@@ -107,7 +107,7 @@ fn examine(
         certified_value(&system.graph, determinant, &point, CERTIFIED_DIGITS).map_err(|e| e.to_string())?;
     let truth = parse_decimal(&certified.decimal)
         .ok_or_else(|| format!("{id}: {} is no decimal", certified.decimal))?;
-    let printed_text = system.source[right.span.clone()].trim().to_owned();
+    let printed_text = in_one_line(&system.source, &right.span);
     let printed =
         parse_decimal(&printed_text).ok_or_else(|| format!("{id}: {printed_text} is no decimal"))?;
     let study =
@@ -116,7 +116,7 @@ fn examine(
         id: id.to_owned(),
         point: list
             .iter()
-            .map(|(name, value)| format!("{} = {}", name.text, system.source[value.span.clone()].trim()))
+            .map(|(name, value)| format!("{} = {}", name.text, in_one_line(&system.source, &value.span)))
             .collect::<Vec<_>>()
             .join(", "),
         digits_that_agree: agreeing_digits(&printed, &truth),

@@ -59,7 +59,7 @@ fn mistakes_in_a_scene_are_shown_at_their_place() {
 #[test]
 fn what_no_one_tells_is_named() {
     let folder = folder();
-    let model = "system \"one palm\" state r1, s1 param drag field f r1' = -drag*s1 s1' = r1 output s1";
+    let model = "system \"one palm\" state r1, s1 param drag drift f r1' = -drag*s1 s1' = r1 output s1";
     write(&folder, "drag.proof", model);
     let inner = text("same_rate");
     let begin = inner.find("model = ").unwrap();

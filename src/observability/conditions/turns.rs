@@ -43,7 +43,10 @@ fn ingredients(system: &mut System) -> Vec<NodeId> {
     for (_, output) in system.outputs.clone() {
         found.extend(system.differential(output));
     }
-    found.extend(system.fields.iter().flat_map(|field| field.components.iter().map(|(_, node)| *node)));
+    let moving = system.moving_fields();
+    found.extend(
+        moving.iter().flat_map(|field| system.fields[*field].components.iter().map(|(_, node)| *node)),
+    );
     found
 }
 

@@ -2,6 +2,7 @@
 
 use super::boxes::FreeCoordinate;
 use super::progress::Progress;
+use crate::system::FieldRole;
 
 /// How a box stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -90,6 +91,8 @@ pub struct RegionMap {
 pub struct RegionAnswer {
     pub file: String,
     pub title: String,
+    /// The fields that move the states: of these words are made.
+    pub fields: Vec<FieldRole>,
     /// The number of states, and the number of columns that are left when unit rows are taken out.
     pub dimension: usize,
     pub columns: usize,
@@ -123,4 +126,6 @@ pub struct RegionAnswer {
     pub largest: Vec<OpenBox>,
     pub map: Option<RegionMap>,
     pub remarks: Vec<String>,
+    /// What would have to hold for the system and its rows to exist, and holds nowhere; nothing is proved then.
+    pub nowhere: Vec<String>,
 }

@@ -1,5 +1,6 @@
 //! What is combined, and what came of it.
 
+use crate::system::FieldRole;
 use std::collections::BTreeMap;
 
 /// A kind of number.
@@ -234,6 +235,8 @@ pub struct LeftOut {
 pub struct Trade {
     pub file: String,
     pub title: String,
+    /// The fields of which words are made.
+    pub fields: Vec<FieldRole>,
     /// Where the rows come from.
     pub rows: String,
     /// The words whose differentials the rows are, where that is known.

@@ -90,6 +90,7 @@ pub fn trade(system: &System, question: &TradeQuestion<'_>) -> Result<Trade, Str
     Ok(Trade {
         file: work.system.name.clone(),
         title: work.system.title.clone(),
+        fields: work.system.roles(),
         rows: work.origin.clone(),
         words: work.words.clone(),
         size: (work.rows, work.columns),

@@ -70,12 +70,13 @@ fn words_of(system: &mut System, entries: &[NodeId]) -> Result<Vec<Word>, String
         if found.iter().all(Option::is_some) {
             return Ok(found.into_iter().flatten().collect());
         }
-        let more = words.len() * system.fields.len();
+        let moving = system.moving_fields();
+        let more = words.len() * moving.len();
         if more == 0 || longest == LONGEST || count + more > MOST_WORDS {
             break;
         }
         let mut longer = Vec::new();
-        for field in 0..system.fields.len() {
+        for field in moving {
             for (word, value) in &words {
                 let derivative = system.lie_derivative(field, *value);
                 let fields = [&[field], word.fields.as_slice()].concat();

@@ -116,6 +116,7 @@ impl Work {
         if system.states.is_empty() || system.outputs.is_empty() {
             return Err(format!("{} declares no states or no outputs", system.name));
         }
+        system.require_motion()?;
         let columns = system.states.len();
         let rows = Rows::of(&mut system)?;
         let angles = system.angles();
@@ -128,7 +129,9 @@ impl Work {
         // what the fields need is drawn too: dual numbers and differences go through them
         let mut mentioned = rows.entries;
         mentioned.extend(system.outputs.iter().map(|(_, node)| *node));
-        let rates = system.fields.iter().flat_map(|field| field.components.iter().map(|(_, node)| *node));
+        let moving = system.moving_fields();
+        let rates =
+            moving.iter().flat_map(|field| system.fields[*field].components.iter().map(|(_, node)| *node));
         mentioned.extend(rates);
         let locus = Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &mentioned)
             .map_err(|error| error.to_string())?;

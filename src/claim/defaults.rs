@@ -1,0 +1,89 @@
+//! A claim at the values that its file gives to parameters.
+//!
+//! A value in a file is what `eval`, `rank` and pictures take where nothing else is said. A claim is about all values: what
+//! is proved of `k` need not hold at `param k = 0`, since a rank is that of almost all values and an identity holds where
+//! both sides exist. Where the two verdicts differ the outcome says so.
+
+use super::verdict::Verdict;
+use crate::expression::syntax::{Equation, Expr, ExprKind};
+use crate::expression::{NodeId, Symbol};
+use crate::system::{Kind, Statement, System, Value};
+use dashu::rational::RBig;
+
+/// What a statement comes to at the file's values, where that is another verdict than the one on all values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtFilesValues {
+    /// Name and value of the parameters that the statement depends on, in the order of the file.
+    pub values: Vec<(String, RBig)>,
+    /// `proved`, `refuted` or `undecided`.
+    pub word: &'static str,
+}
+
+/// Decides a statement once more with the file's values as conditions in front of its own. `None` where it depends on no
+/// such value, or where the verdict is the same.
+pub(crate) fn at_the_files_values(
+    system: &mut System,
+    statement: &Statement,
+    verdict: &Verdict,
+    decide: impl FnOnce(&mut System, &Statement) -> Verdict,
+) -> Option<AtFilesValues> {
+    // numbers have nothing to depend on
+    if statement.equation.within.is_some() {
+        return None;
+    }
+    let values = values_for(system, statement);
+    if values.is_empty() {
+        return None;
+    }
+    let mut special = statement.clone();
+    let given = values.iter().map(|(symbol, value)| Equation {
+        left: part(statement, ExprKind::Name(system.symbol_name(*symbol).to_owned())),
+        right: part(statement, ExprKind::Number(value.clone())),
+        within: None,
+    });
+    special.conditions.splice(0..0, given);
+    let word = decide(system, &special).word();
+    let named =
+        values.into_iter().map(|(symbol, value)| (system.symbol_name(symbol).to_owned(), value)).collect();
+    (word != verdict.word()).then_some(AtFilesValues { values: named, word })
+}
+
+fn part(statement: &Statement, kind: ExprKind) -> Expr {
+    Expr { kind, span: statement.span.clone() }
+}
+
+/// The parameters of this file with a value that a statement depends on. Those that its own conditions fix are left out,
+/// and angles other than zero, whose sines have no exact value.
+fn values_for(system: &mut System, statement: &Statement) -> Vec<(Symbol, RBig)> {
+    let mut nodes: Vec<NodeId> = Vec::new();
+    for side in [&statement.equation.left, &statement.equation.right] {
+        match system.elaborate(side) {
+            Ok(Value::Scalar(id)) => nodes.push(id),
+            Ok(Value::Matrix(m) | Value::Rank(m)) => nodes.extend(m.entries),
+            Ok(Value::Pole { expression, factor }) => nodes.extend([expression, factor]),
+            Ok(Value::CodistributionRank) => {
+                nodes.extend(system.outputs.iter().map(|(_, node)| *node));
+                for field in system.moving_fields() {
+                    nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
+                }
+            }
+            Err(_) => return Vec::new(),
+        }
+    }
+    let mut fixed = Vec::new();
+    for condition in &statement.conditions {
+        for side in [&condition.left, &condition.right] {
+            if let Ok(node) = system.scalar(side) {
+                fixed.extend(system.graph.as_symbol(node));
+                nodes.push(node);
+            }
+        }
+    }
+    let mentioned = system.graph.symbols_of(nodes);
+    let value = |(symbol, info): (Symbol, &crate::system::SymbolInfo)| {
+        let value = info.default.clone().filter(|value| !info.is_angle || value.is_zero())?;
+        let counts = info.kind == Kind::Parameter && mentioned.contains(&symbol) && !fixed.contains(&symbol);
+        counts.then_some((symbol, value))
+    };
+    system.symbols().filter_map(value).collect()
+}
