@@ -40,6 +40,8 @@ pub(crate) struct Prove {
 /// What is decided so far.
 #[derive(Default)]
 struct Decided {
+    /// How many claims there are.
+    claims: usize,
     /// The place of each claim, by its file and its name, in the order of the files.
     places: HashMap<(String, String), usize>,
     /// As they were decided.
@@ -76,7 +78,11 @@ impl Prove {
                 "add a line such as: claim 1: L(f, x) = v",
             ));
         }
-        hold(decided).places = names.into_iter().zip(0..).collect();
+        {
+            let mut decided = hold(decided);
+            decided.claims = claims;
+            decided.places = names.into_iter().zip(0..).collect();
+        }
         let kept = if self.verdicts.is_some() { Kept::Evidence } else { Kept::Verdicts };
         let bar = progress(claims as u64, "deciding claims");
         for system in &systems {
@@ -92,7 +98,7 @@ impl Prove {
 
     /// Prints and writes what is decided, in the order of the files.
     fn tell(&self, decided: &Mutex<Decided>) -> miette::Result<Status> {
-        let Decided { places, mut outcomes } = std::mem::take(&mut *hold(decided));
+        let Decided { claims, places, mut outcomes } = std::mem::take(&mut *hold(decided));
         outcomes
             .sort_by_cached_key(|outcome| places.get(&(outcome.file.clone(), outcome.id.clone())).copied());
         let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
@@ -111,9 +117,9 @@ impl Prove {
             "seed": self.seed,
             "claims": outcomes.iter().map(claim_json).collect::<Vec<_>>(),
         });
-        let all = failed == 0 && !places.is_empty() && outcomes.len() == places.len();
+        let all = failed == 0 && claims > 0 && outcomes.len() == claims;
         let status = if all { Status::AsExpected } else { Status::NotAsExpected };
-        files.print(Form::of(self.json), object, || in_words(&outcomes, places.len()), status)
+        files.print(Form::of(self.json), object, || in_words(&outcomes, claims), status)
     }
 }
 

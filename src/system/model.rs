@@ -336,7 +336,11 @@ impl System {
         };
         let mut waiting: VecDeque<Mention> = places.into_iter().filter_map(mention).collect();
         let mut found = Explanations::default();
+        let mut met = HashSet::new();
         while let Some(mention) = waiting.pop_front() {
+            if !met.insert(mention.clone()) {
+                continue;
+            }
             let (list, name, written) = match mention {
                 Mention::Definition(name) => (&mut found.definitions, name.clone(), self.written.get(&name)),
                 Mention::Field(name) => {
@@ -344,9 +348,7 @@ impl System {
                     (&mut found.fields, name, field.map(|field| &field.written))
                 }
             };
-            if let Some(written) = written
-                && !list.iter().any(|(known, _)| *known == name)
-            {
+            if let Some(written) = written {
                 list.push((name, written.text()));
                 waiting.extend(written.mentions());
             }

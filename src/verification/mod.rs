@@ -170,9 +170,13 @@ pub fn verify_into(options: &Options<'_>, found: &Mutex<Verification>) -> Result
     };
 
     for system in &systems {
-        let outcomes =
-            decide_all(system, options.seed, options.interrupt, &|o| step(&format!("claim {}", o.id)));
-        found().outcomes.extend(outcomes);
+        let before = found().outcomes.len();
+        let outcomes = decide_all(system, options.seed, options.interrupt, &|outcome| {
+            found().outcomes.push(outcome.clone());
+            step(&format!("claim {}", outcome.id));
+        });
+        // as they came, and now in the order of the file
+        found().outcomes.splice(before.., outcomes);
     }
     for (regime, system) in REGIMES.iter().zip(&systems) {
         if stopped() {

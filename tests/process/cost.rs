@@ -3,6 +3,9 @@
 
 use crate::common::{folder, json, write};
 use crate::{finish, program, words};
+use palmistry::report::claim_json;
+use palmistry::{System, decide, decide_all};
+use std::path::Path;
 
 fn many(count: usize, line: impl Fn(usize) -> String) -> String {
     (1..=count).map(line).collect()
@@ -72,4 +75,34 @@ fn long_files_are_read_and_decided() {
         assert_eq!(claims.len(), if name == "claims" { COUNT } else { 1 }, "{name}");
         assert!(claims.iter().all(|claim| claim["verdict"] == "proved"), "{name}");
     }
+}
+
+/// Claims share a copy of their system, one after the other. The oracle is a copy for each, in two orders.
+#[test]
+fn a_verdict_does_not_depend_on_its_neighbours() {
+    let without_times = |outcome: &palmistry::Outcome| {
+        let mut object = claim_json(outcome);
+        crate::common::without_times(&mut object);
+        object
+    };
+    let mut compared = 0;
+    for file in ["fixed_palms", "chapter3_contact", "appendix_a3"] {
+        let path = format!("proofs/moll2002/{file}.proof");
+        let mut system = System::read(Path::new(&path)).unwrap();
+        for _ in 0..2 {
+            let together = decide_all(&system, 7, &false.into(), &|_| ());
+            assert_eq!(together.len(), system.claims.len());
+            for (claim, outcome) in system.claims.iter().zip(&together) {
+                assert_eq!(
+                    without_times(&decide(&system, claim, 7)),
+                    without_times(outcome),
+                    "{file} {}",
+                    claim.id
+                );
+                compared += 1;
+            }
+            system.claims.reverse();
+        }
+    }
+    assert!(compared > 20, "{compared}");
 }
