@@ -4,7 +4,7 @@ use super::error::{Problem, nearest};
 use super::matrices::transpose;
 use super::model::{Assignment, Kind, Matrix, System, Value};
 use crate::expression::syntax::{Expr, ExprKind, Name, Span};
-use crate::expression::{NodeId, gradient};
+use crate::expression::{Need, NodeId, gradient};
 use crate::number::Function;
 use dashu::rational::RBig;
 
@@ -64,17 +64,23 @@ impl System {
             }
             ExprKind::Power(base, exponent) => {
                 let value = self.scalar(base)?;
+                if *exponent < 0 {
+                    self.need(value, Need::NotZero);
+                }
                 Ok(Value::Scalar(self.graph.power(value, *exponent)))
             }
             ExprKind::Matrix(rows) => self.blocks(rows, &expr.span),
             ExprKind::At(inner, list) => {
-                let value = self.elaborate(inner)?;
+                let (value, domain) = self.apart(|system| system.elaborate(inner))?;
                 if matches!(value, Value::CodistributionRank | Value::Pole { .. }) {
                     let message = format!("{} is not taken at a point", value.describe());
                     return Err(Problem::new(&expr.span, message, "here")
                         .help("write 'where name = value' behind the claim"));
                 }
                 let assignment = self.assignment(list)?;
+                let guards = self.guards_of(&domain);
+                let guards = self.substitute_guards(&guards, &assignment);
+                self.need_all(guards);
                 Ok(self.substitute(value, &assignment))
             }
         }
@@ -137,8 +143,9 @@ impl System {
     }
 
     fn named(&mut self, name: &str, span: &Span) -> Result<Value, Problem> {
-        if let Some(value) = self.definitions.get(name) {
-            return Ok(value.clone());
+        if let Some(value) = self.definitions.get(name).cloned() {
+            self.need_definition(name);
+            return Ok(value);
         }
         if let Some(symbol) = self.find_symbol(name) {
             return Ok(Value::Scalar(self.graph.symbol(symbol)));
@@ -192,6 +199,9 @@ impl System {
         };
         if let Some(function) = Function::ALL.into_iter().find(|f| f.name() == name) {
             let argument = one(self)?;
+            if let Some(need) = Need::of(function) {
+                self.need(argument, need);
+            }
             return Ok(Value::Scalar(self.graph.apply(function, argument)));
         }
         match name {
@@ -206,6 +216,7 @@ impl System {
                     "sec" => (unit, cosine),
                     _ => (unit, sine),
                 };
+                self.need(bottom, Need::NotZero);
                 Ok(Value::Scalar(self.graph.div(top, bottom)))
             }
             "L" => self.lie(arguments, span),
@@ -284,6 +295,13 @@ impl System {
             if self.field_mut(name).is_none() {
                 return Err(self.unknown(name, &field.span, Wanted::Field));
             }
+            let entries = match &value {
+                Value::Scalar(id) => vec![*id],
+                Value::Matrix(matrix) => matrix.entries.clone(),
+                _ => Vec::new(),
+            };
+            let mentioned = self.graph.symbols_of(entries);
+            self.need_all(self.rate_guards(name, &mentioned));
             value = self.map(value, &last.span, |system, id| {
                 let graph = &mut system.graph;
                 match system.fields.iter_mut().chain(&mut system.imported_fields).find(|f| f.name == *name) {

@@ -3,8 +3,8 @@
 use super::determinant::{LARGEST, determinant};
 use super::error::Problem;
 use super::model::{Matrix, System, Value};
-use crate::expression::NodeId;
 use crate::expression::syntax::{Expr, Span};
+use crate::expression::{Need, NodeId};
 
 /// The greatest number of entries of a matrix.
 const LARGEST_MATRIX: usize = 1 << 16;
@@ -40,6 +40,7 @@ impl System {
                 let minor = Matrix { rows: n - 1, columns: n - 1, entries: minor };
                 let value = determinant(&mut self.graph, &minor);
                 let value = if (row + column) % 2 == 0 { value } else { self.graph.neg(value) };
+                self.need(whole, Need::NotZero);
                 entries.push(self.graph.div(value, whole));
             }
         }
@@ -170,6 +171,7 @@ impl System {
     ) -> Result<Value, Problem> {
         match (a, b, divides) {
             (value, Value::Scalar(divisor), true) => {
+                self.need(divisor, Need::NotZero);
                 self.map(value, span, |system, id| system.graph.div(id, divisor))
             }
             (value @ (Value::Scalar(_) | Value::Matrix(_)), Value::Scalar(factor), false) => {

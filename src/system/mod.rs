@@ -7,6 +7,7 @@
 //! This floor knows nothing of ranks, verdicts or palms.
 
 mod determinant;
+mod domain;
 mod elaborate;
 mod error;
 mod grammar;

@@ -1,10 +1,11 @@
 //! What a system is.
 
+use super::domain::Domain;
 use super::error::Problem;
 use super::grammar::{ClaimBody, ClaimSyntax};
 use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};
 use crate::expression::syntax::Span;
-use crate::expression::{Derivation, Graph, NodeId, Symbol, gradient};
+use crate::expression::{Derivation, Graph, Guard, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 
@@ -72,6 +73,8 @@ pub struct Field {
     pub components: Vec<(Symbol, NodeId)>,
     /// Its components as they are written.
     pub(crate) written: Written,
+    /// Where each component exists.
+    pub guards: Vec<Vec<Guard>>,
     pub(crate) derivation: Derivation,
 }
 
@@ -156,6 +159,8 @@ pub struct System {
     pub fields: Vec<Field>,
     /// The outputs: how they are written, and what they are.
     pub outputs: Vec<(String, NodeId)>,
+    /// Where each output exists.
+    pub output_guards: Vec<Vec<Guard>>,
     /// What sampled states keep away from being zero.
     pub avoid: Vec<(String, NodeId)>,
     /// The claims, as syntax.
@@ -164,6 +169,10 @@ pub struct System {
     pub(crate) definitions: BTreeMap<String, Value>,
     /// The definitions as they are written, imported ones under their full names.
     pub(crate) written: BTreeMap<String, Written>,
+    /// Where each definition exists, imported ones included.
+    pub(crate) definition_domains: HashMap<String, Domain>,
+    /// What the terms that are being read need to exist.
+    pub(crate) domain: Domain,
     /// Fields of imported systems, under their full names.
     pub(crate) imported_fields: Vec<Field>,
     pub(crate) partials: HashMap<Symbol, Derivation>,

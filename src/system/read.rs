@@ -60,11 +60,14 @@ impl System {
             states: Vec::new(),
             fields: Vec::new(),
             outputs: Vec::new(),
+            output_guards: Vec::new(),
             avoid: Vec::new(),
             claims: Vec::new(),
             symbols: BTreeMap::new(),
             definitions: BTreeMap::new(),
             written: BTreeMap::new(),
+            definition_domains: HashMap::new(),
+            domain: Default::default(),
             imported_fields: Vec::new(),
             partials: HashMap::new(),
             states_are_final: false,
@@ -77,6 +80,7 @@ impl System {
         for claim in system.claims.clone() {
             system.check(&claim)?;
         }
+        system.domain = Default::default();
         if system.title.is_empty() {
             return Err(Problem::new(&(0..0), "the file does not name a system", "here")
                 .help("begin with: system \"what it is\""));
@@ -142,7 +146,7 @@ impl System {
                     return Err(Problem::new(&name.span, message, "a definition of this name would hide it")
                         .help("choose another name, or declare the symbol with 'param'"));
                 }
-                let value = self.elaborate(&expr)?;
+                let (value, domain) = self.apart(|system| system.elaborate(&expr))?;
                 if value == Value::CodistributionRank {
                     return Err(Problem::new(
                         &expr.span,
@@ -151,6 +155,7 @@ impl System {
                     ));
                 }
                 self.written.insert(name.text.clone(), self.written_as(&expr.span, [&expr]));
+                self.definition_domains.insert(name.text.clone(), domain);
                 self.definitions.insert(name.text, value);
             }
             Item::Field { role, name, components, others_are_zero } => {
@@ -158,10 +163,15 @@ impl System {
             }
             Item::Output(list) => {
                 for expr in list {
-                    let value = self.scalar(&expr)?;
+                    let (value, domain) = self.apart(|system| system.scalar(&expr))?;
+                    let guards = self.guards_of(&domain);
                     // what is seen twice is seen once: a second time it would count as a measurement of its own
-                    if self.outputs.iter().all(|(_, known)| *known != value) {
-                        self.outputs.push((in_one_line(&self.source, &expr.span), value));
+                    match self.outputs.iter().position(|(_, known)| *known == value) {
+                        Some(place) => self.output_guards[place].extend(guards),
+                        None => {
+                            self.output_guards.push(guards);
+                            self.outputs.push((in_one_line(&self.source, &expr.span), value));
+                        }
                     }
                 }
             }
@@ -272,6 +282,7 @@ impl System {
             )));
         }
         let mut rates: Vec<(Symbol, _)> = Vec::new();
+        let mut guards = Vec::new();
         for (state, expr) in components {
             let symbol = self.find_symbol(&state.text).filter(|symbol| self.states.contains(symbol));
             let Some(symbol) = symbol else {
@@ -281,7 +292,9 @@ impl System {
                 let message = format!("'{}' is given twice in the field '{}'", state.text, name.text);
                 return Err(Problem::new(&state.span, message, "the second time"));
             }
-            rates.push((symbol, self.scalar(expr)?));
+            let (rate, domain) = self.apart(|system| system.scalar(expr))?;
+            rates.push((symbol, rate));
+            guards.push(self.guards_of(&domain));
         }
         let missing = self.states.iter().find(|state| !rates.iter().any(|(symbol, _)| symbol == *state));
         if let (Some(missing), false) = (missing, others_are_zero) {
@@ -304,6 +317,7 @@ impl System {
             span: name.span,
             components: rates,
             written,
+            guards,
             derivation,
         });
         Ok(())
@@ -423,6 +437,10 @@ impl System {
         }
         for (name, value) in other.definitions {
             self.definitions.insert(format!("{}.{name}", alias.text), value);
+        }
+        for (name, domain) in other.definition_domains {
+            let domain = domain.under(&alias.text);
+            self.definition_domains.insert(format!("{}.{name}", alias.text), domain);
         }
         Ok(())
     }

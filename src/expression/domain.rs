@@ -1,0 +1,127 @@
+//! Where a term has a value: what is divided by, and what roots, logarithms and inverse sines are taken of.
+//!
+//! The graph simplifies as it is built, and what it simplifies may have a value where the term as it was written has none:
+//! `0*log(x)` becomes zero, `1/(1/x)` becomes `x`. So whoever reads a term keeps its [`Guard`]s beside the value: the term
+//! exists where all of them hold and the value can be computed, and nowhere else. Guards are never simplified away, other
+//! than by a constant of which they hold.
+
+use super::graph::{Graph, NodeId, Symbol};
+use crate::number::{Enclosure, Function};
+use dashu::rational::RBig;
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+/// What an operation needs of its operand to have a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Need {
+    /// A divisor.
+    NotZero,
+    /// What a logarithm is taken of.
+    Positive,
+    /// What a square root is taken of.
+    NotNegative,
+    /// What an inverse sine or cosine is taken of: between minus one and one, both counted.
+    WithinOne,
+    /// The same, neither counted: where an inverse sine has a derivative.
+    InsideOne,
+}
+
+/// An operand, and what is needed of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Guard {
+    pub node: NodeId,
+    pub need: Need,
+}
+
+impl Need {
+    /// What a function needs of its argument.
+    pub fn of(function: Function) -> Option<Need> {
+        match function {
+            Function::Log => Some(Need::Positive),
+            Function::Sqrt => Some(Need::NotNegative),
+            Function::Asin | Function::Acos => Some(Need::WithinOne),
+            Function::Sin | Function::Cos | Function::Atan | Function::Exp => None,
+        }
+    }
+
+    /// What the operation needs to have derivatives of all orders, too.
+    pub fn smooth(self) -> Need {
+        match self {
+            Need::NotNegative => Need::Positive,
+            Need::WithinOne => Need::InsideOne,
+            other => other,
+        }
+    }
+
+    /// Whether an exact value meets it.
+    pub fn is_met_by(self, value: &RBig) -> bool {
+        let sign = value.cmp(&RBig::ZERO);
+        let beside_one = || (value * value).cmp(&RBig::ONE);
+        match self {
+            Need::NotZero => sign != Ordering::Equal,
+            Need::Positive => sign == Ordering::Greater,
+            Need::NotNegative => sign != Ordering::Less,
+            Need::WithinOne => beside_one() != Ordering::Greater,
+            Need::InsideOne => beside_one() == Ordering::Less,
+        }
+    }
+
+    /// Whether all values between two bounds meet it, or none does; `None` where some may and some may not.
+    pub fn is_met_between(self, low: &RBig, high: &RBig) -> Option<bool> {
+        let (zero, one) = (RBig::ZERO, RBig::ONE);
+        let (all, none) = match self {
+            Need::NotZero => (*low > zero || *high < zero, low.is_zero() && high.is_zero()),
+            Need::Positive => (*low > zero, *high <= zero),
+            Need::NotNegative => (*low >= zero, *high < zero),
+            Need::WithinOne => (*low >= -one.clone() && *high <= one, *low > one || *high < -one.clone()),
+            Need::InsideOne => (*low > -one.clone() && *high < one, *low >= one || *high <= -one.clone()),
+        };
+        if all { Some(true) } else { none.then_some(false) }
+    }
+
+    /// Whether an enclosed value meets it; `None` where the enclosure does not tell.
+    pub fn is_met_by_enclosure(self, value: &Enclosure) -> Option<bool> {
+        self.is_met_between(&value.low(), &value.high())
+    }
+}
+
+impl Guard {
+    /// The guard in the notation of the proof language: `x + 1 != 0`, `x >= 0`.
+    pub fn text(self, graph: &Graph) -> String {
+        let operand = graph.text(self.node);
+        match self.need {
+            Need::NotZero => format!("{operand} != 0"),
+            Need::Positive => format!("{operand} > 0"),
+            Need::NotNegative => format!("{operand} >= 0"),
+            Need::WithinOne => format!("-1 <= {operand} <= 1"),
+            Need::InsideOne => format!("-1 < {operand} < 1"),
+        }
+    }
+
+    /// Whether it is about a constant, and so holds everywhere or nowhere.
+    pub fn constant(self, graph: &Graph) -> Option<bool> {
+        graph.constant_value(self.node).map(|value| self.need.is_met_by(value))
+    }
+}
+
+/// The guards with symbols replaced, each once; those of constants of which they hold are left out.
+pub fn substitute_guards(
+    graph: &mut Graph,
+    guards: &[Guard],
+    values: &HashMap<Symbol, NodeId>,
+) -> Vec<Guard> {
+    let nodes: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
+    let images = graph.substitute(&nodes, values);
+    let mut found = Vec::new();
+    for (guard, node) in guards.iter().zip(images) {
+        add_guard(graph, &mut found, Guard { node, need: guard.need });
+    }
+    found
+}
+
+/// Adds a guard that is not yet there, unless it holds of a constant.
+pub fn add_guard(graph: &Graph, guards: &mut Vec<Guard>, guard: Guard) {
+    if guard.constant(graph) != Some(true) && !guards.contains(&guard) {
+        guards.push(guard);
+    }
+}
