@@ -4,7 +4,6 @@ use super::value::{ValueError, enclose};
 use super::verdict::{Verdict, Witness};
 use super::witness::{Search, search};
 use crate::expression::{NodeId, Program, Symbol, ZeroTest, expand_angles, identically_zero};
-use crate::number::rational_to_f64;
 use crate::system::{Matrix, System};
 use dashu::rational::RBig;
 use rand::Rng;
@@ -73,8 +72,7 @@ pub(crate) fn decide_identity(
     Verdict::undecided(format!("{why}; the sides agree to at least {digits} digits at {states} states"))
 }
 
-/// Decides `|left - right| <= tolerance` where all three have a value without further ado: constants, and parameters
-/// with the values that the file gives them.
+/// Decides `|left - right| <= tolerance` where all three are numbers: constants, and what `at {...}` makes constants.
 pub(crate) fn decide_nearness(
     system: &mut System,
     left: NodeId,
@@ -83,8 +81,8 @@ pub(crate) fn decide_nearness(
 ) -> Verdict {
     let difference = system.graph.sub(left, right);
     let program = Program::new(&system.graph, &[difference, tolerance, left, right], |_| false, false);
-    let values: HashMap<Symbol, RBig> =
-        system.symbols().filter_map(|(symbol, info)| Some((symbol, info.default.clone()?))).collect();
+    // a value in a file is a default, and never part of a claim
+    let values: HashMap<Symbol, RBig> = HashMap::new();
     let mut bits = 128;
     loop {
         let found = match enclose(&system.graph, &program, &values, bits) {
@@ -110,14 +108,7 @@ pub(crate) fn decide_nearness(
         if smallest > found[1].high() {
             let shown =
                 |index: usize| found[index].certain_decimal(20).unwrap_or_else(|| found[index].bounds_text());
-            let state = values
-                .iter()
-                .filter(|(symbol, _)| program.inputs().contains(&crate::expression::Input::Plain(**symbol)))
-                .map(|(symbol, value)| {
-                    (system.symbol_name(*symbol).to_owned(), value.to_string(), rational_to_f64(value))
-                })
-                .collect();
-            let witness = Witness { state, left: shown(2), right: shown(3), entry: None };
+            let witness = Witness { state: Vec::new(), left: shown(2), right: shown(3), entry: None };
             return Verdict::Refuted { engine: INTERVALS.to_owned(), witness };
         }
         if bits >= 1 << 14 {
