@@ -121,6 +121,7 @@ fn rank_of(
                 order: None,
                 fixed,
                 conditions: conditions.to_vec(),
+                recorded: 0,
                 interrupt: &false.into(),
                 progress: &|_| (),
             },
