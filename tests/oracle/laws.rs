@@ -239,7 +239,7 @@ fn numbers(dice: &mut Dice, findings: &mut Findings) {
 
 /// Whether an expression does not depend on `k` after all.
 fn cancels(e: &E, x: &RBig, dice: &mut Dice) -> bool {
-    let mut at = |dice: &mut Dice| {
+    let at = |dice: &mut Dice| {
         let number = |value: RBig| Coordinate::Number(Number::Rational(value));
         value(e, &Point::of([("x", number(x.clone())), ("k", number(dice.positive()))]))
     };
