@@ -68,21 +68,21 @@ fn what_was_simplified_away_guards_the_box() {
     // half-angle tangents cancel, quotients cancel, roots are unwound, products with zero vanish
     for Hidden { text, rows, at_least, at_most, state } in [
         Hidden {
-            text: "state phi angle phi output sin(phi)\nrows = [2 + sin(phi)/(1 + cos(phi))]\nsample phi in [3, 4]",
+            text: "state phi angle phi output sin(phi)\nlet rows = [2 + sin(phi)/(1 + cos(phi))]\nsample phi in [3, 4]",
             rows: own,
             at_least: 0.99,
             at_most: 0.999_999_999_9,
             state: half_turn,
         },
         Hidden {
-            text: "state phi angle phi output sin(phi)\nrows = [3 + tan(phi)*cos(phi)]\nsample phi in [-7, 7]",
+            text: "state phi angle phi output sin(phi)\nlet rows = [3 + tan(phi)*cos(phi)]\nsample phi in [-7, 7]",
             rows: own,
             at_least: 0.99,
             at_most: 0.999_999_999_9,
             state: &[("phi", Interval::new(1.570_796_326_794_896_6, 1.570_796_326_794_896_8))],
         },
         Hidden {
-            text: "state x output x\nrows = [x/x]\nsample x in [-1, 1]",
+            text: "state x output x\nlet rows = [x/x]\nsample x in [-1, 1]",
             rows: own,
             at_least: 0.99,
             at_most: 0.999_999_999_9,
@@ -90,28 +90,28 @@ fn what_was_simplified_away_guards_the_box() {
         },
         // at the very end of the box
         Hidden {
-            text: "state x output x\nrows = [x/x]\nsample x in [0, 1]",
+            text: "state x output x\nlet rows = [x/x]\nsample x in [0, 1]",
             rows: own,
             at_least: 0.99,
             at_most: 0.999_999_999_9,
             state: zero,
         },
         Hidden {
-            text: "state x output x\na = x/x\nb = 1 + 0*a\nrows = [b]\nsample x in [-1, 1]",
+            text: "state x output x\nlet a = x/x\nlet b = 1 + 0*a\nlet rows = [b]\nsample x in [-1, 1]",
             rows: own,
             at_least: 0.99,
             at_most: 0.999_999_999_9,
             state: zero,
         },
         Hidden {
-            text: "state x output x\nrows = [2 + 0*log(x)]\nsample x in [-1, 1]",
+            text: "state x output x\nlet rows = [2 + 0*log(x)]\nsample x in [-1, 1]",
             rows: own,
             at_least: 0.49,
             at_most: 0.5,
             state: zero,
         },
         Hidden {
-            text: "state x output x\nrows = [2 + 0*acos(x)]\nsample x in [-2, 2]",
+            text: "state x output x\nlet rows = [2 + 0*acos(x)]\nsample x in [-2, 2]",
             rows: own,
             at_least: 0.49,
             at_most: 0.5,
@@ -119,7 +119,7 @@ fn what_was_simplified_away_guards_the_box() {
         },
         // zero is allowed under a root of rows that need only exist, and there the row exists
         Hidden {
-            text: "state x output x\nrows = [2 + 0*sqrt(x)]\nsample x in [-1, 1]",
+            text: "state x output x\nlet rows = [2 + 0*sqrt(x)]\nsample x in [-1, 1]",
             rows: own,
             at_least: 0.49,
             at_most: 0.5,
@@ -148,7 +148,7 @@ fn what_was_simplified_away_guards_the_box() {
         },
         // own rows, of a system that is not defined
         Hidden {
-            text: "state x drift f x' = 0 output x + 0/x\nrows = [1]\nsample x in [-1, 1]",
+            text: "state x drift f x' = 0 output x + 0/x\nlet rows = [1]\nsample x in [-1, 1]",
             rows: own,
             at_least: 0.99,
             at_most: 0.999_999_999_9,
@@ -156,14 +156,14 @@ fn what_was_simplified_away_guards_the_box() {
         },
         // no product of polynomials: a divisor that is looked at as it is written
         Hidden {
-            text: "state x output x\nrows = [1 + 0/(exp(x) - 1)]\nsample x in [-1, 1]",
+            text: "state x output x\nlet rows = [1 + 0/(exp(x) - 1)]\nsample x in [-1, 1]",
             rows: own,
             at_least: 0.99,
             at_most: 0.999_999_999_9,
             state: zero,
         },
         Hidden {
-            text: "state x, phi angle phi output x\nrows = [1, 0; 0, 1 + 0/(phi - 3)]\nsample x in [0, 1] phi in [2, 4]",
+            text: "state x, phi angle phi output x\nlet rows = [1, 0; 0, 1 + 0/(phi - 3)]\nsample x in [0, 1] phi in [2, 4]",
             rows: own,
             at_least: 0.99,
             at_most: 0.999_999_999_9,
@@ -171,7 +171,7 @@ fn what_was_simplified_away_guards_the_box() {
         },
         // differentiated rows divide by more than was written
         Hidden {
-            text: "state x drift f x' = 0 output x\nrows = d(sqrt(x)^3) + d(x)\nsample x in [-1, 1]",
+            text: "state x drift f x' = 0 output x\nlet rows = d(sqrt(x)^3) + d(x)\nsample x in [-1, 1]",
             rows: own,
             at_least: 0.49,
             at_most: 0.5,
@@ -190,15 +190,15 @@ fn what_was_simplified_away_guards_the_box() {
 fn of_what_exists_nowhere_nothing_is_proved() {
     for (text, rows, given) in [
         (
-            "state x output x\nrows = [1 + 0/((x + 1)^2 - x^2 - 2*x - 1)]\nsample x in [-1, 1]",
+            "state x output x\nlet rows = [1 + 0/((x + 1)^2 - x^2 - 2*x - 1)]\nsample x in [-1, 1]",
             RegionRows::Own,
             None,
         ),
-        ("state x output x\nrows = [1 + (x - x)/(x - x)]\nsample x in [-1, 1]", RegionRows::Own, None),
-        ("state x output x\nrows = [1 + 0*sqrt(0 - 1)]\nsample x in [-1, 1]", RegionRows::Own, None),
-        ("state x output x\nrows = [2 + 0*acos(2)]\nsample x in [-1, 1]", RegionRows::Own, None),
+        ("state x output x\nlet rows = [1 + (x - x)/(x - x)]\nsample x in [-1, 1]", RegionRows::Own, None),
+        ("state x output x\nlet rows = [1 + 0*sqrt(0 - 1)]\nsample x in [-1, 1]", RegionRows::Own, None),
+        ("state x output x\nlet rows = [2 + 0*acos(2)]\nsample x in [-1, 1]", RegionRows::Own, None),
         (
-            "state phi angle phi output sin(phi)\nrows = [1 + 0/(sin(phi)^2 + cos(phi)^2 - 1)]\nsample phi in [1, 2]",
+            "state phi angle phi output sin(phi)\nlet rows = [1 + 0/(sin(phi)^2 + cos(phi)^2 - 1)]\nsample phi in [1, 2]",
             RegionRows::Own,
             None,
         ),
@@ -206,7 +206,7 @@ fn of_what_exists_nowhere_nothing_is_proved() {
         // a parameter that is held at a pole, and a state
         ("state x param k = 0 drift f x' = 0 output x + 0/k\nsample x in [-1, 1]", ALL, None),
         ("state x param k = 1 drift f x' = 0 output x*k/k\nsample x in [-1, 1]", ALL, Some(("k", 0))),
-        ("state x output x\nrows = [x/x]\nsample x in [-1, 1]", RegionRows::Own, Some(("x", 0))),
+        ("state x output x\nlet rows = [x/x]\nsample x in [-1, 1]", RegionRows::Own, Some(("x", 0))),
     ] {
         let mut system = system(text);
         let given: Vec<(&str, RBig, RBig)> =
@@ -227,7 +227,7 @@ fn of_what_exists_nowhere_nothing_is_proved() {
         assert!(palmistry::report::region_text(&answer).contains("nothing is proved"), "{text}");
     }
     // a zero that only interval arithmetic meets is nowhere shown to be one, and nowhere shown not to be
-    let mut hidden = system("state x output x\nrows = [1 + 0/(exp(x)*exp(-x) - 1)]\nsample x in [-1, 1]");
+    let mut hidden = system("state x output x\nlet rows = [1 + 0/(exp(x)*exp(-x) - 1)]\nsample x in [-1, 1]");
     assert_eq!(searched(&mut hidden, RegionRows::Own, &[], 3000).1.proved, 0.0);
 }
 
@@ -279,7 +279,7 @@ fn a_journal_of_another_function_is_refused() {
 /// Ends of ranges that doubles do not hold, and an empty range.
 #[test]
 fn ranges_at_the_edge_of_the_numbers() {
-    let text = "state x output x\nrows = [x/x + 1]\nsample x in [0, 1]";
+    let text = "state x output x\nlet rows = [x/x + 1]\nsample x in [0, 1]";
     let huge: RBig = palmistry::number::parse_decimal("1e400").unwrap();
     let (region, answer) =
         searched(&mut system(text), RegionRows::Own, &[("x", -huge.clone(), huge.clone())], 300);
@@ -346,7 +346,7 @@ fn no_proved_box_holds_a_point_that_is_known_to_be_missing() {
         let own = rng.random_range(0..2) == 0;
         let text = if own {
             format!(
-                "state x, y output x\nrows = [1 + {}, 0; y, (x - ({drop}))*(2 + 0*({}))]
+                "state x, y output x\nlet rows = [1 + {}, 0; y, (x - ({drop}))*(2 + 0*({}))]
                  sample x in [-1, 1] y in [-1, 1]",
                 first.text, second.text
             )
@@ -390,7 +390,7 @@ fn no_proved_box_holds_an_angle_that_is_known_to_be_a_pole() {
     for (term, poles) in terms {
         for (low, high) in [(-7, 7), (3, 4), (-4, 1), (0, 13)] {
             let text = format!(
-                "state x, phi angle phi output x\nrows = [2 + 0*({term}), sin(phi); 0, x]\nsample x in [1, 2] phi in [{low}, {high}]"
+                "state x, phi angle phi output x\nlet rows = [2 + 0*({term}), sin(phi); 0, x]\nsample x in [1, 2] phi in [{low}, {high}]"
             );
             let mut system = system(&text);
             let (region, answer) = searched(&mut system, RegionRows::Own, &[], 3000);
