@@ -179,7 +179,11 @@ fn a_certificate_is_rechecked_from_its_file_alone() {
     assert_eq!(checked.status.code(), Some(1));
     assert_eq!(json(&checked)["not_confirmed"], 1);
     // nothing is proved, and nothing is claimed
-    let file = common::write(&folder, "blind.proof", "system \"s\" state x output x - x sample x in [0, 1]");
+    let file = common::write(
+        &folder,
+        "blind.proof",
+        "system \"s\" state x drift f x' = 1 output x - x sample x in [0, 1]",
+    );
     let output = palmistry(&["certify", file.to_str().unwrap(), "--verdicts", name, "--json"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(json(&output)["verdict_boxes"]["written"], 0);

@@ -119,3 +119,169 @@ fn imported_fields_are_in_no_rank() {
     let outcomes = decide_all(&found, 1, &false.into(), &|_| ());
     assert!(outcomes.iter().all(|outcome| outcome.ok), "{outcomes:?}");
 }
+
+/// A text and the message that it is refused with, with line and column.
+fn refused(text: &str, folder: &Path) -> (String, (usize, usize)) {
+    match System::parse("test.proof", text, folder) {
+        Ok(_) => panic!("not refused: {text}"),
+        Err(error) => (error.message.clone(), error.line_and_column()),
+    }
+}
+
+/// What would overwrite something in silence is refused where it stands.
+#[test]
+fn nothing_is_overwritten_in_silence() {
+    let folder = folder();
+    write(&folder, "a.proof", "system \"a\" state x, y param k = 1 let v = x + k drift f x' = y y' = 0");
+    write(&folder, "b.proof", "system \"b\" state x, y param k = 2 let v = x - k drift f x' = -y y' = 0");
+    for (text, words, place) in [
+        (
+            "system \"s\"\nuse a = \"a.proof\"\nuse a = \"b.proof\"",
+            "'a' is the name of an imported system",
+            (3, 5),
+        ),
+        ("system \"s\"\nuse a.b = \"a.proof\"", "a name with a dot", (2, 5)),
+        ("system \"s\"\nstate x\nsystem \"t\"", "describes a system already: \"s\"", (3, 1)),
+        ("system \"\"", "needs a title", (1, 1)),
+        ("system \"s\" state x\nsample x in [0, 1]\n  x in [2, 3]", "'x' has a range already", (3, 3)),
+        ("system \"s\" state x\nsample x in [0, 1]\nsample x in [0, 1]", "'x' has a range already", (3, 8)),
+        ("system \"s\" state x\nparam x", "'x' has a meaning already", (2, 7)),
+        ("system \"s\" param x = 2\nstate x", "'x' has a meaning already", (2, 7)),
+        ("system \"s\" state x\nlet x = 2", "'x' has a meaning already", (2, 5)),
+        ("system \"s\" let x = 2\nparam x", "'x' has a meaning already", (2, 7)),
+        ("system \"s\" state x, y,\n  x", "'x' has a meaning already", (2, 3)),
+        ("system \"s\" state\n others", "'others' has a meaning already", (2, 2)),
+        ("system \"s\" param\n pi", "'pi' has a meaning already", (2, 2)),
+        ("system \"s\" use a = \"a.proof\"\nlet k = 3", "'k' is a symbol of an imported system", (2, 5)),
+        ("system \"s\" let k = 3\nuse a = \"a.proof\"", "'k' is a definition above, and a symbol of", (2, 1)),
+        ("system \"s\" state x\nfield a.f x' = 1", "a name with a dot", (2, 7)),
+        ("system \"s\" state x\nfield f x' = 1\ninput f x' = 1", "there is a field 'f' already", (3, 7)),
+        ("system \"s\" state x let r = d(x^2)\nstate y", "differentiated by all states", (2, 7)),
+        ("system \"s\" state x field f\n x' = 1 x' = 2", "'x' is given twice", (2, 9)),
+        ("system \"s\" param k claim 1: k = k\nclaim 1: k = 2", "there is a claim '1' already", (2, 7)),
+        ("system \"s\" state x claim 1: x at {x = 1,\n x = 2} = 1", "'x' is given twice", (2, 2)),
+    ] {
+        let (message, found) = refused(text, folder.path());
+        assert!(message.contains(words), "{text}: {message}");
+        assert_eq!(found, place, "{text}: {message}");
+    }
+}
+
+/// And what may be said twice means one thing.
+#[test]
+fn what_may_be_said_twice_means_one_thing() {
+    let folder = folder();
+    write(
+        &folder,
+        "a.proof",
+        "system \"a\" state x, y param k = 1, m = 1 let v = -x + k*m drift f x' = y y' = 0",
+    );
+    write(&folder, "b.proof", "system \"b\" state x, y param k = 2, m = 1 let v = x - k*m");
+    // one file under two names
+    let text = "system \"s\" use a = \"a.proof\" use c = \"a.proof\" state x, y claim 1: a.v = c.v claim 2: L(a.f, x) = L(c.f, x)";
+    let system_of =
+        |text: &str| System::parse("s.proof", text, folder.path()).unwrap_or_else(|e| panic!("{e}"));
+    let all_hold = |text: &str| decide_all(&system_of(text), 1, &false.into(), &|_| ()).iter().all(|o| o.ok);
+    assert!(all_hold(text));
+    // names of imported definitions are explained under the names that they have here
+    let outcome = decide_all(&system_of(text), 1, &false.into(), &|_| ()).remove(1);
+    assert_eq!(outcome.differentiated_along[0], ("a.f".to_owned(), "x' = y y' = 0".to_owned()));
+    // where two imports give a parameter two values it has none; where they agree it has that
+    let system = system_of("system \"s\" use a = \"a.proof\" use b = \"b.proof\" state x, y");
+    let value = |name: &str| system.symbol_info(system.find_symbol(name).unwrap()).unwrap().default.clone();
+    assert_eq!((value("k"), value("m")), (None, Some(1.into())));
+    // an angle is one wherever that is said
+    for order in ["angle p output sin(p)", "output sin(p) angle p", "angle p angle p output sin(p)"] {
+        assert_eq!(
+            words(&format!("system \"s\" state p {order} claim 1: sin(p)^2 = 1 - cos(p)^2")),
+            ["proved"]
+        );
+    }
+    // an output that is named twice is one output
+    assert_eq!(system_of("system \"s\" state x, y output x, y, x output -(-y)").outputs.len(), 2);
+    // a function is a function where a bracket follows, and a name elsewhere
+    assert_eq!(
+        words("system \"s\" state L, d, sin field f L' = d others' = 0 claim 1: L(f, L*sin) = d*sin"),
+        ["proved"]
+    );
+}
+
+/// Whatever an editor shows as the end of a line ends a comment: a false claim below it is read, and its place is right.
+#[test]
+fn no_claim_hides_below_a_comment() {
+    for end in
+        ["\n", "\r\n", "\r", "\u{b}", "\u{c}", "\u{85}", "\u{2028}", "\u{2029}", "\u{1c}", "\u{1d}", "\u{1e}"]
+    {
+        let text = format!("system \"s\"{end}param x # a note{end}claim 1: x = x + 1 # and another{end}");
+        assert_eq!(words(&text), ["refuted"], "{end:?}");
+        let text = format!("system \"\u{e9}\" # \u{fc}{end}param x # a note{end}claim 1: \u{e9} = 1");
+        let (_, place) = refused(&text, Path::new(""));
+        assert_eq!(place, (3, 10), "{end:?}");
+    }
+    // marks that turn the direction of writing make a claim look like a comment
+    for mark in ['\u{202e}', '\u{2066}', '\u{200f}'] {
+        let text = format!("system \"s\"\nparam x # {mark}note\nclaim 1: x = x");
+        let (message, place) = refused(&text, Path::new(""));
+        assert!(message.contains(&format!("U+{:04X}", mark as u32)), "{message}");
+        assert_eq!(place, (2, 11));
+    }
+    assert_eq!(words("\u{feff}system \"s\" param x claim 1: x = x"), ["proved"]);
+}
+
+/// A value in a file is what `rank` takes; a claim is about all values, and says where that makes a difference. With k = 0
+/// the output does not see y: by hand the rank is 2 for every other k.
+#[test]
+fn a_value_in_a_file_is_never_part_of_a_claim() {
+    let text = "system \"s\" state x, y param k = 0, m = 2.5, idle = 7 drift f x' = k*y y' = m*x output x\n\
+                sample x in [1, 2] y in [1, 2]\n\
+                claim rank: rank = 2\n\
+                claim same: L(f, x) = k*y\n\
+                claim wrong: k*x = x\n\
+                claim given: rank = 2 where k = 3\n\
+                claim zero: rank = 1 where k = 0\n\
+                claim pole: x/k = x/k\n\
+                claim matrix: rank([k, 1; 0, m]) = 2";
+    let outcomes = decide_all(&system(text), 1, &false.into(), &|_| ());
+    let found: Vec<(&str, &str, Option<&str>)> = outcomes
+        .iter()
+        .map(|o| (o.id.as_str(), o.word(), o.at_files_values.as_ref().map(|special| special.word)))
+        .collect();
+    assert_eq!(
+        found[..5],
+        [
+            ("rank", "proved", Some("refuted")),
+            ("same", "proved", None),
+            ("wrong", "refuted", None),
+            ("given", "proved", None),
+            ("zero", "proved", None),
+        ]
+    );
+    assert_eq!(found[6], ("matrix", "proved", Some("refuted")));
+    let special = outcomes[0].at_files_values.as_ref().unwrap();
+    let names: Vec<&str> = special.values.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["k", "m"]);
+    let folder = folder();
+    let file = write(&folder, "k.proof", text);
+    let file = file.to_str().unwrap();
+    let found = json(&palmistry(&["prove", file, "--json"]));
+    let special = serde_json::json!({ "values": { "k": "0", "m": "2.5" }, "verdict": "refuted" });
+    assert_eq!(found["claims"][0]["at_the_files_values"], special);
+    assert!(found["claims"][1].get("at_the_files_values").is_none());
+    let shown = String::from_utf8(palmistry(&["prove", file]).stdout).unwrap();
+    assert!(shown.contains("at the file's values k = 0, m = 2.5 it is refuted"), "{shown}");
+    let found = json(&palmistry(&["rank", file, "--samples", "10", "--json"]));
+    assert_eq!(found["rank_histogram"], serde_json::json!({ "1": 10 }));
+    assert_eq!(found["held_at_the_files_values"], serde_json::json!({ "k": "0", "m": "2.5" }));
+    let found = json(&palmistry(&["rank", file, "--samples", "10", "--at", "k=1", "--json"]));
+    assert_eq!(found["rank_histogram"], serde_json::json!({ "2": 10 }));
+    assert_eq!(found["held_at_the_files_values"], serde_json::json!({ "m": "2.5" }));
+    let shown = String::from_utf8(palmistry(&["rank", file, "--samples", "10"]).stdout).unwrap();
+    assert!(shown.contains("held at the file's values: k = 0, m = 2.5"), "{shown}");
+}
+
+/// `within` compares numbers, and takes none from the file either.
+#[test]
+fn within_takes_no_value_from_the_file() {
+    let text = "system \"s\" param k = 2 claim 1: k = 2 within 0.1 claim 2: k at {k = 2} = 2 within 0.1";
+    assert_eq!(words(text), ["undecided", "proved"]);
+}

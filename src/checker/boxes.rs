@@ -94,6 +94,17 @@ impl CertifiedBoxes {
         }
     }
 
+    /// What was confirmed, in words.
+    pub fn in_words(&self) -> String {
+        format!(
+            "full rank shown again on {} boxes, {} of {} of the volume that was proved with {}",
+            self.boxes.len(),
+            part_in_words(&self.volume.0),
+            part_in_words(&self.proved_volume.0),
+            self.proved_boxes.0
+        )
+    }
+
     /// The ranges that have a width.
     ///
     /// # Errors
@@ -255,6 +266,13 @@ impl CertifiedBoxes {
         });
         format!("{hash:016x}")
     }
+}
+
+/// A part of the whole, rounded down.
+fn part_in_words(part: &RBig) -> String {
+    let millionths = (part * RBig::from(1_000_000)).floor();
+    let millionths = u64::try_from(millionths).unwrap_or(0);
+    format!("{}.{:06}", millionths / 1_000_000, millionths % 1_000_000)
 }
 
 /// What part of the whole box some boxes make that do not overlap.

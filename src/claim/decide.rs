@@ -397,10 +397,12 @@ fn together(found: Vec<(Size, &Branch, OnOneBranch)>, unsolved: &[String]) -> Ve
     let proved = verdicts.iter().all(|verdict| matches!(verdict, Verdict::Proved { .. }));
     if proved && !shown {
         needs.dedup();
-        return Verdict::undecided(format!(
-            "no state is known at which all of it exists; it needs {}",
-            needs.join("; ")
-        ));
+        let needs = needs.join("; ");
+        return Verdict::undecided(if verdicts.is_empty() {
+            format!("it exists nowhere: it needs {needs}")
+        } else {
+            format!("no state was found at which all of it exists: it needs {needs}")
+        });
     }
     match Verdict::all(verdicts) {
         Verdict::Proved { engine, log2_error } if !unsolved.is_empty() => Verdict::Proved {

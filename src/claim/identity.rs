@@ -7,11 +7,10 @@ use super::value::{ValueError, enclose};
 use super::verdict::{Verdict, Witness};
 use super::witness::{Search, search};
 use crate::expression::{Guard, NodeId, Program, Symbol, ZeroTest, expand_angles, identically_zero};
-use crate::number::rational_to_f64;
 use crate::system::System;
 use dashu::rational::RBig;
 use rand::Rng;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 /// The engine of exact identities, as it is named in reports.
 pub(crate) const RANDOM_PRIMES: &str = "exact arithmetic at random points of random prime fields";
@@ -90,8 +89,7 @@ pub(crate) fn decide_identity(
     }
 }
 
-/// Decides `|left - right| <= tolerance` where all three have a value without further ado: constants, and parameters
-/// with the values that the file gives them.
+/// Decides `|left - right| <= tolerance` where all three are numbers: constants, and what `at {...}` makes constants.
 pub(crate) fn decide_nearness(
     system: &mut System,
     left: NodeId,
@@ -104,9 +102,8 @@ pub(crate) fn decide_nearness(
     let terms = wanted.len();
     wanted.extend(guards.iter().map(|guard| guard.node));
     let program = Program::new(&system.graph, &wanted, |_| false, false);
-    let given: BTreeMap<Symbol, RBig> =
-        system.symbols().filter_map(|(symbol, info)| Some((symbol, info.default.clone()?))).collect();
-    let values: HashMap<Symbol, RBig> = given.clone().into_iter().collect();
+    // a value in a file is a default, and never part of a claim
+    let values: HashMap<Symbol, RBig> = HashMap::new();
     let mut bits = 128;
     loop {
         let found = match enclose(&system.graph, &program, &values, bits) {
@@ -143,13 +140,7 @@ pub(crate) fn decide_nearness(
         if exists && smallest > found[1].high() {
             let shown =
                 |index: usize| found[index].certain_decimal(20).unwrap_or_else(|| found[index].bounds_text());
-            let state = given
-                .iter()
-                .filter(|(symbol, _)| program.inputs().contains(&crate::expression::Input::Plain(**symbol)))
-                .map(|(symbol, value)| {
-                    (system.symbol_name(*symbol).to_owned(), value.to_string(), rational_to_f64(value))
-                })
-                .collect();
+            let state = Vec::new();
             let witness = Witness { state, left: shown(2), right: shown(3), entry: None, refutation: None };
             return Verdict::Refuted { engine: INTERVALS.to_owned(), witness };
         }

@@ -1,6 +1,6 @@
 //! The value of an expression at a point, to as many digits as are asked for, by the cheapest numbers that suffice.
 
-use crate::expression::{Failure, Graph, Input, NodeId, Program, Symbol};
+use crate::expression::{Failure, Graph, Guard, Input, NodeId, Program, Symbol};
 use crate::number::{
     Arithmetic, DoubleDouble, Enclosure, Enclosures, Floats, Interval, Rationals, Refusal, Rung,
     common_decimal, rational_from_f64, round_to_decimal,
@@ -50,6 +50,9 @@ pub enum ValueError {
     /// A value on the way is beyond what can be held, at this precision.
     #[error("{0}")]
     NotHeld(String),
+    /// What the term needs does not hold here.
+    #[error("it has no value at this point: it needs {0}")]
+    Outside(String),
     /// An operation is not defined here.
     #[error("{0}")]
     Undefined(String),
@@ -132,6 +135,45 @@ fn evaluate<A: Arithmetic + Copy>(
         Err(failure) if failure.refusal == Refusal::DivisionByZero => Err(undefined(graph, &failure, 0)),
         Err(_) => Ok(None),
     }
+}
+
+/// Whether a term whose guards these are exists at a point given by rational numbers (angles in radians).
+///
+/// # Errors
+/// Where it does not, and why; or where 4096 bits cannot tell.
+pub fn exists_at(graph: &Graph, guards: &[Guard], values: &HashMap<Symbol, RBig>) -> Result<(), ValueError> {
+    for guard in guards.iter().filter(|guard| guard.is_obvious(graph) != Some(true)) {
+        let program = Program::new(graph, &[guard.node], |_| false, false);
+        if let Some(value) = evaluate(graph, &program, values, Rationals::default())? {
+            if !guard.need.is_met_by(&value) {
+                return Err(ValueError::Outside(guard.text(graph)));
+            }
+            continue;
+        }
+        let mut bits = bits_of(0);
+        loop {
+            let last = bits >= MOST_BITS;
+            let complaint = match enclose(graph, &program, values, bits) {
+                Ok(value) => match guard.need.is_met_by_enclosure(&value[0]) {
+                    Some(true) => break,
+                    Some(false) => return Err(ValueError::Outside(guard.text(graph))),
+                    None => {
+                        let why = "it cannot be told whether the term exists".to_owned();
+                        ValueError::NearEdge { why, term: guard.text(graph), bits }
+                    }
+                },
+                Err(error @ (ValueError::Missing(_) | ValueError::Pole(_) | ValueError::Undefined(_))) => {
+                    return Err(error);
+                }
+                Err(error) => error,
+            };
+            if last {
+                return Err(complaint);
+            }
+            bits = (bits * 2).min(MOST_BITS);
+        }
+    }
+    Ok(())
 }
 
 /// The value of an expression at a point given by rational numbers (angles in radians), to `digits` significant

@@ -6,7 +6,7 @@ use super::output::{print_json, print_text};
 use super::{Status, Unusable};
 use clap::Args;
 use dashu::rational::RBig;
-use palmistry::claim::{PointValue, computed_value};
+use palmistry::claim::{PointValue, computed_value, exists_at};
 use palmistry::expression::{NodeId, Symbol};
 use palmistry::observability::Certainty;
 use palmistry::{System, ValueError, certified_value, system::Value};
@@ -44,10 +44,11 @@ impl Eval {
     pub fn run(self) -> miette::Result<Status> {
         let mut system = System::read(&self.file)?;
         let given = assignments(&system, &self.at)?;
-        let value = system.evaluate_text(&self.expression)?;
+        let (value, guards) = system.evaluate_text_guarded(&self.expression)?;
         let mut point: HashMap<Symbol, RBig> =
             system.symbols().filter_map(|(symbol, info)| Some((symbol, info.default.clone()?))).collect();
         point.extend(given.clone());
+        exists_at(&system.graph, &guards, &point).map_err(explain)?;
         let digits = usize::from(self.digits);
         let one = |id: NodeId| {
             match self.verdict {

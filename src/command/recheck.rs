@@ -11,7 +11,8 @@ use std::path::PathBuf;
 
 /// Checks a file of verdicts that 'prove', 'rank' or 'certify' wrote with '--verdicts', and needs no other file.
 ///
-/// A refutation is evaluated again at its witness, a certified rank by its minor and its kernel: these are confirmed or not.
+/// A refutation is evaluated again at its witness, a certified rank by its minor and its kernel, a certificate box by box:
+/// these are confirmed or not.
 /// A proof cannot be repeated by evaluation: it is consistent where both sides agree at further states. Exit status 0 only
 /// when nothing failed.
 #[derive(Args)]
@@ -92,6 +93,7 @@ fn verdict_json(verdict: &CheckedVerdict<'_>) -> Value {
 fn reason(verdict: &CheckedVerdict<'_>) -> String {
     match &verdict.record.evidence {
         Evidence::Unchecked(why) => why.clone(),
+        Evidence::Boxes(boxes) if matches!(verdict.finding, Finding::Confirmed { .. }) => boxes.in_words(),
         _ => finding_text(&verdict.finding),
     }
 }

@@ -9,7 +9,7 @@ use crate::system::System;
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use std::collections::BTreeSet;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The checker's work on all boxes of a file, in operations on intervals: some seconds.
 const EFFORT: u64 = 1 << 31;
@@ -42,7 +42,12 @@ pub fn certificate_file(
     let left_out = boxes.keep_what_is_shown(each, interrupt);
     let written = WrittenBoxes { boxes: boxes.boxes.len(), left_out };
     let evidence = if boxes.boxes.is_empty() {
-        Evidence::Unchecked("no box is proved that plain interval arithmetic shows, too".to_owned())
+        let why = if interrupt.load(Ordering::Relaxed) {
+            "the run was interrupted before its boxes were checked"
+        } else {
+            "no box is proved that plain interval arithmetic shows, too"
+        };
+        Evidence::Unchecked(why.to_owned())
     } else {
         Evidence::Boxes(boxes)
     };

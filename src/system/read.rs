@@ -7,7 +7,7 @@ use super::model::{Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Val
 use super::written::{Scope, Written, in_one_line, places_in};
 use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Expr, Name, Span};
-use crate::expression::{Derivation, Graph, Symbol, parse_expression};
+use crate::expression::{Derivation, Graph, Guard, Symbol, parse_expression};
 use crate::file::{ReadFailure, read_text};
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -52,9 +52,17 @@ impl System {
     /// # Errors
     /// What is wrong with the expression, and where in it.
     pub fn evaluate_text(&mut self, text: &str) -> Result<Value, ReadError> {
+        self.evaluate_text_guarded(text).map(|(value, _)| value)
+    }
+
+    /// The same, and where it exists: the value was simplified, and may have values where the text has none.
+    ///
+    /// # Errors
+    /// What is wrong with the expression, and where in it.
+    pub fn evaluate_text_guarded(&mut self, text: &str) -> Result<(Value, Vec<Guard>), ReadError> {
         let text = &with_plain_line_ends(text);
         let expr = parse_expression(text).map_err(|e| expected(e).locate("expression", text))?;
-        self.elaborate(&expr).map_err(|problem| problem.locate("expression", text))
+        self.elaborate_guarded(&expr).map_err(|problem| problem.locate("expression", text))
     }
 
     fn build(
