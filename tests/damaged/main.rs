@@ -286,7 +286,7 @@ fn expression() {
 /// The state of a search, as `certify --state` keeps it. What was damaged is refused: nothing is taken up from it.
 #[test]
 fn journal() {
-    let text = "system \"s\" state x field f x' = x output x^2 sample x in [-1, 2]";
+    let text = "system \"s\" state x drift f x' = x output x^2 sample x in [-1, 2]";
     let mut system = System::parse("e.proof", text, Path::new("")).unwrap();
     let mut region =
         Region::new(&mut system, RegionRows::Codistribution(None), &BTreeMap::new(), None).unwrap();
