@@ -22,11 +22,13 @@ fn started_for(command: &mut Command, ticks: u64) -> Child {
     child
 }
 
-/// The hundredths of a second that a process has used of the processor, as long as it is there.
+/// The hundredths of a second that a process has used of the processor, as long as it runs.
 fn used(id: u32) -> Option<u64> {
     let line = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
     let rest = line.rsplit_once(')')?.1;
-    rest.split_whitespace().nth(11)?.parse().ok()
+    let words: Vec<&str> = rest.split_whitespace().collect();
+    let ended = *words.first()? == "Z";
+    words.get(11)?.parse().ok().filter(|_| !ended)
 }
 
 fn interrupted(command: &mut Command, name: &str) -> Output {
