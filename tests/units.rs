@@ -5,7 +5,7 @@ use palmistry::System;
 use palmistry::expression::expand_angles;
 use palmistry::number::{Floats, PrimeField};
 use palmistry::observability::{
-    Branch, Certainty, Codistribution, Coordinate, Judge, Judged, Length, Locus, State, StateReport,
+    Branch, Certainty, Codistribution, Coordinate, Defined, Judge, Judged, Length, Locus, State, StateReport,
     customary_singular_values, parse_condition, solve_conditions,
 };
 use palmistry::system::Value;
@@ -101,7 +101,7 @@ fn decide(
     let angles = case.system.angles();
     let judge = Judge::new(
         &case.system.graph,
-        &[],
+        Defined::default(),
         (rows, rows),
         case.system.states.len(),
         |symbol| angles.contains(&symbol),

@@ -1,13 +1,15 @@
 //! From a claim to its outcome.
 
 use super::defaults::at_the_files_values;
-use super::identity::{decide_identity, decide_nearness};
+use super::existence::{Existence, existence};
+use super::identity::{OnOneBranch, decide_identity, decide_nearness};
 use super::pole::decide_pole;
 use super::ranks::{decide_codistribution, decide_rank};
+use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict};
-use crate::expression::{NodeId, Symbol};
-use crate::observability::{Branch, solve_conditions};
-use crate::system::{ClaimBody, ClaimSyntax, Expectation, Matrix, Statement, System, Value, in_one_line};
+use crate::expression::{NodeId, Symbol, add_guard};
+use crate::observability::{Branch, solve};
+use crate::system::{ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line};
 use dashu::rational::RBig;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -48,28 +50,33 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
     let mut again = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id) ^ 1);
     let mut special = |system: &mut System, statement: &Statement, verdict: &Verdict| {
         at_the_files_values(system, statement, verdict, |system, special| {
-            decide_statement(system, special, &mut again)
+            decide_statement(system, special, &mut again).verdict
         })
     };
     let mut at_files_values = None;
     let mut printed_at_files_values = None;
     let mut printed = None;
+    let mut domain = Vec::new();
+    let mut known = |decided: Decided| {
+        domain = decided.domain;
+        decided.verdict
+    };
     let (statement, verdict, expected) = match &claim.body {
         ClaimBody::Claim { statement, expected } => {
-            let verdict = decide_statement(&mut system, statement, &mut rng);
+            let verdict = known(decide_statement(&mut system, statement, &mut rng));
             at_files_values = special(&mut system, statement, &verdict);
             (text(&system, statement), verdict, Some(*expected))
         }
         ClaimBody::Erratum { printed: print, corrected } => {
-            let refuted = decide_statement(&mut system, print, &mut rng);
+            let refuted = decide_statement(&mut system, print, &mut rng).verdict;
             printed_at_files_values = special(&mut system, print, &refuted);
             printed = Some((text(&system, print), refuted));
-            let verdict = decide_statement(&mut system, corrected, &mut rng);
+            let verdict = known(decide_statement(&mut system, corrected, &mut rng));
             at_files_values = special(&mut system, corrected, &verdict);
             (text(&system, corrected), verdict, Some(Expectation::Proved))
         }
         ClaimBody::Scan { repaired, .. } => {
-            let verdict = decide_statement(&mut system, repaired, &mut rng);
+            let verdict = known(decide_statement(&mut system, repaired, &mut rng));
             at_files_values = special(&mut system, repaired, &verdict);
             (text(&system, repaired), verdict, Some(Expectation::Proved))
         }
@@ -92,7 +99,9 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
             ClaimBody::Scan { scanned, .. } => Some(scanned.clone()),
             _ => None,
         },
+        pole_of: claim.body.pole_of().map(|expr| in_one_line(&system.source, &expr.span)),
         verdict,
+        domain,
         expected,
         remark: claim.remark.clone(),
         at_files_values,
@@ -108,75 +117,199 @@ fn fingerprint(text: &str) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-fn decide_statement(system: &mut System, statement: &Statement, rng: &mut ChaCha8Rng) -> Verdict {
-    match attempt(system, statement, rng) {
-        Ok(verdict) => verdict,
-        Err(why) => Verdict::undecided(why),
-    }
+/// A verdict, and what has to hold for the statement's terms to exist, in words.
+struct Decided {
+    verdict: Verdict,
+    domain: Vec<String>,
 }
 
-fn attempt(system: &mut System, statement: &Statement, rng: &mut ChaCha8Rng) -> Result<Verdict, String> {
+fn decide_statement(system: &mut System, statement: &Statement, rng: &mut ChaCha8Rng) -> Decided {
+    let mut domain = Vec::new();
+    let verdict = attempt(system, statement, rng, &mut domain).unwrap_or_else(Verdict::undecided);
+    Decided { verdict, domain }
+}
+
+fn attempt(
+    system: &mut System,
+    statement: &Statement,
+    rng: &mut ChaCha8Rng,
+    domain: &mut Vec<String>,
+) -> Result<Verdict, String> {
     let equation = &statement.equation;
-    let left = system.elaborate(&equation.left).map_err(|problem| problem.message)?;
-    let right = system.elaborate(&equation.right).map_err(|problem| problem.message)?;
+    let (left, before) = system.elaborate_guarded(&equation.left).map_err(|problem| problem.message)?;
+    let (right, after) = system.elaborate_guarded(&equation.right).map_err(|problem| problem.message)?;
+    let mut guards = Vec::new();
+    for guard in before.into_iter().chain(after) {
+        add_guard(&system.graph, &mut guards, guard);
+    }
+    let of_rank = [&left, &right].iter().any(|value| matches!(value, Value::CodistributionRank));
+    if of_rank {
+        // every Lie derivative of the outputs has to exist
+        let fields = system.moving_fields();
+        guards.extend(system.smooth_guards(&fields));
+    }
+    guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
+    *domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
     if let Some(tolerance) = &equation.within {
-        let tolerance = system.scalar(tolerance).map_err(|problem| problem.message)?;
-        return match (left, right) {
-            (Value::Scalar(l), Value::Scalar(r)) if statement.conditions.is_empty() => {
-                Ok(decide_nearness(system, l, r, tolerance))
+        let (tolerance, needed) = system.elaborate_guarded(tolerance).map_err(|problem| problem.message)?;
+        guards.extend(needed);
+        return match (left, right, tolerance) {
+            (Value::Scalar(l), Value::Scalar(r), Value::Scalar(t)) if statement.conditions.is_empty() => {
+                Ok(decide_nearness(system, l, r, t, &guards))
             }
-            (Value::Scalar(_), Value::Scalar(_)) => {
+            (Value::Scalar(_), Value::Scalar(_), Value::Scalar(_)) => {
                 Err("'within' takes no 'where'; use 'at {...}'".to_owned())
             }
             _ => Err("'within' compares numbers".to_owned()),
         };
     }
-    let point_or_branches = match (&left, &right) {
-        (Value::Pole { .. }, _) | (_, Value::Pole { .. }) => None,
-        _ => Some(solve_conditions(system, &statement.conditions).map_err(|unsolved| unsolved.to_string())?),
-    };
-    let Some(branches) = point_or_branches else {
+    if matches!(left, Value::Pole { .. }) || matches!(right, Value::Pole { .. }) {
+        let terms = Terms { guards, ..Terms::default() };
+        let on = OnBranch::new(system, &Branch::default(), &terms)?;
+        if let Existence::Nowhere(guard) = existence(system, &on, rng) {
+            return Err(format!("it exists nowhere: it needs {guard}"));
+        }
         return pole_statement(system, statement, left, right, rng);
-    };
-    let verdicts: Vec<Verdict> = branches
-        .iter()
-        .map(|branch| on_branch(system, branch, left.clone(), right.clone(), rng))
-        .collect::<Result<_, _>>()?;
-    Ok(Verdict::all(verdicts))
+    }
+    let solution = solve(system, &statement.conditions).map_err(|unsolved| unsolved.to_string())?;
+    let mut conditions = Vec::new();
+    for condition in &statement.conditions {
+        let left = system.scalar(&condition.left).map_err(|problem| problem.message)?;
+        let right = system.scalar(&condition.right).map_err(|problem| problem.message)?;
+        conditions.push(system.graph.sub(left, right));
+    }
+    let question = Question::new(system, left, right)?;
+    let mut found = Vec::new();
+    let lists = [
+        (Size::Part, &solution.parts),
+        (Size::Smaller, &solution.smaller),
+        (Size::Thinner, &solution.thinner),
+    ];
+    for (size, branches) in lists {
+        for branch in branches {
+            if size == Size::Thinner && !matches!(question, Question::Identity { .. }) {
+                continue; // a rank is that at almost all states of the set
+            }
+            let mut all = branch.guards.clone();
+            guards.iter().for_each(|guard| add_guard(&system.graph, &mut all, *guard));
+            let sides = question.sides().to_vec();
+            let terms = Terms { sides, guards: all, conditions: conditions.clone() };
+            let on = OnBranch::new(system, branch, &terms)?;
+            let verdict = match &question {
+                Question::Identity { columns, .. } => decide_identity(system, &on, *columns, rng),
+                Question::Rank { columns, claimed, .. } => decide_rank(system, &on, *columns, *claimed, rng),
+                Question::Codistribution { claimed } => {
+                    decide_codistribution(system, &on, branch, *claimed, rng)?
+                }
+            };
+            found.push((size, branch, verdict));
+        }
+    }
+    Ok(together(&question, found, &solution.unsolved))
 }
 
-fn on_branch(
-    system: &mut System,
-    branch: &Branch,
-    left: Value,
-    right: Value,
-    rng: &mut ChaCha8Rng,
-) -> Result<Verdict, String> {
-    for value in [&left, &right] {
-        let entries = match value {
-            Value::Scalar(id) => vec![*id],
-            Value::Matrix(m) | Value::Rank(m) => m.entries.clone(),
-            Value::CodistributionRank | Value::Pole { .. } => Vec::new(),
+/// How a branch stands to the set of all states that meet the conditions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Size {
+    /// It has the dimension of the set.
+    Part,
+    /// It has fewer dimensions, and may be a part of its own.
+    Smaller,
+    /// It is an edge of others.
+    Thinner,
+}
+
+/// What a statement asks.
+enum Question {
+    /// Are the entries of two matrices equal, the left ones first?
+    Identity { entries: Vec<NodeId>, columns: usize },
+    /// Has a matrix this rank?
+    Rank { entries: Vec<NodeId>, columns: usize, claimed: usize },
+    /// Has the observability codistribution this rank?
+    Codistribution { claimed: usize },
+}
+
+impl Question {
+    fn new(system: &System, left: Value, right: Value) -> Result<Question, String> {
+        let claimed = |id: NodeId| {
+            let claimed = claimed_integer(system, id)?;
+            usize::try_from(claimed).map_err(|_| format!("a rank is never {claimed}"))
         };
-        branch.check_turns(system, &entries)?;
+        match (left, right) {
+            (Value::Scalar(l), Value::Scalar(r)) => {
+                Ok(Question::Identity { entries: vec![l, r], columns: 1 })
+            }
+            (Value::Matrix(l), Value::Matrix(r)) if (l.rows, l.columns) == (r.rows, r.columns) => {
+                let entries = l.entries.into_iter().chain(r.entries).collect();
+                Ok(Question::Identity { entries, columns: l.columns.max(1) })
+            }
+            (Value::Rank(m), Value::Scalar(r)) | (Value::Scalar(r), Value::Rank(m)) => {
+                Ok(Question::Rank { entries: m.entries, columns: m.columns, claimed: claimed(r)? })
+            }
+            (Value::CodistributionRank, Value::Scalar(r)) | (Value::Scalar(r), Value::CodistributionRank) => {
+                Ok(Question::Codistribution { claimed: claimed(r)? })
+            }
+            (l, r) => Err(format!("{} is compared with {}", l.describe(), r.describe())),
+        }
     }
-    let (left, right) = (system.substitute(left, &branch.values), system.substitute(right, &branch.values));
-    let single = |id: NodeId| Matrix { rows: 1, columns: 1, entries: vec![id] };
-    match (left, right) {
-        (Value::Scalar(l), Value::Scalar(r)) => Ok(decide_identity(system, &single(l), &single(r), rng)),
-        (Value::Matrix(l), Value::Matrix(r)) if (l.rows, l.columns) == (r.rows, r.columns) => {
-            Ok(decide_identity(system, &l, &r, rng))
+
+    /// What has to exist.
+    fn sides(&self) -> &[NodeId] {
+        match self {
+            Question::Identity { entries, .. } | Question::Rank { entries, .. } => entries,
+            Question::Codistribution { .. } => &[],
         }
-        (Value::Rank(m), Value::Scalar(r)) | (Value::Scalar(r), Value::Rank(m)) => {
-            let claimed = claimed_integer(system, r)?;
-            Ok(decide_rank(system, &m, usize::try_from(claimed).map_err(|e| e.to_string())?, rng))
+    }
+}
+
+/// What the verdicts on all branches come to together.
+fn together(question: &Question, found: Vec<(Size, &Branch, OnOneBranch)>, unsolved: &[String]) -> Verdict {
+    let of_rank = !matches!(question, Question::Identity { .. });
+    let several = found.len() > 1;
+    let (mut verdicts, mut shown, mut needs) = (Vec::new(), false, Vec::new());
+    for (size, branch, on_one) in found {
+        let place = if several && !branch.steps.is_empty() {
+            format!("where {}: ", branch.steps.join(", "))
+        } else {
+            String::new()
+        };
+        match on_one {
+            OnOneBranch::Empty(guard) => needs.push(format!("{place}{guard}")),
+            OnOneBranch::Verdict(verdict, existence) => {
+                match existence {
+                    Existence::Shown => shown = true,
+                    Existence::Nowhere(guard) | Existence::NotShown(guard) => {
+                        needs.push(format!("{place}{guard}"));
+                    }
+                }
+                verdicts.push(match verdict {
+                    // of a rank at almost all states this is no counterexample
+                    Verdict::Refuted { witness, .. } if size == Size::Smaller && of_rank => {
+                        Verdict::undecided(format!(
+                            "{place}the rank is {} there, on a branch of fewer dimensions than the set",
+                            witness.left
+                        ))
+                    }
+                    Verdict::Undecided { why } => Verdict::undecided(format!("{place}{why}")),
+                    verdict => verdict,
+                });
+            }
         }
-        (Value::CodistributionRank, Value::Scalar(r)) | (Value::Scalar(r), Value::CodistributionRank) => {
-            let claimed = claimed_integer(system, r)?;
-            let claimed = usize::try_from(claimed).map_err(|e| e.to_string())?;
-            Ok(decide_codistribution(system, branch, claimed, rng))
-        }
-        (l, r) => Err(format!("{} is compared with {}", l.describe(), r.describe())),
+    }
+    let proved = verdicts.iter().all(|verdict| matches!(verdict, Verdict::Proved { .. }));
+    if proved && !shown {
+        needs.dedup();
+        return Verdict::undecided(format!(
+            "no state is known at which all of it exists; it needs {}",
+            needs.join("; ")
+        ));
+    }
+    match Verdict::all(verdicts) {
+        Verdict::Proved { engine, log2_error } if !unsolved.is_empty() => Verdict::Proved {
+            engine: format!("{engine}; not looked at, thinner than the set: {}", unsolved.join("; ")),
+            log2_error,
+        },
+        verdict => verdict,
     }
 }
 

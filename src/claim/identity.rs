@@ -1,10 +1,12 @@
-//! `left = right` for all values of the symbols, or within a tolerance at a point.
+//! `left = right` wherever both sides exist, or within a tolerance at a point.
 
+use super::existence::{Existence, existence};
+use super::terms::OnBranch;
 use super::value::{ValueError, enclose};
 use super::verdict::{Verdict, Witness};
 use super::witness::{Search, search};
-use crate::expression::{NodeId, Program, Symbol, ZeroTest, expand_angles, identically_zero};
-use crate::system::{Matrix, System};
+use crate::expression::{Guard, NodeId, Program, Symbol, ZeroTest, expand_angles, identically_zero};
+use crate::system::System;
 use dashu::rational::RBig;
 use rand::Rng;
 use std::collections::HashMap;
@@ -15,61 +17,63 @@ const IDENTICAL: &str = "the two sides are one expression";
 const EXACT: &str = "exact arithmetic at a state";
 const INTERVALS: &str = "interval arithmetic";
 
-/// Decides an equation between matrices (or numbers, as matrices of one entry).
+/// What a statement comes to on one branch of its conditions.
+pub(crate) enum OnOneBranch {
+    /// A verdict, and whether the statement's terms were shown to exist somewhere on the branch.
+    Verdict(Verdict, Existence),
+    /// Nothing is claimed there: the terms exist nowhere on the branch, since this is needed.
+    Empty(String),
+}
+
+/// Decides an equation between matrices (or numbers, as matrices of one entry) of so many columns.
 pub(crate) fn decide_identity(
     system: &mut System,
-    left: &Matrix,
-    right: &Matrix,
+    on: &OnBranch,
+    columns: usize,
     rng: &mut impl Rng,
-) -> Verdict {
+) -> OnOneBranch {
     let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
-    let both: Vec<NodeId> = left.entries.iter().chain(&right.entries).copied().collect();
-    let both = expand_angles(&mut system.graph, &both, is_angle);
-    let (left_entries, right_entries) = both.split_at(left.entries.len());
-    let differences: Vec<NodeId> =
-        left_entries.iter().zip(right_entries).map(|(l, r)| system.graph.sub(*l, *r)).collect();
-    let mut test = identically_zero(&system.graph, &differences, is_angle, rng);
-    // the difference of two sides may be zero where neither has a value: both have to have one somewhere
-    if matches!(test, ZeroTest::Zero { .. })
-        && let pole @ ZeroTest::Pole(_) = identically_zero(&system.graph, &both, is_angle, rng)
-    {
-        test = pole;
-    }
+    let both: Vec<NodeId> = expand_angles(&mut system.graph, &on.terms.sides, is_angle);
+    let (left, right) = both.split_at(both.len() / 2);
+    let differences: Vec<NodeId> = left.iter().zip(right).map(|(l, r)| system.graph.sub(*l, *r)).collect();
+    let test = identically_zero(&system.graph, &differences, is_angle, rng);
+    let proved = |engine: &str, log2_error| Verdict::Proved { engine: engine.to_owned(), log2_error };
     let (suspects, why) = match test {
-        ZeroTest::Zero { points: 0, .. } => {
-            return Verdict::Proved { engine: IDENTICAL.to_owned(), log2_error: f64::NEG_INFINITY };
+        ZeroTest::Zero { points, log2_error, .. } => {
+            let verdict = match points {
+                0 => proved(IDENTICAL, f64::NEG_INFINITY),
+                _ => proved(RANDOM_PRIMES, log2_error),
+            };
+            return match existence(system, on, rng) {
+                Existence::Nowhere(guard) => OnOneBranch::Empty(guard),
+                found => OnOneBranch::Verdict(verdict, found),
+            };
         }
-        ZeroTest::Zero { log2_error, .. } => {
-            return Verdict::Proved { engine: RANDOM_PRIMES.to_owned(), log2_error };
-        }
-        ZeroTest::Pole(divisor) => {
-            let text = system.graph.text(divisor);
-            return Verdict::undecided(format!("every state there is a pole: {text} = 0 is divided by"));
-        }
+        ZeroTest::Pole(divisor) => return OnOneBranch::Empty(format!("{} != 0", system.graph.text(divisor))),
         ZeroTest::Nonzero(index) => {
             (index..index + 1, "the sides differ as expressions in their functions".to_owned())
         }
         ZeroTest::Unknown(why) => (0..differences.len(), why),
     };
-    let mut agreement = None;
-    for index in suspects {
-        match search(system, &system.graph, left_entries[index], right_entries[index], rng) {
-            Search::Found(witness) => {
-                let exact = witness.left.parse::<RBig>().is_ok() || witness.left.contains('/');
-                let engine = if exact { EXACT } else { INTERVALS }.to_owned();
-                let entry =
-                    (left.entries.len() > 1).then(|| (index / left.columns + 1, index % left.columns + 1));
-                return Verdict::Refuted { engine, witness: Witness { entry, ..witness } };
-            }
-            Search::Agrees { digits, states } => {
-                let (d, s): (usize, usize) = agreement.unwrap_or((digits, states));
-                agreement = Some((d.min(digits), s.min(states)));
-            }
+    match search(system, on, suspects, rng) {
+        Search::Found { witness, entry, exact } => {
+            let entry = (differences.len() > 1).then_some((entry / columns + 1, entry % columns + 1));
+            let engine = if exact { EXACT } else { INTERVALS }.to_owned();
+            let verdict = Verdict::Refuted { engine, witness: Witness { entry, ..witness } };
+            OnOneBranch::Verdict(verdict, Existence::Shown)
         }
+        Search::Agrees { digits, states } => match existence(system, on, rng) {
+            Existence::Nowhere(guard) => OnOneBranch::Empty(guard),
+            found => {
+                let why = match states {
+                    0 => format!("{why}; no state was found at which both sides exist"),
+                    _ => format!("{why}; the sides agree to at least {digits} digits at {states} states"),
+                };
+                OnOneBranch::Verdict(Verdict::undecided(why), found)
+            }
+        },
     }
-    let (digits, states) = agreement.unwrap_or((0, 0));
-    Verdict::undecided(format!("{why}; the sides agree to at least {digits} digits at {states} states"))
 }
 
 /// Decides `|left - right| <= tolerance` where all three are numbers: constants, and what `at {...}` makes constants.
@@ -78,9 +82,13 @@ pub(crate) fn decide_nearness(
     left: NodeId,
     right: NodeId,
     tolerance: NodeId,
+    guards: &[Guard],
 ) -> Verdict {
     let difference = system.graph.sub(left, right);
-    let program = Program::new(&system.graph, &[difference, tolerance, left, right], |_| false, false);
+    let mut wanted = vec![difference, tolerance, left, right];
+    let terms = wanted.len();
+    wanted.extend(guards.iter().map(|guard| guard.node));
+    let program = Program::new(&system.graph, &wanted, |_| false, false);
     // a value in a file is a default, and never part of a claim
     let values: HashMap<Symbol, RBig> = HashMap::new();
     let mut bits = 128;
@@ -99,13 +107,24 @@ pub(crate) fn decide_nearness(
                 continue;
             }
         };
+        let mut exists = true;
+        for (guard, value) in guards.iter().zip(&found[terms..]) {
+            match guard.need.is_met_by_enclosure(value) {
+                Some(true) => {}
+                Some(false) => {
+                    let text = guard.text(&system.graph);
+                    return Verdict::undecided(format!("it has no value there: {text} does not hold"));
+                }
+                None => exists = false,
+            }
+        }
         let (low, high) = (found[0].low(), found[0].high());
         let largest = if -low.clone() > high { -low.clone() } else { high.clone() };
         let smallest = if low > RBig::ZERO { low } else { -high };
-        if largest <= found[1].low() {
+        if exists && largest <= found[1].low() {
             return Verdict::Proved { engine: INTERVALS.to_owned(), log2_error: f64::NEG_INFINITY };
         }
-        if smallest > found[1].high() {
+        if exists && smallest > found[1].high() {
             let shown =
                 |index: usize| found[index].certain_decimal(20).unwrap_or_else(|| found[index].bounds_text());
             let witness = Witness { state: Vec::new(), left: shown(2), right: shown(3), entry: None };

@@ -8,9 +8,12 @@
 
 mod decide;
 mod defaults;
+mod existence;
 mod identity;
 mod pole;
+mod rank_witness;
 mod ranks;
+mod terms;
 mod value;
 mod verdict;
 mod witness;

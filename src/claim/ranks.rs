@@ -1,46 +1,56 @@
 //! Claims about ranks: of a matrix, or of the observability codistribution, at almost all states of a set.
 
-use super::identity::RANDOM_PRIMES;
+use super::existence::{Existence, existence};
+use super::identity::{OnOneBranch, RANDOM_PRIMES};
+use super::rank_witness::{Ranks, rank_witness};
+use super::terms::{OnBranch, Terms};
 use super::verdict::{Verdict, Witness};
 use crate::expression::NodeId;
 use crate::observability::{Branch, Codistribution, GenericRank, Length, Stop, generic_rank};
-use crate::system::{Matrix, System};
+use crate::system::System;
 use rand::Rng;
 
 /// A nonzero minor, the certain half of a statement about a rank.
 const MINOR: &str = "a minor that is not zero modulo a prime";
 
-/// Decides `rank(M) = claimed`.
+/// Decides `rank(M) = claimed` on a branch; the entries are the sides of the terms.
 pub(crate) fn decide_rank(
     system: &mut System,
-    matrix: &Matrix,
+    on: &OnBranch,
+    columns: usize,
     claimed: usize,
     rng: &mut impl Rng,
-) -> Verdict {
-    decide(system, &matrix.entries, matrix.columns, claimed, "", rng)
+) -> OnOneBranch {
+    let entries = on.terms.sides.clone();
+    let exists = existence(system, on, rng);
+    let rows = Rows { entries: &entries, columns, scope: "", on };
+    on_one_branch(system, exists, &rows, claimed, rng)
 }
 
 /// Decides `rank = claimed` for the codistribution, on the states of a branch.
+///
+/// # Errors
+/// In words: there is no codistribution, or it tells apart what the conditions leave open.
 pub(crate) fn decide_codistribution(
     system: &mut System,
+    on: &OnBranch,
     branch: &Branch,
     claimed: usize,
     rng: &mut impl Rng,
-) -> Verdict {
+) -> Result<OnOneBranch, String> {
     if system.outputs.is_empty() || system.states.is_empty() {
-        return Verdict::undecided("there is no codistribution: the file declares no states or no outputs");
+        return Err("there is no codistribution: the file declares no states or no outputs".to_owned());
     }
-    if let Err(why) = branch.check_codistribution(system) {
-        return Verdict::undecided(why);
+    branch.check_codistribution(system)?;
+    let exists = existence(system, on, rng);
+    if let Existence::Nowhere(guard) = exists {
+        return Ok(OnOneBranch::Empty(guard));
     }
-    let words = match Codistribution::new(system, &branch.values, Length::UntilItStops) {
-        Ok(words) => words,
-        Err(why) => return Verdict::undecided(why),
-    };
+    let words = Codistribution::new(system, &branch.values, Length::UntilItStops)?;
     let entries = system.graph.substitute(&words.entries(), &branch.values);
     let found = words.generic_rank();
     if !words.is_final() && found <= claimed {
-        return Verdict::undecided(format!(
+        return Err(format!(
             "words of up to {} fields give the rank {found}; the fields leave these states, so that longer words may add \
              to it (to claim a rank for some words, write rank([d(...); ...]))",
             words.order
@@ -50,31 +60,55 @@ pub(crate) fn decide_codistribution(
         Stop::Full => "",
         _ => ", and longer words do not raise it",
     };
-    decide(system, &entries, system.states.len(), claimed, scope, rng)
+    let columns = system.states.len();
+    // the rows that give the rank at almost all states: no other row adds to it anywhere
+    let terms = Terms { sides: words.needed_entries(), guards: on.terms.guards.clone(), ..Terms::default() };
+    let needed = OnBranch::new(system, branch, &terms)?;
+    let rows = Rows { entries: &entries, columns, scope, on: &needed };
+    Ok(on_one_branch(system, exists, &rows, claimed, rng))
 }
 
-fn decide(
-    system: &mut System,
-    entries: &[NodeId],
+/// Rows of expressions, one after the other.
+struct Rows<'a> {
+    entries: &'a [NodeId],
     columns: usize,
+    /// What is said of them beside their rank.
+    scope: &'a str,
+    /// Those of them that give the rank, as terms that a state can be put into.
+    on: &'a OnBranch,
+}
+
+fn on_one_branch(
+    system: &mut System,
+    exists: Existence,
+    rows: &Rows<'_>,
     claimed: usize,
-    scope: &str,
     rng: &mut impl Rng,
-) -> Verdict {
+) -> OnOneBranch {
+    match exists {
+        Existence::Nowhere(guard) => OnOneBranch::Empty(guard),
+        Existence::NotShown(guard) => {
+            let why = format!("no state was found at which all of it exists; it needs {guard}");
+            OnOneBranch::Verdict(Verdict::undecided(why), Existence::NotShown(guard))
+        }
+        Existence::Shown => OnOneBranch::Verdict(decide(system, rows, claimed, rng), exists),
+    }
+}
+
+fn decide(system: &mut System, rows: &Rows<'_>, claimed: usize, rng: &mut impl Rng) -> Verdict {
     let angles = system.angles();
-    match generic_rank(&mut system.graph, entries, columns, |symbol| angles.contains(&symbol), rng) {
+    let is_angle = |symbol| angles.contains(&symbol);
+    match generic_rank(&mut system.graph, rows.entries, rows.columns, is_angle, rng) {
         GenericRank::Rank { rank, log2_error, .. } if rank == claimed => {
             let engine = if log2_error == f64::NEG_INFINITY { MINOR } else { RANDOM_PRIMES };
-            Verdict::Proved { engine: format!("{engine}{scope}"), log2_error }
+            Verdict::Proved { engine: format!("{engine}{}", rows.scope), log2_error }
         }
         GenericRank::Rank { rank, .. } => {
-            let witness = Witness {
-                state: Vec::new(),
-                left: rank.to_string(),
-                right: claimed.to_string(),
-                entry: None,
-            };
-            Verdict::Refuted { engine: format!("{RANDOM_PRIMES}{scope}"), witness }
+            let ranks = Ranks { generic: rank, claimed };
+            let witness = rank_witness(system, rows.on, rows.columns, ranks, rng).unwrap_or_else(|| {
+                Witness { state: Vec::new(), left: rank.to_string(), right: claimed.to_string(), entry: None }
+            });
+            Verdict::Refuted { engine: format!("{RANDOM_PRIMES}{}", rows.scope), witness }
         }
         GenericRank::Pole(divisor) => {
             let text = system.graph.text(divisor);

@@ -6,6 +6,7 @@
 //! than by a constant of which they hold.
 
 use super::graph::{Graph, NodeId, Symbol};
+use super::sign::{Sign, sign};
 use crate::number::{Enclosure, Function};
 use dashu::rational::RBig;
 use std::cmp::Ordering;
@@ -79,6 +80,18 @@ impl Need {
         if all { Some(true) } else { none.then_some(false) }
     }
 
+    /// The same between two doubles. A bound that is not a number tells nothing.
+    pub fn is_met_in(self, low: f64, high: f64) -> Option<bool> {
+        let (all, none) = match self {
+            Need::NotZero => (low > 0.0 || high < 0.0, low == 0.0 && high == 0.0),
+            Need::Positive => (low > 0.0, high <= 0.0),
+            Need::NotNegative => (low >= 0.0, high < 0.0),
+            Need::WithinOne => (low >= -1.0 && high <= 1.0, low > 1.0 || high < -1.0),
+            Need::InsideOne => (low > -1.0 && high < 1.0, low >= 1.0 || high <= -1.0),
+        };
+        if all { Some(true) } else { none.then_some(false) }
+    }
+
     /// Whether an enclosed value meets it; `None` where the enclosure does not tell.
     pub fn is_met_by_enclosure(self, value: &Enclosure) -> Option<bool> {
         self.is_met_between(&value.low(), &value.high())
@@ -95,6 +108,21 @@ impl Guard {
             Need::NotNegative => format!("{operand} >= 0"),
             Need::WithinOne => format!("-1 <= {operand} <= 1"),
             Need::InsideOne => format!("-1 < {operand} < 1"),
+        }
+    }
+
+    /// Whether it can be read off that it holds wherever its operand exists (`true`) or nowhere (`false`).
+    pub fn is_obvious(self, graph: &Graph) -> Option<bool> {
+        if let Some(known) = self.constant(graph) {
+            return Some(known);
+        }
+        match (self.need, sign(graph, self.node)?) {
+            (Need::NotZero, sign) if sign.is_strict() => Some(true),
+            (Need::Positive, Sign::Positive) => Some(true),
+            (Need::Positive, Sign::Negative | Sign::NotPositive) => Some(false),
+            (Need::NotNegative, Sign::Positive | Sign::NotNegative) => Some(true),
+            (Need::NotNegative, Sign::Negative) => Some(false),
+            _ => None,
         }
     }
 

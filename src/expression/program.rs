@@ -15,7 +15,7 @@ pub enum Input {
     Sine(Symbol),
     /// The cosine of a symbol that is an angle.
     Cosine(Symbol),
-    /// The value of a function that is treated as an unknown of its own (the node is the function's value).
+    /// The value of a function that is treated as an unknown of its own (the node is the function's value), or pi.
     Opaque(NodeId),
 }
 
@@ -34,7 +34,7 @@ enum Operation {
 }
 
 /// A straight-line program for some expressions.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Program {
     operations: Vec<Operation>,
     origins: Vec<NodeId>,
@@ -80,6 +80,8 @@ impl Program {
                     (Function::Cos, Some(symbol)) if is_angle(symbol) => Some(Input::Cosine(symbol)),
                     _ => opaque.then_some(Input::Opaque(id)),
                 },
+                // pi is transcendental: rational expressions in it vanish only where they vanish for all its values
+                Node::Pi => opaque.then_some(Input::Opaque(id)),
                 _ => None,
             }
         };
@@ -148,6 +150,14 @@ impl Program {
     /// An angle that is met outside sines and cosines, and so has no exact value.
     pub fn bare_angle(&self) -> Option<Symbol> {
         self.bare_angle
+    }
+
+    /// A function that is treated as an unknown of its own, if there is one. (Pi is transcendental, and rightly an unknown.)
+    pub fn unknown_function(&self, graph: &Graph) -> Option<NodeId> {
+        self.inputs.iter().find_map(|input| match input {
+            Input::Opaque(node) if graph.node(*node) != Node::Pi => Some(*node),
+            _ => None,
+        })
     }
 
     /// The program with its constants in the numbers of an arithmetic.

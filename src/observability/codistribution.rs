@@ -4,7 +4,7 @@
 use super::conditions::{all_vanish, vanishes};
 use super::elimination::independent_rows;
 use super::series::lie_derivative_by_series;
-use crate::expression::{Input, NodeId, Program, draw_residues, expand_angles};
+use crate::expression::{NodeId, Program, draw_residues, expand_angles};
 use crate::number::PrimeField;
 use crate::system::{Assignment, System};
 use rand::SeedableRng;
@@ -285,7 +285,7 @@ fn needed(
             Err(failure) => divisor = failure.divisor,
         }
     }
-    let guessed = program.inputs().iter().any(|input| matches!(input, Input::Opaque(_)));
+    let guessed = program.unknown_function(&system.graph).is_some();
     best.map(|kept| (kept, guessed)).ok_or_else(|| match divisor {
         Some(divisor) => {
             // what has become the constant zero is named as it was written

@@ -54,15 +54,16 @@ pub fn rank<A: Arithmetic>(arithmetic: &A, mut rows: Vec<Vec<A::Number>>) -> Res
     Ok(reduce(arithmetic, &mut rows, false)?.len())
 }
 
-/// A basis of the vectors that all rows annihilate, each with a one at a free column of its own.
+/// A basis of the vectors of so many entries that all rows annihilate, each with a one at a free column of its own. No rows
+/// at all annihilate every vector.
 ///
 /// # Errors
 /// Where an operation is refused.
 pub fn kernel<A: Arithmetic>(
     arithmetic: &A,
     mut rows: Vec<Vec<A::Number>>,
+    columns: usize,
 ) -> Result<Vec<Vec<A::Number>>, Refusal> {
-    let columns = rows.first().map_or(0, Vec::len);
     let pivots = reduce(arithmetic, &mut rows, true)?;
     let (zero, one) = (
         arithmetic.rational(&dashu::rational::RBig::ZERO)?,
@@ -172,8 +173,9 @@ mod tests {
         let square = matrix(&[&[16, 3, 2, 13], &[5, 10, 11, 8], &[9, 6, 7, 12], &[4, 15, 14, 1]]);
         let all = Rationals::default();
         assert_eq!(rank(&all, square.clone()), Ok(3));
-        let basis = kernel(&all, square.clone()).unwrap();
+        let basis = kernel(&all, square.clone(), 4).unwrap();
         assert_eq!(basis.len(), 1);
+        assert_eq!(kernel(&all, Vec::new(), 3).unwrap().len(), 3, "no rows see nothing");
         for row in &square {
             let dot = row.iter().zip(&basis[0]).fold(RBig::ZERO, |s, (a, b)| s + a * b);
             assert!(dot.is_zero());

@@ -44,7 +44,7 @@ pub fn generic_rank(
             "'{name}' is declared as an angle but stands outside sin, cos and tan"
         ));
     }
-    if program.inputs().iter().any(|input| matches!(input, crate::expression::Input::Opaque(_))) {
+    if program.unknown_function(graph).is_some() {
         return GenericRank::Unknown("a function other than sines and cosines of angles is met".to_owned());
     }
     let rows = entries.len() / columns.max(1);

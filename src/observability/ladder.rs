@@ -12,11 +12,12 @@
 //! state begins with intervals. Doubles that do not are on no rung: where a row vanishes they see noise of full rank.
 //! Where intervals fall short, a computed rank is taken from enclosures, a certified one by exact numbers.
 
+use super::defined::Defined;
 use super::digits::{Digits, Matrices, NoDigits, digits_of};
 use super::elimination::{certain_rank, kernel, rank};
 use super::reduction::Reduction;
 use super::singular::{Spectrum, singular_values};
-use super::state::{State, float_inputs};
+use super::state::State;
 use crate::expression::{Failure, Graph, Loaded, NodeId, Program, Symbol};
 use crate::number::{
     Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals, Refusal, Rung,
@@ -96,8 +97,7 @@ impl Matrices for RowsAt<'_, '_> {
 /// Decides the rank of some rows at any state.
 pub struct Judge<'g> {
     graph: &'g Graph,
-    /// Evaluated only to see whether the outputs exist.
-    outputs: Program,
+    defined: Defined,
     quick: Rows,
     all: Rows,
     /// All rows without any elimination, for the directions that they do not see.
@@ -108,11 +108,11 @@ pub struct Judge<'g> {
 }
 
 impl<'g> Judge<'g> {
-    /// `quick` rows (those that suffice at a generic state) are tried first; where they fall short, `all` rows decide.
+    /// `defined` says where all of it exists. `quick` rows (those that suffice at a generic state) are tried first; where they fall short, `all` rows decide.
     /// Angles must have been expanded.
     pub fn new(
         graph: &'g Graph,
-        outputs: &[NodeId],
+        defined: Defined,
         (quick, all): (&[NodeId], &[NodeId]),
         columns: usize,
         is_angle: impl Fn(Symbol) -> bool + Copy,
@@ -120,7 +120,7 @@ impl<'g> Judge<'g> {
     ) -> Self {
         Judge {
             graph,
-            outputs: Program::new(graph, outputs, |_| false, false),
+            defined,
             quick: Rows::new(graph, quick, columns, is_angle),
             all: Rows::new(graph, all, columns, is_angle),
             exact: Program::new(graph, all, is_angle, false),
@@ -137,7 +137,7 @@ impl<'g> Judge<'g> {
 
     /// The rank at a state.
     pub fn decide(&self, state: &State) -> Judged {
-        if let Some(undefined) = self.undefined_output(state) {
+        if let Some(undefined) = self.defined.failure(self.graph, state) {
             return Judged::Pole(undefined);
         }
         let full = self.columns;
@@ -197,20 +197,6 @@ impl<'g> Judge<'g> {
         digits_of(&RowsAt { judge: self, rows, state }, digits, self.wanted)
     }
 
-    /// Why an output does not exist at a state, if one does not.
-    fn undefined_output(&self, state: &State) -> Option<String> {
-        let float = |symbol: Symbol| state.values.get(&symbol).map_or(f64::NAN, |value| value.to_f64());
-        let inputs = float_inputs(&self.outputs, float);
-        match self.outputs.load(Floats).ok()?.run(&inputs, &mut Vec::new()) {
-            Ok(_) => None,
-            Err(failure) => Some(format!(
-                "an output is not defined: {}, in {}",
-                failure.refusal,
-                self.graph.text(failure.node)
-            )),
-        }
-    }
-
     /// The values of rows over an arithmetic.
     fn values<A: Arithmetic + Copy>(
         &self,
@@ -256,7 +242,7 @@ impl<'g> Judge<'g> {
             .run(&inputs, &mut Vec::new())
             .map_err(|failure| failure.divisor.map(|divisor| format!("{} = 0", self.graph.text(divisor))))?;
         let rows = values.chunks(self.columns).map(<[RBig]>::to_vec).collect();
-        let unseen = kernel(&exact, rows).map_err(|_| None)?;
+        let unseen = kernel(&exact, rows, self.columns).map_err(|_| None)?;
         Ok((self.columns - unseen.len(), unseen))
     }
 

@@ -9,6 +9,7 @@
 
 mod codistribution;
 mod conditions;
+mod defined;
 mod digits;
 mod elimination;
 mod equilibrate;
@@ -27,8 +28,10 @@ mod stream;
 mod sweep;
 
 pub use codistribution::{Codistribution, Length, Stop, Word};
-pub use conditions::linear_solution;
-pub use conditions::{Branch, Unsolved, also_met_otherwise, solve_conditions};
+pub use conditions::{
+    Branch, Solution, Unsolved, also_met_otherwise, linear_solution, solve, solve_conditions,
+};
+pub use defined::Defined;
 pub use digits::{Digits, MOST_DIGITS, NoDigits};
 pub use elimination::{certain_rank, kernel, rank};
 pub use equilibrate::equilibrate;

@@ -148,6 +148,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         Some(Value::Matrix(matrix)) if matrix.columns == system.states.len() => Some(matrix.entries.clone()),
         _ => None,
     };
+    let own_guards = system.definition_guards(OWN_ROWS);
     let mut answers = Vec::new();
     for branch in branches {
         branch.check_codistribution(system)?;
@@ -178,6 +179,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         let options = SweepOptions {
             samples: question.samples,
             seed: question.seed,
+            guards: &[],
             wanted: question.wanted,
             digits: question.digits,
             interrupt: question.interrupt,
@@ -186,7 +188,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         let full = codistribution.sweep(system, &locus, options).map_err(|error| error.to_string())?;
         let rows = match &own {
             Some(own) => {
-                let silent = SweepOptions { progress: &|_| (), ..options };
+                let silent = SweepOptions { guards: &own_guards, progress: &|_| (), ..options };
                 Some(sweep(system, &locus, own, own, silent).map_err(|error| error.to_string())?)
             }
             None => None,

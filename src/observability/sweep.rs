@@ -1,13 +1,14 @@
 //! The rank of a set of rows at many sampled states.
 
 use super::codistribution::Codistribution;
+use super::defined::Defined;
 use super::digits::{Digits, NoDigits};
 use super::ladder::{Certainty, Judge, Judged, StateReport};
 use super::locus::{Locus, LocusError};
 use super::singular::Spectrum;
 use super::state::{State, StateInWords};
 use super::stream::{Stream, StreamOptions};
-use crate::expression::{NodeId, Symbol, expand_angles};
+use crate::expression::{Guard, NodeId, Symbol, add_guard, expand_angles};
 use crate::number::{PrimeField, Rung, rational_to_f64};
 use crate::system::System;
 use dashu::rational::RBig;
@@ -23,6 +24,8 @@ use std::time::Instant;
 pub struct SweepOptions<'a> {
     pub samples: u64,
     pub seed: u64,
+    /// What the rows need to exist, beside what outputs and fields need.
+    pub guards: &'a [Guard],
     /// What every rank has to be, at the least.
     pub wanted: Certainty,
     /// To how many digits the singular values of the worst conditioned state are wanted, if doubles will not do.
@@ -109,15 +112,23 @@ pub fn sweep(
     let quick = expand_angles(&mut system.graph, quick, is_angle);
     let all = expand_angles(&mut system.graph, all, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-    let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
-    let outputs = expand_angles(&mut system.graph, &outputs, is_angle);
+    let fields = system.moving_fields();
+    let mut guards = system.smooth_guards(&fields);
+    // a stream watches what outputs and fields need; what the rows need beside that is looked at state by state
+    let watched = options
+        .guards
+        .iter()
+        .all(|guard| guards.contains(guard) || guard.is_obvious(&system.graph) == Some(true));
+    options.guards.iter().for_each(|guard| add_guard(&system.graph, &mut guards, *guard));
+    let defined = Defined::new(system, &guards);
     let field = PrimeField::random(&mut rng);
     // the judge looks at the graph while the tally asks the system for names
     let graph = system.graph.clone();
     let judge =
-        Judge::new(&graph, &outputs, (&quick, &all), system.states.len(), is_angle, (field, options.wanted));
+        Judge::new(&graph, defined, (&quick, &all), system.states.len(), is_angle, (field, options.wanted));
     // a stream decides full ranks only; where the quick rows cannot have it, there is nothing to stream
     let stream = Stream::new(system, locus, &quick)
+        .filter(|_| watched)
         .filter(|stream| stream.full_rank() == system.states.len() && stream.remaining() != (0, 0));
     let mut report = match stream {
         Some(stream) => streamed(system, &stream, &judge, options)?,
@@ -168,7 +179,7 @@ fn streamed(
             trouble = judge_all(system, judge, &mut tally, block, state).err();
         }
     };
-    let SweepOptions { samples: states, seed, wanted, digits, interrupt, progress } = options;
+    let SweepOptions { samples: states, seed, wanted, digits, interrupt, progress, .. } = options;
     let found = stream.run(&StreamOptions { states, seed, wanted, interrupt, progress }, &mut left)?;
     if let Some(error) = trouble {
         return Err(error);

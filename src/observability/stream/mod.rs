@@ -21,8 +21,8 @@ use super::ladder::Certainty;
 use super::locus::{Locus, LocusError, Source};
 use super::reduction::Reduction;
 use super::state::{Coordinate, State};
-use crate::expression::{BlockProgram, Input, NodeId, Symbol, expand_angles};
-use crate::number::{Bounded, Instructions, Lanes, Vectorised, rational_from_f64};
+use crate::expression::{BlockProgram, Graph, Guard, Input, Need, Node, NodeId, Symbol, expand_angles};
+use crate::number::{Bounded, Function, Instructions, Lanes, Vectorised, rational_from_f64};
 use crate::system::System;
 pub use certain::Elimination;
 use dashu::rational::RBig;
@@ -33,6 +33,7 @@ pub use given::{StatesError, Verdict, Verdicts};
 pub use jacobi::Jacobi;
 use rayon::prelude::*;
 pub use report::{DECADES, StreamReport};
+use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// States that one thread takes at a time.
@@ -82,14 +83,20 @@ impl Stream {
             }
         }
         let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
-        let mut put_in = |nodes: &[NodeId]| {
+        let put_in = |system: &mut System, nodes: &[NodeId]| {
             let nodes = system.graph.substitute(nodes, &values);
             // once more: what the conditions give may mention what has one value
             let nodes = system.graph.substitute(&nodes, &values);
             expand_angles(&mut system.graph, &nodes, is_angle)
         };
-        let (entries, avoided) = (put_in(rows), put_in(&locus.avoided));
-        let mut watched = put_in(&outputs);
+        let (entries, avoided) = (put_in(system, rows), put_in(system, &locus.avoided));
+        let mut watched = put_in(system, &outputs);
+        let fields = system.moving_fields();
+        let guards = system.smooth_guards(&fields);
+        let nodes: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
+        let nodes = put_in(system, &nodes);
+        let there = guards.iter().zip(nodes).map(|(guard, node)| Guard { node, need: guard.need });
+        watched.extend(watches(&mut system.graph, there, &[&watched[..], &entries].concat()));
         let reduction = Reduction::new(&system.graph, &entries, system.states.len());
         watched.extend(&entries);
         let known = |input: Input| match (input, locus.sources.get(&symbol_of(input)?)?) {
@@ -200,6 +207,39 @@ impl Stream {
             ..StreamReport::default()
         }
     }
+}
+
+/// Expressions that have a finite value only where guards hold, but for divisors that are divided by anyway.
+fn watches(graph: &mut Graph, guards: impl Iterator<Item = Guard>, computed: &[NodeId]) -> Vec<NodeId> {
+    let divisors: HashSet<NodeId> = graph
+        .reachable(computed.iter().copied())
+        .into_iter()
+        .filter_map(|id| match graph.node(id) {
+            Node::Div(_, divisor) => Some(divisor),
+            Node::Power(base, n) if n < 0 => Some(base),
+            _ => None,
+        })
+        .collect();
+    let one = graph.integer(1);
+    let mut found = Vec::new();
+    for guard in guards {
+        if guard.is_obvious(graph) == Some(true)
+            || guard.need == Need::NotZero && divisors.contains(&guard.node)
+        {
+            continue;
+        }
+        let divisor = match guard.need {
+            Need::NotZero => guard.node,
+            Need::Positive | Need::NotNegative => graph.apply(Function::Sqrt, guard.node),
+            Need::InsideOne | Need::WithinOne => {
+                let square = graph.power(guard.node, 2);
+                let rest = graph.sub(one, square);
+                graph.apply(Function::Sqrt, rest)
+            }
+        };
+        found.push(graph.div(one, divisor));
+    }
+    found
 }
 
 fn symbol_of(input: Input) -> Option<Symbol> {

@@ -3,7 +3,7 @@
 use crate::expression::{Failure, NodeId, Program, expand_angles};
 use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, PrimeField, Rationals, Real, Refusal};
 use crate::observability::{
-    Certainty, Judge, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank,
+    Certainty, Defined, Judge, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank,
     singular_values,
 };
 use crate::system::System;
@@ -84,7 +84,7 @@ impl Subject {
         let rows: &[NodeId] = &self.expanded;
         let is_angle = |symbol| self.system.is_angle(symbol);
         let wanted = (self.field, Certainty::Certified);
-        Judge::new(&self.system.graph, &[], (rows, rows), self.columns, is_angle, wanted)
+        Judge::new(&self.system.graph, Defined::default(), (rows, rows), self.columns, is_angle, wanted)
     }
 
     /// The rows that remain without unit rows, and their columns.

@@ -1,0 +1,364 @@
+//! Conditions such as `omega1 = 0`, `sin(phi1) = 0` or the vanishing of a determinant, solved for one symbol each, so
+//! that states which meet them can be written down exactly.
+//!
+//! The set of states that meet all conditions is taken apart into branches. On each one some symbols have values in terms of
+//! the others, valid where the branch's guards hold: `a x + b = 0` is met by `x = -b/a` where `a` is not zero, and where `a`
+//! and `b` both vanish, which is another branch. Every branch is followed to its end: solved, proved empty, or given back as
+//! what could not be solved. Of `k` conditions no part of the set that is a part of its own has less than the dimension
+//! of all states less `k`; what is thinner than that (as the edge of a sheet is) need not be solved where a statement is about
+//! almost all states, and is named. Which condition is taken first is decided by what it says and not by where it stands.
+
+mod single;
+mod turns;
+
+pub use single::{also_met_otherwise, linear_solution};
+
+use crate::expression::syntax::Equation;
+use crate::expression::{
+    Guard, Need, NodeId, Symbol, ZeroTest, add_guard, expand_angles, identically_zero, sign,
+};
+use crate::system::{Assignment, System, Value};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use single::{Apart, Way, is_a_constant_but_zero, way};
+use turns::turns_do_not_matter;
+
+/// One way to meet all conditions: values for some symbols in terms of the others.
+#[derive(Clone, Debug, Default)]
+pub struct Branch {
+    /// Angles that were solved for from a sine or cosine: their values are known up to whole turns.
+    pub up_to_turns: Vec<Symbol>,
+    /// The solved symbols; no value mentions a solved symbol.
+    pub values: Assignment,
+    /// The same for all but the angles of [`Branch::up_to_turns`], which these values may mention.
+    pub(crate) before_turns: Assignment,
+    /// What has to hold for the values, and both sides of all conditions, to exist. In terms of all symbols.
+    pub guards: Vec<Guard>,
+    /// How each condition was met, in words.
+    pub steps: Vec<String>,
+}
+
+/// The set of states that meet some conditions.
+#[derive(Clone, Debug, Default)]
+pub struct Solution {
+    /// Its parts of the largest dimension.
+    pub parts: Vec<Branch>,
+    /// Branches of fewer dimensions, which may be parts of their own.
+    pub smaller: Vec<Branch>,
+    /// Branches that have too few dimensions for that: edges and crossings of parts.
+    pub thinner: Vec<Branch>,
+    /// Thinner branches that could not be solved, in words.
+    pub unsolved: Vec<String>,
+}
+
+/// Why a condition could not be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unsolved {
+    /// It cannot be read.
+    #[error("{0}")]
+    Unreadable(String),
+    /// It cannot be met.
+    #[error("the condition '{0}' is never met")]
+    Never(String),
+    /// The conditions exclude each other.
+    #[error("the conditions are never met together")]
+    NeverTogether,
+    /// It cannot be solved for a symbol.
+    #[error("the condition '{0}' is not linear in any symbol; write it as name = expression")]
+    NotLinear(String),
+    /// It is met on several sets at once, one of which cannot be solved.
+    #[error("the condition '{0}' is met in more than one way; name the factor that is to vanish")]
+    Several(String),
+    /// It is not known whether it is met.
+    #[error("it is not known whether the condition '{0}' can be met there")]
+    NotKnown(String),
+    /// There are too many ways to meet them.
+    #[error("the conditions are met in more than {MOST_BRANCHES} ways")]
+    TooMany,
+}
+
+/// Conditions are quoted in messages up to so many characters.
+const LONGEST_QUOTE: usize = 80;
+/// No more branches than this are followed.
+const MOST_BRANCHES: usize = 64;
+
+/// The parts of the set on which all conditions hold; see [`solve`].
+///
+/// # Errors
+/// As for [`solve`].
+pub fn solve_conditions(system: &mut System, conditions: &[Equation]) -> Result<Vec<Branch>, Unsolved> {
+    let solution = solve(system, conditions)?;
+    Ok(solution.parts.into_iter().chain(solution.smaller).collect())
+}
+
+/// A condition that is not yet met.
+#[derive(Clone, Debug)]
+struct Condition {
+    left: NodeId,
+    right: NodeId,
+    /// As it is quoted: the condition of the file that it comes from.
+    text: String,
+}
+
+/// A branch on the way.
+#[derive(Clone, Debug, Default)]
+struct Partial {
+    values: Assignment,
+    turns: Vec<(Symbol, NodeId)>,
+    guards: Vec<Guard>,
+    steps: Vec<String>,
+    open: Vec<Condition>,
+    /// How many symbols are solved for.
+    codimension: usize,
+    /// By how many dimensions it is smaller than the set of all states, at the least.
+    least: usize,
+    /// Whether it comes of a condition that is met in several ways.
+    several: bool,
+}
+
+/// What one step made of a branch.
+enum Step {
+    Done(Partial),
+    Empty(String),
+    Open(Vec<Partial>),
+    Stuck(Partial, Unsolved),
+}
+
+/// Takes the set on which all conditions hold apart into branches and solves each.
+///
+/// # Errors
+/// Where a branch that is no thinner than a part of the set cannot be solved, or where no state meets all conditions.
+pub fn solve(system: &mut System, conditions: &[Equation]) -> Result<Solution, Unsolved> {
+    let start = begin(system, conditions)?;
+    let count = start.open.len();
+    let only = start.open.first().map(|condition| condition.text.clone()).unwrap_or_default();
+    let (mut work, mut done, mut unsolved, mut never) = (vec![start], Vec::new(), Vec::new(), None);
+    let mut followed = 0;
+    while let Some(partial) = work.pop() {
+        followed += 1;
+        if followed > 4 * MOST_BRANCHES || work.len() + done.len() > MOST_BRANCHES {
+            return Err(Unsolved::TooMany);
+        }
+        match step(system, partial, count) {
+            Step::Empty(why) => never = never.or(Some(why)),
+            Step::Open(next) => work.extend(next.into_iter().rev()),
+            Step::Stuck(partial, _) if partial.least > count => {
+                let open = partial.open.iter().map(|c| quote(system, c.left, c.right));
+                let steps: Vec<String> = partial.steps.iter().cloned().chain(open).collect();
+                unsolved.push(steps.join(", "));
+            }
+            Step::Stuck(partial, _) if partial.several && count == 1 => return Err(Unsolved::Several(only)),
+            Step::Stuck(_, why) => return Err(why),
+            Step::Done(partial) => {
+                let codimension = partial.codimension;
+                done.push((codimension, finish(system, partial)));
+            }
+        }
+    }
+    let Some(least) = done.iter().map(|(codimension, _)| *codimension).min() else {
+        return Err(match (never, unsolved.is_empty()) {
+            (_, false) => Unsolved::NotKnown(unsolved.remove(0)),
+            (Some(text), true) if count == 1 => Unsolved::Never(text),
+            _ => Unsolved::NeverTogether,
+        });
+    };
+    let mut solution = Solution { unsolved, ..Solution::default() };
+    for (codimension, branch) in done {
+        match codimension {
+            _ if codimension == least => solution.parts.push(branch),
+            _ if codimension <= count => solution.smaller.push(branch),
+            _ => solution.thinner.push(branch),
+        }
+    }
+    Ok(solution)
+}
+
+/// All conditions, read, each once.
+fn begin(system: &mut System, conditions: &[Equation]) -> Result<Partial, Unsolved> {
+    let mut partial = Partial::default();
+    for condition in conditions {
+        let mut side = |expr| match system.elaborate_guarded(expr) {
+            Ok((Value::Scalar(id), guards)) => Ok((id, guards)),
+            Ok((other, _)) => Err(Unsolved::Unreadable(format!("a condition equates {}", other.describe()))),
+            Err(problem) => Err(Unsolved::Unreadable(problem.message)),
+        };
+        let ((left, before), (right, after)) = (side(&condition.left)?, side(&condition.right)?);
+        for guard in before.into_iter().chain(after) {
+            add_guard(&system.graph, &mut partial.guards, guard);
+        }
+        let text = quote(system, left, right);
+        let difference = system.graph.sub(left, right);
+        if vanishes(system, difference) {
+            continue; // it says nothing, wherever both sides exist
+        }
+        if !partial.open.iter().any(|other| (other.left, other.right) == (left, right)) {
+            partial.open.push(Condition { left, right, text });
+        }
+    }
+    Ok(partial)
+}
+
+fn quote(system: &System, left: NodeId, right: NodeId) -> String {
+    let mut text = format!("{} = {}", system.graph.text(left), system.graph.text(right));
+    if text.chars().count() > LONGEST_QUOTE {
+        text = text.chars().take(LONGEST_QUOTE).chain("...".chars()).collect();
+    }
+    text
+}
+
+impl Partial {
+    /// Expressions with all values put in, those of angles only where whole turns do not matter.
+    fn put_in(&self, system: &mut System, expressions: &[NodeId]) -> Vec<NodeId> {
+        let mut found = system.graph.substitute(expressions, &self.values);
+        for (angle, value) in &self.turns {
+            if turns_do_not_matter(system, &found, *angle) {
+                found = system.graph.substitute(&found, &Assignment::from([(*angle, *value)]));
+            }
+        }
+        found
+    }
+
+    /// A guard that holds nowhere on the branch.
+    fn fails(&self, system: &mut System) -> Option<Guard> {
+        let nodes: Vec<NodeId> = self.guards.iter().map(|guard| guard.node).collect();
+        let there = self.put_in(system, &nodes);
+        let mut both = self.guards.iter().zip(there);
+        both.find(|(guard, node)| {
+            Guard { node: *node, need: guard.need }.is_obvious(&system.graph) == Some(false)
+                || guard.need == Need::NotZero && vanishes(system, *node)
+        })
+        .map(|(guard, _)| *guard)
+    }
+
+    /// The branch on which a symbol has a value.
+    fn with(&self, system: &mut System, symbol: Symbol, value: NodeId) -> Partial {
+        let mut next = self.clone();
+        let single = Assignment::from([(symbol, value)]);
+        for known in next.values.values_mut().chain(next.turns.iter_mut().map(|(_, value)| value)) {
+            *known = system.graph.substitute(&[*known], &single)[0];
+        }
+        next.values.insert(symbol, value);
+        next.codimension += 1;
+        next.steps.push(format!("{} = {}", system.symbol_name(symbol), system.graph.text(value)));
+        next
+    }
+
+    /// The branch on which an angle has a value, up to whole turns.
+    fn with_turns(&self, system: &System, angle: Symbol, value: NodeId) -> Partial {
+        let mut next = self.clone();
+        next.turns.push((angle, value));
+        next.codimension += 1;
+        next.steps.push(format!("{} = {}", system.symbol_name(angle), system.graph.text(value)));
+        next
+    }
+}
+
+/// Meets one more condition.
+fn step(system: &mut System, mut partial: Partial, count: usize) -> Step {
+    if let Some(guard) = partial.fails(system) {
+        return Step::Empty(guard.text(&system.graph));
+    }
+    let mut open = Vec::new();
+    for condition in std::mem::take(&mut partial.open) {
+        let sides = partial.put_in(system, &[condition.left, condition.right]);
+        let difference = system.graph.sub(sides[0], sides[1]);
+        if vanishes(system, difference) {
+            continue; // it holds already
+        }
+        if sign(&system.graph, difference).is_some_and(|sign| sign.is_strict())
+            || is_a_constant_but_zero(system, difference)
+        {
+            return Step::Empty(condition.text);
+        }
+        open.push(Condition { left: sides[0], right: sides[1], ..condition });
+    }
+    // short ones first: what is put into long ones may be anything
+    let mut best: Option<((u8, usize, String), usize, Way)> = None;
+    for (index, condition) in open.iter().enumerate() {
+        if system.graph.symbols_of([condition.left, condition.right]).is_empty() {
+            let why = Unsolved::NotKnown(condition.text.clone());
+            return Step::Stuck(Partial { open, ..partial }, why);
+        }
+        let way = way(system, condition.left, condition.right);
+        let length = system.graph.reachable([condition.left, condition.right]).len();
+        let key = (way.rank(), length, quote(system, condition.left, condition.right));
+        if best.as_ref().is_none_or(|(least, ..)| key < *least) {
+            best = Some((key, index, way));
+        }
+    }
+    let Some((_, index, way)) = best else { return Step::Done(partial) };
+    let taken = open.remove(index);
+    let text = taken.text.clone();
+    let zero = system.graph.integer(0);
+    let also = |left: NodeId| Condition { left, right: zero, text: text.clone() };
+    partial.open = open;
+    match way {
+        Way::Unknown => {
+            partial.open.insert(0, taken);
+            Step::Stuck(partial, Unsolved::NotLinear(text))
+        }
+        Way::Factors(factors) if factors.is_empty() => Step::Empty(text),
+        Way::Factors(factors) => {
+            let several = factors.len() > 1 || partial.several;
+            let next = factors.into_iter().map(|factor| {
+                let mut next = Partial { several, ..partial.clone() };
+                next.open.insert(0, also(factor));
+                next
+            });
+            Step::Open(next.collect())
+        }
+        Way::Value(symbol, value) => Step::Open(vec![partial.with(system, symbol, value)]),
+        Way::Turns(angle, values) => {
+            Step::Open(values.iter().map(|value| partial.with_turns(system, angle, *value)).collect())
+        }
+        Way::Linear { .. } if partial.least > count => {
+            // too thin to be a part: followed as long as that costs nothing
+            partial.open.insert(0, taken);
+            Step::Stuck(partial, Unsolved::NotLinear(text))
+        }
+        Way::Linear { symbol, value, slope, rest, apart } => {
+            let mut main = partial.with(system, symbol, value);
+            add_guard(&system.graph, &mut main.guards, Guard { node: slope, need: Need::NotZero });
+            let mut other = partial;
+            other.open.splice(0..0, [also(slope), also(rest)]);
+            other.several |= apart != Apart::Coprime;
+            other.least = other.least.max(other.codimension + apart.dimensions());
+            Step::Open(vec![main, other])
+        }
+    }
+}
+
+/// The branch that is left when all conditions are met.
+fn finish(system: &mut System, partial: Partial) -> Branch {
+    let turns: Assignment = partial.turns.iter().copied().collect();
+    let mut values = partial.values.clone();
+    for value in values.values_mut() {
+        *value = system.graph.substitute(&[*value], &turns)[0];
+    }
+    values.extend(&turns);
+    Branch {
+        up_to_turns: partial.turns.iter().map(|(angle, _)| *angle).collect(),
+        values,
+        before_turns: partial.values,
+        guards: partial.guards,
+        steps: partial.steps,
+    }
+}
+
+/// Whether an expression is identically zero, by exact arithmetic at random points.
+pub(crate) fn vanishes(system: &mut System, expression: NodeId) -> bool {
+    all_vanish(system, &[expression])
+}
+
+/// Whether all of some expressions are.
+pub(crate) fn all_vanish(system: &mut System, expressions: &[NodeId]) -> bool {
+    matches!(test(system, expressions), ZeroTest::Zero { .. })
+}
+
+fn test(system: &mut System, expressions: &[NodeId]) -> ZeroTest {
+    let angles = system.angles();
+    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let expanded = expand_angles(&mut system.graph, expressions, is_angle);
+    let mut rng = ChaCha8Rng::seed_from_u64(0x7a65_726f); // any fixed seed: the same file gives the same answer
+    identically_zero(&system.graph, &expanded, is_angle, &mut rng)
+}

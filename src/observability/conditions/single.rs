@@ -1,0 +1,305 @@
+//! One condition, solved: for a name, for a symbol in which it is linear, for an angle whose sine or cosine is known, or
+//! taken apart into its factors.
+
+use super::{all_vanish, test, vanishes};
+use crate::expression::{Node, NodeId, Program, Symbol, ZeroTest, expand_angles, share_a_factor, sign};
+use crate::number::{Enclosures, Function};
+use crate::system::{Assignment, Kind, System};
+use dashu::rational::RBig;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// The precision at which a constant is told from zero.
+const CONSTANT_BITS: usize = 512;
+
+/// How a condition `expression = 0` is met. The order is that in which conditions are taken: those first that leave
+/// nothing open.
+#[derive(Clone, Debug)]
+pub(super) enum Way {
+    /// One of these vanishes.
+    Factors(Vec<NodeId>),
+    /// `symbol = value`, and nothing else.
+    Value(Symbol, NodeId),
+    /// The angle has one of these values, up to whole turns.
+    Turns(Symbol, Vec<NodeId>),
+    /// `slope symbol + rest = 0`: the value where the slope is not zero, and any where both vanish.
+    Linear { symbol: Symbol, value: NodeId, slope: NodeId, rest: NodeId, apart: Apart },
+    /// By no way that is known.
+    Unknown,
+}
+
+/// What is known of the states at which slope and rest of a linear condition vanish together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Apart {
+    /// They have no common factor: these states have two dimensions less.
+    Coprime,
+    /// They may have one.
+    Shared,
+    /// Functions are met of which nothing is known but their names: either may be zero everywhere.
+    NotKnown,
+}
+
+impl Apart {
+    /// How many dimensions less these states have, at the least.
+    pub(super) fn dimensions(self) -> usize {
+        match self {
+            Apart::Coprime => 2,
+            Apart::Shared => 1,
+            Apart::NotKnown => 0,
+        }
+    }
+}
+
+impl Way {
+    /// Ways of a lower rank are taken first.
+    pub(super) fn rank(&self) -> u8 {
+        match self {
+            Way::Value(..) => 0,
+            Way::Turns(..) => 1,
+            Way::Linear { apart: Apart::Coprime, .. } => 2,
+            Way::Factors(_) => 3,
+            Way::Linear { .. } => 4,
+            Way::Unknown => 5,
+        }
+    }
+}
+
+/// The way to meet `left = right`.
+pub(super) fn way(system: &mut System, left: NodeId, right: NodeId) -> Way {
+    // a name on one side, not met on the other
+    for (name, value) in [(left, right), (right, left)] {
+        if let Some(symbol) = system.graph.as_symbol(name)
+            && !system.graph.symbols_of([value]).contains(&symbol)
+        {
+            return Way::Value(symbol, value);
+        }
+    }
+    let difference = system.graph.sub(left, right);
+    if let Some(way) = circular(system, difference) {
+        return way;
+    }
+    // states before parameters, in the order of the file, so that the answer does not depend on anything else
+    let mut candidates = system.states.clone();
+    candidates
+        .extend(system.symbols().filter(|(_, info)| info.kind != Kind::State).map(|(symbol, _)| symbol));
+    let mentioned = system.graph.symbols_of([difference]);
+    candidates.retain(|symbol| !system.is_angle(*symbol) && mentioned.contains(symbol));
+    let mut best = factors(system, difference).map_or(Way::Unknown, Way::Factors);
+    for symbol in candidates {
+        let Some(line) = Line::of(system, difference, symbol) else { continue };
+        let slope_sign = sign(&system.graph, line.slope);
+        let found = if slope_sign.is_some_and(|sign| sign.is_strict())
+            || is_a_constant_but_zero(system, line.slope)
+        {
+            Way::Value(symbol, line.root)
+        } else {
+            let apart = if has_unknown_function(system, &[line.slope, line.rest]) {
+                Apart::NotKnown
+            } else if also_met_otherwise(system, difference, symbol) {
+                Apart::Shared
+            } else {
+                Apart::Coprime
+            };
+            Way::Linear { symbol, value: line.root, slope: line.slope, rest: line.rest, apart }
+        };
+        if found.rank() < best.rank() {
+            best = found;
+        }
+        if best.rank() == 0 {
+            break;
+        }
+    }
+    best
+}
+
+/// Whether an expression mentions no symbol and is certainly not zero.
+pub(super) fn is_a_constant_but_zero(system: &System, expression: NodeId) -> bool {
+    if !system.graph.symbols_of([expression]).is_empty() {
+        return false;
+    }
+    let program = Program::new(&system.graph, &[expression], |_| false, false);
+    let enclosures = Enclosures::new(CONSTANT_BITS);
+    let value = program.load(enclosures).ok().and_then(|loaded| loaded.run(&[], &mut Vec::new()).ok());
+    value.is_some_and(|value| !value[0].contains_zero())
+}
+
+/// Whether a function other than the sine or cosine of an angle is met.
+fn has_unknown_function(system: &mut System, expressions: &[NodeId]) -> bool {
+    let angles = system.angles();
+    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let expanded = expand_angles(&mut system.graph, expressions, is_angle);
+    Program::new(&system.graph, &expanded, is_angle, true).unknown_function(&system.graph).is_some()
+}
+
+/// The factors of an expression that is written as a product; its own powers and roots vanish where their bases do.
+fn factors(system: &System, expression: NodeId) -> Option<Vec<NodeId>> {
+    let (mut open, mut found, mut apart) = (vec![expression], Vec::new(), false);
+    while let Some(node) = open.pop() {
+        match system.graph.node(node) {
+            Node::Mul(a, b) => open.extend([b, a]),
+            // what is divided by is a guard of the condition
+            Node::Neg(a) | Node::Div(a, _) => open.push(a),
+            Node::Power(a, n) if n > 0 => open.push(a),
+            Node::Apply(Function::Sqrt | Function::Atan | Function::Asin, a) => open.push(a),
+            _ => {
+                let never = sign(&system.graph, node).is_some_and(|sign| sign.is_strict());
+                if !never && !found.contains(&node) {
+                    found.push(node);
+                }
+                continue;
+            }
+        }
+        apart = true;
+    }
+    apart.then_some(found)
+}
+
+/// Whether an expression `a x + b` has a factor that does not depend on `x`: then it vanishes with that factor too, and
+/// `x = -b/a` is not all.
+pub fn also_met_otherwise(system: &mut System, expression: NodeId, symbol: Symbol) -> bool {
+    let slope = system.partial(expression, symbol);
+    let zero = system.graph.integer(0);
+    let both = system.graph.substitute(&[slope, expression], &Assignment::from([(symbol, zero)]));
+    let angles = system.angles();
+    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let both = expand_angles(&mut system.graph, &both, is_angle);
+    let mut rng = ChaCha8Rng::seed_from_u64(0x6c69_6e65);
+    share_a_factor(&system.graph, both[0], both[1], is_angle, &mut rng) != Some(false)
+}
+
+/// `sin(u) = c` and `cos(u) = c` where `c` is zero or plus or minus one, for an integer combination `u` of angles, solved
+/// for an angle whose factor in it is plus or minus one.
+fn circular(system: &mut System, difference: NodeId) -> Option<Way> {
+    let (function, argument, value) = sine_or_cosine(system, difference)?;
+    let pi = system.graph.pi();
+    let zero = system.graph.integer(0);
+    let two = system.graph.integer(2);
+    let quarter = system.graph.div(pi, two);
+    let back = system.graph.neg(quarter);
+    let roots = match (function, value) {
+        (Function::Sin, 0) => vec![zero, pi],
+        (Function::Sin, 1) => vec![quarter],
+        (Function::Sin, _) => vec![back],
+        (_, 0) => vec![quarter, back],
+        (_, 1) => vec![zero],
+        _ => vec![pi],
+    };
+    for symbol in system.graph.symbols_of([argument]) {
+        if !system.is_angle(symbol) {
+            continue;
+        }
+        let slope = system.partial(argument, symbol);
+        let Some(sign) = system.graph.constant_value(slope).cloned() else { continue };
+        if !sign.is_one() && sign != RBig::from(-1) {
+            continue;
+        }
+        let rest = system.graph.substitute(&[argument], &Assignment::from([(symbol, zero)]))[0];
+        // the argument has to be a combination of angles, or a turn of this one would not be one of the whole
+        let line = if sign.is_one() {
+            system.graph.symbol(symbol)
+        } else {
+            let node = system.graph.symbol(symbol);
+            system.graph.neg(node)
+        };
+        let whole = system.graph.add(line, rest);
+        let rest_of_it = system.graph.sub(argument, whole);
+        if !inside_no_function(system, argument, symbol) || !vanishes_as_numbers(system, rest_of_it) {
+            continue;
+        }
+        let values = roots.iter().map(|root| {
+            let moved = system.graph.sub(*root, rest);
+            if sign.is_one() { moved } else { system.graph.neg(moved) }
+        });
+        return Some(Way::Turns(symbol, values.collect()));
+    }
+    None
+}
+
+/// The sine or cosine that has to be minus one, zero or one for an expression to vanish.
+fn sine_or_cosine(system: &System, difference: NodeId) -> Option<(Function, NodeId, i8)> {
+    let graph = &system.graph;
+    let wave = |node: NodeId| match graph.node(node) {
+        Node::Apply(function @ (Function::Sin | Function::Cos), argument) => Some((function, argument)),
+        _ => None,
+    };
+    let unit = |node: NodeId| {
+        let value = graph.constant_value(node)?;
+        [-1i8, 0, 1].into_iter().find(|unit| *value == RBig::from(*unit))
+    };
+    match graph.node(difference) {
+        Node::Neg(inner) => sine_or_cosine(system, inner),
+        Node::Sub(a, b) => match (wave(a), wave(b)) {
+            (Some((function, argument)), None) => Some((function, argument, unit(b)?)),
+            (None, Some((function, argument))) => Some((function, argument, unit(a)?)),
+            _ => None,
+        },
+        Node::Add(a, b) => match (wave(a), wave(b)) {
+            (Some((function, argument)), None) => Some((function, argument, -unit(b)?)),
+            (None, Some((function, argument))) => Some((function, argument, -unit(a)?)),
+            _ => None,
+        },
+        Node::Apply(..) => wave(difference).map(|(function, argument)| (function, argument, 0)),
+        _ => None,
+    }
+}
+
+/// Whether a combination of angles, taken as numbers, is zero whatever they are.
+fn vanishes_as_numbers(system: &System, expression: NodeId) -> bool {
+    let mut rng = ChaCha8Rng::seed_from_u64(0x6e75_6d62);
+    let test = crate::expression::identically_zero(&system.graph, &[expression], |_| false, &mut rng);
+    matches!(test, ZeroTest::Zero { .. })
+}
+
+/// Whether a symbol stands inside no function's argument, so that derivatives by it tell all of it.
+fn inside_no_function(system: &System, expression: NodeId, symbol: Symbol) -> bool {
+    let arguments: Vec<NodeId> = system
+        .graph
+        .reachable([expression])
+        .into_iter()
+        .filter_map(|id| match system.graph.node(id) {
+            Node::Apply(_, argument) => Some(argument),
+            _ => None,
+        })
+        .collect();
+    !system.graph.symbols_of(arguments).contains(&symbol)
+}
+
+/// An expression that is `slope symbol + rest`, the slope not zero identically.
+struct Line {
+    slope: NodeId,
+    rest: NodeId,
+    /// `-rest/slope`
+    root: NodeId,
+}
+
+impl Line {
+    fn of(system: &mut System, expression: NodeId, symbol: Symbol) -> Option<Line> {
+        // `atan(tan(y))` has the derivative one, and is not y
+        if !inside_no_function(system, expression, symbol) {
+            return None;
+        }
+        let slope = system.partial(expression, symbol);
+        let bend = system.partial(slope, symbol);
+        if vanishes(system, slope) || !vanishes(system, bend) {
+            return None;
+        }
+        let zero = system.graph.integer(0);
+        let at_zero = Assignment::from([(symbol, zero)]);
+        // both at symbol = 0: a linear expression is its value there plus its slope there times the symbol
+        let both = system.graph.substitute(&[expression, slope], &at_zero);
+        let value_is_finite =
+            matches!(test(system, &both[..1]), ZeroTest::Zero { .. } | ZeroTest::Nonzero(_));
+        if !value_is_finite || !matches!(test(system, &both[1..]), ZeroTest::Nonzero(_)) {
+            return None;
+        }
+        let quotient = system.graph.div(both[0], both[1]);
+        let root = system.graph.neg(quotient);
+        let value = system.graph.substitute(&[expression], &Assignment::from([(symbol, root)]))[0];
+        all_vanish(system, &[value]).then_some(Line { slope: both[1], rest: both[0], root })
+    }
+}
+
+/// The root of an expression that is linear in a symbol, confirmed by putting it in.
+pub fn linear_solution(system: &mut System, expression: NodeId, symbol: Symbol) -> Option<NodeId> {
+    Line::of(system, expression, symbol).map(|line| line.root)
+}

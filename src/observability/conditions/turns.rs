@@ -1,0 +1,65 @@
+//! Whole turns: `sin(phi) = 0` fixes an angle up to multiples of two pi, and what tells these apart cannot be decided by one
+//! of them.
+
+use super::Branch;
+use crate::expression::{Input, NodeId, Program, Symbol, expand_angles};
+use crate::system::System;
+
+impl Branch {
+    /// Refuses a codistribution that tells apart what the conditions leave open; see [`Branch::put_in`].
+    ///
+    /// # Errors
+    /// In words: which angle is known up to whole turns only.
+    pub fn check_codistribution(&self, system: &mut System) -> Result<(), String> {
+        if self.up_to_turns.is_empty() {
+            return Ok(());
+        }
+        let ingredients = ingredients(system);
+        self.put_in(system, &ingredients).map(|_| ())
+    }
+
+    /// The expressions on the branch: its values put in.
+    ///
+    /// # Errors
+    /// Where an expression tells apart values that the conditions leave open, all that differ by whole turns; in words:
+    /// which angle is known up to whole turns only.
+    pub fn put_in(&self, system: &mut System, expressions: &[NodeId]) -> Result<Vec<NodeId>, String> {
+        let before = system.graph.substitute(expressions, &self.before_turns);
+        for angle in &self.up_to_turns {
+            if !turns_do_not_matter(system, &before, *angle) {
+                let name = system.symbol_name(*angle);
+                return Err(format!(
+                    "the condition fixes '{name}' up to whole turns, and the statement tells them apart"
+                ));
+            }
+        }
+        Ok(system.graph.substitute(&before, &self.values))
+    }
+}
+
+/// What every Lie derivative's differential is made of: the outputs' differentials and the fields' components.
+fn ingredients(system: &mut System) -> Vec<NodeId> {
+    let mut found: Vec<NodeId> = Vec::new();
+    for (_, output) in system.outputs.clone() {
+        found.extend(system.differential(output));
+    }
+    let moving = system.moving_fields();
+    found.extend(
+        moving.iter().flat_map(|field| system.fields[*field].components.iter().map(|(_, node)| *node)),
+    );
+    found
+}
+
+/// Whether expressions mention an angle only through sines and cosines of integer combinations, so that whole turns of
+/// it do not matter.
+pub(super) fn turns_do_not_matter(system: &mut System, expressions: &[NodeId], angle: Symbol) -> bool {
+    let angles = system.angles();
+    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let expanded = expand_angles(&mut system.graph, expressions, is_angle);
+    let program = Program::new(&system.graph, &expanded, is_angle, true);
+    program.inputs().iter().all(|input| match input {
+        Input::Plain(symbol) => *symbol != angle,
+        Input::Opaque(node) => !system.graph.symbols_of([*node]).contains(&angle),
+        Input::Sine(_) | Input::Cosine(_) => true,
+    })
+}

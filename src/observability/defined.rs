@@ -1,0 +1,100 @@
+//! Whether what is asked about exists at a state: every guard of outputs, fields and rows holds there.
+
+use super::state::State;
+use crate::expression::{Graph, Guard, Need, NodeId, Program, Symbol, expand_angles};
+use crate::number::{Arithmetic, Enclosures, Floats, Interval, Rationals};
+use crate::system::System;
+use dashu::rational::RBig;
+
+/// The bits of enclosures, one after the other.
+const PRECISE: [usize; 2] = [128, 512];
+
+/// Guards, ready to be looked at state by state.
+#[derive(Clone, Debug, Default)]
+pub struct Defined {
+    needs: Vec<Need>,
+    program: Program,
+    texts: Vec<String>,
+}
+
+impl Defined {
+    /// Those guards that do not hold wherever their operands exist.
+    pub fn new(system: &mut System, guards: &[Guard]) -> Defined {
+        let guards: Vec<Guard> =
+            guards.iter().copied().filter(|guard| guard.is_obvious(&system.graph) != Some(true)).collect();
+        let angles = system.angles();
+        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let nodes: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
+        let nodes = expand_angles(&mut system.graph, &nodes, is_angle);
+        Defined {
+            needs: guards.iter().map(|guard| guard.need).collect(),
+            program: Program::new(&system.graph, &nodes, is_angle, false),
+            texts: guards.iter().map(|guard| guard.text(&system.graph)).collect(),
+        }
+    }
+
+    /// What does not hold at a state, or may not, in words; nothing where everything certainly exists.
+    pub fn failure(&self, graph: &Graph, state: &State) -> Option<String> {
+        if self.needs.is_empty() {
+            return None;
+        }
+        let doubles = self.values(state, Floats::<Interval>::default());
+        if let Some(Ok(values)) = doubles
+            && self.first(&values, |need, value| need.is_met_in(value.low(), value.high())).is_none()
+        {
+            return None;
+        }
+        if let Some(found) = self.values(state, Rationals::default()) {
+            return match found {
+                Ok(values) => {
+                    let failing = self.first(&values, |need, value: &RBig| Some(need.is_met_by(value)));
+                    failing.map(|(index, _)| self.not_met(index))
+                }
+                Err(node) => Some(format!("{} is not defined", graph.text(node))),
+            };
+        }
+        let mut found = None;
+        for bits in PRECISE {
+            let Some(Ok(values)) = self.values(state, Enclosures::new(bits)) else {
+                found = Some("what outputs and fields divide by cannot be told from zero".to_owned());
+                continue;
+            };
+            match self.first(&values, |need, value| need.is_met_by_enclosure(value)) {
+                None => return None,
+                Some((index, false)) => return Some(self.not_met(index)),
+                Some((index, true)) => {
+                    found = Some(format!("it cannot be told whether {} with {bits} bits", self.texts[index]));
+                }
+            }
+        }
+        found
+    }
+
+    fn not_met(&self, index: usize) -> String {
+        format!("outside of {}", self.texts[index])
+    }
+
+    /// The first guard that is not known to hold, and whether it may.
+    fn first<N>(&self, values: &[N], met: impl Fn(Need, &N) -> Option<bool>) -> Option<(usize, bool)> {
+        let known = |(index, value)| match met(self.needs[index], value) {
+            Some(true) => None,
+            Some(false) => Some((index, false)),
+            None => Some((index, true)),
+        };
+        // what certainly fails says more than what may
+        let found: Vec<(usize, bool)> = values.iter().enumerate().filter_map(known).collect();
+        found.iter().find(|(_, may)| !may).or(found.first()).copied()
+    }
+
+    /// The operands at a state, or what was not defined; `None` where this arithmetic has no values for them.
+    fn values<A: Arithmetic>(&self, state: &State, arithmetic: A) -> Option<Result<Vec<A::Number>, NodeId>> {
+        let inputs = state.inputs(&self.program, &arithmetic).ok()?;
+        match self.program.load(arithmetic).ok()?.run(&inputs, &mut Vec::new()) {
+            Ok(values) => Some(Ok(values)),
+            Err(failure) => match failure.refusal {
+                crate::number::Refusal::DivisionByZero => Some(Err(failure.divisor.unwrap_or(failure.node))),
+                _ => None,
+            },
+        }
+    }
+}
