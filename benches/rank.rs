@@ -30,6 +30,7 @@ fn sweep(bencher: Bencher, regime: &str) {
                 order: None,
                 fixed: BTreeMap::new(),
                 conditions: Vec::new(),
+                recorded: 0,
                 interrupt: &false.into(),
                 progress: &|_| (),
             };

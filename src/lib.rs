@@ -33,6 +33,9 @@
 //! Beside these stand [`tradeoff`], speed against accuracy and the extremes, and [`verification`], the main job.
 //! Each module is a floor and imports only from those above it here.
 
+// files: read within bounds, written whole or not at all
+pub mod file;
+
 // what a value can be
 pub mod number;
 
@@ -42,8 +45,14 @@ pub mod expression;
 // a system, and how it is read from a proof file
 pub mod system;
 
+// what was found, evaluated again by code that shares nothing with what found it
+pub mod checker;
+
 // Lie derivatives, codistribution, rank at sampled states
 pub mod observability;
+
+// what verdicts rest on, written down for the checker
+pub mod evidence;
 
 // claims, the engines that decide them, verdicts
 pub mod claim;

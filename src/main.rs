@@ -2,6 +2,17 @@
 
 mod command;
 
+/// Run by the system's loader before Rust's runtime begins: only then can be seen whether standard output is closed.
+#[cfg(target_os = "linux")]
+#[used]
+#[unsafe(link_section = ".init_array")]
+static BEFORE_THE_RUNTIME: extern "C" fn() = {
+    extern "C" fn look() {
+        palmistry::file::look_at_standard_output();
+    }
+    look
+};
+
 fn main() -> std::process::ExitCode {
     command::run()
 }

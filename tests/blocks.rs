@@ -188,12 +188,15 @@ fn the_same_bits_with_and_without_wide_instructions_for_any_number_of_states() {
         let block = BlockProgram::new(&system.graph, &roots, &[], |_| false, unknown);
         let all = random_states(&block, 1000);
         let (whole, _) = evaluate(Instructions::Portable, &block, &all);
-        for count in [1, 7, 8, 9, 65, 1000] {
-            let some: Vec<Vec<f64>> = all.iter().map(|values| values[..count].to_vec()).collect();
-            let (found, lost) = evaluate(Instructions::detect(), &block, &some);
-            assert!(lost.is_empty());
-            for (a, b) in found.iter().zip(&whole) {
-                assert!(a.iter().zip(b).all(|(x, y)| x.to_bits() == y.to_bits()), "{name}, {count} states");
+        for instructions in Instructions::ALL {
+            for count in [1, 7, 8, 9, 15, 17, 65, 1000] {
+                let some: Vec<Vec<f64>> = all.iter().map(|values| values[..count].to_vec()).collect();
+                let (found, lost) = evaluate(instructions, &block, &some);
+                assert!(lost.is_empty());
+                for (a, b) in found.iter().zip(&whole) {
+                    let same = a.iter().zip(b).all(|(x, y)| x.to_bits() == y.to_bits());
+                    assert!(same, "{name}, {instructions:?}, {count} states");
+                }
             }
         }
     }

@@ -108,7 +108,11 @@ fn the_same_result_on_any_number_of_threads_and_any_processor() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         assert_eq!(pool.install(|| run(&all, 30_001, Certainty::Certified)), first, "{threads} threads");
     }
-    assert_eq!(run(&all.with(Instructions::Portable), 30_001, Certainty::Certified), first);
+    let mut all = all;
+    for instructions in Instructions::ALL {
+        all = all.with(instructions);
+        assert_eq!(run(&all, 30_001, Certainty::Certified), first, "{instructions:?}");
+    }
 }
 
 #[test]

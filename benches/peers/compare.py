@@ -55,11 +55,11 @@ WHAT_IS_TIMED = """\
 A verdict is the singular values that decide the rank, in one batch. Ours, in both columns: ten rows are handed over; that
 six are unit rows is found in the preparation, and they leave with their columns; the 4x4 block that remains is computed,
 rows and columns are scaled to one length (to one percent), and one-sided Jacobi rotations find the singular values, eight
-states at a time. "Rank proved" is what `palmistry rank` does: bounds on the errors of all entries are carried along, and
-elimination with them proves the rank. Peers: in the first column they are told which rows and columns remain and compute
-these 16 entries; in the second they compute the four rows and put the six unit rows beside them. They scale the rows to
-length one, and find the singular values of the 4x4 or 10x10 matrices by LAPACK through numpy, one matrix after the other
-(JAX by its own call of it)."""
+or sixteen states at a time, each with the bits that it gets alone. "Rank proved" is what `palmistry rank` does: bounds on
+the errors of all entries are carried along, and elimination with them proves the rank. Peers: in the first column they
+are told which rows and columns remain and compute these 16 entries; in the second they compute the four rows and put the
+six unit rows beside them. They scale the rows to length one, and find the singular values of the 4x4 or 10x10 matrices by
+LAPACK through numpy, one matrix after the other (JAX by its own call of it)."""
 
 
 class Left(Exception):

@@ -1,12 +1,15 @@
 //! From a claim to its outcome.
 
 use super::defaults::at_the_files_values;
+use super::evidence::{Kept, Nearness, RankedMatrix, claimed_rank, identity, nearness};
 use super::existence::{Existence, existence};
+
 use super::identity::{OnOneBranch, decide_identity, decide_nearness};
 use super::pole::decide_pole;
 use super::ranks::{decide_codistribution, decide_rank};
 use super::terms::{OnBranch, Terms};
-use super::verdict::{Outcome, Verdict};
+use super::verdict::{Outcome, Verdict, Witness};
+use crate::checker::{Evidence, VerdictRecord};
 use crate::expression::{NodeId, Symbol, add_guard};
 use crate::observability::{Branch, solve};
 use crate::system::{ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line};
@@ -16,6 +19,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Decides all claims of a system, several at a time; the outcomes are in the order of the file and do not depend on
@@ -26,6 +30,21 @@ pub fn decide_all(
     interrupt: &AtomicBool,
     done: &(dyn Fn(&Outcome) + Sync),
 ) -> Vec<Outcome> {
+    decide_all_keeping(Kept::Verdicts, system, seed, interrupt, done)
+}
+
+/// The same, and what the verdicts rest on is kept if it is to be.
+pub fn decide_all_keeping(
+    kept: Kept,
+    system: &System,
+    seed: u64,
+    interrupt: &AtomicBool,
+    done: &(dyn Fn(&Outcome) + Sync),
+) -> Vec<Outcome> {
+    let extent = system.extent();
+    // as many copies as claims are decided at once
+    let copies: Mutex<Vec<System>> = Mutex::default();
+    let copies = || copies.lock().unwrap_or_else(PoisonError::into_inner);
     system
         .claims
         .par_iter()
@@ -33,7 +52,11 @@ pub fn decide_all(
             if interrupt.load(Ordering::Relaxed) {
                 return None;
             }
-            let outcome = decide(system, claim, seed);
+            let spare = copies().pop();
+            let mut copy = spare.unwrap_or_else(|| system.clone());
+            let outcome = decide_in(&mut copy, claim, seed, kept);
+            copy.shrink_to(&extent);
+            copies().push(copy);
             done(&outcome);
             Some(outcome)
         })
@@ -42,43 +65,61 @@ pub fn decide_all(
 
 /// Decides one claim. The system is left as it was.
 pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
+    decide_in(&mut system.clone(), claim, seed, Kept::Verdicts)
+}
+
+/// Decides one claim in a system that may be added to.
+fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) -> Outcome {
     let begin = Instant::now();
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id));
-    let mut system = system.clone();
+    let system_name = system.name.clone();
     let text = |system: &System, statement: &Statement| in_one_line(&system.source, &statement.span);
     // other random numbers than those of the verdict: that one stays what it is whatever the file's values are
     let mut again = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id) ^ 1);
     let mut special = |system: &mut System, statement: &Statement, verdict: &Verdict| {
         at_the_files_values(system, statement, verdict, |system, special| {
-            decide_statement(system, special, &mut again).verdict
+            decide_statement(system, special, Kept::Verdicts, &mut again).verdict
         })
     };
     let mut at_files_values = None;
     let mut printed_at_files_values = None;
     let mut printed = None;
     let mut domain = Vec::new();
-    let mut known = |decided: Decided| {
+    let mut evidence = Vec::new();
+    let mut known = |decided: Decided, text: &str, suffix: &str| {
         domain = decided.domain;
+        let records = decided.evidence.into_iter().map(|evidence| VerdictRecord {
+            file: system_name.clone(),
+            id: format!("{}{suffix}", claim.id),
+            statement: text.to_owned(),
+            evidence,
+        });
+        evidence.extend(records);
         decided.verdict
     };
     let (statement, verdict, expected) = match &claim.body {
         ClaimBody::Claim { statement, expected } => {
-            let verdict = known(decide_statement(&mut system, statement, &mut rng));
-            at_files_values = special(&mut system, statement, &verdict);
-            (text(&system, statement), verdict, Some(*expected))
+            let text = text(system, statement);
+            let verdict = known(decide_statement(system, statement, kept, &mut rng), &text, "");
+            at_files_values = special(system, statement, &verdict);
+            (text, verdict, Some(*expected))
         }
         ClaimBody::Erratum { printed: print, corrected } => {
-            let refuted = decide_statement(&mut system, print, &mut rng).verdict;
-            printed_at_files_values = special(&mut system, print, &refuted);
-            printed = Some((text(&system, print), refuted));
-            let verdict = known(decide_statement(&mut system, corrected, &mut rng));
-            at_files_values = special(&mut system, corrected, &verdict);
-            (text(&system, corrected), verdict, Some(Expectation::Proved))
+            let as_printed = text(system, print);
+            let wrong = decide_statement(system, print, kept, &mut rng);
+            let refuted = known(wrong, &as_printed, " as printed");
+            printed_at_files_values = special(system, print, &refuted);
+            printed = Some((as_printed, refuted));
+            let text = text(system, corrected);
+            let verdict = known(decide_statement(system, corrected, kept, &mut rng), &text, " corrected");
+            at_files_values = special(system, corrected, &verdict);
+            (text, verdict, Some(Expectation::Proved))
         }
         ClaimBody::Scan { repaired, .. } => {
-            let verdict = known(decide_statement(&mut system, repaired, &mut rng));
-            at_files_values = special(&mut system, repaired, &verdict);
-            (text(&system, repaired), verdict, Some(Expectation::Proved))
+            let text = text(system, repaired);
+            let verdict = known(decide_statement(system, repaired, kept, &mut rng), &text, "");
+            at_files_values = special(system, repaired, &verdict);
+            (text, verdict, Some(Expectation::Proved))
         }
         ClaimBody::Definition { text } => (text.clone(), Verdict::Definition { text: text.clone() }, None),
         ClaimBody::Open { reason } => {
@@ -102,6 +143,7 @@ pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
         pole_of: claim.body.pole_of().map(|expr| in_one_line(&system.source, &expr.span)),
         verdict,
         domain,
+        evidence,
         expected,
         remark: claim.remark.clone(),
         at_files_values,
@@ -117,23 +159,46 @@ fn fingerprint(text: &str) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// A verdict, and what has to hold for the statement's terms to exist, in words.
+/// A verdict, what has to hold for the statement's terms to exist, in words, and what it rests on.
 struct Decided {
     verdict: Verdict,
     domain: Vec<String>,
+    evidence: Vec<Evidence>,
 }
 
-fn decide_statement(system: &mut System, statement: &Statement, rng: &mut ChaCha8Rng) -> Decided {
-    let mut domain = Vec::new();
-    let verdict = attempt(system, statement, rng, &mut domain).unwrap_or_else(Verdict::undecided);
-    Decided { verdict, domain }
+/// What is noted beside a verdict.
+struct Notes {
+    domain: Vec<String>,
+    /// Of all branches, whatever the verdict on them.
+    evidence: Vec<Evidence>,
+    kept: Kept,
+}
+
+fn decide_statement(system: &mut System, statement: &Statement, kept: Kept, rng: &mut ChaCha8Rng) -> Decided {
+    let mut notes = Notes { domain: Vec::new(), evidence: Vec::new(), kept };
+    let verdict = attempt(system, statement, rng, &mut notes).unwrap_or_else(Verdict::undecided);
+    let Notes { domain, mut evidence, .. } = notes;
+    let word = verdict.word();
+    evidence.retain(|evidence| [word, "unchecked"].contains(&evidence.word()));
+    match &verdict {
+        _ if kept == Kept::Verdicts => evidence.clear(),
+        Verdict::Refuted { witness: Witness { refutation: Some(refutation), .. }, .. } => {
+            evidence = vec![Evidence::Refuted((**refutation).clone())];
+        }
+        Verdict::Proved { .. } | Verdict::Refuted { .. } if evidence.is_empty() => {
+            evidence.push(Evidence::Unchecked("the order of a pole is not found by evaluation".to_owned()));
+        }
+        Verdict::Proved { .. } | Verdict::Refuted { .. } => {}
+        Verdict::Definition { .. } | Verdict::Undecided { .. } => evidence.clear(),
+    }
+    Decided { verdict, domain, evidence }
 }
 
 fn attempt(
     system: &mut System,
     statement: &Statement,
     rng: &mut ChaCha8Rng,
-    domain: &mut Vec<String>,
+    notes: &mut Notes,
 ) -> Result<Verdict, String> {
     let equation = &statement.equation;
     let (left, before) = system.elaborate_guarded(&equation.left).map_err(|problem| problem.message)?;
@@ -145,17 +210,24 @@ fn attempt(
     let of_rank = [&left, &right].iter().any(|value| matches!(value, Value::CodistributionRank));
     if of_rank {
         // every Lie derivative of the outputs has to exist
-        let fields = system.moving_fields();
-        guards.extend(system.smooth_guards(&fields));
+        guards.extend(system.smooth_guards(&system.moving_fields()));
     }
     guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
-    *domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
+    notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
     if let Some(tolerance) = &equation.within {
         let (tolerance, needed) = system.elaborate_guarded(tolerance).map_err(|problem| problem.message)?;
         guards.extend(needed);
         return match (left, right, tolerance) {
             (Value::Scalar(l), Value::Scalar(r), Value::Scalar(t)) if statement.conditions.is_empty() => {
-                Ok(decide_nearness(system, l, r, t, &guards))
+                let verdict = decide_nearness(system, l, r, t, &guards);
+                let near = Nearness { left: l, right: r, tolerance: t };
+                let evidence = nearness(system, near, &guards, &verdict).map_err(|doubt| {
+                    format!(
+                        "the difference is found to be greater, which the checker does not confirm: {doubt}"
+                    )
+                })?;
+                notes.evidence.extend(evidence);
+                Ok(verdict)
             }
             (Value::Scalar(_), Value::Scalar(_), Value::Scalar(_)) => {
                 Err("'within' takes no 'where'; use 'at {...}'".to_owned())
@@ -202,6 +274,10 @@ fn attempt(
                     decide_codistribution(system, &on, branch, *claimed, rng)?
                 }
             };
+            if let (OnOneBranch::Verdict(verdict, _), Kept::Evidence) = (&verdict, notes.kept) {
+                // random numbers of its own: what is kept changes no verdict
+                notes.evidence.extend(question.evidence(system, &on, branch, verdict, &mut rng.clone()));
+            }
             found.push((size, branch, verdict));
         }
     }
@@ -253,6 +329,30 @@ impl Question {
         }
     }
 
+    /// What the checker needs of a verdict on a branch, but for the refutation of an equation, which has it already.
+    fn evidence(
+        &self,
+        system: &mut System,
+        on: &OnBranch,
+        branch: &Branch,
+        verdict: &Verdict,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Evidence> {
+        let matrix = match (self, verdict) {
+            (Question::Identity { .. }, Verdict::Proved { engine, log2_error }) => {
+                return Some(identity(system, on, (engine, *log2_error), rng));
+            }
+            (Question::Identity { .. }, _) => return None,
+            (Question::Rank { entries, columns, claimed }, _) => {
+                RankedMatrix::of_file(entries, *columns, *claimed)
+            }
+            (Question::Codistribution { claimed }, _) => {
+                RankedMatrix::codistribution(system, branch, *claimed)?
+            }
+        };
+        claimed_rank(system, on, &matrix, verdict, rng)
+    }
+
     /// What has to exist.
     fn sides(&self) -> &[NodeId] {
         match self {
@@ -299,10 +399,12 @@ fn together(question: &Question, found: Vec<(Size, &Branch, OnOneBranch)>, unsol
     let proved = verdicts.iter().all(|verdict| matches!(verdict, Verdict::Proved { .. }));
     if proved && !shown {
         needs.dedup();
-        return Verdict::undecided(format!(
-            "no state is known at which all of it exists; it needs {}",
-            needs.join("; ")
-        ));
+        let needs = needs.join("; ");
+        return Verdict::undecided(if verdicts.is_empty() {
+            format!("it exists nowhere: it needs {needs}")
+        } else {
+            format!("no state was found at which all of it exists: it needs {needs}")
+        });
     }
     match Verdict::all(verdicts) {
         Verdict::Proved { engine, log2_error } if !unsolved.is_empty() => Verdict::Proved {

@@ -1,5 +1,6 @@
 //! `left = right` wherever both sides exist, or within a tolerance at a point.
 
+use super::evidence::refutation;
 use super::existence::{Existence, existence};
 use super::terms::OnBranch;
 use super::value::{ValueError, enclose};
@@ -57,10 +58,22 @@ pub(crate) fn decide_identity(
         ZeroTest::Unknown(why) => (0..differences.len(), why),
     };
     match search(system, on, suspects, rng) {
-        Search::Found { witness, entry, exact } => {
+        Search::Found { witness, point, entry, exact } => {
+            let refutation = match refutation(system, on, &point, entry, &witness) {
+                Ok(refutation) => Some(refutation),
+                Err(doubt) => {
+                    let why = format!(
+                        "{why}; a state was found at which they differ, which the checker does not confirm"
+                    );
+                    return OnOneBranch::Verdict(
+                        Verdict::undecided(format!("{why}: {doubt}")),
+                        Existence::Shown,
+                    );
+                }
+            };
             let entry = (differences.len() > 1).then_some((entry / columns + 1, entry % columns + 1));
             let engine = if exact { EXACT } else { INTERVALS }.to_owned();
-            let verdict = Verdict::Refuted { engine, witness: Witness { entry, ..witness } };
+            let verdict = Verdict::Refuted { engine, witness: Witness { entry, refutation, ..witness } };
             OnOneBranch::Verdict(verdict, Existence::Shown)
         }
         Search::Agrees { digits, states } => match existence(system, on, rng) {
@@ -127,7 +140,8 @@ pub(crate) fn decide_nearness(
         if exists && smallest > found[1].high() {
             let shown =
                 |index: usize| found[index].certain_decimal(20).unwrap_or_else(|| found[index].bounds_text());
-            let witness = Witness { state: Vec::new(), left: shown(2), right: shown(3), entry: None };
+            let state = Vec::new();
+            let witness = Witness { state, left: shown(2), right: shown(3), entry: None, refutation: None };
             return Verdict::Refuted { engine: INTERVALS.to_owned(), witness };
         }
         if bits >= 1 << 14 {

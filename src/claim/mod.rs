@@ -8,6 +8,7 @@
 
 mod decide;
 mod defaults;
+mod evidence;
 mod existence;
 mod identity;
 mod pole;
@@ -18,8 +19,9 @@ mod value;
 mod verdict;
 mod witness;
 
-pub use decide::{decide, decide_all};
+pub use decide::{decide, decide_all, decide_all_keeping};
 pub use defaults::AtFilesValues;
+pub use evidence::Kept;
 pub use pole::{PoleOrder, pole_order};
-pub use value::{PointValue, ValueError, certified_value, computed_value};
+pub use value::{PointValue, ValueError, certified_value, computed_value, exists_at};
 pub use verdict::{Outcome, Verdict, Witness};

@@ -249,6 +249,7 @@ pub(crate) fn decide_pole(
                 left: order.to_string(),
                 right: claimed.to_string(),
                 entry: None,
+                refutation: None,
             },
         },
         PoleOrder::Unknown(why) => Verdict::undecided(why),

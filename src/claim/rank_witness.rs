@@ -36,6 +36,7 @@ pub(crate) fn rank_witness(
                 left: ranks.generic.to_string(),
                 right: ranks.claimed.to_string(),
                 entry: None,
+                refutation: None,
             });
         }
     }

@@ -105,9 +105,14 @@ fn decide(system: &mut System, rows: &Rows<'_>, claimed: usize, rng: &mut impl R
         }
         GenericRank::Rank { rank, .. } => {
             let ranks = Ranks { generic: rank, claimed };
-            let witness = rank_witness(system, rows.on, rows.columns, ranks, rng).unwrap_or_else(|| {
-                Witness { state: Vec::new(), left: rank.to_string(), right: claimed.to_string(), entry: None }
-            });
+            let witness =
+                rank_witness(system, rows.on, rows.columns, ranks, rng).unwrap_or_else(|| Witness {
+                    state: Vec::new(),
+                    left: rank.to_string(),
+                    right: claimed.to_string(),
+                    entry: None,
+                    refutation: None,
+                });
             Verdict::Refuted { engine: format!("{RANDOM_PRIMES}{}", rows.scope), witness }
         }
         GenericRank::Pole(divisor) => {

@@ -34,6 +34,8 @@ struct Programs {
 
 /// The terms of a statement on a branch.
 pub(crate) struct OnBranch {
+    /// As the statement has them, with the guards of the branch.
+    pub statement: Terms,
     /// With the branch's values put in.
     pub terms: Terms,
     needs: Vec<Need>,
@@ -98,7 +100,16 @@ impl OnBranch {
             .zip(values)
             .map(|(symbol, value)| (symbol, Solved::new(system, symbol, value, circular)))
             .collect();
-        Ok(OnBranch { terms: here, needs, whole, here: programs_here, free, solved, circular })
+        Ok(OnBranch {
+            statement: statement.clone(),
+            terms: here,
+            needs,
+            whole,
+            here: programs_here,
+            free,
+            solved,
+            circular,
+        })
     }
 
     /// A state of simple numbers that meets the conditions, inside the sample box where the file has one; every third
@@ -156,6 +167,11 @@ impl OnBranch {
                 .zip(&self.needs)
                 .all(|(value, need)| need.is_met_by_enclosure(value) == Some(true)),
         })
+    }
+
+    /// The symbols that the conditions give, with their values in terms of the others.
+    pub fn solved_values(&self) -> Vec<(Symbol, NodeId)> {
+        self.solved.iter().map(|(symbol, solved)| (*symbol, solved.value)).collect()
     }
 
     /// The point in words: every symbol that the statement or its conditions mention.

@@ -1,8 +1,8 @@
 //! The value of an expression at a point, to as many digits as are asked for, by the cheapest numbers that suffice.
 
-use crate::expression::{Failure, Graph, Input, NodeId, Program, Symbol};
+use crate::expression::{Failure, Graph, Guard, Input, NodeId, Program, Symbol};
 use crate::number::{
-    Arithmetic, DoubleDouble, Enclosure, Enclosures, Floats, Interval, Rationals, Real, Refusal, Rung,
+    Arithmetic, DoubleDouble, Enclosure, Enclosures, Floats, Interval, Rationals, Refusal, Rung,
     common_decimal, rational_from_f64, round_to_decimal,
 };
 use crate::observability::Certainty;
@@ -36,9 +36,23 @@ pub enum ValueError {
     /// A divisor could not be told from zero.
     #[error("{divisor} cannot be told from zero with {bits} bits: the point is a pole, or very near to one")]
     NearPole { divisor: String, bits: usize },
-    /// The value could not be told from zero, or from the middle between two decimals.
-    #[error("the value is {0}, and could not be fixed to more digits")]
-    NotSeparated(String),
+    /// The value could not be told from zero, nor be proved to be zero.
+    #[error(
+        "the value is smaller than {bound} in magnitude: with {bits} bits it could neither be told from zero nor be proved to be zero"
+    )]
+    PerhapsZero { bound: String, bits: usize },
+    /// The value could not be told from the middle between two decimals.
+    #[error("the value is near {near}, and with {bits} bits could not be fixed to more digits")]
+    NotSeparated { near: String, bits: usize },
+    /// An argument could not be told from one outside a function's domain.
+    #[error("{why}, in {term}: with {bits} bits the point is at the edge of the domain, or very near to it")]
+    NearEdge { why: String, term: String, bits: usize },
+    /// A value on the way is beyond what can be held, at this precision.
+    #[error("{0}")]
+    NotHeld(String),
+    /// What the term needs does not hold here.
+    #[error("it has no value at this point: it needs {0}")]
+    Outside(String),
     /// An operation is not defined here.
     #[error("{0}")]
     Undefined(String),
@@ -47,8 +61,14 @@ pub enum ValueError {
 /// Up to so many decimal digits doubles are tried.
 const DIGITS_OF_A_DOUBLE: usize = 15;
 
-/// No more bits than this are tried.
-const MOST_BITS: usize = 1 << 16;
+/// So many bits are tried before a value that nothing separates from zero, from a pole or from the edge of a domain is
+/// given up; for more digits than these hold, twice the bits that they need.
+const MOST_BITS: usize = 1 << 12;
+
+/// With how many bits a value is tried first: those of the digits, and some for what is lost on the way.
+fn bits_of(digits: usize) -> usize {
+    digits * 7 / 2 + 64
+}
 
 /// Fills the inputs of a program from rational values (angles in radians).
 fn inputs<A: Arithmetic>(
@@ -74,6 +94,12 @@ fn undefined(graph: &Graph, failure: &Failure, bits: usize) -> ValueError {
         (Refusal::DivisionByZero, Some(divisor)) => ValueError::Pole(graph.text(divisor)),
         (Refusal::DivisorNotSeparated, Some(divisor)) => {
             ValueError::NearPole { divisor: graph.text(divisor), bits }
+        }
+        (refusal @ Refusal::DomainNotSeparated(_), _) => {
+            ValueError::NearEdge { why: refusal.to_string(), term: graph.text(failure.node), bits }
+        }
+        (refusal @ (Refusal::TooLarge | Refusal::NotFinite), _) => {
+            ValueError::NotHeld(format!("{refusal}, in {}", graph.text(failure.node)))
         }
         (refusal, _) => ValueError::Undefined(format!("{refusal}, in {}", graph.text(failure.node))),
     }
@@ -111,13 +137,52 @@ fn evaluate<A: Arithmetic + Copy>(
     }
 }
 
+/// Whether a term whose guards these are exists at a point given by rational numbers (angles in radians).
+///
+/// # Errors
+/// Where it does not, and why; or where 4096 bits cannot tell.
+pub fn exists_at(graph: &Graph, guards: &[Guard], values: &HashMap<Symbol, RBig>) -> Result<(), ValueError> {
+    for guard in guards.iter().filter(|guard| guard.is_obvious(graph) != Some(true)) {
+        let program = Program::new(graph, &[guard.node], |_| false, false);
+        if let Some(value) = evaluate(graph, &program, values, Rationals::default())? {
+            if !guard.need.is_met_by(&value) {
+                return Err(ValueError::Outside(guard.text(graph)));
+            }
+            continue;
+        }
+        let mut bits = bits_of(0);
+        loop {
+            let last = bits >= MOST_BITS;
+            let complaint = match enclose(graph, &program, values, bits) {
+                Ok(value) => match guard.need.is_met_by_enclosure(&value[0]) {
+                    Some(true) => break,
+                    Some(false) => return Err(ValueError::Outside(guard.text(graph))),
+                    None => {
+                        let why = "it cannot be told whether the term exists".to_owned();
+                        ValueError::NearEdge { why, term: guard.text(graph), bits }
+                    }
+                },
+                Err(error @ (ValueError::Missing(_) | ValueError::Pole(_) | ValueError::Undefined(_))) => {
+                    return Err(error);
+                }
+                Err(error) => error,
+            };
+            if last {
+                return Err(complaint);
+            }
+            bits = (bits * 2).min(MOST_BITS);
+        }
+    }
+    Ok(())
+}
+
 /// The value of an expression at a point given by rational numbers (angles in radians), to `digits` significant
 /// decimal digits that are all certain: by intervals of doubles if they suffice, else exactly if there is an exact
 /// value, else by enclosures of more and more bits.
 ///
 /// # Errors
-/// Where the point lacks a value, is a pole, or lies outside a function's domain; or where more than 65 thousand bits
-/// would be needed.
+/// Where the point lacks a value, is a pole, or lies outside a function's domain; or where 4096 bits, or twice those of
+/// the digits, cannot tell.
 pub fn certified_value(
     graph: &Graph,
     expression: NodeId,
@@ -144,32 +209,36 @@ pub fn certified_value(
     if let Some(value) = evaluate(graph, &program, values, Rationals::default())? {
         return found(round_to_decimal(&value, digits), Some(value), Rung::Exact, climbed);
     }
-    let mut bits = digits * 7 / 2 + 64;
+    let mut bits = bits_of(digits);
+    let most = MOST_BITS.max(2 * bits);
     loop {
-        let last = bits >= MOST_BITS;
         let complaint = match enclose(graph, &program, values, bits) {
             Ok(enclosure) => match enclosure[0].decimal(digits) {
                 Some(decimal) => return found(decimal, None, Rung::Enclosures(bits), climbed),
                 None if enclosure[0].contains_zero() => {
                     let bound = round_to_decimal(&enclosure[0].high().max(-enclosure[0].low()), 2);
-                    ValueError::NotSeparated(format!("smaller than {bound} in magnitude"))
+                    ValueError::PerhapsZero { bound, bits }
                 }
-                None => ValueError::NotSeparated(format!("near {}", enclosure[0].midpoint())),
+                None => ValueError::NotSeparated { near: enclosure[0].midpoint().to_string(), bits },
             },
-            Err(error @ (ValueError::Missing(_) | ValueError::Pole(_))) => return Err(error),
+            // more bits change nothing about these
+            Err(error @ (ValueError::Missing(_) | ValueError::Pole(_) | ValueError::Undefined(_))) => {
+                return Err(error);
+            }
             Err(error) => error,
         };
-        if last {
+        if bits >= most {
             return Err(complaint);
         }
         climbed += 1;
-        bits = (bits * 2).min(MOST_BITS);
+        bits = (bits * 2).min(most);
     }
 }
 
 /// The value of an expression at a point to `digits` significant decimal digits, as far as two rungs of the ladder
-/// agree on them: doubles and double-doubles. Where these do not agree, or where more digits are wanted, it is taken
-/// from [`certified_value`].
+/// agree on them: doubles and double-doubles, both of whose values, rounded from all that they hold, are that decimal.
+/// Where these do not agree, or where more digits are wanted, it is taken from [`certified_value`]. So is a zero: that
+/// two roundings end at zero says nothing of its digits.
 ///
 /// # Errors
 /// As for [`certified_value`].
@@ -182,13 +251,13 @@ pub fn computed_value(
     let program = Program::new(graph, &[expression], |_| false, false);
     let mut climbed = 0;
     if digits <= DIGITS_OF_A_DOUBLE {
-        let rough = evaluate(graph, &program, values, Floats)?;
-        let fine = evaluate(graph, &program, values, Floats::<DoubleDouble>::new())?.map(Real::to_f64);
+        let rough = evaluate(graph, &program, values, Floats)?.and_then(rational_from_f64);
+        let fine = evaluate(graph, &program, values, Floats::<DoubleDouble>::new())?;
+        let fine = fine.and_then(DoubleDouble::to_rational);
         if let (Some(rough), Some(fine)) = (rough, fine)
-            && (rough - fine).abs() <= 0.5 * 10f64.powi(-(digits as i32)) * fine.abs()
-            && let Some(value) = rational_from_f64(fine)
+            && !fine.is_zero()
+            && let Some(decimal) = common_decimal(&rough, &fine, digits)
         {
-            let decimal = round_to_decimal(&value, digits);
             let certainty = Certainty::Computed;
             return Ok(PointValue { decimal, exact: None, certainty, rung: Rung::DoubleDoubles, climbed });
         }

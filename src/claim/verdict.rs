@@ -1,6 +1,7 @@
 //! What a claim can come to.
 
 use super::defaults::AtFilesValues;
+use crate::checker::{Refutation, VerdictRecord};
 use crate::observability::StateInWords;
 use crate::system::{Expectation, FieldRole};
 
@@ -15,6 +16,8 @@ pub struct Witness {
     pub right: String,
     /// Which entry differs, where matrices were compared: row and column, counted from one.
     pub entry: Option<(usize, usize)>,
+    /// What the checker needs to find it again, and did; of an equation.
+    pub refutation: Option<Box<Refutation>>,
 }
 
 /// What is known of a statement.
@@ -121,6 +124,8 @@ pub struct Outcome {
     pub expected: Option<Expectation>,
     /// Whether everything is as the file expects.
     pub ok: bool,
+    /// What the verdicts rest on, for a verdict file; empty where it was not to be kept.
+    pub evidence: Vec<VerdictRecord>,
     /// The remark in the file.
     pub remark: Option<String>,
     /// What the statement comes to at the file's values of its parameters, where that is another word.

@@ -1,6 +1,6 @@
 //! States at which two sides differ, in numbers that a pocket calculator takes.
 
-use super::terms::{OnBranch, Values};
+use super::terms::{OnBranch, Point, Values};
 use super::verdict::Witness;
 use crate::number::{Enclosure, Enclosures, round_to_decimal};
 use crate::system::System;
@@ -21,6 +21,8 @@ const DIGITS: usize = 20;
 pub(crate) enum Search {
     Found {
         witness: Witness,
+        /// The state.
+        point: Point,
         /// Which entry differs, counted from zero.
         entry: usize,
         /// Whether both values are exact.
@@ -48,8 +50,8 @@ pub(crate) fn search(
                 Comparison::Differ(left, right) => {
                     let state = on.describe(system, &point);
                     let exact = matches!(values, Values::Exact(_));
-                    let witness = Witness { state, left, right, entry: None };
-                    return Search::Found { witness, entry, exact };
+                    let witness = Witness { state, left, right, entry: None, refutation: None };
+                    return Search::Found { witness, point, entry, exact };
                 }
                 Comparison::Agree(digits) => least = least.min(digits),
             }

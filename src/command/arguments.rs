@@ -42,12 +42,32 @@ pub(crate) fn assignments(system: &System, pairs: &[String]) -> miette::Result<H
                 format!("these are: {}", known.join(", ")),
             ));
         };
-        let Some(value) = parse_decimal(text) else {
-            return Err(Unusable::report(format!("'{text}' is not a number"), "such as 2, -.5, 1e-3 or 1/3"));
-        };
+        let value = number(text)?;
         if values.insert(symbol, value).is_some() {
             return Err(Unusable::report(format!("'{}' is given twice", name.trim()), "give it once"));
         }
     }
     Ok(values)
+}
+
+/// Reads a number as people write it.
+pub(crate) fn number(text: &str) -> miette::Result<RBig> {
+    parse_decimal(text).ok_or_else(|| {
+        let shown: String = text.trim().chars().take(40).collect();
+        if text.split('/').any(is_too_long) {
+            let limit = "a number has at most 4096 digits and an exponent of at most 4096";
+            Unusable::report(format!("'{shown}' is too long: {limit}"), "take a number that is nearer to one")
+        } else {
+            Unusable::report(format!("'{shown}' is not a number"), "such as 2, -.5, 1e-3 or 1/3")
+        }
+    })
+}
+
+/// Whether a text is a number, but for its length.
+fn is_too_long(text: &str) -> bool {
+    let text = text.trim().trim_start_matches(['-', '+']);
+    let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let exponent = exponent.strip_prefix(['-', '+']).unwrap_or(exponent);
+    digits(&mantissa.replacen('.', "", 1)) && digits(exponent) && parse_decimal(text).is_none()
 }

@@ -1,20 +1,22 @@
 //! `palmistry certify`: full rank proved on whole regions.
 
-use super::output::{INTERRUPTED, fraction_bar, print_json, print_text, write_whole};
+use super::arguments::number;
+use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
+use super::output::{Files, Form, fraction_bar};
 use super::{Status, Unusable};
 use clap::{Args, ValueEnum};
 use dashu::rational::RBig;
 use indicatif::ProgressBar;
 use palmistry::System;
+use palmistry::evidence::{WrittenBoxes, certificate_file};
 use palmistry::expression::Symbol;
-use palmistry::number::parse_decimal;
+use palmistry::file::{note, read_text};
 use palmistry::observability::region::{Limits, Progress, Region, RegionAnswer, RegionRows};
 use palmistry::report::{percent, region_curve, region_json, region_map, region_text};
 use palmistry::system::Kind;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Proves full rank on boxes of states, and says on which part of the sample box.
@@ -59,6 +61,12 @@ pub(crate) struct Certify {
     /// Write certify.json and the pictures curve.svg and map.svg into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Write the largest proved boxes, each with the rows of its minor, to a file that 'palmistry recheck' checks alone.
+    #[arg(long, value_name = "FILE")]
+    verdicts: Option<PathBuf>,
+    /// How many boxes that file holds at most, the largest first.
+    #[arg(long, default_value_t = 2000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    verdict_boxes: u32,
     /// Print one JSON object with 'proved_fraction', 'minor_vanishes_fraction', 'rest_fraction', 'curve' and more.
     #[arg(long)]
     pub json: bool,
@@ -82,6 +90,9 @@ fn seconds(text: &str) -> Result<f64, String> {
 /// The state is written at least this often.
 const SECONDS_BETWEEN_SAVES: f64 = 30.0;
 
+/// A state of more bytes than this is not read: a hundred million open boxes are more than any machine holds.
+const LONGEST_STATE: u64 = 4 << 30;
+
 impl Certify {
     pub fn run(self) -> miette::Result<Status> {
         let begin = Instant::now();
@@ -100,33 +111,52 @@ impl Certify {
         let map = self.map_of(&system)?;
         let mut region =
             Region::new(&mut system, rows, &ranges, map).map_err(|why| Unusable::report(why, ""))?;
+        if self.verdicts.is_some() {
+            region.keep_boxes(self.verdict_boxes as usize);
+        }
         if let Some(file) = &self.state {
+            if file.exists() && !file.is_file() {
+                let message = format!("{} is no file that a state could be kept in", file.display());
+                return Err(Unusable::report(message, "name a file with --state"));
+            }
             resume(&mut region, file)?;
         }
-        self.work(&mut region, begin)?;
-        let interrupted = INTERRUPTED.load(Ordering::Relaxed);
+        let mut files = Files::default();
+        self.work(&mut region, begin, &mut files);
+        begin_to_tell();
         let answer = region.answer();
         let mut object = region_json(&answer);
-        object["interrupted"] = json!(interrupted);
+        object["interrupted"] = json!(interrupted());
         if let Some(folder) = &self.out {
-            pictures(&answer, folder)?;
-            let text = serde_json::to_string_pretty(&object).unwrap_or_default();
-            write_whole(&folder.join("certify.json"), &format!("{text}\n"))?;
+            pictures(&answer, folder, &mut files);
+            files.json(&folder.join("certify.json"), &object);
         }
-        if self.json {
-            print_json(&object);
-        } else {
-            print_text(&region_text(&answer));
+        let written = self.write_verdicts(&system, &region, &mut files)?;
+        if let Some(written) = &written {
+            object["verdict_boxes"] = json!({ "written": written.boxes, "left_out": written.left_out });
         }
-        Ok(if interrupted { Status::NotAsExpected } else { Status::AsExpected })
+        let status = if interrupted() { Status::NotAsExpected } else { Status::AsExpected };
+        let in_words = || {
+            let text = region_text(&answer);
+            match (&self.verdicts, &written) {
+                (Some(file), Some(written)) => format!(
+                    "{text}\n{}: {} of {} proved boxes; {} more are not shown by plain interval arithmetic and left out",
+                    file.display(),
+                    written.boxes,
+                    region.proved_box_count(),
+                    written.left_out
+                ),
+                _ => text,
+            }
+        };
+        files.print(Form::of(self.json), object, in_words, status)
     }
 
     /// Spends the budget, and keeps the state on the way.
-    fn work(&self, region: &mut Region, begin: Instant) -> miette::Result<()> {
+    fn work(&self, region: &mut Region, begin: Instant, files: &mut Files) {
         let bar = fraction_bar("proving");
         let mut left = self.boxes;
-        let stop = || INTERRUPTED.load(Ordering::Relaxed);
-        while !stop() && !region.is_finished() {
+        while !interrupted() && !region.is_finished() {
             let rest = self.budget - begin.elapsed().as_secs_f64();
             let slice = if self.state.is_some() { SECONDS_BETWEEN_SAVES } else { f64::INFINITY };
             let limits = match left {
@@ -141,7 +171,11 @@ impl Certify {
             let done = region.boxes() - before;
             left = left.map(|left| left - done.min(left));
             if let Some(file) = &self.state {
-                write_whole(file, &region.saved())?;
+                let mut saved = Files::default();
+                saved.text(file, &region.saved());
+                if !saved.whole() {
+                    break; // told below: hours of work that nobody can keep are not begun
+                }
             }
             if done == 0 {
                 break; // the rest of the time is for explaining the open boxes, or too many of these are open
@@ -149,9 +183,24 @@ impl Certify {
         }
         bar.finish_and_clear();
         if let Some(file) = &self.state {
-            write_whole(file, &region.saved())?;
+            files.text(file, &region.saved());
         }
-        Ok(())
+    }
+
+    /// Writes what the certificate rests on, where that is asked for.
+    fn write_verdicts(
+        &self,
+        system: &System,
+        region: &Region,
+        files: &mut Files,
+    ) -> miette::Result<Option<WrittenBoxes>> {
+        let Some(path) = &self.verdicts else { return Ok(None) };
+        let most = self.verdict_boxes as usize;
+        let (file, written) = certificate_file(system, region, most, &INTERRUPTED)
+            .map_err(|why| Unusable::report(why.to_string(), ""))?;
+        let text = file.text().map_err(|why| Unusable::report(why.to_string(), ""))?;
+        files.text(path, &text);
+        Ok(Some(written))
     }
 
     fn map_of(&self, system: &System) -> miette::Result<Option<(Symbol, Symbol)>> {
@@ -168,29 +217,27 @@ fn show(bar: &ProgressBar, now: Progress) {
     bar.set_message(format!("{} proved, {:.1e} boxes", percent(now.proved), now.boxes as f64));
 }
 
-fn pictures(answer: &RegionAnswer, folder: &Path) -> miette::Result<()> {
-    write_whole(&folder.join("curve.svg"), &region_curve(answer, &answer.title))?;
+fn pictures(answer: &RegionAnswer, folder: &Path, files: &mut Files) {
+    files.text(&folder.join("curve.svg"), &region_curve(answer, &answer.title));
     if let Some(map) = &answer.map {
-        write_whole(&folder.join("map.svg"), &region_map(map, &answer.title))?;
+        files.text(&folder.join("map.svg"), &region_map(map, &answer.title));
     }
-    Ok(())
 }
 
 /// Takes up a search, where there is one.
 fn resume(region: &mut Region, file: &Path) -> miette::Result<()> {
-    let text = match std::fs::read_to_string(file) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => {
-            return Err(Unusable::report(format!("cannot read {}: {error}", file.display()), ""));
-        }
-    };
+    if !file.exists() {
+        return Ok(());
+    }
+    let text = read_text(file, LONGEST_STATE).map_err(|why| {
+        Unusable::report(format!("cannot read {}: {why}", file.display()), "the state of a search is a file")
+    })?;
     region.resume(&text).map_err(|why| {
         let message = format!("{} cannot be taken up: {why}", file.display());
         Unusable::report(message, "name another file with --state, or delete this one to begin anew")
     })?;
     if region.is_finished() {
-        eprintln!("{} is finished: no box in it is open any more", file.display());
+        note(&format!("{} is finished: no box in it is open any more", file.display()));
     }
     Ok(())
 }
@@ -221,11 +268,6 @@ fn ranges(system: &System, texts: &[String]) -> miette::Result<BTreeMap<Symbol, 
         let (name, range) = text.split_once('=').ok_or_else(form)?;
         let (low, high) = range.split_once("..").ok_or_else(form)?;
         let symbol = symbol(system, name)?;
-        let number = |text: &str| {
-            parse_decimal(text).ok_or_else(|| {
-                Unusable::report(format!("'{text}' is not a number"), "such as 2, -.5, 1e-3 or 1/3")
-            })
-        };
         let (low, high) = (number(low)?, number(high)?);
         if low > high {
             return Err(Unusable::report(

@@ -1,11 +1,12 @@
 //! `palmistry eval`: the value of an expression at a point.
 
 use super::arguments::{Wanted, assignments};
+use super::interrupt::begin_to_tell;
 use super::output::{print_json, print_text};
 use super::{Status, Unusable};
 use clap::Args;
 use dashu::rational::RBig;
-use palmistry::claim::{PointValue, computed_value};
+use palmistry::claim::{PointValue, computed_value, exists_at};
 use palmistry::expression::{NodeId, Symbol};
 use palmistry::observability::Certainty;
 use palmistry::{System, ValueError, certified_value, system::Value};
@@ -43,10 +44,11 @@ impl Eval {
     pub fn run(self) -> miette::Result<Status> {
         let mut system = System::read(&self.file)?;
         let given = assignments(&system, &self.at)?;
-        let value = system.evaluate_text(&self.expression)?;
+        let (value, guards) = system.evaluate_text_guarded(&self.expression)?;
         let mut point: HashMap<Symbol, RBig> =
             system.symbols().filter_map(|(symbol, info)| Some((symbol, info.default.clone()?))).collect();
         point.extend(given.clone());
+        exists_at(&system.graph, &guards, &point).map_err(explain)?;
         let digits = usize::from(self.digits);
         let one = |id: NodeId| {
             match self.verdict {
@@ -83,6 +85,7 @@ impl Eval {
                 return Err(Unusable::report(message, "ask 'palmistry rank', or claim it in the file"));
             }
         };
+        begin_to_tell();
         if self.json {
             let mut object = shown;
             object["expression"] = json!(self.expression);
@@ -91,21 +94,25 @@ impl Eval {
                 given.iter().map(|(s, v)| (system.symbol_name(*s).to_owned(), v.to_string())).collect();
             at.sort();
             object["at"] = at.into_iter().map(|(name, value)| (name, json!(value))).collect();
-            print_json(&object);
+            print_json(&object)?;
         } else {
-            match &shown["value"] {
-                Json::String(text) => print_text(text),
-                Json::Array(rows) => {
-                    for row in rows {
-                        let row: Vec<&str> =
-                            row.as_array().into_iter().flatten().filter_map(Json::as_str).collect();
-                        print_text(&row.join("  "));
-                    }
-                }
-                other => print_text(&other.to_string()),
-            }
+            print_text(&in_lines(&shown["value"]))?;
         }
         Ok(Status::AsExpected)
+    }
+}
+
+/// A value as it is printed: a matrix by rows, a line each.
+fn in_lines(value: &Json) -> String {
+    match value {
+        Json::String(text) => text.clone(),
+        Json::Array(rows) => {
+            let entries = |row: &Json| -> Vec<String> {
+                row.as_array().into_iter().flatten().filter_map(Json::as_str).map(str::to_owned).collect()
+            };
+            rows.iter().map(|row| entries(row).join("  ")).collect::<Vec<_>>().join("\n")
+        }
+        other => other.to_string(),
     }
 }
 

@@ -1,21 +1,27 @@
 //! Floor 8: the command line. A file a verb: it reads its arguments, calls the library, and prints.
 //!
 //! Results go to standard output (as JSON with `--json`), progress and words to standard error. The exit status is 0
-//! when all is as expected, 1 when something is not, 2 when the input could not be used.
+//! when all is as expected, 1 when something is not or the work was interrupted, 2 when the input could not be used or
+//! the results could not be written.
 
 mod arguments;
 mod certify;
 mod eval;
+mod interrupt;
 mod observe;
 mod output;
 mod prove;
 mod rank;
+mod recheck;
 mod stress;
+mod threads;
 mod trade;
 mod verify;
 
 use clap::{Parser, Subcommand};
 use miette::{Diagnostic, Report};
+use output::Form;
+use palmistry::file;
 use std::process::ExitCode;
 
 /// Checks mathematics about systems that are seen only through their outputs.
@@ -24,7 +30,9 @@ use std::process::ExitCode;
 /// claim by claim, proved, refuted (with a witness) or undecided. Without a command it runs 'verify'.
 #[derive(Parser)]
 #[command(name = "palmistry", version, max_term_width = 110)]
-#[command(after_help = "Exit status: 0 all as expected, 1 something is not, 2 the input could not be used.")]
+#[command(
+    after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written."
+)]
 struct Cli {
     #[command(subcommand)]
     verb: Option<Verb>,
@@ -35,6 +43,7 @@ enum Verb {
     Verify(verify::Verify),
     Prove(prove::Prove),
     Rank(rank::Rank),
+    Recheck(recheck::Recheck),
     Certify(certify::Certify),
     Trade(trade::Trade),
     Stress(stress::Stress),
@@ -47,6 +56,8 @@ enum Verb {
 pub(crate) enum Status {
     AsExpected,
     NotAsExpected,
+    /// The results are printed, but a file that was asked for could not be written.
+    Unwritten,
 }
 
 /// Input that could not be used, in words.
@@ -69,33 +80,80 @@ impl Unusable {
 pub fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => {
-            // --help and --version come this way too, and are no errors
-            let _ = error.print();
-            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
-        }
+        Err(error) => return not_understood(&error),
     };
-    output::stop_on_interrupt();
+    interrupt::stop_on_interrupt();
     let verb = cli.verb.unwrap_or_else(|| Verb::Verify(verify::Verify::default()));
-    let (json, result) = match verb {
-        Verb::Verify(verb) => (verb.json, verb.run()),
-        Verb::Prove(verb) => (verb.json, verb.run()),
-        Verb::Rank(verb) => (verb.json, verb.run()),
-        Verb::Certify(verb) => (verb.json, verb.run()),
-        Verb::Trade(verb) => (verb.json, verb.run()),
-        Verb::Stress(verb) => (verb.json, verb.run()),
-        Verb::Eval(verb) => (verb.json, verb.run()),
-        Verb::Observe(verb) => (verb.json, verb.run()),
-    };
+    let form = verb.form();
+    let result = threads::prepare().and_then(|()| verb.run());
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,
         Ok(Status::NotAsExpected) => ExitCode::from(1),
+        Ok(Status::Unwritten) => ExitCode::from(2),
         Err(report) => {
-            if json {
-                output::print_json(&output::error_json(&report));
+            if form == Form::Json {
+                // where this cannot be written either, the words below are all that can be done
+                let _ = output::print_json(&output::error_json(&report));
             }
-            eprintln!("{report:?}");
+            file::note(&format!("{report:?}"));
             ExitCode::from(2)
         }
     }
+}
+
+impl Verb {
+    fn form(&self) -> Form {
+        Form::of(match self {
+            Verb::Verify(verb) => verb.json,
+            Verb::Prove(verb) => verb.json,
+            Verb::Rank(verb) => verb.json,
+            Verb::Recheck(verb) => verb.json,
+            Verb::Certify(verb) => verb.json,
+            Verb::Trade(verb) => verb.json,
+            Verb::Stress(verb) => verb.json,
+            Verb::Eval(verb) => verb.json,
+            Verb::Observe(verb) => verb.json,
+        })
+    }
+
+    /// Does what is asked for, on a thread of its own: see [`interrupt`].
+    fn run(self) -> miette::Result<Status> {
+        let form = self.form();
+        let nothing = move || interrupt::nothing_found(form);
+        match self {
+            Verb::Verify(verb) => verb.run(),
+            Verb::Prove(verb) => verb.run(),
+            Verb::Rank(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Recheck(verb) => verb.run(),
+            Verb::Certify(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Trade(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Stress(verb) => verb.run(),
+            Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
+        }
+    }
+}
+
+/// What clap has to say: help and the version, which were asked for, or what is wrong with the command line.
+fn not_understood(error: &clap::Error) -> ExitCode {
+    let text = error.render().to_string();
+    if !error.use_stderr() {
+        return match output::print_text(text.trim_end_matches('\n')) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(report) => {
+                file::note(&format!("{report:?}"));
+                ExitCode::from(2)
+            }
+        };
+    }
+    // the arguments are not understood, so what they ask for has to be looked for by hand
+    if std::env::args_os()
+        .skip(1)
+        .take_while(|argument| argument != "--")
+        .any(|argument| argument == "--json")
+    {
+        let _ = output::print_json(&output::usage_json(&text));
+    }
+    file::note(text.trim_end_matches('\n'));
+    ExitCode::from(2)
 }

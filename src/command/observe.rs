@@ -1,15 +1,16 @@
 //! `palmistry observe`: a body in motion, and observers that recover its shape.
 
-use super::output::{INTERRUPTED, print_json, print_text, progress, write_whole};
+use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
+use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use indicatif::ProgressBar;
 use palmistry::experiment::{Basin, Experiment, NoiseLevel, Scene, SceneError, basins, noise_study};
+use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
-use palmistry::observer::{Record, Standing, Update};
+use palmistry::observer::{Standing, Update};
 use palmistry::report::{Observed, ended_in_words, method_name, observe_json, observe_page, observe_text};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
+use std::path::PathBuf;
 
 /// Moves a body between two palms, hands on what touch sensors and motors tell, and has observers recover its shape and
 /// motion.
@@ -62,8 +63,10 @@ impl Observe {
             let message = "a study needs the truth, and readings from a file have none";
             return Err(Unusable::report(message, "leave out --studies, or simulate"));
         }
+        let mut files = Files::default();
         if let Some(path) = &self.record {
-            write_table(path, &experiment.record)?;
+            files.table(path, &experiment.record);
+            files.announce(path);
         }
         if let Some(path) = &self.motion {
             let Some(simulation) = &experiment.simulation else {
@@ -71,7 +74,8 @@ impl Observe {
                 return Err(Unusable::report(message, "leave out --motion, or --data"));
             };
             let table = simulation.table().map_err(|error| Unusable::report(error.to_string(), ""))?;
-            write_table(path, &table)?;
+            files.table(path, &table);
+            files.announce(path);
         }
         bar.set_message("observing");
         let answers = experiment.run(&INTERRUPTED, &|method| {
@@ -80,7 +84,8 @@ impl Observe {
         })?;
         bar.finish_and_clear();
         let (noise, basins) = if self.studies { studies(&experiment)? } else { (Vec::new(), Vec::new()) };
-        let interrupted = INTERRUPTED.load(Ordering::Relaxed);
+        begin_to_tell();
+        let interrupted = interrupted();
         let observed = Observed {
             experiment: &experiment,
             answers: &answers,
@@ -90,36 +95,22 @@ impl Observe {
         };
         let json = observe_json(&observed);
         if let Some(folder) = &self.out {
-            write_whole(&folder.join("index.html"), &observe_page(&observed))?;
-            write_whole(
-                &folder.join("observe.json"),
-                &format!("{}\n", serde_json::to_string_pretty(&json).unwrap_or_default()),
-            )?;
-            eprintln!("written: {}", folder.join("index.html").display());
+            files.text(&folder.join("index.html"), &observe_page(&observed));
+            files.json(&folder.join("observe.json"), &json);
+            files.announce(&folder.join("index.html"));
         }
         if let Some(simulation) = &experiment.simulation
             && *simulation.ended() != Ended::Completed
         {
-            eprintln!("the motion ended early: {}", ended_in_words(simulation.ended()));
-        }
-        if self.json {
-            print_json(&json);
-        } else {
-            print_text(&observe_text(&observed));
+            note(&format!("the motion ended early: {}", ended_in_words(simulation.ended())));
         }
         // a window that cannot be seen is part of the answer; a method that saw none has found nothing
         let unseen = |update: &Update| matches!(update.standing, Standing::Blind { .. } | Standing::Lost(_));
         let found_nothing = |updates: &[Update]| !updates.is_empty() && updates.iter().all(unseen);
         let as_expected = !interrupted && !answers.iter().any(|answer| found_nothing(&answer.track.updates));
-        Ok(if as_expected { Status::AsExpected } else { Status::NotAsExpected })
+        let status = if as_expected { Status::AsExpected } else { Status::NotAsExpected };
+        files.print(Form::of(self.json), json, || observe_text(&observed), status)
     }
-}
-
-fn write_table(path: &Path, table: &Record) -> miette::Result<()> {
-    let help = "name a file that ends in .csv or .parquet, in a folder that can be written";
-    table.write(path).map_err(|error| Unusable::report(error.to_string(), help))?;
-    eprintln!("written: {}", path.display());
-    Ok(())
 }
 
 fn studies(experiment: &Experiment) -> Result<(Vec<NoiseLevel>, Vec<Basin>), SceneError> {

@@ -1,36 +1,112 @@
 //! What all commands print alike: JSON, progress, errors, and files that are whole or not there.
 
+use super::{Status, Unusable};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::Report;
-use palmistry::ReadError;
+use palmistry::observer::Record;
+use palmistry::{ReadError, file};
 use serde_json::{Value, json};
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Set when the user asks to stop.
-pub(crate) static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+/// Prints a value to standard output, indented.
+pub(crate) fn print_json(value: &Value) -> miette::Result<()> {
+    print_text(&serde_json::to_string_pretty(value).unwrap_or_default())
+}
 
-/// From now on an interrupt asks long work to stop and keep what it has; a second one ends the program.
-pub(crate) fn stop_on_interrupt() {
-    let handler = || {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
+/// Prints a text and the end of its line to standard output. A reader that has gone away is no error of ours.
+pub(crate) fn print_text(text: &str) -> miette::Result<()> {
+    file::print(&format!("{text}\n")).map_err(|error| {
+        let help = "nothing of what was found is kept: free some space, or send it elsewhere";
+        Unusable::report(format!("cannot write to standard output: {error}"), help)
+    })
+}
+
+/// The files that a command writes beside what it prints. What cannot be written is noted and costs no result: it is
+/// still printed, and the exit status is 2.
+#[derive(Default)]
+pub(crate) struct Files {
+    failures: Vec<Failure>,
+}
+
+struct Failure {
+    file: PathBuf,
+    why: String,
+}
+
+impl Files {
+    /// Writes a text.
+    pub fn text(&mut self, path: &Path, text: &str) {
+        let written = file::write_whole(path, |file| file.write_all(text.as_bytes()));
+        self.note(path, written.map_err(|error| format!("cannot write {}: {error}", path.display())));
+    }
+
+    /// Writes a value as JSON, indented.
+    pub fn json(&mut self, path: &Path, value: &Value) {
+        self.text(path, &format!("{}\n", serde_json::to_string_pretty(value).unwrap_or_default()));
+    }
+
+    /// Writes a record, CSV or Parquet by the extension.
+    pub fn table(&mut self, path: &Path, table: &Record) {
+        self.note(path, table.write(path).map_err(|error| error.to_string()));
+    }
+
+    fn note(&mut self, path: &Path, written: Result<(), String>) {
+        if let Err(why) = written {
+            self.failures.push(Failure { file: path.to_owned(), why });
         }
-        eprintln!("stopping; what is done so far is kept (interrupt again to leave at once)");
-    };
-    // without a handler an interrupt simply ends the program: nothing worth failing for
-    let _ = ctrlc::set_handler(handler);
+    }
+
+    /// Says on standard error that a file was written, if it was.
+    pub fn announce(&self, path: &Path) {
+        if path != Path::new("-") && self.failures.iter().all(|failure| failure.file != path) {
+            file::note(&format!("written: {}", path.display()));
+        }
+    }
+
+    /// Whether all was written so far.
+    pub fn whole(&self) -> bool {
+        self.failures.is_empty()
+    }
+
+    /// Prints what was found, in the form that is asked for, and after it what could not be written.
+    pub fn print(
+        self,
+        form: Form,
+        mut object: Value,
+        text: impl FnOnce() -> String,
+        status: Status,
+    ) -> miette::Result<Status> {
+        if !self.whole() {
+            object["unwritten"] = self
+                .failures
+                .iter()
+                .map(|failure| json!({ "file": failure.file.display().to_string(), "why": failure.why }))
+                .collect();
+        }
+        match form {
+            Form::Json => print_json(&object)?,
+            Form::Text => print_text(&text())?,
+        }
+        for failure in &self.failures {
+            let help = "the results are printed; name a place that can be written, or free some space";
+            file::note(&format!("{:?}", Unusable::report(failure.why.clone(), help)));
+        }
+        Ok(if self.whole() { status } else { Status::Unwritten })
+    }
 }
 
-/// Prints a value to standard output. A reader that has gone away is no error of ours.
-pub(crate) fn print_json(value: &Value) {
-    print_text(&serde_json::to_string_pretty(value).unwrap_or_default());
+/// How results are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    Json,
+    Text,
 }
 
-/// Prints a line to standard output.
-pub(crate) fn print_text(text: &str) {
-    let _ = writeln!(std::io::stdout().lock(), "{text}");
+impl Form {
+    /// What `--json` asks for.
+    pub fn of(json: bool) -> Form {
+        if json { Form::Json } else { Form::Text }
+    }
 }
 
 /// An error as JSON, with the place where it points into a file.
@@ -46,6 +122,14 @@ pub(crate) fn error_json(report: &Report) -> Value {
         error["column"] = json!(column);
     }
     json!({ "error": error })
+}
+
+/// What is wrong with the command line, as JSON: the first line is the message, the rest says what to do.
+pub(crate) fn usage_json(text: &str) -> Value {
+    let (message, rest) = text.split_once('\n').unwrap_or((text, ""));
+    let message = message.strip_prefix("error: ").unwrap_or(message);
+    let help = rest.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join("\n");
+    json!({ "error": { "message": message, "help": help } })
 }
 
 /// A progress bar on standard error, shown only where that is a terminal.
@@ -76,10 +160,10 @@ pub(crate) fn proof_files(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
         if path.is_dir() {
             let before = files.len();
             collect(path, &mut files)
-                .map_err(|e| super::Unusable::report(format!("cannot read {}: {e}", path.display()), ""))?;
+                .map_err(|e| Unusable::report(format!("cannot read {}: {e}", path.display()), ""))?;
             if files.len() == before {
                 let message = format!("there is no .proof file below {}", path.display());
-                return Err(super::Unusable::report(message, "name a file, or a folder that has some"));
+                return Err(Unusable::report(message, "name a file, or a folder that has some"));
             }
         } else {
             files.push(path.clone());
@@ -100,34 +184,4 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
         }
     }
     Ok(())
-}
-
-/// Writes a file aside and moves it into place, so that it is whole or not there.
-pub(crate) fn write_whole(path: &Path, text: &str) -> miette::Result<()> {
-    let complain =
-        |e: std::io::Error| super::Unusable::report(format!("cannot write {}: {e}", path.display()), "");
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).map_err(complain)?;
-    let mut file = tempfile::Builder::new()
-        .prefix(".palmistry-")
-        .permissions(readable())
-        .tempfile_in(folder)
-        .map_err(complain)?;
-    file.write_all(text.as_bytes()).map_err(complain)?;
-    file.persist(path).map_err(|e| complain(e.error))?;
-    Ok(())
-}
-
-#[cfg(unix)]
-fn readable() -> std::fs::Permissions {
-    use std::os::unix::fs::PermissionsExt;
-    std::fs::Permissions::from_mode(0o644)
-}
-
-#[cfg(not(unix))]
-fn readable() -> std::fs::Permissions {
-    std::env::temp_dir()
-        .metadata()
-        .map(|m| m.permissions())
-        .unwrap_or_else(|_| unreachable!("a temporary folder"))
 }

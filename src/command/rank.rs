@@ -1,9 +1,12 @@
 //! `palmistry rank`: is the state seen in the outputs?
 
 use super::arguments::{Wanted, assignments};
-use super::output::{INTERRUPTED, print_json, print_text, progress};
+use super::interrupt::{INTERRUPTED, begin_to_tell};
+use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
+use palmistry::checker::VerdictFile;
+use palmistry::evidence::rank_records;
 use palmistry::observability::MOST_DIGITS;
 use palmistry::report::{rank_json, rank_text};
 use palmistry::{RankQuestion, System, answer_rank};
@@ -45,6 +48,12 @@ pub(crate) struct Rank {
     /// before. Which state is worst is decided by doubles.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_DIGITS as i64))]
     digits: Option<u16>,
+    /// Write states with their certified ranks, minors and kernels to a file that 'palmistry recheck' checks alone.
+    #[arg(long, value_name = "FILE")]
+    verdicts: Option<PathBuf>,
+    /// How many states that file holds at most; they are spread over the sweep, the worst conditioned one is among them.
+    #[arg(long, default_value_t = 1000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    verdict_states: u64,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -64,18 +73,24 @@ impl Rank {
                 digits: self.digits.map(usize::from),
                 order: self.order.map(usize::from),
                 fixed,
-                conditions: self.conditions,
+                conditions: self.conditions.clone(),
+                recorded: if self.verdicts.is_some() { self.verdict_states } else { 0 },
                 interrupt: &INTERRUPTED,
                 progress: &|done| bar.set_position(done),
             },
         );
         bar.finish_and_clear();
         let answer = answer.map_err(|why| Unusable::report(why, ""))?;
-        if self.json {
-            print_json(&rank_json(&answer));
-        } else {
-            print_text(&rank_text(&answer));
+        begin_to_tell();
+        let mut files = Files::default();
+        if let Some(path) = &self.verdicts {
+            let records = rank_records(&mut system, &answer, &self.conditions);
+            let text = records.map_err(|why| why.to_string()).and_then(|records| {
+                VerdictFile::new(self.seed, records).text().map_err(|why| why.to_string())
+            });
+            files.text(path, &text.map_err(|why| Unusable::report(why, ""))?);
         }
-        Ok(if answer.interrupted() { Status::NotAsExpected } else { Status::AsExpected })
+        let status = if answer.interrupted() { Status::NotAsExpected } else { Status::AsExpected };
+        files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
     }
 }

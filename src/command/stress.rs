@@ -1,6 +1,7 @@
 //! `palmistry stress`: the extremes.
 
-use super::output::{INTERRUPTED, print_json, print_text, progress, write_whole};
+use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
+use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::{Args, ValueEnum};
 use palmistry::System;
@@ -8,8 +9,10 @@ use palmistry::report::{stress_json, stress_pictures, stress_text};
 use palmistry::tradeoff::Rows;
 use palmistry::tradeoff::stress::{Stress as Prepared, StressOptions, Study};
 use palmistry::verification::{REGIMES, prepare_regimes};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Takes numbers to the extremes: how near to a singular set, and how large, before a rank is misreported.
 ///
@@ -27,7 +30,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// rows, and each quantity of its sample at zero.
 ///
 /// Example: palmistry stress --out stress
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct Stress {
     /// A proof file; without one, the thesis's regimes.
     file: Option<PathBuf>,
@@ -65,6 +68,18 @@ const SAMPLES_ON_SETS: u64 = 6;
 
 impl Stress {
     pub fn run(self) -> miette::Result<Status> {
+        let done: Arc<Mutex<Vec<Study>>> = Arc::default();
+        let (worker, filled) = (self.clone(), done.clone());
+        let work = move || {
+            worker.work(&filled)?;
+            begin_to_tell();
+            worker.tell(&filled)
+        };
+        watched(work, || self.tell(&done))
+    }
+
+    /// Runs the studies, one after the other.
+    fn work(&self, studies: &Mutex<Vec<Study>>) -> miette::Result<()> {
         let bar = progress(1, "to the extremes");
         let done = AtomicU64::new(0);
         let step = || bar.set_position(done.fetch_add(1, Ordering::Relaxed) + 1);
@@ -96,32 +111,42 @@ impl Stress {
         };
         let prepared = prepared.map_err(|why| Unusable::report(why, ""))?;
         bar.set_length(prepared.iter().map(|one| one.steps(&options)).sum());
-        let studies: Vec<Study> = prepared.iter().map(|one| one.run(&options)).collect();
+        for one in &prepared {
+            let study = one.run(&options);
+            studies.lock().unwrap_or_else(PoisonError::into_inner).push(study);
+        }
         bar.finish_and_clear();
-        let json = stress_json(&studies, self.seed);
+        Ok(())
+    }
+
+    /// Prints and writes the studies that were done.
+    fn tell(&self, studies: &Mutex<Vec<Study>>) -> miette::Result<Status> {
+        let studies = std::mem::take(&mut *studies.lock().unwrap_or_else(PoisonError::into_inner));
+        if studies.is_empty() && interrupted() {
+            return nothing_found(Form::of(self.json));
+        }
+        let mut object = stress_json(&studies, self.seed);
+        let whole = !interrupted() && studies.iter().all(|study| !study.interrupted);
+        object["interrupted"] = json!(!whole);
+        let mut files = Files::default();
         if let Some(folder) = &self.out {
-            write_files(folder, &studies, &json)?;
+            write_files(folder, &studies, &object, &mut files);
         }
-        if self.json {
-            print_json(&json);
-        } else {
-            print_text(&stress_text(&studies));
-        }
-        let whole = studies.iter().all(|study| !study.interrupted);
-        Ok(if whole { Status::AsExpected } else { Status::NotAsExpected })
+        let status = if whole { Status::AsExpected } else { Status::NotAsExpected };
+        files.print(Form::of(self.json), object, || stress_text(&studies), status)
     }
 }
 
-fn write_files(folder: &Path, studies: &[Study], json: &serde_json::Value) -> miette::Result<()> {
+fn write_files(folder: &Path, studies: &[Study], object: &serde_json::Value, files: &mut Files) {
     for study in studies {
         for (name, svg) in stress_pictures(study) {
             let path = folder.join(format!("{name}.svg"));
-            write_whole(&path, &svg)?;
-            eprintln!("written: {}", path.display());
+            files.text(&path, &svg);
+            files.announce(&path);
         }
     }
-    write_whole(
+    files.text(
         &folder.join("stress.json"),
-        &format!("{}\n", serde_json::to_string(json).unwrap_or_default()),
-    )
+        &format!("{}\n", serde_json::to_string(object).unwrap_or_default()),
+    );
 }

@@ -1,6 +1,7 @@
 //! `palmistry trade`: what does accuracy cost?
 
-use super::output::{INTERRUPTED, print_json, print_text, progress, write_whole};
+use super::interrupt::{INTERRUPTED, begin_to_tell};
+use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::System;
@@ -54,17 +55,14 @@ impl Trade {
         );
         bar.finish_and_clear();
         let found = found.map_err(|why| Unusable::report(why, ""))?;
+        begin_to_tell();
         let json = trade_json(&found);
+        let mut files = Files::default();
         if let Some(folder) = &self.out {
-            write_whole(&folder.join("trade.svg"), &trade_plot(&found))?;
-            let text = serde_json::to_string_pretty(&json).unwrap_or_default();
-            write_whole(&folder.join("trade.json"), &(text + "\n"))?;
+            files.text(&folder.join("trade.svg"), &trade_plot(&found));
+            files.json(&folder.join("trade.json"), &json);
         }
-        if self.json {
-            print_json(&json);
-        } else {
-            print_text(&trade_text(&found));
-        }
-        Ok(if found.interrupted { Status::NotAsExpected } else { Status::AsExpected })
+        let status = if found.interrupted { Status::NotAsExpected } else { Status::AsExpected };
+        files.print(Form::of(self.json), json, || trade_text(&found), status)
     }
 }

@@ -1,16 +1,18 @@
 //! `palmistry verify`: the main job.
 
-use super::output::{INTERRUPTED, print_json, print_text, progress, write_whole};
+use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
+use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::report::{errata_markdown, page, verification_json, verification_text};
-use palmistry::verification::{Options, VerifyError, verify};
+use palmistry::verification::{Options, Verification, VerifyError, verify_into};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Checks chapter 4 and appendix A.2 of the thesis: claims, ranks, determinants; writes a page with pictures.
 ///
 /// Exit status 0 only when every claim has the verdict that its file expects and every rank is certified.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct Verify {
     /// Where to write index.html, verify.json and errata.md.
     #[arg(long, value_name = "DIR", default_value = "verify")]
@@ -43,10 +45,22 @@ impl Default for Verify {
 
 impl Verify {
     pub fn run(self) -> miette::Result<Status> {
+        let found = Arc::new(Mutex::new(Verification::begun(self.seed)));
+        let (worker, filled) = (self.clone(), found.clone());
+        let work = move || {
+            worker.work(&filled)?;
+            begin_to_tell();
+            worker.tell(&filled)
+        };
+        watched(work, || self.tell(&found))
+    }
+
+    /// Finds out everything.
+    fn work(&self, found: &Mutex<Verification>) -> miette::Result<()> {
         let folder = folder_of(&self.proofs)?;
         let scenes = folder_of(&self.scenes)?;
         let bar = progress(1, "verifying");
-        let found = verify(&Options {
+        let options = Options {
             folder: &folder,
             scenes: &scenes,
             seed: self.seed,
@@ -56,24 +70,29 @@ impl Verify {
                 bar.set_position(done);
                 bar.set_message(what.chars().take(28).collect::<String>());
             },
-        });
+        };
+        let result = verify_into(&options, found);
         bar.finish_and_clear();
-        let found = found.map_err(|error| match error {
+        result.map_err(|error| match error {
             VerifyError::Read(error) => miette::Report::new(*error),
             other => Unusable::report(other.to_string(), ""),
-        })?;
+        })
+    }
+
+    /// Prints and writes what was found.
+    fn tell(&self, found: &Mutex<Verification>) -> miette::Result<Status> {
+        let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
+        found.interrupted |= interrupted();
         let json = verification_json(&found);
         let (html_file, json_file) = (self.out.join("index.html"), self.out.join("verify.json"));
-        write_whole(&html_file, &page(&found))?;
-        write_whole(&json_file, &format!("{}\n", serde_json::to_string(&json).unwrap_or_default()))?;
-        write_whole(&self.out.join("errata.md"), &errata_markdown(&found.outcomes))?;
-        if self.json {
-            print_json(&json);
-        } else {
-            print_text(&verification_text(&found));
-        }
-        eprintln!("written: {} and {}", html_file.display(), json_file.display());
-        Ok(if found.ok() { Status::AsExpected } else { Status::NotAsExpected })
+        let mut files = Files::default();
+        files.text(&html_file, &page(&found));
+        files.text(&json_file, &format!("{}\n", serde_json::to_string(&json).unwrap_or_default()));
+        files.text(&self.out.join("errata.md"), &errata_markdown(&found.outcomes));
+        files.announce(&html_file);
+        files.announce(&json_file);
+        let status = if found.ok() { Status::AsExpected } else { Status::NotAsExpected };
+        files.print(Form::of(self.json), json, || verification_text(&found), status)
     }
 }
 

@@ -15,12 +15,14 @@ use std::collections::HashMap;
 pub struct Derivation {
     slopes: HashMap<Symbol, NodeId>,
     known: HashMap<NodeId, NodeId>,
+    /// What is known, in the order in which it was found.
+    found: Vec<NodeId>,
 }
 
 impl Derivation {
     /// The derivation that takes each of these symbols to its expression and all others to zero.
     pub fn new(slopes: HashMap<Symbol, NodeId>) -> Self {
-        Derivation { slopes, known: HashMap::new() }
+        Derivation { slopes, known: HashMap::new(), found: Vec::new() }
     }
 
     /// The partial derivative by one symbol.
@@ -37,8 +39,21 @@ impl Derivation {
         for id in self.unknown(graph, root) {
             let slope = self.rule(graph, id);
             self.known.insert(id, slope);
+            self.found.push(id);
         }
         self.known[&root]
+    }
+
+    /// How many derivatives are known, to come back to.
+    pub(crate) fn len(&self) -> usize {
+        self.found.len()
+    }
+
+    /// Forgets all but the first so many derivatives, since their nodes go.
+    pub(crate) fn shrink_to(&mut self, count: usize) {
+        for id in self.found.drain(count.min(self.found.len())..) {
+            self.known.remove(&id);
+        }
     }
 
     /// What the root needs and is not yet differentiated, operands first.

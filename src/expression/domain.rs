@@ -7,7 +7,7 @@
 
 use super::graph::{Graph, NodeId, Symbol};
 use super::sign::{Sign, sign};
-use crate::number::{Enclosure, Function};
+use crate::number::{Enclosure, Function, Interval};
 use dashu::rational::RBig;
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -95,6 +95,19 @@ impl Need {
     /// Whether an enclosed value meets it; `None` where the enclosure does not tell.
     pub fn is_met_by_enclosure(self, value: &Enclosure) -> Option<bool> {
         self.is_met_between(&value.low(), &value.high())
+    }
+
+    /// The same of a value between two doubles.
+    pub fn is_met_by_interval(self, value: Interval) -> Option<bool> {
+        let (low, high) = (value.low(), value.high());
+        let (all, none) = match self {
+            Need::NotZero => (low > 0.0 || high < 0.0, low == 0.0 && high == 0.0),
+            Need::Positive => (low > 0.0, high <= 0.0),
+            Need::NotNegative => (low >= 0.0, high < 0.0),
+            Need::WithinOne => (low >= -1.0 && high <= 1.0, low > 1.0 || high < -1.0),
+            Need::InsideOne => (low > -1.0 && high < 1.0, low >= 1.0 || high <= -1.0),
+        };
+        if all { Some(true) } else { none.then_some(false) }
     }
 }
 

@@ -5,7 +5,7 @@
 
 use crate::number::{Arithmetic, Function, Rationals, Refusal};
 use dashu::rational::RBig;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A coordinate, a parameter, or any other name that stands for a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -56,8 +56,19 @@ pub struct Graph {
     symbol_places: HashMap<String, Symbol>,
 }
 
+/// How much there is in a graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Extent {
+    nodes: usize,
+    constants: usize,
+    symbols: usize,
+}
+
 /// Constants longer than this many bits are not multiplied out when the graph is built.
 const FOLDED_BITS: usize = 4096;
+
+/// Up to this part of a graph is few nodes, in [`Graph::reachable`]. A node of a set costs as much as some dozens of a table.
+const FEW: usize = 128;
 
 impl Graph {
     /// The number of nodes.
@@ -141,6 +152,25 @@ impl Graph {
     /// Whether nothing may be simplified here, because an operand has no value: zero times nothing is not zero.
     pub(super) fn has_no_value(&self, operands: &[NodeId]) -> bool {
         operands.iter().any(|operand| self.undefined[operand.0 as usize])
+    }
+
+    /// How much there is, to come back to.
+    pub(crate) fn extent(&self) -> Extent {
+        Extent { nodes: self.nodes.len(), constants: self.constants.len(), symbols: self.symbols.len() }
+    }
+
+    /// Takes away all that was added since; no node of it may be used any more. The cost is that of what goes.
+    pub(crate) fn shrink_to(&mut self, extent: &Extent) {
+        self.undefined.truncate(extent.nodes);
+        for node in self.nodes.drain(extent.nodes.min(self.nodes.len())..) {
+            self.places.remove(&node);
+        }
+        for constant in self.constants.drain(extent.constants.min(self.constants.len())..) {
+            self.constant_places.remove(&constant);
+        }
+        for symbol in self.symbols.drain(extent.symbols.min(self.symbols.len())..) {
+            self.symbol_places.remove(&symbol);
+        }
     }
 
     /// A symbol as an expression.
@@ -346,11 +376,23 @@ impl Graph {
 
     /// All nodes that the given ones need, themselves included, operands before what uses them.
     pub fn reachable(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
-        let mut seen = vec![false; self.nodes.len()];
+        // a table of all nodes is quick to ask and slow to make: where few are needed, a set does
+        let (mut few, mut table) = (HashSet::new(), Vec::new());
+        let many = self.nodes.len() / FEW;
         let mut stack: Vec<NodeId> = roots.into_iter().collect();
-        let mut found = Vec::new();
+        let mut found: Vec<NodeId> = Vec::new();
         while let Some(id) = stack.pop() {
-            if !std::mem::replace(&mut seen[id.0 as usize], true) {
+            if table.is_empty() && found.len() >= many {
+                table = vec![false; self.nodes.len()];
+                for known in &found {
+                    table[known.0 as usize] = true;
+                }
+            }
+            let new = match table.get_mut(id.0 as usize) {
+                Some(seen) => !std::mem::replace(seen, true),
+                None => few.insert(id),
+            };
+            if new {
                 found.push(id);
                 stack.extend(self.node(id).operands());
             }

@@ -31,6 +31,7 @@ pub use derivative::Derivation;
 pub use domain::{Guard, Need, add_guard, substitute_guards};
 pub use expansion::{Expansion, expand};
 pub use gradient::gradient;
+pub(crate) use graph::Extent;
 pub use graph::{Graph, Node, NodeId, Symbol};
 pub use nodes::Nodes;
 pub use parse::{Expected, parse_expression};

@@ -193,7 +193,9 @@ fn number(input: &mut Text<'_>) -> Read<Expr> {
     let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), take_while(1.., digits)).void();
     let (text, span) = (mantissa, opt(exponent)).take().with_span().parse_next(input)?;
     let Some(value) = parse_decimal(text) else {
-        return stop(span.start, "a number of at most 4096 digits, with an exponent of at most 4096", None);
+        // the place is that of the exponent, or of the last digit: at its beginning a number is what is expected
+        let at = text.find(['e', 'E']).map_or(span.end - 1, |exponent| span.start + exponent + 1);
+        return stop(at, "a number of at most 4096 digits, with an exponent of at most 4096", None);
     };
     blank(input)?;
     Ok(Expr { kind: ExprKind::Number(value), span })

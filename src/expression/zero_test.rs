@@ -54,12 +54,10 @@ pub fn identically_zero(
     if roots.iter().all(|root| graph.constant_value(*root).is_some_and(|c| c.is_zero())) {
         return ZeroTest::Zero { log2_error: f64::NEG_INFINITY, points: 0, degree: 0.0 };
     }
-    let program = Program::new(graph, roots, is_angle, true);
-    if let Some(angle) = program.bare_angle() {
-        let name = graph.symbol_name(angle);
-        return ZeroTest::Unknown(format!(
-            "'{name}' is declared as an angle but stands outside sin, cos and tan"
-        ));
+    let mut program = Program::new(graph, roots, is_angle, true);
+    if program.bare_angle().is_some() {
+        // an angle is a number like others then, and its sine and cosine are unknowns beside it
+        program = Program::new(graph, roots, |_| false, true);
     }
     let size = match sizes(&program) {
         Ok(sizes) => sizes.into_iter().fold(Size::default(), |a, (top, _)| Size {

@@ -293,21 +293,32 @@ impl Arithmetic for Enclosures {
         if magnitude(&a.low).max(magnitude(&a.high)) > LARGEST_EXPONENT {
             return Err(Refusal::TooLarge);
         }
-        let outside = Refusal::OutsideDomain(function);
-        let below = |bound: i8| a.low < Repr::new(IBig::from(bound), 0);
-        let above = |bound: i8| a.high > Repr::new(IBig::from(bound), 0);
+        let end = |bound: i8| Repr::new(IBig::from(bound), 0);
+        // every number of the enclosure is outside, or only some: more bits may tell
+        let outside = match function {
+            Function::Asin | Function::Acos => a.high < end(-1) || a.low > end(1),
+            Function::Sqrt => a.high < end(0),
+            Function::Log => a.high <= end(0),
+            _ => false,
+        };
+        if outside {
+            return Err(Refusal::OutsideDomain(function));
+        }
+        let perhaps = Refusal::DomainNotSeparated(function);
+        let below = |bound: i8| a.low < end(bound);
+        let above = |bound: i8| a.high > end(bound);
         match function {
             Function::Sin => self.circular(a, |c, x| c.sin(x, None), |c, x| c.sin(x, None)),
             Function::Cos => self.circular(a, |c, x| c.cos(x, None), |c, x| c.cos(x, None)),
             Function::Atan => self.increasing(a, |c, x| c.atan(x, None), |c, x| c.atan(x, None)),
-            Function::Asin | Function::Acos if below(-1) || above(1) => Err(outside),
+            Function::Asin | Function::Acos if below(-1) || above(1) => Err(perhaps),
             Function::Asin => self.increasing(a, |c, x| c.asin(x, None), |c, x| c.asin(x, None)),
             Function::Acos => Self::endpoints(self.down.acos(&a.high, None), self.up.acos(&a.low, None)),
-            Function::Sqrt if below(0) => Err(outside),
+            Function::Sqrt if below(0) => Err(perhaps),
             Function::Sqrt => self.increasing(a, |c, x| c.sqrt(x), |c, x| c.sqrt(x)),
             Function::Exp if magnitude(&a.low).max(magnitude(&a.high)) > 20 => Err(Refusal::TooLarge),
             Function::Exp => self.increasing(a, |c, x| c.exp(x, None), |c, x| c.exp(x, None)),
-            Function::Log if a.low.sign() == Sign::Negative || a.low.significand().is_zero() => Err(outside),
+            Function::Log if a.low.sign() == Sign::Negative || a.low.significand().is_zero() => Err(perhaps),
             Function::Log => self.increasing(a, |c, x| c.ln(x, None), |c, x| c.ln(x, None)),
         }
     }
@@ -369,6 +380,30 @@ mod tests {
         let sine = all.apply(Function::Sin, &all.pi().unwrap()).unwrap();
         assert_eq!(all.div(&one, &zero).unwrap_err(), Refusal::DivisionByZero);
         assert_eq!(all.div(&one, &sine).unwrap_err(), Refusal::DivisorNotSeparated);
+    }
+
+    /// Which of the two it is decides whether more bits are tried.
+    #[test]
+    fn outside_for_certain_is_told_from_perhaps_outside() {
+        let all = Enclosures::new(64);
+        let around = |text: &str| {
+            let middle = all.rational(&parse_decimal(text).unwrap()).unwrap();
+            let width = all.sub(&all.pi().unwrap(), &all.pi().unwrap()).unwrap();
+            all.add(&middle, &width).unwrap()
+        };
+        for (function, inside, edge, outside) in [
+            (Function::Acos, "0.9", "1", "1.1"),
+            (Function::Asin, "-0.9", "-1", "-1.1"),
+            (Function::Sqrt, "0.1", "0", "-0.1"),
+            (Function::Log, "0.1", "0", "-0.1"),
+        ] {
+            assert!(all.apply(function, &around(inside)).is_ok(), "{function:?}");
+            let refused = |text| all.apply(function, &around(text)).unwrap_err();
+            assert_eq!(refused(edge), Refusal::DomainNotSeparated(function));
+            assert_eq!(refused(outside), Refusal::OutsideDomain(function));
+        }
+        let zero = all.rational(&RBig::ZERO).unwrap();
+        assert_eq!(all.apply(Function::Log, &zero).unwrap_err(), Refusal::OutsideDomain(Function::Log));
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub use factorisation::{Factorisation, primitive, split};
 pub use float::Floats;
 pub use fraction::{Factors, Fraction, Fractions};
 pub use interval::Interval;
-pub use lanes::{Instructions, Lanes, Task, Vectorised};
+pub use lanes::{Instructions, Lanes, MOST_LANES, Task, Vectorised};
 pub use laurent::{Laurent, Series};
 pub use rational::{Rationals, display_rational, parse_decimal, rational_from_f64, rational_to_f64};
 pub use real::Real;
@@ -102,9 +102,12 @@ pub enum Refusal {
     /// The divisor cannot be told from zero at this precision.
     #[error("the divisor cannot be told from zero at this precision")]
     DivisorNotSeparated,
-    /// The argument lies outside the function's real domain (or may do so, at this precision).
+    /// The argument lies outside the function's real domain, for certain where the arithmetic has bounds.
     #[error("the argument of {} lies outside its domain", .0.name())]
     OutsideDomain(Function),
+    /// The argument cannot be told from one outside the function's real domain at this precision.
+    #[error("the argument of {} cannot be told from one outside its domain at this precision", .0.name())]
+    DomainNotSeparated(Function),
     /// The value exists but this arithmetic cannot hold it.
     #[error("{} has no exact value here", .0.name())]
     NoExactValue(Function),

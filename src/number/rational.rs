@@ -99,7 +99,8 @@ pub fn display_rational(value: &RBig) -> String {
 pub fn parse_decimal(text: &str) -> Option<RBig> {
     let text = text.trim();
     if let Some((top, bottom)) = text.split_once('/') {
-        let bottom = parse_decimal(bottom)?;
+        // one bar is a fraction; two are two meanings, and a hundred thousand would fill the stack
+        let bottom = if bottom.contains('/') { None } else { parse_decimal(bottom) }?;
         return if bottom.is_zero() { None } else { Some(parse_decimal(top)? / bottom) };
     }
     let (negative, digits) = match text.strip_prefix('-') {
@@ -148,7 +149,8 @@ mod tests {
         ] {
             assert_eq!(parse_decimal(text), Some(value), "{text}");
         }
-        for text in ["", ".", "e5", "1/0", "1e99999999999", "0x10", "1..2", "--1", "1/2/0"] {
+        assert_eq!(parse_decimal(&"1/".repeat(1_000_000)), None);
+        for text in ["", ".", "e5", "1/0", "1e99999999999", "0x10", "1..2", "--1", "1/2/0", "1/2/3"] {
             assert_eq!(parse_decimal(text), None, "{text}");
         }
     }

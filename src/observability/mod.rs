@@ -33,6 +33,7 @@ pub use conditions::{
 };
 pub use defined::Defined;
 pub use digits::{Digits, MOST_DIGITS, NoDigits};
+pub(crate) use elimination::independent_rows;
 pub use elimination::{certain_rank, kernel, rank};
 pub use equilibrate::equilibrate;
 pub use flow::Flow;
@@ -40,7 +41,9 @@ pub use generic::{GenericRank, generic_rank};
 pub use ladder::{Certainty, Judge, Judged, StateReport};
 pub use locus::{AVOIDED, Locus, LocusError};
 pub use nested::{NestedError, differential_by_duals, lie_derivative_by_duals};
-pub use question::{BranchAnswer, OWN_ROWS, RankAnswer, RankQuestion, answer_rank, parse_condition};
+pub use question::{
+    BranchAnswer, OWN_ROWS, RankAnswer, RankQuestion, TakenRow, answer_rank, parse_condition,
+};
 pub use reduction::Reduction;
 pub use series::lie_derivative_by_series;
 pub use singular::{Spectrum, customary_singular_values, singular_values};
@@ -48,4 +51,4 @@ pub use state::{Coordinate, State, StateInWords, float_inputs};
 pub use stream::{
     DECADES, Elimination, Jacobi, StatesError, Stream, StreamOptions, StreamReport, Verdict, Verdicts,
 };
-pub use sweep::{SweepOptions, SweepReport, UnseenDirection, sweep};
+pub use sweep::{RecordedState, SweepOptions, SweepReport, UnseenDirection, sweep};

@@ -28,10 +28,20 @@ pub struct RankQuestion<'a> {
     pub fixed: BTreeMap<Symbol, RBig>,
     /// Conditions in the language, such as `sin(phi1) = 0`.
     pub conditions: Vec<String>,
+    /// How many of the states are recorded with their certified rank, for a verdict file.
+    pub recorded: u64,
     /// Set from outside to stop early.
     pub interrupt: &'a AtomicBool,
     /// Called with the number of states done.
     pub progress: &'a (dyn Fn(u64) + Sync),
+}
+
+/// A row whose rank was decided.
+pub struct TakenRow {
+    /// The word of which it is the differential; of the file's own rows, their number, counted from one.
+    pub word: String,
+    /// Its entries, one for each state of the system.
+    pub entries: Vec<NodeId>,
 }
 
 /// What was found on one branch of the conditions.
@@ -54,6 +64,10 @@ pub struct BranchAnswer {
     pub full: SweepReport,
     /// The rank of the file's own choice of rows at the same states, where it defines a matrix `rows`.
     pub rows: Option<SweepReport>,
+    /// The rows of the full codistribution.
+    pub taken: Vec<TakenRow>,
+    /// The file's own rows.
+    pub own: Vec<TakenRow>,
 }
 
 /// What was found.
@@ -182,6 +196,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             guards: &[],
             wanted: question.wanted,
             digits: question.digits,
+            recorded: question.recorded,
             interrupt: question.interrupt,
             progress: question.progress,
         };
@@ -193,7 +208,18 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             }
             None => None,
         };
+        let word = |(word, entries): (&super::Word, &Vec<NodeId>)| TakenRow {
+            word: word.text(system),
+            entries: entries.clone(),
+        };
+        let numbered = |(index, entries): (usize, &[NodeId])| TakenRow {
+            word: format!("row {}", index + 1),
+            entries: entries.to_vec(),
+        };
+        let own_rows = own.as_deref().unwrap_or_default().chunks(system.states.len());
         answers.push(BranchAnswer {
+            taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
+            own: own_rows.enumerate().map(numbered).collect(),
             conditions: locus.conditions.clone(),
             held: held_parameters(system, question, &branch.values, own.iter().flatten()),
             words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),

@@ -12,6 +12,8 @@ pub struct Reduction {
     pub rows: Vec<usize>,
     /// The columns that remain.
     pub columns: Vec<usize>,
+    /// The rows that were eliminated, by their places in the matrix.
+    pub unit_rows: Vec<usize>,
     /// How many rows were eliminated with as many columns.
     pub eliminated: usize,
     /// The entries that remain, by rows.
@@ -28,7 +30,7 @@ impl Reduction {
             entries.chunks(columns.max(1)).map(|row| row.iter().map(constant).collect()).collect();
         let mut rows: Vec<usize> = (0..matrix.len()).collect();
         let mut kept: Vec<usize> = (0..columns).collect();
-        let mut eliminated = 0;
+        let mut unit_rows = Vec::new();
         loop {
             rows.retain(|row| kept.iter().any(|column| matrix[*row][*column] != Some(true)));
             let unit = rows.iter().enumerate().find_map(|(place, row)| {
@@ -39,13 +41,12 @@ impl Reduction {
                 }
             });
             let Some((place, column)) = unit else { break };
-            rows.remove(place);
+            unit_rows.push(rows.remove(place));
             kept.retain(|other| *other != column);
-            eliminated += 1;
         }
         let entries =
             rows.iter().flat_map(|row| kept.iter().map(move |column| entries[row * columns + column]));
-        Reduction { entries: entries.collect(), rows, columns: kept, eliminated }
+        Reduction { entries: entries.collect(), rows, columns: kept, eliminated: unit_rows.len(), unit_rows }
     }
 }
 

@@ -30,6 +30,8 @@ pub struct SweepOptions<'a> {
     pub wanted: Certainty,
     /// To how many digits the singular values of the worst conditioned state are wanted, if doubles will not do.
     pub digits: Option<usize>,
+    /// How many of the states are recorded with their certified rank.
+    pub recorded: u64,
     /// Set from outside to stop early; what was found is kept.
     pub interrupt: &'a AtomicBool,
     /// Called after every block with the number of states done.
@@ -47,6 +49,15 @@ pub struct UnseenDirection {
     pub example: String,
     /// The index of the draw that it belongs to.
     pub index: u64,
+}
+
+/// A state of the sweep with its certified rank.
+#[derive(Clone, Debug)]
+pub struct RecordedState {
+    pub state: State,
+    pub rank: usize,
+    /// A basis of the directions that no row sees, exactly.
+    pub unseen: Vec<Vec<RBig>>,
 }
 
 /// What a sweep has found.
@@ -80,6 +91,9 @@ pub struct SweepReport {
     pub smallest_gap: f64,
     /// Whether it was stopped early.
     pub interrupted: bool,
+    /// As many of the states as were to be recorded, spread over the sweep, those that are poles or not certified left
+    /// out; the worst conditioned state is the first.
+    pub recorded: Vec<RecordedState>,
     pub seconds: f64,
 }
 
@@ -112,8 +126,7 @@ pub fn sweep(
     let quick = expand_angles(&mut system.graph, quick, is_angle);
     let all = expand_angles(&mut system.graph, all, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-    let fields = system.moving_fields();
-    let mut guards = system.smooth_guards(&fields);
+    let mut guards = system.smooth_guards(&system.moving_fields());
     // a stream watches what outputs and fields need; what the rows need beside that is looked at state by state
     let watched = options
         .guards
@@ -154,7 +167,9 @@ fn one_by_one(
         done = end;
         (options.progress)(done);
     }
+    let worst = tally.worst.as_ref().map(|(state, _)| state.clone());
     let mut report = tally.finish(system, judge, options.digits, done < options.samples);
+    report.recorded = recorded(judge, worst, options, |index| locus.draw(options.seed, index))?;
     report.remaining = judge.remaining();
     Ok(report)
 }
@@ -205,10 +220,38 @@ fn streamed(
             tally.worst = Some((state, spectrum));
         }
     }
+    let worst = tally.worst.as_ref().map(|(state, _)| state.clone());
     let mut report = tally.finish(system, judge, digits, found.interrupted || skipped);
+    report.recorded = recorded(judge, worst, options, state)?;
     report.first = Rung::Doubles;
     report.remaining = found.remaining;
     Ok(report)
+}
+
+/// The worst state and others that are spread over the sweep, with their certified ranks.
+fn recorded(
+    judge: &Judge<'_>,
+    worst: Option<State>,
+    options: SweepOptions<'_>,
+    state: impl Fn(u64) -> Result<State, LocusError> + Sync,
+) -> Result<Vec<RecordedState>, LocusError> {
+    let count = options.recorded.min(options.samples);
+    let drawn = (0..count).into_par_iter().map(|part| {
+        // in 128 bits, since the product of two counts may not fit into 64
+        let index = u128::from(part) * u128::from(options.samples) / u128::from(count);
+        state(index as u64)
+    });
+    let drawn: Vec<State> = drawn.collect::<Result<_, _>>()?;
+    let first = worst.filter(|_| count > 0);
+    let states: Vec<State> = first.into_iter().chain(drawn).take(count as usize).collect();
+    let judged = states.into_par_iter().map(|state| match judge.decide(&state) {
+        _ if options.interrupt.load(Ordering::Relaxed) => None,
+        Judged::Report(StateReport { rank, unseen, certainty: Certainty::Certified, .. }) => {
+            Some(RecordedState { state, rank, unseen })
+        }
+        _ => None,
+    });
+    Ok(judged.collect::<Vec<_>>().into_iter().flatten().collect())
 }
 
 /// Judges some states at once and adds them up in their order.
@@ -316,6 +359,7 @@ impl Tally {
             unseen: self.unseen.into_values().collect(),
             smallest_gap: self.smallest_gap.unwrap_or(f64::INFINITY),
             interrupted,
+            recorded: Vec::new(),
             seconds: 0.0,
         }
     }

@@ -83,6 +83,7 @@ pub fn region_json(answer: &RegionAnswer) -> Value {
         "largest_open_boxes": answer.largest.iter().map(open_json).collect::<Vec<_>>(),
         "curve": answer.curve.iter().map(|p| json!({ "boxes": p.boxes, "seconds": p.seconds, "proved_fraction": p.proved })).collect::<Vec<_>>(),
         "remarks": answer.remarks,
+        "holds_nowhere": answer.nowhere,
     })
 }
 
@@ -108,6 +109,15 @@ pub fn region_text(answer: &RegionAnswer) -> String {
             let _ = writeln!(out, ", words of up to {order} fields ({})", fields_text(&answer.fields));
         }
         None => out.push_str(", the file's own choice of rows\n"),
+    }
+    if !answer.nowhere.is_empty() {
+        let guards: Vec<String> = answer.nowhere.iter().map(|guard| shortened(guard)).collect();
+        let _ = writeln!(
+            out,
+            "nothing is proved: the system or its rows exist nowhere, since {} would have to hold",
+            guards.join(" and ")
+        );
+        return out.trim_end().to_owned();
     }
     if answer.minors.is_empty() {
         let _ = writeln!(

@@ -104,7 +104,7 @@ impl System {
 
     /// The guards of those components of a field along which an expression changes.
     pub(super) fn rate_guards(&self, field: &str, mentioned: &[Symbol]) -> Vec<Guard> {
-        let field = self.fields.iter().chain(&self.imported_fields).find(|f| f.name == field);
+        let field = self.field(field);
         let parts = field.into_iter().flat_map(|field| field.components.iter().zip(&field.guards));
         parts
             .filter(|((symbol, _), _)| mentioned.contains(symbol))

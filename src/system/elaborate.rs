@@ -303,11 +303,14 @@ impl System {
             let mentioned = self.graph.symbols_of(entries);
             self.need_all(self.rate_guards(name, &mentioned));
             value = self.map(value, &last.span, |system, id| {
-                let graph = &mut system.graph;
-                match system.fields.iter_mut().chain(&mut system.imported_fields).find(|f| f.name == *name) {
-                    Some(field) => field.derivation.apply(graph, id),
+                // the graph goes out of the system for as long as the field, which is a part of it too, is held
+                let mut graph = std::mem::take(&mut system.graph);
+                let derivative = match system.field_mut(name) {
+                    Some(field) => field.derivation.apply(&mut graph, id),
                     None => id,
-                }
+                };
+                system.graph = graph;
+                derivative
             })?;
             if self.graph.len() > LARGEST_GRAPH {
                 return Err(Problem::new(

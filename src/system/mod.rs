@@ -10,6 +10,7 @@ mod determinant;
 mod domain;
 mod elaborate;
 mod error;
+mod extent;
 mod grammar;
 mod matrices;
 mod model;

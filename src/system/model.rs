@@ -71,10 +71,10 @@ pub struct Field {
     pub span: Span,
     /// The states that it moves, and how; all others stand still.
     pub components: Vec<(Symbol, NodeId)>,
-    /// Its components as they are written.
-    pub(crate) written: Written,
     /// Where each component exists.
     pub guards: Vec<Vec<Guard>>,
+    /// Its components as they are written.
+    pub(crate) written: Written,
     pub(crate) derivation: Derivation,
 }
 
@@ -92,6 +92,13 @@ pub struct Explanations {
 pub struct FieldRole {
     pub name: String,
     pub role: Role,
+}
+
+/// Where a field is, among those of its file or among the imported ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FieldPlace {
+    Own(usize),
+    Imported(usize),
 }
 
 /// A matrix of expressions, by rows.
@@ -167,14 +174,16 @@ pub struct System {
     pub claims: Vec<ClaimSyntax>,
     pub(crate) symbols: BTreeMap<Symbol, SymbolInfo>,
     pub(crate) definitions: BTreeMap<String, Value>,
-    /// The definitions as they are written, imported ones under their full names.
-    pub(crate) written: BTreeMap<String, Written>,
     /// Where each definition exists, imported ones included.
     pub(crate) definition_domains: HashMap<String, Domain>,
     /// What the terms that are being read need to exist.
     pub(crate) domain: Domain,
+    /// The definitions as they are written, imported ones under their full names.
+    pub(crate) written: BTreeMap<String, Written>,
     /// Fields of imported systems, under their full names.
     pub(crate) imported_fields: Vec<Field>,
+    /// Where the field of a name is.
+    pub(crate) field_places: HashMap<String, FieldPlace>,
     pub(crate) partials: HashMap<Symbol, Derivation>,
     /// Whether something has been differentiated by all states: then these are all that there are.
     pub(crate) states_are_final: bool,
@@ -221,8 +230,19 @@ impl System {
     }
 
     /// The field of a name, imported ones included.
+    pub(crate) fn field(&self, name: &str) -> Option<&Field> {
+        match self.field_places.get(name)? {
+            FieldPlace::Own(place) => self.fields.get(*place),
+            FieldPlace::Imported(place) => self.imported_fields.get(*place),
+        }
+    }
+
+    /// The same, to be derived along.
     pub(crate) fn field_mut(&mut self, name: &str) -> Option<&mut Field> {
-        self.fields.iter_mut().chain(&mut self.imported_fields).find(|field| field.name == name)
+        match self.field_places.get(name)? {
+            FieldPlace::Own(place) => self.fields.get_mut(*place),
+            FieldPlace::Imported(place) => self.imported_fields.get_mut(*place),
+        }
     }
 
     /// The places of the fields that move the states: the drift and the inputs, in the order of the file. Ranks are made
@@ -316,18 +336,19 @@ impl System {
         };
         let mut waiting: VecDeque<Mention> = places.into_iter().filter_map(mention).collect();
         let mut found = Explanations::default();
+        let mut met = HashSet::new();
         while let Some(mention) = waiting.pop_front() {
+            if !met.insert(mention.clone()) {
+                continue;
+            }
             let (list, name, written) = match mention {
                 Mention::Definition(name) => (&mut found.definitions, name.clone(), self.written.get(&name)),
                 Mention::Field(name) => {
-                    let field =
-                        self.fields.iter().chain(&self.imported_fields).find(|field| field.name == name);
+                    let field = self.field(&name);
                     (&mut found.fields, name, field.map(|field| &field.written))
                 }
             };
-            if let Some(written) = written
-                && !list.iter().any(|(known, _)| *known == name)
-            {
+            if let Some(written) = written {
                 list.push((name, written.text()));
                 waiting.extend(written.mentions());
             }

@@ -3,17 +3,23 @@
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Item, parse_file};
-use super::model::{Field, Kind, Range, Role, SymbolInfo, System, Value};
+use super::model::{Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
 use super::written::{Scope, Written, in_one_line, places_in};
 use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Expr, Name, Span};
-use crate::expression::{Derivation, Graph, Symbol, parse_expression};
+use crate::expression::{Derivation, Graph, Guard, Symbol, parse_expression};
+use crate::file::{ReadFailure, read_text};
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// Imports of imports beyond this are refused; so a file that imports itself is told.
+/// Imports of imports beyond this are refused.
 const DEEPEST_IMPORT: usize = 8;
+
+/// More names than this are not imported: what an import imports comes with it, so that ten files of ten lines, each
+/// of which imports the next ten times, would bring ten thousand million.
+const MOST_NAMES: usize = 200_000;
 
 /// Files longer than this are refused.
 const LONGEST_FILE: u64 = 16 << 20;
@@ -35,7 +41,10 @@ impl System {
     /// What is wrong with the text, and where.
     pub fn parse(name: &str, text: &str, folder: &Path) -> Result<System, ReadError> {
         let text = with_plain_line_ends(text);
-        System::build(name, &text, folder, Graph::default(), 0).map_err(|problem| problem.locate(name, &text))
+        let mut reading = Reading::default();
+        reading.open.extend(Path::new(name).canonicalize());
+        System::build(name, &text, folder, Graph::default(), &mut reading)
+            .map_err(|problem| problem.locate(name, &text))
     }
 
     /// The value of an expression that is not in the file but asked of it from outside.
@@ -43,12 +52,26 @@ impl System {
     /// # Errors
     /// What is wrong with the expression, and where in it.
     pub fn evaluate_text(&mut self, text: &str) -> Result<Value, ReadError> {
-        let text = &with_plain_line_ends(text);
-        let expr = parse_expression(text).map_err(|e| expected(e).locate("expression", text))?;
-        self.elaborate(&expr).map_err(|problem| problem.locate("expression", text))
+        self.evaluate_text_guarded(text).map(|(value, _)| value)
     }
 
-    fn build(name: &str, text: &str, folder: &Path, graph: Graph, depth: usize) -> Result<System, Problem> {
+    /// The same, and where it exists: the value was simplified, and may have values where the text has none.
+    ///
+    /// # Errors
+    /// What is wrong with the expression, and where in it.
+    pub fn evaluate_text_guarded(&mut self, text: &str) -> Result<(Value, Vec<Guard>), ReadError> {
+        let text = &with_plain_line_ends(text);
+        let expr = parse_expression(text).map_err(|e| expected(e).locate("expression", text))?;
+        self.elaborate_guarded(&expr).map_err(|problem| problem.locate("expression", text))
+    }
+
+    fn build(
+        name: &str,
+        text: &str,
+        folder: &Path,
+        graph: Graph,
+        reading: &mut Reading,
+    ) -> Result<System, Problem> {
         refuse_reordering(text)?;
         let items = parse_file(text).map_err(expected)?;
         let mut system = System {
@@ -65,17 +88,25 @@ impl System {
             claims: Vec::new(),
             symbols: BTreeMap::new(),
             definitions: BTreeMap::new(),
-            written: BTreeMap::new(),
             definition_domains: HashMap::new(),
             domain: Default::default(),
+            written: BTreeMap::new(),
             imported_fields: Vec::new(),
+            field_places: HashMap::new(),
             partials: HashMap::new(),
             states_are_final: false,
             aliases: Vec::new(),
             sampled: HashSet::new(),
         };
+        let mut ids = HashSet::new();
         for item in items {
-            system.enter(item, folder, depth)?;
+            if let Item::Claim(claim) = &item
+                && !ids.insert(claim.id.clone())
+            {
+                let message = format!("there is a claim '{}' already", claim.id);
+                return Err(Problem::new(&claim.span, message, "the second one"));
+            }
+            system.enter(item, folder, reading)?;
         }
         for claim in system.claims.clone() {
             system.check(&claim)?;
@@ -88,7 +119,7 @@ impl System {
         Ok(system)
     }
 
-    fn enter(&mut self, item: Item, folder: &Path, depth: usize) -> Result<(), Problem> {
+    fn enter(&mut self, item: Item, folder: &Path, reading: &mut Reading) -> Result<(), Problem> {
         match item {
             Item::System { title, cite, span } => {
                 if !self.title.is_empty() {
@@ -102,7 +133,7 @@ impl System {
                 }
                 (self.title, self.cite) = (title, cite);
             }
-            Item::Use { alias, path, span } => self.import(&alias, &folder.join(path), &span, depth)?,
+            Item::Use { alias, path, span } => self.import(&alias, &folder.join(path), &span, reading)?,
             Item::State(names) => {
                 for name in names {
                     if let Some(field) = self.fields.first() {
@@ -159,13 +190,13 @@ impl System {
                 self.definitions.insert(name.text, value);
             }
             Item::Field { role, name, components, others_are_zero } => {
-                self.field(role, name, &components, others_are_zero)?
+                self.enter_field(role, name, &components, others_are_zero)?
             }
             Item::Output(list) => {
                 for expr in list {
                     let (value, domain) = self.apart(|system| system.scalar(&expr))?;
-                    let guards = self.guards_of(&domain);
                     // what is seen twice is seen once: a second time it would count as a measurement of its own
+                    let guards = self.guards_of(&domain);
                     match self.outputs.iter().position(|(_, known)| *known == value) {
                         Some(place) => self.output_guards[place].extend(guards),
                         None => {
@@ -176,13 +207,7 @@ impl System {
                 }
             }
             Item::Sample { ranges, avoid } => self.sample(&ranges, &avoid)?,
-            Item::Claim(claim) => {
-                if self.claims.iter().any(|other| other.id == claim.id) {
-                    let message = format!("there is a claim '{}' already", claim.id);
-                    return Err(Problem::new(&claim.span, message, "the second one"));
-                }
-                self.claims.push(*claim);
-            }
+            Item::Claim(claim) => self.claims.push(*claim),
         }
         Ok(())
     }
@@ -256,7 +281,7 @@ impl System {
         Ok(symbol)
     }
 
-    fn field(
+    fn enter_field(
         &mut self,
         role: Role,
         name: Name,
@@ -267,7 +292,7 @@ impl System {
             let message = "a name with a dot belongs to an imported system";
             return Err(Problem::new(&name.span, message, "choose one without"));
         }
-        if self.field_mut(&name.text).is_some() {
+        if self.field(&name.text).is_some() {
             return Err(Problem::new(
                 &name.span,
                 format!("there is a field '{}' already", name.text),
@@ -282,13 +307,16 @@ impl System {
             )));
         }
         let mut rates: Vec<(Symbol, _)> = Vec::new();
+        let mut moved: HashSet<Symbol> = HashSet::new();
         let mut guards = Vec::new();
         for (state, expr) in components {
-            let symbol = self.find_symbol(&state.text).filter(|symbol| self.states.contains(symbol));
+            let is_state =
+                |symbol: &Symbol| self.symbol_info(*symbol).is_some_and(|info| info.kind == Kind::State);
+            let symbol = self.find_symbol(&state.text).filter(is_state);
             let Some(symbol) = symbol else {
                 return Err(self.unknown(&state.text, &state.span, Wanted::State));
             };
-            if rates.iter().any(|(other, _)| *other == symbol) {
+            if !moved.insert(symbol) {
                 let message = format!("'{}' is given twice in the field '{}'", state.text, name.text);
                 return Err(Problem::new(&state.span, message, "the second time"));
             }
@@ -296,7 +324,7 @@ impl System {
             rates.push((symbol, rate));
             guards.push(self.guards_of(&domain));
         }
-        let missing = self.states.iter().find(|state| !rates.iter().any(|(symbol, _)| symbol == *state));
+        let missing = self.states.iter().find(|state| !moved.contains(state));
         if let (Some(missing), false) = (missing, others_are_zero) {
             let message =
                 format!("the field '{}' does not say how '{}' moves", name.text, self.symbol_name(*missing));
@@ -311,13 +339,14 @@ impl System {
         };
         let written = if others_are_zero { written.followed_by("others' = 0") } else { written };
         let derivation = Derivation::new(rates.iter().copied().collect());
+        self.field_places.insert(name.text.clone(), FieldPlace::Own(self.fields.len()));
         self.fields.push(Field {
             name: name.text,
             role,
             span: name.span,
             components: rates,
-            written,
             guards,
+            written,
             derivation,
         });
         Ok(())
@@ -367,13 +396,21 @@ impl System {
 
     /// Reads another file into the same graph. Its symbols are those of the same name here; its fields and definitions
     /// go under `alias.name`.
-    fn import(&mut self, alias: &Name, path: &Path, span: &Span, depth: usize) -> Result<(), Problem> {
-        if depth >= DEEPEST_IMPORT {
-            return Err(Problem::new(
-                span,
-                "imports within imports, more than eight deep",
-                "does a file import itself?",
-            ));
+    fn import(
+        &mut self,
+        alias: &Name,
+        path: &Path,
+        span: &Span,
+        reading: &mut Reading,
+    ) -> Result<(), Problem> {
+        let refuse = |message: String| Problem::new(span, message, "this file");
+        let place =
+            path.canonicalize().map_err(|e| refuse(format!("cannot read {}: {e}", path.display())))?;
+        if let Some(begin) = reading.open.iter().position(|open| *open == place) {
+            let round = reading.open[begin..].iter().chain([&place]);
+            let names: Vec<String> = round.map(|file| name_of(file)).collect();
+            return Err(refuse(format!("the file imports itself: {}", names.join(" -> ")))
+                .help("put what both need into a third file, and import that"));
         }
         if alias.text.contains('.') {
             let message = "a name with a dot belongs to what an imported system imports";
@@ -386,12 +423,81 @@ impl System {
             );
         }
         self.aliases.push(alias.text.clone());
+        let other = match reading.done.get(&place) {
+            Some(known) => known.clone(),
+            None if reading.open.len() > DEEPEST_IMPORT => {
+                let message = format!("imports within imports, more than {DEEPEST_IMPORT} deep");
+                return Err(refuse(message).help("import fewer files from one another"));
+            }
+            None => {
+                reading.open.push(place.clone());
+                let other = Arc::new(self.import_anew(path, span, reading)?);
+                reading.open.pop();
+                reading.done.insert(place, other.clone());
+                other
+            }
+        };
+        let names = self.definitions.len() + other.definitions.len();
+        if names > MOST_NAMES {
+            let message = format!("the imports bring more than {MOST_NAMES} names");
+            return Err(
+                refuse(message).help("each import brings all that its file imports, under a name of its own")
+            );
+        }
+        for (symbol, info) in &other.symbols {
+            if self.definitions.contains_key(self.graph.symbol_name(*symbol)) {
+                let hidden = self.graph.symbol_name(*symbol);
+                let message = format!("'{hidden}' is a definition above, and a symbol of {}", path.display());
+                return Err(Problem::new(span, message, "imported here")
+                    .help("choose another name for the definition"));
+            }
+            match self.symbols.entry(*symbol) {
+                Entry::Vacant(place) => {
+                    place.insert(SymbolInfo { kind: Kind::Imported, ..info.clone() });
+                }
+                Entry::Occupied(mut place) => {
+                    let known = place.get_mut();
+                    known.is_angle |= info.is_angle;
+                    // where imported files differ neither speaks for this one
+                    if known.kind == Kind::Imported {
+                        known.default =
+                            known.default.take().filter(|value| Some(value) == info.default.as_ref());
+                        let own = self.sampled.contains(symbol);
+                        known.range =
+                            known.range.take().filter(|range| own || Some(range) == info.range.as_ref());
+                    }
+                }
+            }
+        }
+        for field in other.fields.iter().chain(&other.imported_fields) {
+            let name = format!("{}.{}", alias.text, field.name);
+            // of two of one name the first is meant
+            let place = FieldPlace::Imported(self.imported_fields.len());
+            self.field_places.entry(name.clone()).or_insert(place);
+            let written = field.written.clone().under(&alias.text);
+            self.imported_fields.push(Field { name, written, ..field.clone() });
+        }
+        for (name, written) in &other.written {
+            self.written.insert(format!("{}.{name}", alias.text), written.clone().under(&alias.text));
+        }
+        for (name, value) in &other.definitions {
+            self.definitions.insert(format!("{}.{name}", alias.text), value.clone());
+        }
+        for (name, domain) in &other.definition_domains {
+            let domain = domain.clone().under(&alias.text);
+            self.definition_domains.insert(format!("{}.{name}", alias.text), domain);
+        }
+        Ok(())
+    }
+
+    /// Reads a file that was not imported yet. The graph comes back here.
+    fn import_anew(&mut self, path: &Path, span: &Span, reading: &mut Reading) -> Result<System, Problem> {
         let name = path.display().to_string();
         let text = load(path).map_err(|message| Problem::new(span, message, "this file"))?;
         let text = with_plain_line_ends(&text);
         let folder = path.parent().unwrap_or(Path::new(""));
         let graph = std::mem::take(&mut self.graph);
-        let other = System::build(&name, &text, folder, graph, depth + 1).map_err(|problem| {
+        let mut other = System::build(&name, &text, folder, graph, reading).map_err(|problem| {
             let inner = problem.locate(&name, &text);
             let (line, column) = inner.line_and_column();
             let problem =
@@ -401,49 +507,24 @@ impl System {
                 None => problem,
             }
         })?;
-        self.graph = other.graph;
-        for (symbol, info) in other.symbols {
-            if self.definitions.contains_key(self.graph.symbol_name(symbol)) {
-                let hidden = self.graph.symbol_name(symbol);
-                let message = format!("'{hidden}' is a definition above, and a symbol of {name}");
-                return Err(Problem::new(span, message, "imported here")
-                    .help("choose another name for the definition"));
-            }
-            match self.symbols.entry(symbol) {
-                Entry::Vacant(place) => {
-                    place.insert(SymbolInfo { kind: Kind::Imported, ..info });
-                }
-                Entry::Occupied(mut place) => {
-                    let known = place.get_mut();
-                    known.is_angle |= info.is_angle;
-                    // where imported files differ neither speaks for this one
-                    if known.kind == Kind::Imported {
-                        known.default =
-                            known.default.take().filter(|value| Some(value) == info.default.as_ref());
-                        let own = self.sampled.contains(&symbol);
-                        known.range =
-                            known.range.take().filter(|range| own || Some(range) == info.range.as_ref());
-                    }
-                }
-            }
-        }
-        for field in other.fields.into_iter().chain(other.imported_fields) {
-            let (name, written) =
-                (format!("{}.{}", alias.text, field.name), field.written.under(&alias.text));
-            self.imported_fields.push(Field { name, written, ..field });
-        }
-        for (name, written) in other.written {
-            self.written.insert(format!("{}.{name}", alias.text), written.under(&alias.text));
-        }
-        for (name, value) in other.definitions {
-            self.definitions.insert(format!("{}.{name}", alias.text), value);
-        }
-        for (name, domain) in other.definition_domains {
-            let domain = domain.under(&alias.text);
-            self.definition_domains.insert(format!("{}.{name}", alias.text), domain);
-        }
-        Ok(())
+        self.graph = std::mem::take(&mut other.graph);
+        Ok(other)
     }
+}
+
+/// The files of one reading.
+#[derive(Default)]
+struct Reading {
+    /// Those that are being read: each is imported by the one before.
+    open: Vec<PathBuf>,
+    /// Those that are read, so that none is read twice, however many others import it. Their graphs are empty: all are
+    /// in the one graph of the reading.
+    done: HashMap<PathBuf, Arc<System>>,
+}
+
+/// The last part of a path, for messages.
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 /// A text in which every line ends with a line feed, whatever its editor took for the end of a line, and without a
@@ -473,17 +554,13 @@ fn refuse_reordering(text: &str) -> Result<(), Problem> {
     }
 }
 
-/// The text of a file, or what is wrong with it in words.
+/// The text of a file, or what is wrong with it in words. A byte-order mark is no part of it.
 pub(crate) fn load(path: &Path) -> Result<String, String> {
-    let shown = path.display();
-    let length = std::fs::metadata(path).map_err(|e| format!("cannot read {shown}: {e}"))?.len();
-    if length > LONGEST_FILE {
-        return Err(format!("{shown} is longer than {} MiB", LONGEST_FILE >> 20));
-    }
-    let bytes = std::fs::read(path).map_err(|e| format!("cannot read {shown}: {e}"))?;
-    String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        format!("{shown} is not a text in UTF-8: byte {at} is 0x{:02x}", error.as_bytes()[at])
+    read_text(path, LONGEST_FILE).map_err(|why| match why {
+        why @ (ReadFailure::TooLong(_) | ReadFailure::NotText { .. }) => {
+            why.to_string().replacen("it", &path.display().to_string(), 1)
+        }
+        why => format!("cannot read {}: {why}", path.display()),
     })
 }
 

@@ -27,7 +27,7 @@ pub(crate) struct Written {
 }
 
 /// A name that stands for something longer.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Mention {
     Definition(String),
     Field(String),

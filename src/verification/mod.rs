@@ -27,6 +27,7 @@ use crate::tradeoff::stress::Study;
 use crate::tradeoff::{Growth, Trade, TradeQuestion, growth_of_lie_derivatives, trade};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// How the main job is to be run.
@@ -67,6 +68,24 @@ pub struct Verification {
 }
 
 impl Verification {
+    /// Nothing found yet.
+    pub fn begun(seed: u64) -> Verification {
+        Verification {
+            outcomes: Vec::new(),
+            regimes: Vec::new(),
+            appendix: None,
+            routes: Vec::new(),
+            growth: Vec::new(),
+            trade: None,
+            stress: Vec::new(),
+            regions: Vec::new(),
+            experiments: Vec::new(),
+            seed,
+            interrupted: false,
+            seconds: 0.0,
+        }
+    }
+
     /// Whether everything is as the files expect.
     pub fn ok(&self) -> bool {
         !self.interrupted
@@ -118,7 +137,18 @@ fn other_files(folder: &Path) -> Result<Vec<String>, VerifyError> {
 /// # Errors
 /// A file that cannot be used, or a step that cannot be done.
 pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
+    let found = Mutex::new(Verification::begun(options.seed));
+    verify_into(options, &found)?;
+    Ok(found.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// Runs the main job, and keeps each finding as soon as there is one: who cannot wait for the end may look.
+///
+/// # Errors
+/// As for [`verify`].
+pub fn verify_into(options: &Options<'_>, found: &Mutex<Verification>) -> Result<(), VerifyError> {
     let begin = Instant::now();
+    let found = || found.lock().unwrap_or_else(PoisonError::into_inner);
     let read = |file: &str| {
         System::read(&options.folder.join(file)).map_err(|error| VerifyError::Read(Box::new(error)))
     };
@@ -134,49 +164,41 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
         (options.progress)(what, done, steps);
     };
     let stopped = || options.interrupt.load(Ordering::Relaxed);
+    let failed = |step: &str| {
+        let step = step.to_owned();
+        move |why: String| VerifyError::Step { step, why }
+    };
 
-    let outcomes: Vec<Outcome> = systems
-        .iter()
-        .flat_map(|system| {
-            decide_all(system, options.seed, options.interrupt, &|o| step(&format!("claim {}", o.id)))
-        })
-        .collect();
-    let mut regimes = Vec::new();
+    for system in &systems {
+        let before = found().outcomes.len();
+        let outcomes = decide_all(system, options.seed, options.interrupt, &|outcome| {
+            found().outcomes.push(outcome.clone());
+            step(&format!("claim {}", outcome.id));
+        });
+        // as they came, and now in the order of the file
+        found().outcomes.splice(before.., outcomes);
+    }
     for (regime, system) in REGIMES.iter().zip(&systems) {
         if stopped() {
             break;
         }
-        let result = regime.examine(system, &systems[0], options, &step);
-        regimes.push(result.map_err(|why| VerifyError::Step { step: regime.file.to_owned(), why })?);
+        let result = regime.examine(system, &systems[0], options, &step).map_err(failed(regime.file))?;
+        found().regimes.push(result);
     }
-    let mut verification = Verification {
-        outcomes,
-        regimes,
-        appendix: None,
-        routes: Vec::new(),
-        growth: Vec::new(),
-        trade: None,
-        stress: Vec::new(),
-        regions: Vec::new(),
-        experiments: Vec::new(),
-        seed: options.seed,
-        interrupted: false,
-        seconds: 0.0,
-    };
     if !stopped() {
         step("the appendix's determinants");
-        let appendix = printed_values(&systems[0], options.seed);
-        verification.appendix =
-            Some(appendix.map_err(|why| VerifyError::Step { step: "appendix A.2".to_owned(), why })?);
+        let appendix = printed_values(&systems[0], options.seed).map_err(failed("appendix A.2"))?;
+        found().appendix = Some(appendix);
     }
     if !stopped() {
         step("two routes to a Lie derivative");
-        verification.routes = compare_routes(&systems[1], ROUTE_ORDERS, options.seed)
-            .map_err(|why| VerifyError::Step { step: "two routes".to_owned(), why })?;
+        let routes = compare_routes(&systems[1], ROUTE_ORDERS, options.seed).map_err(failed("two routes"))?;
+        found().routes = routes;
     }
     if !stopped() {
         step("the growth of the graph");
-        verification.growth = growth_of_lie_derivatives(&systems[1], 0, 0, GROWTH_ORDERS);
+        let growth = growth_of_lie_derivatives(&systems[1], 0, 0, GROWTH_ORDERS);
+        found().growth = growth;
     }
     if !stopped() {
         step("speed against accuracy");
@@ -187,28 +209,28 @@ pub fn verify(options: &Options<'_>) -> Result<Verification, VerifyError> {
             interrupt: options.interrupt,
             progress: &|_, _| (),
         };
-        let found = trade(&systems[0], &question);
-        verification.trade =
-            Some(found.map_err(|why| VerifyError::Step { step: "speed against accuracy".to_owned(), why })?);
+        let trade = trade(&systems[0], &question).map_err(failed("speed against accuracy"))?;
+        found().trade = Some(trade);
     }
     if !stopped() {
         step("the extremes");
-        verification.stress = short_stress(&systems[..REGIMES.len()], options.seed, options.interrupt)
-            .map_err(|why| VerifyError::Step { step: "the extremes".to_owned(), why })?;
+        let studies = short_stress(&systems[..REGIMES.len()], options.seed, options.interrupt)
+            .map_err(failed("the extremes"))?;
+        found().stress = studies;
     }
     for system in systems[..REGIMES.len()].iter_mut().take_while(|_| !stopped()) {
-        let found = certify_region(system, SUB_BOXES, options.interrupt);
-        let found =
-            found.map_err(|why| VerifyError::Step { step: format!("the box of {}", system.name), why })?;
-        verification.regions.push(found);
+        let name = format!("the box of {}", system.name);
+        let region = certify_region(system, SUB_BOXES, options.interrupt).map_err(failed(&name))?;
+        found().regions.push(region);
     }
     step("certificates on boxes");
     if !stopped() {
         step("bodies in motion");
-        verification.experiments =
-            motion::experiments(options).map_err(|error| VerifyError::Read(Box::new(error)))?;
+        let experiments = motion::experiments(options).map_err(|error| VerifyError::Read(Box::new(error)))?;
+        found().experiments = experiments;
     }
-    verification.interrupted = stopped();
-    verification.seconds = begin.elapsed().as_secs_f64();
-    Ok(verification)
+    let mut found = found();
+    found.interrupted = stopped();
+    found.seconds = begin.elapsed().as_secs_f64();
+    Ok(())
 }

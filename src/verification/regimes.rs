@@ -287,6 +287,7 @@ impl Regime {
                 order: None,
                 fixed: BTreeMap::new(),
                 conditions: set.conditions.iter().map(|c| (*c).to_owned()).collect(),
+                recorded: 0,
                 interrupt: options.interrupt,
                 progress: &|_| (),
             };

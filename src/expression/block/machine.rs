@@ -23,14 +23,18 @@ pub struct Machine<'t, L> {
 const CACHE: usize = 64 << 10;
 /// A block has at least and at most so many lanes: less, and most time goes into finding the next instruction.
 const SHORTEST: usize = 4;
-const LONGEST: usize = 16; // both even
+const LONGEST: usize = 16;
+/// The same in states, for lanes of many doubles: both come to an even number of lanes.
+const FEWEST: usize = 32;
+const MOST: usize = 128;
 
 impl<'t, L: Lanes> Machine<'t, L> {
     /// A machine over the numbers of which `zero` is one.
     #[inline(always)]
     pub(super) fn new(tape: &'t Tape, zero: L) -> Self {
         let fitting = CACHE / (size_of::<L>() * (tape.registers + 1));
-        Self::with_lanes(tape, zero, fitting.saturating_sub(1).clamp(SHORTEST, LONGEST))
+        let (shortest, longest) = (SHORTEST.min(FEWEST / L::COUNT), LONGEST.min(MOST / L::COUNT));
+        Self::with_lanes(tape, zero, fitting.saturating_sub(1).clamp(shortest, longest))
     }
 
     /// The same for blocks of a given length, or one more.

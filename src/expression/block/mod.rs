@@ -17,7 +17,7 @@ mod tape;
 
 use super::graph::{Graph, Node, NodeId, Symbol};
 use super::program::Input;
-use crate::number::{Function, Instructions, Lanes, Vectorised};
+use crate::number::{Function, Instructions, Lanes, MOST_LANES, Vectorised};
 use dashu::rational::RBig;
 use flat::Flat;
 pub use machine::Machine;
@@ -143,7 +143,7 @@ impl Vectorised for Evaluation<'_, '_, '_> {
         let mut machine = program.machine(zero);
         let mut lost = Vec::new();
         let mut health = vec![zero; machine.lanes()];
-        let mut buffer = [0.0; 8];
+        let mut buffer = [0.0; MOST_LANES];
         let mut start = 0;
         while start < count {
             for (place, values) in inputs.iter().enumerate() {

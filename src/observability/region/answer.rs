@@ -126,4 +126,6 @@ pub struct RegionAnswer {
     pub largest: Vec<OpenBox>,
     pub map: Option<RegionMap>,
     pub remarks: Vec<String>,
+    /// What would have to hold for the system and its rows to exist, and holds nowhere; nothing is proved then.
+    pub nowhere: Vec<String>,
 }

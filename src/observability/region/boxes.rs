@@ -53,6 +53,13 @@ impl FreeCoordinate {
         low + (high - low) * part
     }
 
+    /// The ends of a side, exactly.
+    pub(super) fn exact_ends(&self, side: Side) -> [RBig; 2] {
+        let scale = RBig::from(1u32 << side.depth);
+        let width = &self.high - &self.low;
+        [side.index, side.index + 1].map(|index| &self.low + RBig::from(index) / &scale * &width)
+    }
+
     /// The ends of a side, as doubles near them.
     pub(super) fn ends(&self, side: Side) -> (f64, f64) {
         let (low, high) = (rational_to_f64(&self.low), rational_to_f64(&self.high));

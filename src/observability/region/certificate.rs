@@ -59,6 +59,7 @@ impl Region {
                 let symbol = problem.ranges[place].symbol;
                 part.chart.coordinates().iter().position(|coordinate| coordinate.symbol == symbol)
             };
+            search.most_kept = KEPT;
             if let Some((x, y)) = map {
                 search.plane = Plane { x: local(x), y: local(y) };
             }
@@ -95,6 +96,9 @@ impl Region {
         &self.problem.ranges
     }
 }
+
+/// So many proved boxes of each part are kept if nothing else is said.
+const KEPT: usize = 2000;
 
 /// The sample box of a system after so many boxes: the short version, with the same result on every machine.
 ///

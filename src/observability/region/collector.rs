@@ -4,7 +4,7 @@ use super::boxes::FreeCoordinate;
 use super::factor::Factor;
 use super::slots::Slots;
 use super::tape::{Role, Tape};
-use crate::expression::{Graph, Node, NodeId, Products, Symbol};
+use crate::expression::{Graph, Need, Node, NodeId, Products, Symbol};
 use crate::number::polynomial::Polynomial;
 use crate::number::{Fraction, Interval};
 use std::collections::HashMap;
@@ -55,7 +55,7 @@ impl Ranges {
 struct Expression {
     node: NodeId,
     witnesses: Vec<NodeId>,
-    positive: bool,
+    need: Need,
 }
 
 /// Collects factors.
@@ -63,7 +63,7 @@ struct Expression {
 pub(super) struct Collector {
     pub products: Products,
     expressions: Vec<Expression>,
-    places: HashMap<(NodeId, bool), usize>,
+    places: HashMap<(NodeId, Need), usize>,
     polynomials: HashMap<Polynomial, usize>,
     /// Factors that were met, to be tried on what is split next.
     pub known: Vec<Polynomial>,
@@ -75,14 +75,19 @@ pub(super) struct Collector {
 const MOST_WITNESSES: usize = 2;
 
 impl Collector {
-    /// The place of an expression among the factors.
-    pub fn expression(&mut self, node: NodeId, positive: bool) -> usize {
-        if let Some(known) = self.places.get(&(node, positive)) {
+    /// The place among the factors of an expression that has to be different from zero.
+    pub fn expression(&mut self, node: NodeId) -> usize {
+        self.needed(node, Need::NotZero)
+    }
+
+    /// The same of one that has to meet another need: to be not zero, positive or not negative.
+    pub fn needed(&mut self, node: NodeId, need: Need) -> usize {
+        if let Some(known) = self.places.get(&(node, need)) {
             return *known;
         }
-        self.expressions.push(Expression { node, witnesses: Vec::new(), positive });
+        self.expressions.push(Expression { node, witnesses: Vec::new(), need });
         let place = self.expressions.len() - 1;
-        self.places.insert((node, positive), place);
+        self.places.insert((node, need), place);
         place
     }
 
@@ -92,7 +97,7 @@ impl Collector {
             return *known;
         }
         let node = self.products.node(graph, polynomial);
-        let place = self.expression(node, false);
+        let place = self.expression(node);
         if polynomial.len() > 1 {
             // multiples that bring in no further symbols
             let own = graph.symbols_of([node]);
@@ -150,7 +155,7 @@ impl Collector {
                 text: graph.text(expression.node),
                 tape,
                 witnesses: witnesses.collect::<Result<_, String>>()?,
-                positive: expression.positive,
+                need: expression.need,
             })
         };
         places.iter().map(&mut factor).collect()

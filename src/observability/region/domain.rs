@@ -1,41 +1,127 @@
-//! Where a system is defined: nothing that its outputs and fields divide by is zero, no logarithm or square root has an
-//! argument that is not positive.
+//! Where the rows exist: what the terms of the file divide by is not zero, and what they take roots, logarithms and
+//! inverse sines of lies where these have a value.
 //!
-//! Every Lie derivative divides by the same things and by no others, so that it is defined, and smooth, where these are.
+//! The graph has simplified what it is made of, and what was cancelled is no longer in it; so all that a box has to be
+//! looked at for comes from the guards that were noted when the file was read. Lie derivatives divide by powers of the same
+//! things and by no others: they exist, and are smooth, where outputs and fields are.
 
-use crate::expression::{Graph, Node, NodeId};
-use crate::number::Function;
+use super::collector::Collector;
+use super::minors::{factors_of, half_cosines};
+use super::problem::RegionRows;
+use crate::expression::{Graph, Guard, Need, Node, NodeId, add_guard, expand_angles};
+use crate::number::Fraction;
+use crate::number::polynomial::{Polynomial, Ring};
+use crate::observability::OWN_ROWS;
+use crate::system::{Assignment, System, Value};
 
-/// Something that has to be different from zero, or positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Guard {
-    NotZero(NodeId),
-    Positive(NodeId),
+/// Where the rows exist.
+pub(super) struct Domain {
+    /// What has to hold, as it was written.
+    pub written: Vec<Guard>,
+    /// The factors that have to meet their needs, by their places.
+    pub guards: Vec<usize>,
+    /// What would have to hold and holds nowhere, in the notation of the proof language: with any of it nothing exists.
+    pub nowhere: Vec<String>,
 }
 
-/// What keeps these expressions and all their derivatives defined. A square root has to have a positive argument: at
-/// zero it has no derivative.
-pub(super) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
-    let mut found = Vec::new();
-    for id in graph.reachable(roots.iter().copied()) {
-        let guard = match graph.node(id) {
-            Node::Div(_, divisor) => Guard::NotZero(divisor),
-            Node::Power(base, n) if n < 0 => Guard::NotZero(base),
-            Node::Apply(Function::Log | Function::Sqrt, argument) => Guard::Positive(argument),
-            Node::Apply(Function::Asin | Function::Acos, argument) => {
-                let (one, square) = (graph.integer(1), graph.power(argument, 2));
-                Guard::Positive(graph.sub(one, square))
+/// What has to hold for a choice of rows to exist, and for the system that they are rows of.
+pub(super) fn domain(
+    system: &mut System,
+    rows: RegionRows,
+    collector: &mut Collector,
+    values: &Assignment,
+) -> Domain {
+    let written = guards_of(system, rows);
+    let guards = system.substitute_guards(&written, values);
+    let angles = system.angles();
+    let is_angle = |symbol| angles.contains(&symbol);
+    let mut found = Domain { guards: Vec::new(), nowhere: Vec::new(), written };
+    for Guard { node, need } in guards {
+        let graph = &mut system.graph;
+        let node = expand_angles(graph, &[node], is_angle)[0];
+        let guard = Guard { node, need };
+        match guard.constant(graph) {
+            Some(true) => continue,
+            Some(false) => {
+                found.nowhere.push(guard.text(graph));
+                continue;
             }
-            _ => continue,
-        };
-        let (Guard::NotZero(node) | Guard::Positive(node)) = guard;
-        let holds = graph.constant_value(node).is_some_and(|value| match guard {
-            Guard::NotZero(_) => !value.is_zero(),
-            Guard::Positive(_) => *value > dashu::rational::RBig::ZERO,
-        });
-        if !holds && !found.contains(&guard) {
-            found.push(guard);
+            None => {}
+        }
+        match need {
+            Need::Positive | Need::NotNegative => found.guards.push(collector.needed(node, need)),
+            Need::WithinOne | Need::InsideOne => {
+                let (one, square) = (graph.integer(1), graph.power(node, 2));
+                let rest = graph.sub(one, square);
+                let sign = if need == Need::WithinOne { Need::NotNegative } else { Need::Positive };
+                found.guards.push(collector.needed(rest, sign));
+            }
+            Need::NotZero => match collector.products.read(graph, &[node], is_angle) {
+                Ok((value, _)) => match divisor_factors(graph, collector, &value[0]) {
+                    Some(factors) => found.guards.extend(factors),
+                    None => found.nowhere.push(guard.text(graph)),
+                },
+                // no product of polynomials: looked at as it is written
+                Err(_) => found.guards.push(collector.expression(node)),
+            },
         }
     }
+    found.guards.sort_unstable();
+    found.guards.dedup();
     found
+}
+
+/// The guards of outputs and fields, and those of the file's own rows where these are asked for.
+fn guards_of(system: &System, rows: RegionRows) -> Vec<Guard> {
+    let mut found = system.smooth_guards(&system.moving_fields());
+    if rows == RegionRows::Own {
+        let mut own = system.definition_guards(OWN_ROWS);
+        if let Some(Value::Matrix(matrix)) = system.definition(OWN_ROWS) {
+            own.extend(needs_of_nodes(&system.graph, &matrix.entries));
+        }
+        own.into_iter().for_each(|guard| add_guard(&system.graph, &mut found, guard));
+    }
+    found
+}
+
+/// What the operations of some expressions need as they stand. Rows that were differentiated divide by more than was
+/// written: `d(sqrt(x))` by the root.
+fn needs_of_nodes(graph: &Graph, roots: &[NodeId]) -> Vec<Guard> {
+    let need = |id| match graph.node(id) {
+        Node::Div(_, divisor) => Some(Guard { node: divisor, need: Need::NotZero }),
+        Node::Power(base, n) if n < 0 => Some(Guard { node: base, need: Need::NotZero }),
+        Node::Apply(function, argument) => Need::of(function).map(|need| Guard { node: argument, need }),
+        _ => None,
+    };
+    graph.reachable(roots.iter().copied()).into_iter().filter_map(need).collect()
+}
+
+/// What must not be zero for a divisor not to be; `None` where it is zero everywhere.
+fn divisor_factors(graph: &mut Graph, collector: &mut Collector, divisor: &Fraction) -> Option<Vec<usize>> {
+    let (circles, mut found) = (collector.products.circles(), Vec::new());
+    let all: Vec<(Polynomial, i64)> = [(&divisor.top, 1), (&divisor.bottom, -1)]
+        .into_iter()
+        .flat_map(|(factors, sign)| {
+            factors.iter().map(move |(place, power)| (*place, sign * i64::from(*power)))
+        })
+        .map(|(place, power)| (collector.products.fractions().factor(place), power))
+        .collect();
+    if all.iter().any(|(polynomial, power)| *power > 0 && polynomial.is_zero()) {
+        return None;
+    }
+    for (polynomial, _) in all.iter().filter(|(_, power)| *power > 0) {
+        for (factor, _) in factors_of(polynomial, &mut collector.known) {
+            if !circles.contains(&factor) {
+                found.push(collector.polynomial(graph, &factor));
+            }
+        }
+    }
+    for (place, power) in half_cosines(&collector.products, all.iter().map(|(f, n)| (f, *n))) {
+        if power > 0
+            && let Some(node) = collector.products.half_cosine(graph, place)
+        {
+            found.push(collector.expression(node));
+        }
+    }
+    Some(found)
 }

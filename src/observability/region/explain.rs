@@ -15,7 +15,7 @@ pub(super) enum Why {
         minor: usize,
         factor: usize,
     },
-    /// What the system divides by is zero somewhere in it.
+    /// What the system divides by is zero somewhere in it, or takes the root or the logarithm of what has none.
     Pole {
         factor: usize,
     },
@@ -33,12 +33,13 @@ pub(super) fn explain(part: &Part, cell: &Cell, desk: &mut Desk) -> (Why, bool) 
         let expression = &part.factors[factor];
         cell.knows(factor) || {
             let guess = expression.guess(chart, desk);
-            expression.excludes_zero(chart, desk, guess.value < 0.0)
+            expression.holds_everywhere(chart, desk, guess.value < 0.0)
         }
     };
     for guard in &part.guards {
         if !excludes(desk, *guard) {
-            let pole = part.factors[*guard].vanishes(chart, desk);
+            let guard_factor = &part.factors[*guard];
+            let pole = guard_factor.vanishes(chart, desk) || guard_factor.fails_everywhere(desk);
             return (if pole { Why::Pole { factor: *guard } } else { Why::Undecided }, avoided);
         }
     }

@@ -3,10 +3,12 @@
 //! That it is zero nowhere is proved by its range over the box, enclosed three ways: as it is written; with every
 //! coordinate in which it is monotone put to the end where it comes nearest to zero (again and again, since others may
 //! become monotone on that face); and by the mean value theorem in the coordinates that are left. That it is zero
-//! somewhere is proved by two points at which it has opposite signs.
+//! somewhere is proved by two points at which it has opposite signs. All but the first of these is true only of what is
+//! defined and continuous all over the box, so that this is asked before.
 
 use super::boxes::{Chart, Place, SlotValues};
 use super::tape::{Room, Tape};
+use crate::expression::Need;
 use crate::number::Interval;
 
 /// An expression with all that is needed to decide whether it vanishes on a box.
@@ -17,8 +19,8 @@ pub(super) struct Factor {
     pub tape: Tape,
     /// Expressions that are multiples of it by something finite: where one of them is not zero it is not either.
     pub witnesses: Vec<Tape>,
-    /// Whether it has to be positive, as the argument of a logarithm, and not only different from zero.
-    pub positive: bool,
+    /// What is needed of it: not to be zero, or to be positive, as the argument of a logarithm, or at least not negative.
+    pub need: Need,
 }
 
 /// Room for the work on one box, to be used again.
@@ -64,23 +66,35 @@ impl Factor {
         Guess { value, ratio: if ratio.is_nan() { 0.0 } else { ratio }, steepest }
     }
 
-    /// Whether a value shows what is wanted of the factor.
+    /// Whether a value shows what is needed of the factor.
     fn shown_by(&self, value: Interval) -> bool {
-        if self.positive { value.low() > 0.0 } else { !value.contains_zero() }
+        self.need.is_met_by_interval(value) == Some(true)
     }
 
-    /// Whether the factor is zero nowhere in the box. `true` is proved; `false` says nothing.
-    pub fn excludes_zero(&self, chart: &Chart, desk: &mut Desk, negative: bool) -> bool {
+    /// Whether it is worth while to try for a proof: where zero is enough, floating point cannot tell.
+    pub fn is_worth_trying(&self, guess: Guess) -> bool {
+        guess.ratio >= HOPE || self.need != Need::NotZero && self.need != Need::Positive
+    }
+
+    /// Whether what is needed of the factor is so all over the box. `true` is proved; `false` says nothing.
+    pub fn holds_everywhere(&self, chart: &Chart, desk: &mut Desk, negative: bool) -> bool {
         let all = desk.slots.at(Place::All);
         if self.shown_by(self.tape.value(all, &mut desk.intervals)) {
             return true;
         }
+        let continuous = self.tape.is_defined(&desk.intervals);
         for witness in &self.witnesses {
             if !witness.value(all, &mut desk.intervals).contains_zero() {
                 return true;
             }
         }
-        if self.positive && negative {
+        // beside a zero only a sign can be shown
+        let by_sign = match self.need {
+            Need::NotZero => true,
+            Need::Positive | Need::NotNegative => !negative,
+            Need::WithinOne | Need::InsideOne => false,
+        };
+        if !by_sign || !continuous {
             return false;
         }
         desk.face.clear();
@@ -104,7 +118,7 @@ impl Factor {
                 fixed = true;
             }
             let left = self.tape.coordinates.iter().any(|c| desk.places[*c] == Place::All);
-            if fixed && has_sign(self.tape.value(&desk.face, &mut desk.intervals), negative) {
+            if fixed && self.has_sign(self.tape.value(&desk.face, &mut desk.intervals), negative) {
                 return true;
             }
             if left && self.by_mean_value(chart, desk, negative) {
@@ -134,12 +148,25 @@ impl Factor {
             }
         }
         desk.face = face;
-        has_sign(value, negative)
+        self.has_sign(value, negative)
+    }
+
+    /// Whether a value has the sign that is to be shown.
+    fn has_sign(&self, value: Interval, negative: bool) -> bool {
+        match (negative, self.need) {
+            (true, _) => value.high() < 0.0,
+            (false, Need::NotNegative) => value.low() >= 0.0,
+            (false, _) => value.low() > 0.0,
+        }
     }
 
     /// Whether the factor is zero somewhere in the box: proved by two corners, at one of which it is not negative and at the
     /// other not positive.
     pub fn vanishes(&self, chart: &Chart, desk: &mut Desk) -> bool {
+        self.tape.value(desk.slots.at(Place::All), &mut desk.intervals);
+        if !self.tape.is_defined(&desk.intervals) {
+            return false; // it may change its sign at a pole
+        }
         self.guess(chart, desk);
         let gradient = std::mem::take(&mut desk.gradient);
         let mut at = |up: bool| {
@@ -156,15 +183,26 @@ impl Factor {
         found
     }
 
-    /// Whether a factor that has to be positive is so nowhere in the box.
-    pub fn is_nowhere_positive(&self, desk: &mut Desk) -> bool {
-        self.positive && self.tape.value(desk.slots.at(Place::All), &mut desk.intervals).high() <= 0.0
+    /// Whether what is needed of the factor is so nowhere in the box, where it is defined.
+    pub fn fails_everywhere(&self, desk: &mut Desk) -> bool {
+        let value = self.tape.value(desk.slots.at(Place::All), &mut desk.intervals);
+        self.need.is_met_by_interval(value) == Some(false)
+    }
+
+    /// What is needed of it, in the notation of the proof language; the bare factor where it must not be zero.
+    pub fn needed_text(&self) -> String {
+        match self.need {
+            Need::NotZero => self.text.clone(),
+            Need::Positive => format!("{} > 0", self.text),
+            Need::NotNegative => format!("{} >= 0", self.text),
+            Need::WithinOne => format!("-1 <= {} <= 1", self.text),
+            Need::InsideOne => format!("-1 < {} < 1", self.text),
+        }
     }
 }
 
-fn has_sign(value: Interval, negative: bool) -> bool {
-    if negative { value.high() < 0.0 } else { value.low() > 0.0 }
-}
+/// A factor is tried where floating point gives it this much of a chance.
+pub(super) const HOPE: f64 = 0.6;
 
 /// Puts a coordinate to a place of its side.
 fn put(chart: &Chart, slots: &SlotValues, coordinate: usize, place: Place, face: &mut [Interval]) {

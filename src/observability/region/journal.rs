@@ -2,12 +2,13 @@
 //!
 //! The first line names the format, the second the question; then come the tally and the open boxes, a line each, and
 //! last the number of lines and a checksum, so that a file that was cut or changed is noticed. A box is written as the
-//! index and the depth of each of its sides and the factors that are known to vanish nowhere in it.
+//! index and the depth of each of its sides; an open one with the factors that are known to vanish nowhere in it, a proved
+//! one (of these the largest) with its minor.
 
 use super::boxes::{DEEPEST, Side, Volume};
 use super::certificate::Region;
 use super::progress::{Progress, Searches};
-use super::search::{Cell, Search, Turn};
+use super::search::{Cell, ProvedCell, Search, Turn};
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write;
 
@@ -34,12 +35,23 @@ impl Region {
     fn fingerprint(&self) -> u64 {
         let mut hash = Hash::new();
         hash.add(env!("CARGO_PKG_VERSION"));
-        for part in &self.problem.parts {
+        let problem = &self.problem;
+        hash.add(&format!(
+            "{} {} {:?} {:?};",
+            problem.file, problem.dimension, problem.order, problem.nowhere
+        ));
+        hash.add(&format!("{:?} {:?};", problem.ranges, problem.minors));
+        for part in &problem.parts {
             for coordinate in part.chart.coordinates() {
                 hash.add(&format!("{} {} {};", coordinate.name, coordinate.low, coordinate.high));
             }
+            // tapes name slots by number: which coordinate these are, and which function of it, belongs to their meaning
+            hash.add(&format!("{:?};", part.chart.slots()));
             for factor in &part.factors {
-                hash.add(&format!("{:?} {:?} {};", factor.tape, factor.witnesses, factor.positive));
+                hash.add(&format!(
+                    "{} {:?} {:?} {:?};",
+                    factor.text, factor.tape, factor.witnesses, factor.need
+                ));
             }
             hash.add(&format!("{:?} {:?} {:?}", part.guards, part.common, part.alternatives));
         }
@@ -66,6 +78,16 @@ impl Region {
             text.push('\n');
             for [x, y] in &search.sections {
                 let _ = writeln!(text, "section {}/{} {}/{}", x.index, x.depth, y.index, y.depth);
+            }
+            for cell in &search.kept {
+                let _ = match cell.minor {
+                    Some(minor) => write!(text, "box {minor}"),
+                    None => write!(text, "box -"),
+                };
+                for side in &cell.sides {
+                    let _ = write!(text, " {}/{}", side.index, side.depth);
+                }
+                text.push('\n');
             }
             for (word, cells) in [("left", search.left.iter().collect::<Vec<_>>()), ("open", open(search))] {
                 for cell in cells {
@@ -167,6 +189,8 @@ impl Reader<'_> {
                     open: BTreeMap::new(),
                     left: Vec::new(),
                     proved: Volume::from_counts(counts?),
+                    kept: Vec::new(),
+                    most_kept: known.most_kept,
                     boxes,
                     plane: known.plane,
                     sections: Vec::new(),
@@ -175,6 +199,16 @@ impl Reader<'_> {
             "section" => {
                 let section = [side(words.next()?)?, side(words.next()?)?];
                 self.found.searches.last_mut()?.sections.push(section);
+            }
+            "box" => {
+                let part = self.region.problem.parts.get(self.found.searches.len().checked_sub(1)?)?;
+                let minor = match words.next()? {
+                    "-" => None,
+                    number => Some(number.parse().ok().filter(|m| *m < self.region.problem.minors.len())?),
+                };
+                let sides: Option<Box<[Side]>> = words.by_ref().map(side).collect();
+                let sides = sides.filter(|sides| sides.len() == part.chart.coordinates().len())?;
+                self.found.searches.last_mut()?.kept.push(ProvedCell { sides, minor });
             }
             "open" | "left" => {
                 let part = self.region.problem.parts.get(self.found.searches.len().checked_sub(1)?)?;

@@ -15,8 +15,9 @@ use crate::expression::{Graph, NodeId};
 /// A minor, as a product of factors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minor {
-    /// The rows beside the unit rows, by name.
+    /// The rows beside the unit rows, by name, and by their places among all rows.
     pub rows: Vec<String>,
+    pub(super) places: Vec<usize>,
     /// The factors, by their places: where the rows are defined the minor is zero where one of these is.
     pub(super) factors: Vec<usize>,
     /// What has to be different from zero besides, for the rows to be defined.
@@ -52,6 +53,8 @@ pub(super) struct Part {
     pub common_of: Vec<usize>,
     /// Of these, one has to be different from zero; there is no such condition where there are none.
     pub alternatives: Vec<Alternative>,
+    /// Where there is no such condition: the minor that has nothing but what is asked of all.
+    pub minor_of_all: Option<usize>,
     /// What sampled states keep away from.
     pub avoid: Vec<Tape>,
 }
@@ -106,7 +109,8 @@ impl Demand<'_> {
         let mut alternatives: Vec<Alternative> = (self.minors.iter().enumerate())
             .map(|(minor, m)| Alternative { minor, factors: own(&m.factors), below: own(&m.below) })
             .collect();
-        if alternatives.iter().any(|own| own.all().next().is_none()) {
+        let minor_of_all = alternatives.iter().find(|own| own.all().next().is_none()).map(|own| own.minor);
+        if minor_of_all.is_some() {
             alternatives.clear(); // one minor has nothing but what all have
         }
         let mut groups = Groups::new(ranges.free.len());
@@ -168,6 +172,7 @@ impl Demand<'_> {
                     .map(|f| self.minors.iter().position(|minor| minor.factors.contains(f)).unwrap_or(0))
                     .collect(),
                 alternatives: alternatives.iter().map(moved_alternative).collect(),
+                minor_of_all,
                 avoid,
             });
         }

@@ -4,12 +4,12 @@ use super::boxes::FreeCoordinate;
 use super::choice::choose;
 use super::cleared::{ClearedRow, clear};
 use super::collector::{Collector, Ranges};
-use super::domain::{Guard, guards};
-use super::minors::{factors_of, half_cosines, minors as minors_of};
+use super::domain::{Domain, domain};
+use super::minors::minors as minors_of;
 use super::part::{Minor, Part};
-use crate::expression::{Graph, NodeId, Symbol, expand_angles};
-use crate::number::polynomial::Polynomial;
-use crate::number::{Fraction, Interval, Real, rational_to_f64};
+use super::proved::{HeldSymbol, RegionRow, WrittenRows};
+use crate::expression::{NodeId, Symbol, expand_angles};
+use crate::number::{Interval, Real, rational_to_f64};
 use crate::observability::{Codistribution, Length, OWN_ROWS, Reduction, Stop};
 use crate::system::{Assignment, FieldRole, Kind, System, Value};
 use dashu::rational::RBig;
@@ -50,6 +50,10 @@ pub(super) struct Problem {
     pub avoid: Vec<String>,
     /// What could not be written as a product, and why.
     pub remarks: Vec<String>,
+    /// What would have to hold for the system and its rows to exist, and holds nowhere.
+    pub nowhere: Vec<String>,
+    /// The question as it was written, for those who check the answer.
+    pub written: WrittenRows,
 }
 
 /// More words than this are not taken unless they are asked for.
@@ -59,7 +63,7 @@ impl Problem {
     /// The question whether some rows of a system have full rank on a box: its sample box, with some ranges replaced.
     ///
     /// # Errors
-    /// In words: no states or outputs, a pole everywhere, no rows of its own, a symbol without a range.
+    /// In words: no states or outputs, a pole everywhere, no rows of its own, a symbol without a range, an empty range.
     pub fn new(
         system: &mut System,
         rows: RegionRows,
@@ -68,18 +72,19 @@ impl Problem {
         if system.states.is_empty() || system.outputs.is_empty() {
             return Err(format!("{} declares no states or no outputs", system.name));
         }
-        let (ranges, values) = ranges_of(system, given);
+        let RangesAndValues { ranges, values, exactly } = ranges_of(system, given)?;
         let angles = system.angles();
         let is_angle = |symbol: Symbol| angles.contains(&symbol);
         let dimension = system.states.len();
         let (names, flat, order) = rows_of(system, rows, &values)?;
+        let as_written = rows_by_name(&names, &flat, dimension);
         let flat = system.graph.substitute(&flat, &values);
         let flat = expand_angles(&mut system.graph, &flat, is_angle);
         let block = Reduction::new(&system.graph, &flat, dimension);
 
         let mut collector = Collector::default();
         let mut remarks = Vec::new();
-        let guards = guard_factors(system, &mut collector, &values, is_angle);
+        let Domain { guards, nowhere, written } = domain(system, rows, &mut collector, &values);
         let mut cleared = Vec::new();
         let columns = block.columns.len();
         for (row, entries) in block.rows.iter().zip(block.entries.chunks(columns.max(1))) {
@@ -102,9 +107,10 @@ impl Problem {
             let below = minor.below.iter().map(|factor| collector.polynomial(graph, factor)).collect();
             for place in &minor.half_cosines {
                 let node = collector.products.half_cosine(graph, *place);
-                factors.extend(node.map(|node| collector.expression(node, false)));
+                factors.extend(node.map(|node| collector.expression(node)));
             }
-            minors.push(Minor { rows, factors, below });
+            let places = minor.rows.iter().map(|row| cleared[*row].row).collect();
+            minors.push(Minor { rows, places, factors, below });
         }
         let mut avoid = Vec::new();
         for (text, node) in system.avoid.clone() {
@@ -116,6 +122,9 @@ impl Problem {
         }
         let (avoid, avoided): (Vec<String>, Vec<NodeId>) = avoid.into_iter().unzip();
         let candidates = minors.len();
+        if !nowhere.is_empty() {
+            minors.clear(); // where nothing exists nothing has a rank
+        }
         let (minors, parts) = choose(&system.graph, &collector, &ranges, &guards, minors, &avoided)?;
         Ok(Problem {
             file: system.name.clone(),
@@ -132,12 +141,35 @@ impl Problem {
             parts,
             avoid,
             remarks,
+            nowhere,
+            written: WrittenRows {
+                rows: as_written,
+                unit_rows: block.unit_rows,
+                guards: written,
+                held: exactly,
+            },
         })
     }
 }
 
+/// Where the symbols are.
+struct RangesAndValues {
+    ranges: Ranges,
+    /// The values that can be put in.
+    values: Assignment,
+    /// All symbols that are held.
+    exactly: Vec<HeldSymbol>,
+}
+
+/// The rows with their names.
+fn rows_by_name(names: &[String], entries: &[NodeId], dimension: usize) -> Vec<RegionRow> {
+    let rows = entries.chunks(dimension).zip(names);
+    rows.map(|(entries, name)| RegionRow { name: name.clone(), entries: entries.to_vec() }).collect()
+}
+
 /// The sides of the box, what the other symbols are, and which of these can be put in exactly.
-fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> (Ranges, Assignment) {
+fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> Result<RangesAndValues, String> {
+    let mut exactly = Vec::new();
     let mut found = Ranges { free: Vec::new(), held: Default::default() };
     let mut values = Vec::new();
     for (symbol, info) in system.symbols().filter(|(_, info)| info.kind != Kind::Imported) {
@@ -145,6 +177,12 @@ fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> (Ra
         let value = info.default.as_ref().map(|value| (value.clone(), value.clone()));
         let Some((low, high)) = given.get(&symbol).cloned().or(range).or(value) else { continue };
         let name = system.symbol_name(symbol).to_owned();
+        if low == high {
+            exactly.push(HeldSymbol { symbol, value: low.clone() });
+        }
+        if low > high {
+            return Err(format!("the range of '{name}' is empty: {low} is above {high}"));
+        }
         if low < high {
             found.free.push(FreeCoordinate { symbol, name, low, high });
         } else if info.is_angle && !low.is_zero() {
@@ -155,7 +193,7 @@ fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> (Ra
         }
     }
     let values = values.into_iter().map(|(symbol, value)| (symbol, system.graph.rational(value))).collect();
-    (found, values)
+    Ok(RangesAndValues { ranges: found, values, exactly })
 }
 
 /// An angle that is held, give or take what the exact states of [`Locus`](crate::observability::Locus) differ from it:
@@ -194,61 +232,4 @@ fn rows_of(system: &mut System, rows: RegionRows, values: &Assignment) -> Result
     }
     let names = found.words.iter().map(|word| word.text(system)).collect();
     Ok((names, found.entries(), Some(found.order)))
-}
-
-/// What keeps the system defined, as factors.
-fn guard_factors(
-    system: &mut System,
-    collector: &mut Collector,
-    values: &Assignment,
-    is_angle: impl Fn(Symbol) -> bool + Copy,
-) -> Vec<usize> {
-    let outputs = system.outputs.iter().map(|(_, node)| *node);
-    let moving = system.moving_fields();
-    let rates =
-        moving.iter().flat_map(|field| system.fields[*field].components.iter().map(|(_, node)| *node));
-    let roots: Vec<NodeId> = outputs.chain(rates).collect();
-    let roots = system.graph.substitute(&roots, values);
-    let roots = expand_angles(&mut system.graph, &roots, is_angle);
-    let mut found = Vec::new();
-    for guard in guards(&mut system.graph, &roots) {
-        let graph = &mut system.graph;
-        match guard {
-            Guard::Positive(node) => found.push(collector.expression(node, true)),
-            Guard::NotZero(node) => match collector.products.read(graph, &[node], is_angle) {
-                Ok((value, _)) => found.extend(divisor_factors(graph, collector, &value[0])),
-                Err(_) => found.push(collector.expression(node, false)),
-            },
-        }
-    }
-    found.sort_unstable();
-    found.dedup();
-    found
-}
-
-/// What must not be zero for a divisor not to be.
-fn divisor_factors(graph: &mut Graph, collector: &mut Collector, divisor: &Fraction) -> Vec<usize> {
-    let (circles, mut found) = (collector.products.circles(), Vec::new());
-    let all: Vec<(Polynomial, i64)> = [(&divisor.top, 1), (&divisor.bottom, -1)]
-        .into_iter()
-        .flat_map(|(factors, sign)| {
-            factors.iter().map(move |(place, power)| (*place, sign * i64::from(*power)))
-        })
-        .map(|(place, power)| (collector.products.fractions().factor(place), power))
-        .collect();
-    for (polynomial, _) in all.iter().filter(|(_, power)| *power > 0) {
-        for (factor, _) in factors_of(polynomial, &mut collector.known) {
-            if !circles.contains(&factor) {
-                found.push(collector.polynomial(graph, &factor));
-            }
-        }
-    }
-    for (place, power) in half_cosines(&collector.products, all.iter().map(|(f, n)| (f, *n))) {
-        if power > 0
-            && let Some(node) = collector.products.half_cosine(graph, place)
-        {
-            found.push(collector.expression(node, false));
-        }
-    }
-    found
 }

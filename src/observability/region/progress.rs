@@ -105,7 +105,8 @@ impl Searches {
         let begin = Instant::now();
         let (seconds, boxes) = (self.seconds, self.boxes());
         while !interrupt.load(Ordering::Relaxed) {
-            let left = limits.boxes.map_or(u64::MAX, |most| (boxes + most).saturating_sub(self.boxes()));
+            let left =
+                limits.boxes.map_or(u64::MAX, |most| boxes.saturating_add(most).saturating_sub(self.boxes()));
             let open: usize = self.searches.iter().map(Search::unproved_boxes).sum();
             let needed = begin.elapsed().as_secs_f64() + SECONDS_TO_EXPLAIN * open as f64;
             if left == 0 || limits.seconds.is_some_and(|most| needed >= most) {

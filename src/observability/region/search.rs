@@ -2,7 +2,7 @@
 //! first.
 
 use super::boxes::{DEEPEST, Side, Volume};
-use super::factor::{Desk, Guess};
+use super::factor::{Desk, Guess, HOPE};
 use super::part::{Alternative, Part};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
@@ -46,7 +46,8 @@ impl Cell {
 
 /// What has come of a box.
 enum Judged {
-    Proved,
+    /// Everything is, by this minor where there are several to choose from.
+    Proved(Option<usize>),
     Halved([Cell; 2]),
     /// It cannot be halved any more, or the system is not defined on it.
     Left,
@@ -86,6 +87,13 @@ pub(super) struct Turn {
     pub boxes: usize,
 }
 
+/// A proved box, and the minor by which it was, where there are several to choose from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct ProvedCell {
+    pub sides: Box<[Side]>,
+    pub minor: Option<usize>,
+}
+
 /// The boxes of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Search {
@@ -95,6 +103,9 @@ pub(super) struct Search {
     pub left: Vec<Cell>,
     /// Boxes on which everything is proved.
     pub proved: Volume,
+    /// The first of them, which are the largest, and no more than so many.
+    pub kept: Vec<ProvedCell>,
+    pub most_kept: usize,
     /// The number of boxes that were looked at.
     pub boxes: u64,
     /// What the proved boxes cut out of a plane.
@@ -104,8 +115,6 @@ pub(super) struct Search {
 
 /// The boxes of a turn are judged by all threads.
 const LONGEST_TURN: usize = 2048;
-/// A factor is tried where floating point gives it this much of a chance.
-const HOPE: f64 = 0.6;
 /// So many minors are tried on a box.
 const TRIES: usize = 3;
 /// With so many open boxes a search ends: what is left would fill the memory (some 150 bytes each).
@@ -118,6 +127,8 @@ impl Search {
             open: BTreeMap::from([(0, VecDeque::from([Cell::whole(part)]))]),
             left: Vec::new(),
             proved: Volume::default(),
+            kept: Vec::new(),
+            most_kept: 0,
             boxes: 0,
             plane,
             sections: Vec::new(),
@@ -156,8 +167,11 @@ impl Search {
             .collect();
         for (cell, judged) in found {
             match judged {
-                Judged::Proved => {
+                Judged::Proved(minor) => {
                     self.proved.add(cell.depth());
+                    if self.kept.len() < self.most_kept {
+                        self.kept.push(ProvedCell { sides: cell.sides.clone(), minor });
+                    }
                     if !self.plane.is_empty() {
                         self.sections.extend(self.plane.section(&cell.sides));
                     }
@@ -207,6 +221,7 @@ fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> Judged {
             break;
         }
         let mut proved = true;
+        let minor = own.map(|alternative| alternative.minor);
         let own = own.into_iter().flat_map(Alternative::all);
         for factor in part.guards.iter().chain(&part.common).chain(own).copied() {
             if cell.knows(factor) {
@@ -214,12 +229,14 @@ fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> Judged {
             }
             let Some(guess) = guesses[factor] else { continue };
             let expression = &part.factors[factor];
-            if guess.ratio >= HOPE && expression.excludes_zero(chart, desk, guess.value < 0.0) {
+            if expression.is_worth_trying(guess)
+                && expression.holds_everywhere(chart, desk, guess.value < 0.0)
+            {
                 cell.learn(factor);
                 continue;
             }
             proved = false;
-            if expression.is_nowhere_positive(desk) {
+            if expression.fails_everywhere(desk) {
                 return Judged::Left;
             }
             if rank == 0 && worst.is_none_or(|(ratio, _)| guess.ratio < ratio) {
@@ -227,7 +244,7 @@ fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> Judged {
             }
         }
         if proved {
-            return Judged::Proved;
+            return Judged::Proved(minor);
         }
     }
     let Some((_, factor)) = worst else { return Judged::Left };

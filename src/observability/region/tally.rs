@@ -150,6 +150,7 @@ impl Region {
                 .collect(),
             map: self.map(&tallies),
             remarks: self.remarks(),
+            nowhere: problem.nowhere.clone(),
         }
     }
 
@@ -268,7 +269,7 @@ fn part_answer(part: &Part, tally: &Tally, search: &Search) -> PartAnswer {
     });
     PartAnswer {
         coordinates: part.chart.coordinates().iter().map(|coordinate| coordinate.name.clone()).collect(),
-        guards: texts(&part.guards),
+        guards: part.guards.iter().map(|guard| part.factors[*guard].needed_text()).collect(),
         common: texts(&part.common),
         alternatives: part.alternatives.len(),
         proved: search.proved.at_least(),

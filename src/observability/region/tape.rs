@@ -5,7 +5,7 @@
 //! it, are inputs of their own: the same few are needed by every expression, at the same few places.
 
 use super::slots::{Slots, Wave};
-use crate::expression::{Graph, Node, NodeId, Symbol};
+use crate::expression::{Graph, Need, Node, NodeId, Symbol};
 use crate::number::{Function, Interval, Real};
 use std::collections::HashMap;
 
@@ -37,6 +37,8 @@ pub(super) struct Tape {
     operations: Vec<Operation>,
     intervals: Vec<Interval>,
     doubles: Vec<f64>,
+    /// What its operations need of their operands to be defined.
+    needs: Vec<(u32, Need)>,
     /// The slots that it needs.
     pub slots: Vec<usize>,
     /// The coordinates that it depends on.
@@ -90,6 +92,7 @@ impl Tape {
             operations: Vec::new(),
             intervals: Vec::new(),
             doubles: Vec::new(),
+            needs: Vec::new(),
             slots: Vec::new(),
             coordinates: Vec::new(),
         };
@@ -126,7 +129,11 @@ impl Tape {
                     tape.constant(value)
                 }
                 (None, Node::Pi) => tape.constant(Interval::PI),
-                (None, node) => tape.folded(operation(node, &place)),
+                (None, node) => {
+                    let operation = operation(node, &place);
+                    tape.needs.extend(need(operation));
+                    tape.folded(operation)
+                }
             };
             place.insert(id, tape.operations.len() as u32);
             tape.operations.push(operation);
@@ -189,6 +196,16 @@ impl Tape {
         room.values.last().copied().unwrap_or(T::from_f64(f64::NAN))
     }
 
+    /// Whether all its operations are defined, and continuous, wherever the slots may lie with which its value was
+    /// computed last.
+    pub fn is_defined(&self, room: &Room<Interval>) -> bool {
+        let met = |(place, need): &(u32, Need)| {
+            let value = room.values.get(*place as usize);
+            value.is_some_and(|value| need.is_met_by_interval(*value) == Some(true))
+        };
+        self.needs.iter().all(met)
+    }
+
     /// The value, and in `room.by_slots` the derivatives by the slots.
     pub fn gradient<T: Scalar>(&self, slots: &[T], room: &mut Room<T>) -> T {
         let value = self.value(slots, room);
@@ -248,6 +265,16 @@ fn operation(node: Node, place: &HashMap<NodeId, u32>) -> Operation {
         Node::Power(a, n) => Operation::Power(at(a), n),
         Node::Apply(function, a) => Operation::Apply(function, at(a)),
         Node::Constant(_) | Node::Pi | Node::Symbol(_) => unreachable!("these have no operands"),
+    }
+}
+
+/// What an operation needs, and of which operand.
+fn need(operation: Operation) -> Option<(u32, Need)> {
+    match operation {
+        Operation::Div(_, b) => Some((b, Need::NotZero)),
+        Operation::Power(a, n) if n < 0 => Some((a, Need::NotZero)),
+        Operation::Apply(function, a) => Need::of(function).map(|need| (a, need)),
+        _ => None,
     }
 }
 

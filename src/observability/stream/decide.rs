@@ -3,25 +3,25 @@
 use super::certain::Elimination;
 use super::equilibrate::Equilibrium;
 use super::jacobi::Jacobi;
-use crate::number::{Bounded, Lanes};
+use crate::number::{Bounded, Lanes, MOST_LANES};
 use crate::observability::equilibrate::WEIGHT_OF_ERRORS;
 use crate::observability::singular::SEPARATED;
 
-/// What was found in each lane; `COUNT` of the eight places are used.
+/// What was found in each lane; as many of the places are used as there are lanes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Found {
     /// How many singular values exceed what errors may make of zero.
-    pub rank: [f64; 8],
+    pub rank: [f64; MOST_LANES],
     /// The smallest over the largest singular value.
-    pub ratio: [f64; 8],
+    pub ratio: [f64; MOST_LANES],
     /// The gap on which the rank rests.
-    pub gap: [f64; 8],
+    pub gap: [f64; MOST_LANES],
     /// One where all singular values count and the smallest leaves half of the digits.
-    pub separated: [f64; 8],
+    pub separated: [f64; MOST_LANES],
     /// Zero where all entries are finite.
-    pub finite: [f64; 8],
+    pub finite: [f64; MOST_LANES],
     /// One where elimination with error bounds proves the full rank.
-    pub certain: [f64; 8],
+    pub certain: [f64; MOST_LANES],
 }
 
 /// Room for deciding matrices of one shape.
@@ -80,10 +80,10 @@ impl<L: Lanes> Decider<L> {
         let (zero, one) = (self.zero, self.zero.splat(1.0));
         if self.rows == 0 || self.columns == 0 {
             // nothing is left to decide
-            let all = [1.0; 8];
+            let all = [1.0; MOST_LANES];
             return Found {
                 ratio: all,
-                gap: [f64::INFINITY; 8],
+                gap: [f64::INFINITY; MOST_LANES],
                 separated: all,
                 certain: all,
                 ..Found::default()
@@ -136,17 +136,19 @@ impl<L: Lanes> Decider<L> {
         }
         let all = zero.splat(values.len() as f64 - 0.5);
         let unclear = smallest.where_less(zero.splat(SEPARATED) * largest, zero, one);
-        // a sum with what is not a number is no less than anything
+        // a sum with what is not a number is no less than anything; a lane that did not converge loses its own mark alone
         let separated = all.where_less(rank + spoiled, unclear, zero);
+        let separated = zero.where_less(converged, separated, zero);
         let mut found = Found::default();
         rank.store(&mut found.rank);
         (smallest / largest).store(&mut found.ratio);
         (least / below).store(&mut found.gap);
         infinite.store(&mut found.finite);
-        if converged {
-            separated.store(&mut found.separated);
-        }
+        separated.store(&mut found.separated);
         zero.where_less(certain + spoiled, certain, zero).store(&mut found.certain);
         found
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,7 +5,7 @@
 
 use super::random::{threefry, unit};
 use crate::expression::{BlockProgram, Input, Machine, Symbol};
-use crate::number::{Bounded, Lanes, Task, rational_from_f64, rational_to_f64};
+use crate::number::{Bounded, Lanes, MOST_LANES, Task, rational_from_f64, rational_to_f64};
 use crate::observability::locus::{ATTEMPTS, AVOIDED, Source};
 use dashu::rational::RBig;
 
@@ -101,7 +101,7 @@ impl<'a, L: Lanes> Drawer<'a, L> {
         seed: u64,
         (zero, lanes): (L, usize),
     ) -> Self {
-        let states = (lanes * L::COUNT).next_multiple_of(8);
+        let states = lanes * L::COUNT;
         Drawer {
             axes,
             seed,
@@ -121,8 +121,12 @@ impl<'a, L: Lanes> Drawer<'a, L> {
 
     #[inline(always)]
     fn draw_block(&mut self, first: u64) -> Result<(), usize> {
-        for start in (0..self.states).step_by(8) {
-            self.draw_eight(first, start, 0, None);
+        let whole = self.states - self.states % MOST_LANES;
+        for start in (0..whole).step_by(MOST_LANES) {
+            self.draw_some::<MOST_LANES>(first, start, 0);
+        }
+        for place in whole..self.states {
+            self.draw_some::<1>(first, place, 0);
         }
         for attempt in 1..=ATTEMPTS as u64 {
             let Some(rejected) = self.rejected() else { return Ok(()) };
@@ -130,34 +134,35 @@ impl<'a, L: Lanes> Drawer<'a, L> {
                 return Err(rejected[0]);
             }
             for place in rejected {
-                self.draw_eight(first, place / 8 * 8, attempt, Some(place));
+                self.draw_some::<1>(first, place, attempt);
             }
         }
         Ok(())
     }
 
-    /// Draws eight states, or replaces one of them.
+    /// Draws `N` states from a place in the block on: one, or as many as fill whole lanes.
     #[inline(always)]
-    fn draw_eight(&mut self, first: u64, start: usize, attempt: u64, only: Option<usize>) {
-        let mut counters = [0; 8];
+    fn draw_some<const N: usize>(&mut self, first: u64, start: usize, attempt: u64) {
+        let mut counters = [0; N];
         for (lane, counter) in counters.iter_mut().enumerate() {
             *counter = first.wrapping_add((start + lane) as u64);
         }
         for pair in 0..self.axes.len().div_ceil(2) {
             // which attempt, and which coordinates
             let which = attempt << 32 | pair as u64;
-            let (left, right) = threefry(counters, [which; 8], [self.seed, 0]);
+            let (left, right) = threefry(counters, [which; N], [self.seed, 0]);
             for (side, words) in [left, right].into_iter().enumerate() {
                 let place = 2 * pair + side;
                 let Some(axis) = self.axes.get(place) else { break };
                 let parts = unit(words);
-                let row = &mut self.values[place * self.states..][..self.states];
-                match only {
-                    Some(state) => row[state] = axis.at(parts[state % 8]),
-                    None => {
-                        for lane in (0..8).step_by(L::COUNT) {
-                            axis.at(self.zero.load(&parts[lane..])).store(&mut row[start + lane..]);
-                        }
+                let row = &mut self.values[place * self.states + start..][..N];
+                if N % L::COUNT == 0 {
+                    for lane in (0..N).step_by(L::COUNT) {
+                        axis.at(self.zero.load(&parts[lane..])).store(&mut row[lane..]);
+                    }
+                } else {
+                    for (value, part) in row.iter_mut().zip(parts) {
+                        *value = axis.at(part);
                     }
                 }
             }
@@ -189,7 +194,7 @@ impl<'a, L: Lanes> Drawer<'a, L> {
                 let value = self.avoid.output(place, lane);
                 bad = bad + value.lost() + value.abs().where_less(bound, one, self.zero);
             }
-            let mut marks = [0.0; 8];
+            let mut marks = [0.0; MOST_LANES];
             bad.store(&mut marks);
             rejected.extend((0..L::COUNT).filter(|i| marks[*i] != 0.0).map(|i| lane * L::COUNT + i));
         }

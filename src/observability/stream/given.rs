@@ -7,7 +7,7 @@ use super::decide::Decider;
 use super::draw::Wish;
 use super::{Stream, StreamReport};
 use crate::expression::{Machine, Symbol};
-use crate::number::{Bounded, Lanes, Vectorised};
+use crate::number::{Bounded, Lanes, MOST_LANES, Vectorised};
 use crate::observability::Certainty;
 
 /// The verdict for one state.
@@ -138,7 +138,7 @@ impl Given<'_> {
                 }
                 let mut lanes_found = decider.decide(wanted == Certainty::Certified);
                 let health = machine.health(lane).bounded();
-                let (mut finite, mut bounds) = ([0.0; 8], [0.0; 8]);
+                let (mut finite, mut bounds) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
                 health.value.store(&mut finite);
                 health.error().store(&mut bounds);
                 let here = L::COUNT.min(count - first);
@@ -198,10 +198,10 @@ impl<L: Lanes> Entry<L> for Bounded<L> {
 fn granted<N: Lanes>(states: &[&[f64]], wish: Wish, first: usize, number: N) -> N {
     let (Wish::Plain(axis) | Wish::Sine(axis) | Wish::Cosine(axis)) = wish;
     let values = states[axis];
-    let value = if first + 8 <= values.len() {
+    let value = if first + N::COUNT <= values.len() {
         number.load(&values[first..])
     } else {
-        let mut room = [0.0; 8];
+        let mut room = [0.0; MOST_LANES];
         for (i, value) in room.iter_mut().enumerate() {
             *value = values[(first + i).min(values.len() - 1)];
         }
@@ -214,11 +214,13 @@ fn granted<N: Lanes>(states: &[&[f64]], wish: Wish, first: usize, number: N) -> 
     }
 }
 
+/// What is not a number is written as [`f64::NAN`], whatever bits it has: they tell which instructions made it.
 #[inline(always)]
 fn write<L: Lanes>(values: &[L], arrays: &mut [Vec<f64>], range: std::ops::Range<usize>) {
-    let mut room = [0.0; 8];
+    let mut room = [0.0; MOST_LANES];
     for (value, array) in values.iter().zip(arrays) {
-        value.store(&mut room);
+        let (zero, unknown) = (value.splat(0.0), value.splat(f64::NAN));
+        zero.smaller(*value).where_less(value.splat(f64::INFINITY), *value, unknown).store(&mut room);
         array[range.clone()].copy_from_slice(&room[..range.len()]);
     }
 }

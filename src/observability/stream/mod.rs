@@ -22,7 +22,7 @@ use super::locus::{Locus, LocusError, Source};
 use super::reduction::Reduction;
 use super::state::{Coordinate, State};
 use crate::expression::{BlockProgram, Graph, Guard, Input, Need, Node, NodeId, Symbol, expand_angles};
-use crate::number::{Bounded, Function, Instructions, Lanes, Vectorised, rational_from_f64};
+use crate::number::{Bounded, Function, Instructions, Lanes, MOST_LANES, Vectorised, rational_from_f64};
 use crate::system::System;
 pub use certain::Elimination;
 use dashu::rational::RBig;
@@ -91,8 +91,7 @@ impl Stream {
         };
         let (entries, avoided) = (put_in(system, rows), put_in(system, &locus.avoided));
         let mut watched = put_in(system, &outputs);
-        let fields = system.moving_fields();
-        let guards = system.smooth_guards(&fields);
+        let guards = system.smooth_guards(&system.moving_fields());
         let nodes: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
         let nodes = put_in(system, &nodes);
         let there = guards.iter().zip(nodes).map(|(guard, node)| Guard { node, need: guard.need });
@@ -128,7 +127,8 @@ impl Stream {
     /// # Errors
     /// Where nothing is found that keeps clear of what is avoided, or where the conditions have no solution there.
     pub fn state(&self, seed: u64, index: u64) -> Result<State, LocusError> {
-        let mut drawer = Drawer::new(&self.axes, (&self.avoid, &self.avoid_wishes), seed, (0.0f64, 8));
+        // this state alone: whether one is found must not depend on those after it
+        let mut drawer = Drawer::new(&self.axes, (&self.avoid, &self.avoid_wishes), seed, (0.0f64, 1));
         drawer.draw(index).map_err(|_| self.empty())?;
         let mut state = State::default();
         for (symbol, source) in &self.locus.sources {
@@ -305,7 +305,7 @@ impl Vectorised for Chunk<'_, '_> {
                 }
                 let mut found = decider.decide(true);
                 let health = machine.health(lane);
-                let (mut finite, mut bounds) = ([0.0; 8], [0.0; 8]);
+                let (mut finite, mut bounds) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
                 health.value.store(&mut finite);
                 health.error().store(&mut bounds);
                 for i in 0..L::COUNT.min((count - here) as usize) {
@@ -325,3 +325,6 @@ impl Vectorised for Chunk<'_, '_> {
         Ok((report, left))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,22 +9,26 @@ const ROTATIONS: [u32; 8] = [16, 42, 12, 31, 16, 32, 24, 21];
 const PARITY: u64 = 0x1BD1_1BDA_A9FC_1A22;
 const ROUNDS: usize = 13;
 
-/// Two words for each of eight counters.
+/// Two words for each counter.
 #[inline(always)]
-pub(super) fn threefry(mut x: [u64; 8], mut y: [u64; 8], key: [u64; 2]) -> ([u64; 8], [u64; 8]) {
+pub(super) fn threefry<const N: usize>(
+    mut x: [u64; N],
+    mut y: [u64; N],
+    key: [u64; 2],
+) -> ([u64; N], [u64; N]) {
     let keys = [key[0], key[1], PARITY ^ key[0] ^ key[1]];
-    for lane in 0..8 {
+    for lane in 0..N {
         x[lane] = x[lane].wrapping_add(keys[0]);
         y[lane] = y[lane].wrapping_add(keys[1]);
     }
     for round in 0..ROUNDS {
-        for lane in 0..8 {
+        for lane in 0..N {
             x[lane] = x[lane].wrapping_add(y[lane]);
             y[lane] = y[lane].rotate_left(ROTATIONS[round % 8]) ^ x[lane];
         }
         if round % 4 == 3 {
             let step = round / 4 + 1;
-            for lane in 0..8 {
+            for lane in 0..N {
                 x[lane] = x[lane].wrapping_add(keys[step % 3]);
                 y[lane] = y[lane].wrapping_add(keys[(step + 1) % 3]).wrapping_add(step as u64);
             }
@@ -35,9 +39,9 @@ pub(super) fn threefry(mut x: [u64; 8], mut y: [u64; 8], key: [u64; 2]) -> ([u64
 
 /// A number in `[0, 1)` on a grid of `2^-52` from a random word.
 #[inline(always)]
-pub(super) fn unit(words: [u64; 8]) -> [f64; 8] {
-    let mut units = [0.0; 8];
-    for lane in 0..8 {
+pub(super) fn unit<const N: usize>(words: [u64; N]) -> [f64; N] {
+    let mut units = [0.0; N];
+    for lane in 0..N {
         units[lane] = f64::from_bits(words[lane] >> 12 | 1.0f64.to_bits()) - 1.0;
     }
     units
@@ -62,6 +66,7 @@ mod tests {
         for (counter, key, answer) in answers {
             let (x, y) = threefry([counter[0]; 8], [counter[1]; 8], key);
             assert_eq!((x, y), ([answer[0]; 8], [answer[1]; 8]));
+            assert_eq!(threefry([counter[0]], [counter[1]], key), ([answer[0]], [answer[1]]));
         }
     }
 

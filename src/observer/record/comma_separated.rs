@@ -2,28 +2,28 @@
 //! a comment, spaces around a cell do not count.
 
 use super::rows::Table;
-use super::{Cell, Record, RecordError, Row, TIME};
+use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row, TIME};
+use crate::file::read_bytes;
 use csv::{ReaderBuilder, Trim, WriterBuilder};
-use std::io::Write;
+use std::io::{Error, Write};
 use std::path::Path;
 
 const COMMENT: u8 = b'#';
 
+/// What some programs put in front of a text in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+
 /// The names of the columns, and the rows.
 pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
     let complain = |why: String| RecordError::Unreadable { path: path.to_owned(), why, help: None };
-    let bytes = std::fs::read(path).map_err(|e| complain(e.to_string()))?;
-    let mut reader = ReaderBuilder::new()
-        .flexible(true)
-        .trim(Trim::All)
-        .comment(Some(COMMENT))
-        .from_reader(bytes.as_slice());
+    let bytes = read_bytes(path, LONGEST_FILE).map_err(|e| complain(e.to_string()))?;
+    let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes);
+    let mut reader =
+        ReaderBuilder::new().flexible(true).trim(Trim::All).comment(Some(COMMENT)).from_reader(bytes);
     let complain = |e: csv::Error| complain(e.to_string());
     let header = reader.byte_headers().map_err(complain)?.clone();
-    let names: Vec<String> = header
-        .iter()
-        .map(|name| String::from_utf8_lossy(name).trim_start_matches('\u{feff}').trim().to_owned())
-        .collect();
+    let names: Vec<String> =
+        header.iter().map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect();
     let refuse = |why: String| {
         let help = "the first line names the columns, for instance: time,s1,s2".to_owned();
         Err(RecordError::Header { path: path.to_owned(), why, help })
@@ -38,8 +38,11 @@ pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
     for line in reader.byte_records() {
         let line = line.map_err(complain)?;
         let cells = (0..names.len()).map(|i| cell(line.get(i).unwrap_or_default())).collect();
+        if (rows.len() as u64 + 1).saturating_mul(names.len() as u64) > MOST_CELLS {
+            return refuse(format!("it has more than {MOST_CELLS} cells"));
+        }
         let surplus = line.len().saturating_sub(names.len());
-        rows.push(Row { line: line.position().map(|at| line_number(&bytes, at)), cells, surplus });
+        rows.push(Row { line: line.position().map(|at| line_number(bytes, at)), cells, surplus });
     }
     Ok(Table { names, rows, ..Table::default() })
 }
@@ -77,13 +80,13 @@ fn shortened(text: &str) -> String {
 }
 
 /// Writes a record. Rust prints a double with the fewest digits that are read back as the same one.
-pub(super) fn write<W: Write>(record: &Record, file: &mut W) -> Result<(), String> {
+pub(super) fn write(record: &Record, file: &mut dyn Write) -> std::io::Result<()> {
     let mut writer = WriterBuilder::new().from_writer(file);
     let header = std::iter::once(TIME).chain(record.names.iter().map(String::as_str));
-    writer.write_record(header).map_err(|e| e.to_string())?;
+    writer.write_record(header).map_err(Error::from)?;
     for (row, time) in record.times.iter().enumerate() {
         let values = std::iter::once(*time).chain(record.columns.iter().map(|column| column[row]));
-        writer.write_record(values.map(|value| format!("{value:?}"))).map_err(|e| e.to_string())?;
+        writer.write_record(values.map(|value| format!("{value:?}"))).map_err(Error::from)?;
     }
-    writer.flush().map_err(|e| e.to_string())
+    writer.flush()
 }

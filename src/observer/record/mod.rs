@@ -7,9 +7,11 @@
 mod comma_separated;
 mod error;
 mod fault;
+mod metadata;
 mod parquet_file;
 mod rows;
 mod spike;
+mod thrift;
 mod write;
 
 pub use error::RecordError;
@@ -20,6 +22,12 @@ use std::path::Path;
 
 /// The name of the column of times, in seconds.
 pub const TIME: &str = "time";
+
+/// Files of more bytes than this are not read: eight hours of ten columns at 100 Hz have fewer, as text.
+const LONGEST_FILE: u64 = 512 << 20;
+
+/// More cells than this are not believed: a damaged file of a few bytes may promise any number of them.
+const MOST_CELLS: u64 = 100_000_000;
 
 /// A table of numbers: a time in seconds and named columns, one row a sample.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -87,7 +95,7 @@ impl Record {
     }
 
     /// Writes the record, CSV or Parquet by the extension, so that it is read back bit for bit (in CSV but for the
-    /// payload of a NaN). The file is written aside and moved into place: it is whole or not there.
+    /// payload of a NaN). A file is whole or not there; a device or a pipe is written into, and `-` is standard output, as CSV.
     ///
     /// # Errors
     /// The extension is another, or the file cannot be written.

@@ -2,7 +2,9 @@
 //! and may lack values; columns of other types, and numbers that mean dates or decimals, are known by name only.
 
 use super::rows::Table;
-use super::{Cell, Record, RecordError, Row, TIME};
+use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row, TIME, metadata};
+use crate::file::read_bytes;
+use bytes::Bytes;
 use parquet::basic::{ConvertedType, Repetition, Type as Physical};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{DataType, DoubleType};
@@ -20,9 +22,6 @@ use std::sync::Arc;
 /// How many values are read at once.
 const BATCH: usize = 8192;
 
-/// More rows than this are not believed: three days at 1000 Hz have fewer, and a damaged file may promise any.
-const MOST_ROWS: i64 = 300_000_000;
-
 /// Whole numbers up to this size are doubles.
 const EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
 
@@ -33,20 +32,28 @@ pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
         why,
         help: help.map(str::to_owned),
     };
-    let file = std::fs::File::open(path).map_err(|e| complain(e.to_string(), None))?;
-    // the format's reader asserts where it might complain: a damaged file must not end the program
-    match catch_unwind(AssertUnwindSafe(|| table(file))) {
-        Ok(Ok(table)) => Ok(table),
-        Ok(Err(why)) if why.contains("Disabled feature") => {
+    let bytes = Bytes::from(read_bytes(path, LONGEST_FILE).map_err(|e| complain(e.to_string(), None))?);
+    // the format's reader asserts where it might complain, and loops where it might stop: a damaged file must neither
+    // end the program nor hold it up
+    let found = metadata::check(&bytes).and_then(|()| {
+        catch_unwind(AssertUnwindSafe(|| table(bytes))).unwrap_or_else(|_| Err(DAMAGED.to_owned()))
+    });
+    found.map_err(|why| {
+        if why.contains("Disabled feature") {
             let help = "write it without compression or with Snappy, or as CSV";
-            Err(complain("its columns are compressed".to_owned(), Some(help)))
+            complain("its columns are compressed".to_owned(), Some(help))
+        } else if why == DAMAGED {
+            complain(why, Some("write it anew, or as CSV"))
+        } else {
+            complain(why, Some("the file may be cut short, or no Parquet file"))
         }
-        Ok(Err(why)) => Err(complain(why, Some("the file may be cut short, or no Parquet file"))),
-        Err(_) => Err(complain("it is damaged".to_owned(), Some("write it anew, or as CSV"))),
-    }
+    })
 }
 
-fn table(file: std::fs::File) -> Result<Table, String> {
+/// What is said of a file on which the format's reader fails.
+const DAMAGED: &str = "it is damaged";
+
+fn table(file: Bytes) -> Result<Table, String> {
     let words = |e: ParquetError| e.to_string();
     let reader = SerializedFileReader::new(file).map_err(words)?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
@@ -60,13 +67,15 @@ fn table(file: std::fs::File) -> Result<Table, String> {
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(words)?;
         let count = group.metadata().num_rows();
-        if !(0..=MOST_ROWS).contains(&count) {
-            return Err(format!("it promises {count} rows"));
+        let (columns, before) = (table.names.len(), table.rows.len() as u64);
+        let rows = u64::try_from(count).map_or(u64::MAX, |count| count.saturating_add(before));
+        if rows.saturating_mul(columns.max(1) as u64) > MOST_CELLS {
+            return Err(format!("it promises {count} rows of {columns} columns"));
         }
         let columns: Vec<Vec<Cell>> = (0..table.names.len())
             .map(|index| match table.foreign.contains_key(&index) {
                 true => Ok(Vec::new()),
-                false => cells(group.as_ref(), index),
+                false => cells(group.as_ref(), index, count),
             })
             .collect::<Result<_, _>>()?;
         let count = count as usize;
@@ -115,18 +124,18 @@ fn foreign(column: &ColumnDescriptor) -> Option<String> {
     })
 }
 
-fn cells(group: &dyn RowGroupReader, index: usize) -> Result<Vec<Cell>, String> {
-    let descriptor = group.metadata().schema_descr().column(index);
+fn cells(group: &dyn RowGroupReader, index: usize, rows: i64) -> Result<Vec<Cell>, String> {
+    let present = group.metadata().schema_descr().column(index).max_def_level();
     let reader = group.get_column_reader(index).map_err(|e| e.to_string())?;
     match reader {
-        ColumnReader::DoubleColumnReader(reader) => values(reader, &descriptor, |v: &f64| Cell::Number(*v)),
+        ColumnReader::DoubleColumnReader(reader) => values(reader, present, rows, |v: &f64| Cell::Number(*v)),
         ColumnReader::FloatColumnReader(reader) => {
-            values(reader, &descriptor, |v: &f32| Cell::Number(f64::from(*v)))
+            values(reader, present, rows, |v: &f32| Cell::Number(f64::from(*v)))
         }
         ColumnReader::Int32ColumnReader(reader) => {
-            values(reader, &descriptor, |v: &i32| Cell::Number(f64::from(*v)))
+            values(reader, present, rows, |v: &i32| Cell::Number(f64::from(*v)))
         }
-        ColumnReader::Int64ColumnReader(reader) => values(reader, &descriptor, |v: &i64| {
+        ColumnReader::Int64ColumnReader(reader) => values(reader, present, rows, |v: &i64| {
             if v.unsigned_abs() <= EXACT { Cell::Number(*v as f64) } else { Cell::Unreadable(v.to_string()) }
         }),
         _ => Err("a column is not of the type that the schema says".to_owned()),
@@ -135,10 +144,10 @@ fn cells(group: &dyn RowGroupReader, index: usize) -> Result<Vec<Cell>, String> 
 
 fn values<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
-    descriptor: &ColumnDescriptor,
+    present: i16,
+    rows: i64,
     cell: impl Fn(&T::T) -> Cell,
 ) -> Result<Vec<Cell>, String> {
-    let present = descriptor.max_def_level();
     let mut cells = Vec::new();
     loop {
         let (mut levels, mut values) = (Vec::new(), Vec::new());
@@ -148,8 +157,8 @@ fn values<T: DataType>(
         if records == 0 {
             return Ok(cells);
         }
-        if cells.len() as i64 > MOST_ROWS {
-            return Err("it has more rows than are believed".to_owned());
+        if cells.len() as i64 > rows {
+            return Err("a column has more values than there are rows".to_owned());
         }
         if present == 0 {
             cells.extend(values.iter().map(&cell));
@@ -164,11 +173,11 @@ fn values<T: DataType>(
 }
 
 /// Writes a record: one group of rows, doubles as they are.
-pub(super) fn write<W: Write + Send>(record: &Record, file: &mut W) -> Result<(), String> {
-    store(record, file).map_err(|e| e.to_string())
+pub(super) fn write(record: &Record, file: &mut (dyn Write + Send)) -> std::io::Result<()> {
+    store(record, file).map_err(std::io::Error::other)
 }
 
-fn store<W: Write + Send>(record: &Record, file: &mut W) -> Result<(), ParquetError> {
+fn store(record: &Record, file: &mut (dyn Write + Send)) -> Result<(), ParquetError> {
     let field = |name: &str| {
         let builder = Type::primitive_type_builder(name, Physical::DOUBLE);
         builder.with_repetition(Repetition::REQUIRED).build().map(Arc::new)

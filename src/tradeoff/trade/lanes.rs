@@ -4,7 +4,7 @@
 use super::ranks::{RankWay, Verdict};
 use super::work::Block;
 use crate::expression::BlockProgram;
-use crate::number::{Bounded, Instructions, Lanes, Vectorised};
+use crate::number::{Bounded, Instructions, Lanes, MOST_LANES, Vectorised};
 use crate::observability::{Elimination, Jacobi};
 
 /// The values of a block program and bounds on their errors, from inputs that are the doubles nearest to exact ones:
@@ -27,7 +27,7 @@ impl Vectorised for BoundedValues<'_> {
         results.clear();
         results.resize(states * outputs, nothing);
         let mut machine = program.machine(Bounded::exact(zero));
-        let (mut values, mut units) = ([0.0; 8], [0.0; 8]);
+        let (mut values, mut units) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
         let mut start = 0;
         while start < states {
             for (place, input) in inputs.iter().enumerate() {
@@ -50,7 +50,7 @@ impl Vectorised for BoundedValues<'_> {
                 }
                 let here = L::COUNT.min(states - first);
                 let health = machine.health(lane);
-                let (mut spoiled, mut unknown) = ([0.0; 8], [0.0; 8]);
+                let (mut spoiled, mut unknown) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
                 health.value.store(&mut spoiled);
                 health.error().lost().store(&mut unknown);
                 for place in 0..outputs {
@@ -69,10 +69,10 @@ impl Vectorised for BoundedValues<'_> {
     }
 }
 
-/// Brings one entry of up to eight matrices side by side.
+/// Brings one entry of as many matrices as there are lanes side by side; not a number where there are fewer.
 #[inline(always)]
 fn gathered<N, L: Lanes>(zero: L, blocks: &[Option<Vec<N>>], place: usize, of: fn(&N) -> f64) -> L {
-    let mut buffer = [f64::NAN; 8];
+    let mut buffer = [f64::NAN; MOST_LANES];
     for (value, block) in buffer.iter_mut().zip(blocks) {
         if let Some(block) = block {
             *value = of(&block[place]);
@@ -144,12 +144,15 @@ impl Vectorised for Jacobis<'_> {
             for value in values {
                 rank = rank + tolerance.where_less(*value, one, zero);
             }
-            let (mut ranks, mut lost) = ([0.0; 8], [0.0; 8]);
+            // a matrix that is given up fails alone
+            let failed = zero.where_less(converged, spoiled, one);
+            let (mut ranks, mut lost) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
             rank.store(&mut ranks);
-            spoiled.store(&mut lost);
-            verdicts.extend((0..blocks.len()).map(|i| {
-                if converged && lost[i] == 0.0 { Verdict::Rank(ranks[i] as usize) } else { Verdict::Failed }
-            }));
+            failed.store(&mut lost);
+            verdicts
+                .extend((0..blocks.len()).map(|i| {
+                    if lost[i] == 0.0 { Verdict::Rank(ranks[i] as usize) } else { Verdict::Failed }
+                }));
         }
     }
 }
@@ -199,7 +202,7 @@ impl Vectorised for Eliminations<'_> {
             for (j, of_column) in of_columns.iter().enumerate() {
                 room.set_weight(false, j, inverse(*of_column));
             }
-            let (mut found, mut lost) = ([0.0; 8], [0.0; 8]);
+            let (mut found, mut lost) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
             room.is_full(one).store(&mut found);
             spoiled.store(&mut lost);
             verdicts.extend((0..blocks.len()).map(|i| match (lost[i] == 0.0, found[i] == 1.0) {

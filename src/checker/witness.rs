@@ -1,0 +1,243 @@
+//! A refutation, evaluated again at its witness.
+
+use super::doubt::{Doubt, Effort, Finding, Missing};
+use super::evaluation::{Difference, Evaluation};
+use super::listing::Listing;
+use super::state::{ExactState, Ratio};
+use dashu::integer::UBig;
+use dashu::rational::RBig;
+use serde::{Deserialize, Serialize};
+
+/// The two sides of an equation, as places of a listing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sides {
+    pub left: usize,
+    pub right: usize,
+}
+
+/// What a term needs to have a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RequirementKind {
+    NotZero,
+    Positive,
+    NotNegative,
+    /// Between minus one and one, both counted.
+    WithinOne,
+    /// The same, neither counted.
+    InsideOne,
+}
+
+/// An operation, and what is required of its value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Requirement {
+    pub kind: RequirementKind,
+    pub step: usize,
+}
+
+/// The two sides as they were printed for people: exact, or decimals of which the last digit is rounded.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PrintedSides {
+    pub left: String,
+    pub right: String,
+}
+
+/// A state in exact numbers at which two sides differ.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Refutation {
+    /// Sides, conditions and requirements, as they were read.
+    pub listing: Listing,
+    /// The witness: a value for every symbol of the listing.
+    pub state: ExactState,
+    pub sides: Sides,
+    /// Where sides are claimed to be near each other: the tolerance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<usize>,
+    /// What the statement assumes: equations that hold at the witness.
+    pub conditions: Vec<Sides>,
+    /// Where sides and conditions exist.
+    pub requirements: Vec<Requirement>,
+    pub printed: PrintedSides,
+}
+
+impl Refutation {
+    /// Evaluates it again.
+    pub fn check(&self, effort: &Effort) -> Finding {
+        match self.try_check(effort) {
+            Ok(()) => Finding::Confirmed { times: 1 },
+            Err(doubt) => Finding::NotConfirmed(doubt),
+        }
+    }
+
+    fn try_check(&self, effort: &Effort) -> Result<(), Doubt> {
+        let values = Evaluation::new(&self.listing, &self.state, effort)?;
+        holds(&values, &self.conditions, &self.requirements)?;
+        match self.within {
+            None => match values.difference(self.sides.left, self.sides.right)? {
+                Difference::NotZero => {}
+                Difference::Zero => return Err(Doubt::Equal),
+                Difference::Unknown => return Err(Doubt::NotToldApart),
+            },
+            Some(tolerance) => match is_within(&values, self.sides, tolerance)? {
+                Some(false) => {}
+                Some(true) => return Err(Doubt::Equal),
+                None => return Err(Doubt::ToleranceNotTold),
+            },
+        }
+        if self.printed.left == self.printed.right {
+            return Err(Doubt::PrintedAlike);
+        }
+        let sides =
+            [("left", self.sides.left, &self.printed.left), ("right", self.sides.right, &self.printed.right)];
+        for (side, place, text) in sides {
+            match Decimal::parse(text).map(|decimal| decimal.is(&values, place)).transpose()?.flatten() {
+                Some(true) => {}
+                Some(false) => return Err(Doubt::PrintedOtherwise(side)),
+                None => return Err(Doubt::PrintNotShown(side)),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether all conditions hold exactly and all requirements are met.
+pub(super) fn holds(
+    values: &Evaluation<'_>,
+    conditions: &[Sides],
+    requirements: &[Requirement],
+) -> Result<(), Doubt> {
+    for (index, condition) in conditions.iter().enumerate() {
+        match values.difference(condition.left, condition.right)? {
+            Difference::Zero => {}
+            Difference::NotZero => return Err(Doubt::ConditionNotMet(index)),
+            Difference::Unknown => return Err(Doubt::ConditionNotShown(index)),
+        }
+    }
+    for (index, requirement) in requirements.iter().enumerate() {
+        match requirement.is_met(values)? {
+            Some(true) => {}
+            Some(false) => return Err(Doubt::RequirementNotMet(index)),
+            None => return Err(Doubt::RequirementNotShown(index)),
+        }
+    }
+    Ok(())
+}
+
+impl Requirement {
+    /// Whether it is met; `None` where that is not told.
+    fn is_met(self, values: &Evaluation<'_>) -> Result<Option<bool>, Missing> {
+        let enclosed = |precision| {
+            let value = values.enclosed(self.step, precision)?;
+            Ok(self.kind.between(&value.low(), &value.high()))
+        };
+        if let Some(told) = values.at_first_sight(enclosed) {
+            return Ok(Some(told));
+        }
+        match values.rational(self.step) {
+            Some(value) => Ok(self.kind.between(value, value)),
+            None => values.climb(enclosed),
+        }
+    }
+}
+
+impl RequirementKind {
+    /// Whether all values between two bounds meet it, or none does.
+    fn between(self, low: &RBig, high: &RBig) -> Option<bool> {
+        let (zero, one, minus) = (RBig::ZERO, RBig::ONE, RBig::from(-1));
+        let (all, none) = match self {
+            RequirementKind::NotZero => (*low > zero || *high < zero, low.is_zero() && high.is_zero()),
+            RequirementKind::Positive => (*low > zero, *high <= zero),
+            RequirementKind::NotNegative => (*low >= zero, *high < zero),
+            RequirementKind::WithinOne => (*low >= minus && *high <= one, *low > one || *high < minus),
+            RequirementKind::InsideOne => (*low > minus && *high < one, *low >= one || *high <= minus),
+        };
+        if all { Some(true) } else { none.then_some(false) }
+    }
+}
+
+/// Whether two sides differ by no more than a tolerance; `None` where that is not told.
+pub(super) fn is_within(
+    values: &Evaluation<'_>,
+    sides: Sides,
+    tolerance: usize,
+) -> Result<Option<bool>, Missing> {
+    let magnitudes = |low: RBig, high: RBig| {
+        let least = if low > RBig::ZERO { low.clone() } else { -high.clone() };
+        (least, if -low.clone() > high { -low } else { high })
+    };
+    if let (Some(left), Some(right), Some(most)) =
+        (values.rational(sides.left), values.rational(sides.right), values.rational(tolerance))
+    {
+        let difference = left - right;
+        return Ok(Some(magnitudes(difference.clone(), difference).1 <= *most));
+    }
+    values.climb(|precision| {
+        let at = |place| values.enclosed(place, precision);
+        let (left, right, most) = (at(sides.left)?, at(sides.right)?, at(tolerance)?);
+        let (least, largest) = magnitudes(left.low() - right.high(), left.high() - right.low());
+        Ok(if largest <= most.low() { Some(true) } else { (least > most.high()).then_some(false) })
+    })
+}
+
+/// A printed number: its value, and by how much what it stands for may differ from it.
+struct Decimal {
+    value: RBig,
+    slack: RBig,
+}
+
+/// Integers of more digits than this are rounded when they are printed, so that their last zeros say nothing.
+const PRINTED_DIGITS: usize = 20;
+/// Printed numbers are no longer, and their exponents no greater.
+const LONGEST_PRINT: usize = 4096;
+
+impl Decimal {
+    /// Reads an integer, a fraction, or a decimal with or without an exponent.
+    fn parse(text: &str) -> Option<Decimal> {
+        if text.len() > LONGEST_PRINT {
+            return None;
+        }
+        let zeros = text.len() - text.trim_end_matches('0').len();
+        if let Some(Ratio(value)) = Ratio::parse(text) {
+            let rounded = text.trim_start_matches('-').len() > PRINTED_DIGITS && !text.contains('/');
+            let slack = if rounded { half_of_place(zeros as i64) } else { RBig::ZERO };
+            return Some(Decimal { value, slack });
+        }
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
+        let exponent = exponent.parse::<i64>().ok().filter(|e| e.unsigned_abs() <= LONGEST_PRINT as u64)?;
+        let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+        let Ratio(digits) =
+            Ratio::parse(&format!("{whole}{fraction}")).filter(|_| !fraction.contains(['-', '/']))?;
+        let place = exponent - fraction.len() as i64;
+        Some(Decimal { value: digits * power_of_ten(place), slack: half_of_place(place) })
+    }
+
+    /// Whether an operation has this value, up to the slack; `None` where that is not told.
+    fn is(&self, values: &Evaluation<'_>, place: usize) -> Result<Option<bool>, Missing> {
+        let (least, largest) = (&self.value - &self.slack, &self.value + &self.slack);
+        let between = |low: &RBig, high: &RBig| {
+            let (inside, outside) = (*low >= least && *high <= largest, *high < least || *low > largest);
+            if inside { Some(true) } else { outside.then_some(false) }
+        };
+        if let Some(value) = values.rational(place) {
+            return Ok(between(value, value));
+        }
+        values.climb(|precision| {
+            let value = values.enclosed(place, precision)?;
+            Ok(between(&value.low(), &value.high()))
+        })
+    }
+}
+
+fn power_of_ten(exponent: i64) -> RBig {
+    let power = RBig::from(UBig::from(10u8).pow(exponent.unsigned_abs() as usize));
+    if exponent < 0 { RBig::ONE / power } else { power }
+}
+
+/// Half a unit of a decimal place.
+fn half_of_place(exponent: i64) -> RBig {
+    power_of_ten(exponent) / RBig::from(2)
+}

@@ -1,0 +1,122 @@
+//! `palmistry recheck`: verdicts of a file, evaluated again by the checker alone.
+
+use super::interrupt::INTERRUPTED;
+use super::output::{Files, Form, progress};
+use super::{Status, Unusable};
+use clap::Args;
+use palmistry::checker::{CheckedVerdict, Effort, Evidence, Finding, LARGEST_FILE, VerdictFile};
+use serde_json::{Value, json};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Checks a file of verdicts that 'prove', 'rank' or 'certify' wrote with '--verdicts', and needs no other file.
+///
+/// A refutation is evaluated again at its witness, a certified rank by its minor and its kernel, a certificate box by box:
+/// these are confirmed or not.
+/// A proof cannot be repeated by evaluation: it is consistent where both sides agree at further states. Exit status 0 only
+/// when nothing failed.
+#[derive(Args)]
+pub(crate) struct Recheck {
+    /// The verdict file.
+    file: PathBuf,
+    /// Seed of the states at which proofs are tried.
+    #[arg(long, default_value_t = 1, value_name = "S")]
+    seed: u64,
+    /// Print one JSON object: 'verdicts' with file, id, kind, finding and reason, and the counts.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Recheck {
+    pub fn run(self) -> miette::Result<Status> {
+        let unusable = |why: String| Unusable::report(format!("{}: {why}", self.file.display()), "");
+        let text = read(&self.file).map_err(unusable)?;
+        let file = VerdictFile::read(&text).map_err(|why| unusable(why.to_string()))?;
+        drop(text);
+        let bar = progress(file.verdicts.len() as u64, "checking verdicts");
+        let checked = file.check(self.seed, &Effort::default(), &INTERRUPTED, &|| bar.inc(1));
+        bar.finish_and_clear();
+        let failed =
+            checked.iter().filter(|verdict| matches!(verdict.finding, Finding::NotConfirmed(_))).count();
+        let words = ["confirmed", "consistent", "not checked", "NOT CONFIRMED"];
+        let count = |word: &str| checked.iter().filter(|verdict| verdict.finding.word() == word).count();
+        let object = json!({
+            "ok": failed == 0,
+            "tool": file.tool,
+            "confirmed": count("confirmed"),
+            "consistent": count("consistent"),
+            "not_checked": count("not checked"),
+            "not_confirmed": failed,
+            "verdicts": checked.iter().map(verdict_json).collect::<Vec<_>>(),
+        });
+        let in_words = || {
+            let counts: Vec<String> = words
+                .iter()
+                .map(|word| (count(word), word))
+                .filter(|(count, _)| *count > 0)
+                .map(|(count, word)| format!("{count} {word}"))
+                .collect();
+            let lines: Vec<String> = checked.iter().map(verdict_line).collect();
+            format!("{}\n{} verdicts: {}", lines.join("\n"), checked.len(), counts.join(", "))
+        };
+        let status = if failed == 0 { Status::AsExpected } else { Status::NotAsExpected };
+        Files::default().print(Form::of(self.json), object, in_words, status)
+    }
+}
+
+/// The text of a plain file of bounded length.
+fn read(path: &Path) -> Result<String, String> {
+    let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
+    let metadata = file.metadata().map_err(|error| error.to_string())?;
+    if !metadata.is_file() {
+        return Err("it is no plain file".to_owned());
+    }
+    let mut text = String::new();
+    // one byte more than is allowed tells a file that is too long
+    file.take(LARGEST_FILE + 1).read_to_string(&mut text).map_err(|error| error.to_string())?;
+    Ok(text)
+}
+
+fn finding_text(finding: &Finding) -> String {
+    match finding {
+        Finding::Confirmed { times: 1 } => "evaluated again".to_owned(),
+        Finding::Confirmed { times } => format!("evaluated again at {times} states"),
+        Finding::Consistent { states: 0 } => {
+            "both sides agree at its own state, and no other was found".to_owned()
+        }
+        Finding::Consistent { states } => format!("both sides agree at its own state and at {states} others"),
+        Finding::NotChecked => "evaluation says nothing of it".to_owned(),
+        Finding::NotConfirmed(doubt) => doubt.to_string(),
+    }
+}
+
+fn verdict_json(verdict: &CheckedVerdict<'_>) -> Value {
+    json!({
+        "file": verdict.record.file,
+        "id": verdict.record.id,
+        "statement": verdict.record.statement,
+        "kind": verdict.record.evidence.word(),
+        "finding": verdict.finding.word().to_lowercase(),
+        "reason": reason(verdict),
+    })
+}
+
+fn reason(verdict: &CheckedVerdict<'_>) -> String {
+    match &verdict.record.evidence {
+        Evidence::Unchecked(why) => why.clone(),
+        Evidence::Boxes(boxes) if matches!(verdict.finding, Finding::Confirmed { .. }) => boxes.in_words(),
+        _ => finding_text(&verdict.finding),
+    }
+}
+
+fn verdict_line(verdict: &CheckedVerdict<'_>) -> String {
+    let record = verdict.record;
+    format!(
+        "  {:<13} {:<9} {} {}: {}",
+        verdict.finding.word(),
+        record.evidence.word(),
+        record.file,
+        record.id,
+        reason(verdict)
+    )
+}

@@ -1,0 +1,125 @@
+//! From nodes of a graph to a listing: one operation a node, operands first.
+
+use crate::checker::{
+    ExactCoordinate, ExactState, Listing, Missing, Ratio, Requirement, RequirementKind, Sides, Step,
+};
+use crate::expression::{Graph, Guard, Need, Node, NodeId};
+use crate::observability::{Coordinate, State};
+use dashu::rational::RBig;
+use std::collections::HashMap;
+
+/// A listing that grows as nodes are asked for.
+#[derive(Debug)]
+pub struct Lowering<'g> {
+    graph: &'g Graph,
+    listing: Listing,
+    places: HashMap<NodeId, usize>,
+}
+
+impl<'g> Lowering<'g> {
+    /// An empty listing.
+    pub fn new(graph: &'g Graph) -> Self {
+        Lowering { graph, listing: Listing::default(), places: HashMap::new() }
+    }
+
+    /// The place of a node's operation, and those of all that it needs.
+    ///
+    /// # Errors
+    /// Where the listing becomes too long.
+    pub fn place(&mut self, node: NodeId) -> Result<usize, Missing> {
+        if let Some(known) = self.places.get(&node) {
+            return Ok(*known);
+        }
+        // not by `Graph::reachable`, which is as long as the graph for each small term
+        let mut open = vec![node];
+        while let Some(&next) = open.last() {
+            if self.places.contains_key(&next) {
+                open.pop();
+                continue;
+            }
+            let missing =
+                self.graph.node(next).operands().filter(|operand| !self.places.contains_key(operand));
+            let before = open.len();
+            open.extend(missing.collect::<Vec<_>>());
+            if open.len() == before {
+                let step = self.step(next);
+                let place = self.listing.push(step)?;
+                self.places.insert(next, place);
+                open.pop();
+            }
+        }
+        self.places.get(&node).copied().ok_or(Missing::Place { place: self.listing.steps().len() })
+    }
+
+    /// The operation of a node whose operands have places.
+    fn step(&self, node: NodeId) -> Step {
+        let at = |operand: NodeId| self.places.get(&operand).copied().unwrap_or(usize::MAX);
+        match self.graph.node(node) {
+            Node::Constant(_) => Step::Constant(self.graph.constant_value(node).cloned().unwrap_or_default()),
+            Node::Pi => Step::Pi,
+            Node::Symbol(symbol) => Step::Symbol(self.graph.symbol_name(symbol).to_owned()),
+            Node::Add(a, b) => Step::Add(at(a), at(b)),
+            Node::Sub(a, b) => Step::Sub(at(a), at(b)),
+            Node::Mul(a, b) => Step::Mul(at(a), at(b)),
+            Node::Div(a, b) => Step::Div(at(a), at(b)),
+            Node::Neg(a) => Step::Neg(at(a)),
+            Node::Power(a, n) => Step::Power(at(a), n),
+            Node::Apply(function, a) => Step::Apply(function, at(a)),
+        }
+    }
+
+    /// The places of two nodes that are compared.
+    ///
+    /// # Errors
+    /// Where the listing becomes too long.
+    pub fn sides(&mut self, left: NodeId, right: NodeId) -> Result<Sides, Missing> {
+        Ok(Sides { left: self.place(left)?, right: self.place(right)? })
+    }
+
+    /// What a term needs to have a value.
+    ///
+    /// # Errors
+    /// Where the listing becomes too long.
+    pub fn requirement(&mut self, guard: Guard) -> Result<Requirement, Missing> {
+        let kind = match guard.need {
+            Need::NotZero => RequirementKind::NotZero,
+            Need::Positive => RequirementKind::Positive,
+            Need::NotNegative => RequirementKind::NotNegative,
+            Need::WithinOne => RequirementKind::WithinOne,
+            Need::InsideOne => RequirementKind::InsideOne,
+        };
+        Ok(Requirement { kind, step: self.place(guard.node)? })
+    }
+
+    /// A node that is to be zero, beside a zero.
+    ///
+    /// # Errors
+    /// Where the listing becomes too long.
+    pub fn vanishing(&mut self, node: NodeId) -> Result<Sides, Missing> {
+        Ok(Sides { left: self.place(node)?, right: self.listing.push(Step::Constant(RBig::ZERO))? })
+    }
+
+    /// The listing.
+    pub fn finish(self) -> Listing {
+        self.listing
+    }
+}
+
+/// A coordinate for the checker.
+pub fn exact_coordinate(value: &Coordinate) -> ExactCoordinate {
+    match value {
+        Coordinate::Number(value) => ExactCoordinate::Number(Ratio(value.clone())),
+        Coordinate::Angle { sine, cosine } => {
+            ExactCoordinate::Angle { sin: Ratio(sine.clone()), cos: Ratio(cosine.clone()) }
+        }
+    }
+}
+
+/// A state for the checker, by names.
+pub fn exact_state(graph: &Graph, state: &State) -> ExactState {
+    let named = state.values.iter().map(|(symbol, value)| {
+        let name = graph.symbol_name(*symbol).to_owned();
+        (name, exact_coordinate(value))
+    });
+    named.collect()
+}

@@ -1,0 +1,28 @@
+//! Floor 4: what verdicts rest on, written down for the checker.
+//!
+//! A [`Lowering`] turns nodes of the graph into a [`crate::checker::Listing`], as they were read and without any
+//! simplification of its own; [`rank_records`] writes the ranks of a sweep, each with its minor and its kernel, [`certificate_file`] proved boxes
+//! with their minors.
+//!
+//! This floor decides nothing: what it writes is checked by code that does not trust it.
+
+mod boxes;
+mod lowering;
+mod minors;
+mod ranks;
+mod statements;
+
+pub use boxes::{WrittenBoxes, certificate_file};
+pub use lowering::{Lowering, exact_coordinate, exact_state};
+pub use minors::largest_minor;
+pub use ranks::rank_records;
+pub use statements::StatementAt;
+
+/// Why evidence could not be written down.
+#[derive(Debug, thiserror::Error)]
+pub enum NotWritten {
+    #[error("what the verdict rests on is too long to be written down: {0}")]
+    TooLong(#[from] crate::checker::Missing),
+    #[error("a condition cannot be read: {0}")]
+    Condition(String),
+}

@@ -1,0 +1,108 @@
+//! The ranks of a sweep, each with the minor and the kernel by which it is checked.
+
+use super::NotWritten;
+use super::lowering::{Lowering, exact_state};
+use super::minors::largest_minor;
+use crate::checker::{CertifiedRank, Evidence, Missing, RankedState, Ratio, VerdictRecord};
+use crate::expression::{Guard, NodeId, Program, Symbol, expand_angles};
+use crate::number::PrimeField;
+use crate::observability::{OWN_ROWS, RankAnswer, RecordedState, SweepReport, TakenRow, parse_condition};
+use crate::system::System;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// The recorded states of an answer as verdicts: for each branch of the conditions the full codistribution, and the
+/// file's own rows where it has some.
+///
+/// # Errors
+/// Where there are more operations than a listing holds, or a condition cannot be read.
+pub fn rank_records(
+    system: &mut System,
+    answer: &RankAnswer,
+    conditions: &[String],
+) -> Result<Vec<VerdictRecord>, NotWritten> {
+    // as they were read, and not as they were solved
+    let mut met = Vec::new();
+    for text in conditions {
+        let equation = parse_condition(text).map_err(NotWritten::Condition)?;
+        let mut side = |expr| system.scalar(expr).map_err(|problem| NotWritten::Condition(problem.message));
+        met.push((side(&equation.left)?, side(&equation.right)?));
+    }
+    let smooth = system.smooth_guards(&system.moving_fields());
+    let own = system.definition_guards(OWN_ROWS);
+    let mut records = Vec::new();
+    for branch in &answer.branches {
+        let place = match branch.conditions.as_slice() {
+            [] => "at states of the sample box".to_owned(),
+            conditions => format!("where {}", conditions.join(", ")),
+        };
+        let sweeps = [
+            ("rank", "the observability codistribution", &branch.taken, Some(&branch.full), &smooth),
+            (OWN_ROWS, "the file's own rows", &branch.own, branch.rows.as_ref(), &own),
+        ];
+        for (id, what, rows, report, guards) in sweeps {
+            let Some(report) = report.filter(|report| !report.recorded.is_empty()) else { continue };
+            records.push(VerdictRecord {
+                file: answer.file.clone(),
+                id: id.to_owned(),
+                statement: format!("the rank of {what}, {place}"),
+                evidence: Evidence::Rank(certified_rank(system, rows, report, (&met, guards), answer.seed)?),
+            });
+        }
+    }
+    Ok(records)
+}
+
+fn certified_rank(
+    system: &mut System,
+    rows: &[TakenRow],
+    report: &SweepReport,
+    (met, guards): (&[(NodeId, NodeId)], &[Guard]),
+    seed: u64,
+) -> Result<CertifiedRank, Missing> {
+    let angles = system.angles();
+    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let width = system.states.len();
+    let entries: Vec<NodeId> = rows.iter().flat_map(|row| row.entries.iter().copied()).collect();
+    let expanded = expand_angles(&mut system.graph, &entries, is_angle);
+    let program = Program::new(&system.graph, &expanded, is_angle, false);
+    let field = PrimeField::random(&mut ChaCha8Rng::seed_from_u64(seed));
+    let graph = &system.graph;
+    let with_minor = |recorded: &RecordedState| RankedState {
+        state: exact_state(graph, &recorded.state),
+        rank: recorded.rank,
+        // a minor that is too small, or none, is seen by the checker
+        minor: largest_minor(&program, width, &recorded.state, field).unwrap_or_default(),
+        kernel: recorded.unseen.iter().map(|v| v.iter().cloned().map(Ratio).collect()).collect(),
+    };
+    let mut states: Vec<RankedState> = report.recorded.par_iter().map(with_minor).collect();
+    let short = states.iter().any(|state| state.rank < width);
+    let needed: BTreeSet<usize> = states.iter().flat_map(|state| state.minor.rows.iter().copied()).collect();
+    // a full rank is shown by the rows of its minor, a short one by all rows
+    let kept: Vec<usize> = (0..rows.len()).filter(|row| short || needed.contains(row)).collect();
+    for state in &mut states {
+        for row in &mut state.minor.rows {
+            *row = kept.binary_search(row).unwrap_or(usize::MAX);
+        }
+    }
+    let mut lowering = Lowering::new(graph);
+    let mut places = Vec::new();
+    for row in &kept {
+        let entries = rows[*row].entries.iter();
+        places.push(entries.map(|entry| lowering.place(*entry)).collect::<Result<Vec<_>, _>>()?);
+    }
+    let conditions =
+        met.iter().map(|(left, right)| lowering.sides(*left, *right)).collect::<Result<_, _>>()?;
+    let requirements = guards.iter().map(|guard| lowering.requirement(*guard)).collect::<Result<_, _>>()?;
+    Ok(CertifiedRank {
+        columns: system.states.iter().map(|state| graph.symbol_name(*state).to_owned()).collect(),
+        words: kept.iter().map(|row| rows[*row].word.clone()).collect(),
+        rows: places,
+        conditions,
+        requirements,
+        listing: lowering.finish(),
+        states,
+    })
+}

@@ -1,0 +1,90 @@
+//! Reading whole files, up to a length.
+
+use super::{PATIENCE, PAUSE, Pipe, open};
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+use std::time::Instant;
+
+/// Why a file could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadFailure {
+    /// The system says no, in its words.
+    #[error("{0}")]
+    System(#[from] std::io::Error),
+    /// It is a folder.
+    #[error("it is a folder")]
+    Folder,
+    /// It has more bytes than this.
+    #[error("it is longer than {} MiB", .0 >> 20)]
+    TooLong(u64),
+    /// It is a pipe to which nobody writes.
+    #[error("it is a pipe, and nobody writes to it")]
+    Silent,
+    /// It is no text in UTF-8: the first byte that does not belong, counted from zero, and what it is.
+    #[error("it is not a text in UTF-8: byte {at} is 0x{byte:02x}")]
+    NotText {
+        /// Its place.
+        at: usize,
+        /// What it is.
+        byte: u8,
+    },
+}
+
+/// All bytes of a file, a pipe or a device, if they are no more than `most`.
+///
+/// # Errors
+/// It cannot be opened or read, is a folder, is longer, or is a pipe without a writer.
+pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, ReadFailure> {
+    let known = std::fs::metadata(path)?;
+    if known.is_dir() {
+        return Err(ReadFailure::Folder);
+    }
+    if known.len() > most {
+        return Err(ReadFailure::TooLong(most));
+    }
+    let pipe = Pipe::of(&known);
+    let mut file = open(std::fs::OpenOptions::new().read(true), path, pipe)?;
+    let mut bytes = Vec::with_capacity(known.len() as usize);
+    let mut chunk = vec![0; 1 << 16];
+    let (begin, mut written_to) = (Instant::now(), false);
+    loop {
+        match file.read(&mut chunk) {
+            // a pipe that nobody has opened for writing yet ends at once
+            Ok(0) if pipe == Pipe::Yes && !written_to => {
+                if begin.elapsed() > PATIENCE {
+                    return Err(ReadFailure::Silent);
+                }
+                std::thread::sleep(PAUSE);
+            }
+            Ok(0) => return Ok(bytes),
+            Ok(count) => {
+                written_to = true;
+                bytes.extend_from_slice(&chunk[..count]);
+                if bytes.len() as u64 > most {
+                    return Err(ReadFailure::TooLong(most));
+                }
+            }
+            Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                written_to = true;
+                std::thread::sleep(PAUSE);
+            }
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+}
+
+/// The text of a file, if it is no more than `most` bytes of UTF-8. A byte-order mark in front is no part of it.
+///
+/// # Errors
+/// As [`read_bytes`]; and where it is no text.
+pub fn read_text(path: &Path, most: u64) -> Result<String, ReadFailure> {
+    let text = String::from_utf8(read_bytes(path, most)?).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        ReadFailure::NotText { at, byte: error.as_bytes().get(at).copied().unwrap_or_default() }
+    })?;
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
+    })
+}
