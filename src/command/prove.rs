@@ -17,7 +17,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Decides every claim of proof files.
 ///
 /// Exit status 0 only when each claim has the verdict that its file expects: 'claim' proved (or what 'expect' says),
-/// 'erratum' with the printed form refuted and the corrected one proved.
+/// 'erratum' with the printed form refuted and the corrected one proved. A claim is about all values of its symbols, whatever
+/// values the file gives to parameters; where the verdict at these is another one, that is said too.
 #[derive(Args, Clone)]
 pub(crate) struct Prove {
     /// Proof files, or folders in which every .proof file is taken.
