@@ -1,6 +1,6 @@
 //! The value of an expression at a point, to as many digits as are asked for, by the cheapest numbers that suffice.
 
-use crate::expression::{Failure, Graph, Guard, Input, NodeId, Program, Symbol};
+use crate::expression::{Failure, Graph, Guard, Input, Need, Node, NodeId, Program, Symbol};
 use crate::number::{
     Arithmetic, DoubleDouble, Enclosure, Enclosures, Floats, Interval, Rationals, Refusal, Rung,
     common_decimal, rational_from_f64, round_to_decimal,
@@ -137,6 +137,29 @@ fn evaluate<A: Arithmetic + Copy>(
     }
 }
 
+/// The factor of a divisor that is zero at a point: through products, powers and quotients to the sum or symbol that
+/// vanishes.
+fn zero_factor(graph: &Graph, divisor: NodeId, values: &HashMap<Symbol, RBig>) -> NodeId {
+    let is_zero = |node: NodeId| {
+        let program = Program::new(graph, &[node], |_| false, false);
+        matches!(evaluate(graph, &program, values, Rationals::default()), Ok(Some(value)) if value.is_zero())
+    };
+    let mut at = divisor;
+    loop {
+        at = match graph.node(at) {
+            Node::Mul(a, b) => {
+                if is_zero(a) {
+                    a
+                } else {
+                    b
+                }
+            }
+            Node::Div(a, _) | Node::Neg(a) | Node::Power(a, _) => a,
+            _ => return at,
+        };
+    }
+}
+
 /// Whether a term whose guards these are exists at a point given by rational numbers (angles in radians).
 ///
 /// # Errors
@@ -146,7 +169,10 @@ pub fn exists_at(graph: &Graph, guards: &[Guard], values: &HashMap<Symbol, RBig>
         let program = Program::new(graph, &[guard.node], |_| false, false);
         if let Some(value) = evaluate(graph, &program, values, Rationals::default())? {
             if !guard.need.is_met_by(&value) {
-                return Err(ValueError::Outside(guard.text(graph)));
+                return Err(match guard.need {
+                    Need::NotZero => ValueError::Pole(graph.text(zero_factor(graph, guard.node, values))),
+                    _ => ValueError::Outside(guard.text(graph)),
+                });
             }
             continue;
         }

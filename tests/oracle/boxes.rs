@@ -44,7 +44,7 @@ fn boxes_that_are_proved() {
 
 fn one_case(case: u64, findings: &mut Findings) {
     let mut dice = Dice::new(seed() ^ 0xb0c5, case);
-    let own = case % 2 == 0;
+    let own = case.is_multiple_of(2);
     let question = draw(own, &mut dice);
     let class = if own { "own rows" } else { "codistribution" };
     let text = text(&question);

@@ -317,15 +317,16 @@ fn witness(class: &str, model: &Model, said: &Said, detail: &str, text: &str, fi
     }
     let longest = model.states.len() + 2;
     match (ranks(model, &point, longest), shown.left.parse::<usize>()) {
-        (Ok(found), Ok(printed)) => {
-            if found.len() > model.states.len() && found.last() != Some(&printed) && !found.contains(&printed)
-            {
-                findings.fault(
-                    "a refuted rank's state has another rank",
-                    format!("{detail}; ours {found:?}"),
-                    text,
-                );
-            }
+        (Ok(found), Ok(printed))
+            if found.len() > model.states.len()
+                && found.last() != Some(&printed)
+                && !found.contains(&printed) =>
+        {
+            findings.fault(
+                "a refuted rank's state has another rank",
+                format!("{detail}; ours {found:?}"),
+                text,
+            );
         }
         (Err(Trouble::Undefined), _) => findings.fault("a refuted rank's state is a pole", detail, text),
         _ => {}
