@@ -96,7 +96,7 @@ fn what_was_changed_is_not_confirmed() {
     by_hand.requirements.pop();
     assert_eq!(check(&by_hand), Finding::NotConfirmed(Doubt::DigestDiffers));
     let mut by_hand = boxes.clone();
-    by_hand.boxes[0].sides[0][0] = ratio(-1, 1);
+    by_hand.boxes[0].sides[0] = [ratio(-1, 1), ratio(1, 1)];
     assert_eq!(check(&by_hand), Finding::NotConfirmed(Doubt::DigestDiffers));
     // twice the same, a volume that is too large, and nothing at all
     let mut twice = boxes.clone();

@@ -121,7 +121,7 @@ fn known_statements_have_their_verdicts() {
         ("undecided", "x = y where x^2 = y^2"),
         ("undecided", "x = y where 1 = 2"),
         ("proved", "cos(a) = 1 where sin(a) = 0, a = 0"),
-        ("undecided", "x = 0 where x*y = 0"),
+        ("refuted", "x = 0 where x*y = 0"),
         // a whole turn further on these are false
         ("undecided", "cos(a/2)*(cos(a/2) - 1) = 0 where sin(a) = 0"),
         ("undecided", "a*(a - pi) = 0 where sin(a) = 0"),

@@ -207,7 +207,7 @@ fn a_state_without_output_is_left_out() {
     let found = rank(&[file.to_str().unwrap(), "--samples", "10"]);
     assert_eq!(found["samples"], 0);
     let poles = found["poles"].as_object().unwrap();
-    assert!(poles.keys().all(|why| why.contains("not defined")) && poles.values().all(|count| count == 10));
+    assert!(poles.keys().all(|why| why.contains("outside of")) && poles.values().all(|count| count == 10));
 }
 
 /// Unknown functions may conspire: exp(x) exp(-x) - 1 is zero, and nothing here knows it. Then the choice of words is a

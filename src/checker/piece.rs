@@ -2,8 +2,8 @@
 //!
 //! An entry's values lie in its enclosure and, by the mean value theorem, in the value in the middle and the slopes times
 //! the distances from there. The rows are multiplied by the inverse of their matrix in the middle, as doubles find it
-//! (any matrix would do): where in the product the diagonal outweighs the rest of every row, no matrix of the box is
-//! singular. Neumaier, Interval Methods for Systems of Equations, 1990, section 4.1.
+//! (any matrix would do): where in the product, its columns scaled, the diagonal outweighs the rest of every row, no matrix
+//! of the box is singular. Neumaier, Interval Methods for Systems of Equations, 1990, sections 3.7 and 4.1.
 
 use super::listing::{Listing, Step};
 use super::witness::{Requirement, RequirementKind};
@@ -157,21 +157,21 @@ impl<'c> Cover<'c> {
         if minor.iter().copied().flatten().any(|place| all.values[*place].is_none()) {
             return open(&|_| f64::NAN);
         }
+        let minor = without_single_entries(minor, &all.values);
         let entry = |place: usize| centre.values[place].map(Interval::mid);
         let doubles: Option<Vec<Vec<f64>>> =
             minor.iter().map(|row| row.iter().map(|place| entry(*place)).collect()).collect();
         let Some(inverse) = doubles.and_then(inverse) else { return open(&|_| f64::NAN) };
         let n = minor.len();
         let mut influences = vec![0.0; self.sides];
-        let mut regular = true;
-        for (i, weights) in inverse.iter().enumerate() {
-            let (mut diagonal, mut rest) = (0.0, Interval::ZERO);
-            for j in 0..n {
+        let mut product = vec![vec![Interval::WHOLE; n]; n];
+        for (weights, row_of_product) in inverse.iter().zip(&mut product) {
+            for (j, entry_of_product) in row_of_product.iter_mut().enumerate() {
                 // what the rows have in common cancels in the combination, before anything is widened
                 let combined = |value: &dyn Fn(usize) -> Interval| {
                     let parts = weights
                         .iter()
-                        .zip(minor)
+                        .zip(&minor)
                         .map(|(weight, row)| Interval::point(*weight) * value(row[j]));
                     parts.fold(Interval::ZERO, |sum, part| sum + part)
                 };
@@ -181,17 +181,12 @@ impl<'c> Cover<'c> {
                 for (side, distance) in distances.iter().enumerate() {
                     let change = combined(&|place| all.slopes[place * self.sides + side]) * *distance;
                     influences[side] += change.magnitude();
-                    by_slopes += change;
+                    by_slopes = by_slopes + change;
                 }
-                let value = plain.intersection(by_slopes).unwrap_or(Interval::WHOLE);
-                if i == j {
-                    diagonal = value.mignitude();
-                } else {
-                    rest += Interval::point(value.magnitude());
-                }
+                *entry_of_product = plain.intersection(by_slopes).unwrap_or(Interval::WHOLE);
             }
-            regular &= diagonal > rest.high();
         }
+        let regular = is_regular(&product);
         if regular { Piece::Shown } else { open(&|side| influences[side]) }
     }
 }
@@ -256,6 +251,45 @@ fn rate(function: Function, a: Interval, value: Interval) -> Interval {
         Function::Asin => Interval::ONE / root(),
         Function::Acos => -(Interval::ONE / root()),
     }
+}
+
+/// A matrix without the rows that have one entry only which is not zero, and without the columns of these, again and again:
+/// the determinant is the product of these entries and of what remains. Empty where nothing remains.
+fn without_single_entries(minor: &[&[usize]], values: &[Option<Interval>]) -> Vec<Vec<usize>> {
+    let mut rows: Vec<Vec<usize>> = minor.iter().map(|row| row.to_vec()).collect();
+    let is_zero = |place: &usize| values[*place] == Some(Interval::ZERO);
+    let excludes_zero = |place: &usize| values[*place].is_some_and(|value| !value.contains_zero());
+    loop {
+        let single = rows.iter().enumerate().find_map(|(at, row)| {
+            let mut filled = (0..row.len()).filter(|column| !is_zero(&row[*column]));
+            match (filled.next(), filled.next()) {
+                (Some(column), None) if excludes_zero(&row[column]) => Some((at, column)),
+                _ => None,
+            }
+        });
+        let Some((at, column)) = single else { return rows };
+        rows.remove(at);
+        rows.iter_mut().for_each(|row| drop(row.remove(column)));
+    }
+}
+
+/// Whether no matrix between the bounds is singular: with its columns multiplied by some positive numbers the diagonal
+/// outweighs the rest of every row. The numbers are guessed by doubles, and any would do.
+fn is_regular(matrix: &[Vec<Interval>]) -> bool {
+    let n = matrix.len();
+    let comparison = |i: usize, j: usize| {
+        if i == j { matrix[i][j].mignitude() } else { -matrix[i][j].magnitude() }
+    };
+    let doubles = (0..n).map(|i| (0..n).map(|j| comparison(i, j)).collect()).collect();
+    let Some(guess) = inverse(doubles) else { return false };
+    let weights: Vec<f64> = guess.iter().map(|row| row.iter().sum()).collect();
+    let positive = weights.iter().all(|weight| weight.is_finite() && *weight > 0.0);
+    let outweighs = |i: usize| {
+        let weighted = |j: usize| Interval::point(comparison(i, j).abs()) * Interval::point(weights[j]);
+        let rest = (0..n).filter(|j| *j != i).fold(Interval::ZERO, |sum, j| sum + weighted(j));
+        weighted(i).low() > rest.high()
+    };
+    positive && (0..n).all(outweighs)
 }
 
 /// Whether all values of an interval meet a requirement, or none does.

@@ -244,8 +244,13 @@ impl Partial {
     }
 
     /// The branch on which an angle has a value, up to whole turns.
-    fn with_turns(&self, system: &System, angle: Symbol, value: NodeId) -> Partial {
+    fn with_turns(&self, system: &mut System, angle: Symbol, value: NodeId) -> Partial {
         let mut next = self.clone();
+        // of an angle that is known up to whole turns another's whole turns are no news
+        let single = Assignment::from([(angle, value)]);
+        for (_, known) in &mut next.turns {
+            *known = system.graph.substitute(&[*known], &single)[0];
+        }
         next.turns.push((angle, value));
         next.codimension += 1;
         next.steps.push(format!("{} = {}", system.symbol_name(angle), system.graph.text(value)));
