@@ -15,10 +15,11 @@ const NAMES: [Symbol; 6] = ["x", "y", "z", "w", "v", "u"];
 const ANGLES: [Symbol; 2] = ["phi", "psi"];
 
 /// The kinds of systems that are drawn, with how many in a dozen.
-const CLASSES: [(&str, usize); 8] = [
+const CLASSES: [(&str, usize); 9] = [
     ("polynomial", 3),
     ("rational", 2),
     ("of angles", 2),
+    ("of bare angles", 1),
     ("transcendental", 1),
     ("late rank", 1),
     ("outputs that say little", 1),
@@ -61,7 +62,7 @@ pub fn draw(class: &str, dice: &mut Dice) -> Model {
     let mut model = Model { states: NAMES[..n].to_vec(), ..Model::default() };
     let inputs = dice.one_of(&[0, 0, 1, 1, 2]);
     match class {
-        "of angles" => {
+        "of angles" | "of bare angles" => {
             model.states = [&ANGLES[..1 + dice.below(2)], &NAMES[..dice.below(3)]].concat();
             model.angles = model.states.iter().copied().filter(|name| ANGLES.contains(name)).collect();
         }
@@ -116,7 +117,7 @@ fn term(class: &str, model: &Model, dice: &mut Dice) -> Expression {
             let top = dice.polynomial(&plain, 2, 2);
             if dice.once_in(2) { top.over(dice.divisor(&plain)) } else { top }
         }
-        "of angles" => {
+        "of angles" | "of bare angles" => {
             let wave = dice.wave(&model.angles);
             let factor = if plain.is_empty() || dice.once_in(3) {
                 Expression::integer(dice.factor())
@@ -125,7 +126,7 @@ fn term(class: &str, model: &Model, dice: &mut Dice) -> Expression {
             };
             match dice.below(7) {
                 0 if !plain.is_empty() => dice.polynomial(&plain, 2, 2),
-                6 => Expression::Symbol(dice.one_of(&model.angles)),
+                6 if class == "of bare angles" => Expression::Symbol(dice.one_of(&model.angles)),
                 1 => factor.over(wave.plus(Expression::integer(2))),
                 2 => factor.plus(wave.of_angle_tangent(dice, model)),
                 _ => factor.times(wave),
