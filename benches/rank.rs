@@ -27,6 +27,7 @@ fn sweep(bencher: Bencher, regime: &str) {
                 seed: 1,
                 wanted: Certainty::Certified,
                 digits: None,
+                recorded: 0,
                 order: None,
                 fixed: BTreeMap::new(),
                 conditions: Vec::new(),

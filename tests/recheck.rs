@@ -72,7 +72,8 @@ fn a_refutation_is_evaluated_again_and_each_part_of_it_counts() {
         ("/listing/2/1", json!(2), "does not come before"),
         ("/listing/3/1", json!("3"), "the two sides are equal"),
         ("/listing/0/1", json!("z"), "names a symbol that the state does not give"),
-        ("/listing/4", json!(["div", 2, 6]), "division by zero"),
+        ("/listing/2", json!(["power", 0, -1]), "the left side is not what is printed"),
+        ("/listing/2", json!(["div", 0, 2]), "does not come before"),
         ("/listing/4", json!(["mul", 3]), "lacks an operand"),
         ("/listing/4", json!(["mul", 3, 0, 0]), "an operand too many"),
         ("/listing/4", json!(["times", 3, 0]), "no such operation"),
@@ -125,6 +126,22 @@ fn conditions_hold_exactly_at_roots_and_at_turns() {
     let mut other = turn;
     other["verdicts"][0]["evidence"]["refuted"]["state"]["phi"] = number("884279719003555/281474976710656");
     assert!(doubt(&other).contains("condition 0 is not met"));
+}
+
+/// A side that does not exist at the state refutes nothing: `x/(x - x)` and `log(x - x)`.
+#[test]
+fn what_does_not_exist_does_not_differ() {
+    for (step, why) in
+        [(json!(["div", 0, 1]), "division by zero"), (json!(["apply", "log", 1]), "outside its domain")]
+    {
+        let file = file(json!({"refuted": {
+            "listing": [["symbol", "x"], ["sub", 0, 0], step],
+            "state": {"x": number("3")}, "sides": {"left": 0, "right": 2}, "conditions": [], "requirements": [],
+            "printed": {"left": "3", "right": "0"},
+        }}));
+        let said = doubt(&file);
+        assert!(said.contains(why), "{said}");
+    }
 }
 
 /// What is not shown is not said: `sin(1)^2 + cos(1)^2 = 1` as a condition is true, and the checker has no rule for it.
@@ -227,7 +244,8 @@ fn a_rank_is_confirmed_by_its_minor_and_its_kernel_alone() {
         ("1", "1", 1, &one, json!([["0", "0"]]), "not independent"),
         ("1", "1", 1, &one, json!([]), "0 vectors instead of 1"),
         ("1", "1", 1, &one, json!([["1"]]), "not all have an entry a column"),
-        ("2", "1", 1, &one, json!([["-2", "1"]]), "row 0 does not annihilate"),
+        // the first row is (1, 2) there, and the second one (4, 2)
+        ("2", "1", 1, &one, json!([["-2", "1"]]), "row 1 does not annihilate"),
         ("0", "0", 0, &none, json!([["1", "0"], ["2", "0"]]), "not independent"),
         ("2", "1", 2, &json!({"rows": [0, 0], "columns": [0, 1]}), json!([]), "2 different rows and columns"),
         ("2", "1", 2, &json!({"rows": [0, 2], "columns": [0, 1]}), json!([]), "2 different rows and columns"),
@@ -373,7 +391,7 @@ fn no_damage_makes_it_panic() {
         let checked = file.check(1, &Effort::new(1 << 24), &false.into(), &|| ());
         confirmed += checked.iter().filter(|v| matches!(v.finding, Finding::Confirmed { .. })).count();
     }
-    assert!(read > 500 && confirmed > 10, "{read} were read, {confirmed} confirmed");
+    assert!(read > 200 && confirmed > 10 && confirmed < read, "{read} were read, {confirmed} confirmed");
 }
 
 const PENDULUM: &str = r#"
@@ -396,7 +414,7 @@ sample
 #[test]
 fn ranks_go_through_a_file_and_back() {
     let folder = folder();
-    let pendulum = write(&folder, "pendulum.proof", PENDULUM.replace("drift f", "field f"));
+    let pendulum = write(&folder, "pendulum.proof", PENDULUM);
     let pendulum = pendulum.to_string_lossy().into_owned();
     let verdicts = folder.path().join("verdicts.json").to_string_lossy().into_owned();
     for (file, rank) in [

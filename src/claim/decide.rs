@@ -350,7 +350,7 @@ impl Question {
                 RankedMatrix::codistribution(system, branch, *claimed)?
             }
         };
-        claimed_rank(system, on, &matrix, verdict, rng)
+        claimed_rank(system, (on, branch), &matrix, verdict, rng)
     }
 
     /// What has to exist.

@@ -1,10 +1,10 @@
 //! What the checker needs of a verdict: sides, conditions and guards as they were read, and a state.
 
-use super::terms::{OnBranch, Point};
+use super::terms::{OnBranch, Point, Terms};
 use super::verdict::{Verdict, Witness};
 use crate::checker::{
     CertifiedRank, ClaimedRank, ClaimedWord, Doubt, Effort, Evidence, ExactCoordinate, Finding, Minor,
-    Missing, PrintedSides, RankedState, Refutation,
+    Missing, PrintedSides, RankedState, Refutation, StatedIdentity,
 };
 use crate::evidence::{Lowering, StatementAt, exact_state, largest_minor};
 use crate::expression::{Guard, NodeId, Program, Symbol, expand_angles};
@@ -93,9 +93,27 @@ pub(super) fn identity(
         return Evidence::Unchecked(NO_STATE.to_owned());
     };
     // what the conditions give is written as it follows, so that the checker may draw the rest anew
-    let (state, terms) = (on.free_part(&point), on.solved_values());
-    let stated = on.at(system, &state, &terms).identity(engine, log2_error, None);
-    stated.map_or_else(not_written, Evidence::Proved)
+    let (plain, terms) = (on.free_part(&point), on.solved_values());
+    // at a rational point of the circle conditions hold exactly that do not at a rational number of radians
+    let mut paired = plain.clone();
+    for (symbol, value) in &mut paired.values {
+        if let Coordinate::Number(half) = value
+            && system.is_angle(*symbol)
+        {
+            *value = Coordinate::from_half_tangent(half);
+        }
+    }
+    let stated = |state| on.at(system, state, &terms).identity(engine, log2_error, None);
+    let agrees = |stated: &StatedIdentity| match stated.check(1, &Effort::new(WORK)) {
+        // where the sides differ the checker has found a proof that is wrong, and that is to be seen
+        Finding::NotConfirmed(doubt) => doubt == Doubt::Differ,
+        _ => true,
+    };
+    let found = match stated(&paired) {
+        Ok(stated) if paired == plain || agrees(&stated) => Ok(stated),
+        _ => stated(&plain),
+    };
+    found.map_or_else(not_written, Evidence::Proved)
 }
 
 fn not_written(why: Missing) -> Evidence {
@@ -184,7 +202,7 @@ impl RankedMatrix {
 /// The evidence for a verdict on a rank on a branch: the largest minor at some states.
 pub(super) fn claimed_rank(
     system: &mut System,
-    on: &OnBranch,
+    (on, branch): (&OnBranch, &Branch),
     matrix: &RankedMatrix,
     verdict: &Verdict,
     rng: &mut impl Rng,
@@ -193,6 +211,13 @@ pub(super) fn claimed_rank(
         Verdict::Proved { engine, log2_error } => (ClaimedWord::Proved, engine, *log2_error),
         Verdict::Refuted { engine, .. } => (ClaimedWord::Refuted, engine, f64::NEG_INFINITY),
         Verdict::Definition { .. } | Verdict::Undecided { .. } => return None,
+    };
+    // the entries of a codistribution are no sides of the statement, and mention more symbols
+    let sides = matrix.entries.clone();
+    let terms =
+        Terms { sides, guards: on.statement.guards.clone(), conditions: on.statement.conditions.clone() };
+    let Ok(on) = &OnBranch::new(system, branch, &terms) else {
+        return Some(Evidence::Unchecked(NO_STATE.to_owned()));
     };
     let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);

@@ -105,12 +105,12 @@ impl Prove {
         let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
         let mut files = Files::default();
         if let Some(path) = &self.junit {
-            files.text(path, &junit(&outcomes)?);
+            files.text_or(path, junit(&outcomes));
         }
         if let Some(path) = &self.verdicts {
             let records = outcomes.iter().flat_map(|outcome| outcome.evidence.iter().cloned()).collect();
             let text = VerdictFile::new(self.seed, records).text();
-            files.text(path, &text.map_err(|why| Unusable::report(why.to_string(), ""))?);
+            files.text_or(path, text);
         }
         let object = json!({
             "ok": failed == 0 && !interrupted(),
