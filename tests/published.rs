@@ -33,17 +33,48 @@ fn undotted(text: &str) -> String {
     out
 }
 
+/// `d(e)` is by all states of its file: here these are named, since what is moved by shown fields is a state too.
+fn by_states(text: &str, states: &[String]) -> String {
+    let mut out = String::new();
+    // for each open bracket whether it is that of a 'd', and whether a comma has been met in it
+    let mut open: Vec<(bool, bool)> = Vec::new();
+    for c in text.chars() {
+        match c {
+            '(' | '[' | '{' => {
+                let before = out.strip_suffix('d').map(|rest| rest.chars().next_back());
+                let differential = c == '('
+                    && before.is_some_and(|last| last.is_none_or(|c| !c.is_ascii_alphanumeric() && c != '_'));
+                open.push((differential, false));
+            }
+            ',' => open.iter_mut().last().into_iter().for_each(|(_, comma)| *comma = true),
+            ')' | ']' | '}' => {
+                if open.pop() == Some((true, false)) {
+                    out.push_str(&format!(", {}", states.join(", ")));
+                }
+            }
+            _ => {}
+        }
+        out.push(c);
+    }
+    out
+}
+
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|word| !word.is_empty())
 }
 
+fn own_states(system: &System) -> Vec<String> {
+    system.states.iter().map(|state| system.symbol_name(*state).to_owned()).collect()
+}
+
 /// A file that knows the symbols of a system, and nothing else but what an outcome shows.
 fn shown_alone(system: &System, outcome: &Outcome) -> String {
+    let own = own_states(system);
     // (name, text of the entry): definitions, and fields under names that no definition has
     let mut waiting: Vec<(String, String, String)> = Vec::new();
     for (name, text) in &outcome.definitions {
-        let name = undotted(name);
-        waiting.push((name.clone(), format!("let {name} = {}", undotted(text)), undotted(text)));
+        let (name, text) = (undotted(name), by_states(&undotted(text), &own));
+        waiting.push((name.clone(), format!("let {name} = {text}"), text));
     }
     let mut moved: Vec<String> = Vec::new();
     for (name, text) in &outcome.differentiated_along {
@@ -53,7 +84,6 @@ fn shown_alone(system: &System, outcome: &Outcome) -> String {
         let others = if text.contains("others'") { "" } else { "  others' = 0" };
         waiting.push((format!("field {name}"), format!("field {name}  {text}{others}"), text));
     }
-    let own: Vec<String> = system.states.iter().map(|state| system.symbol_name(*state).to_owned()).collect();
     let mut states = own.clone();
     for name in moved {
         if !states.contains(&name) {
@@ -158,7 +188,8 @@ fn every_shown_statement_is_read_back_and_has_its_values() {
             let printed = outcome.printed.as_ref().map(|(statement, _)| statement);
             for (i, statement) in printed.into_iter().chain([&outcome.statement]).enumerate() {
                 if !statement.starts_with("rank =") {
-                    text.push_str(&format!("claim {i}: {}\n", undotted(statement)));
+                    let statement = by_states(&undotted(statement), &own_states(&system));
+                    text.push_str(&format!("claim {i}: {statement}\n"));
                 }
             }
             let mut alone = System::parse("shown", &text, Path::new("")).unwrap_or_else(|error| {
@@ -221,7 +252,7 @@ fn witness_is_a_rank(left: &str, right: &str) -> bool {
 
 fn columns(system: &mut System, text: &str) -> usize {
     match system.evaluate_text(text).unwrap() {
-        Value::Matrix(matrix) => matrix.columns,
+        Value::Matrix(matrix) | Value::Rank(matrix) => matrix.columns,
         _ => 1,
     }
 }
