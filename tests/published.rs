@@ -2,10 +2,10 @@
 //! the language, by itself, and has the values that it has in its file, at random points and at the shown witnesses.
 
 use dashu::rational::RBig;
-use palmistry::expression::{Expected, Symbol, parse_expression};
-use palmistry::number::parse_decimal;
+use palmistry::expression::{Expected, Input, NodeId, Program, parse_expression};
+use palmistry::number::{Floats, parse_decimal};
 use palmistry::system::{ClaimBody, Value};
-use palmistry::{Outcome, System, Verdict, Witness, certified_value, decide_all};
+use palmistry::{Outcome, System, Verdict, Witness, decide_all};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -33,17 +33,48 @@ fn undotted(text: &str) -> String {
     out
 }
 
+/// `d(e)` is by all states of its file: here these are named, since what is moved by shown fields is a state too.
+fn by_states(text: &str, states: &[String]) -> String {
+    let mut out = String::new();
+    // for each open bracket whether it is that of a 'd', and whether a comma has been met in it
+    let mut open: Vec<(bool, bool)> = Vec::new();
+    for c in text.chars() {
+        match c {
+            '(' | '[' | '{' => {
+                let before = out.strip_suffix('d').map(|rest| rest.chars().next_back());
+                let differential = c == '('
+                    && before.is_some_and(|last| last.is_none_or(|c| !c.is_ascii_alphanumeric() && c != '_'));
+                open.push((differential, false));
+            }
+            ',' => open.iter_mut().last().into_iter().for_each(|(_, comma)| *comma = true),
+            ')' | ']' | '}' => {
+                if open.pop() == Some((true, false)) {
+                    out.push_str(&format!(", {}", states.join(", ")));
+                }
+            }
+            _ => {}
+        }
+        out.push(c);
+    }
+    out
+}
+
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|word| !word.is_empty())
 }
 
+fn own_states(system: &System) -> Vec<String> {
+    system.states.iter().map(|state| system.symbol_name(*state).to_owned()).collect()
+}
+
 /// A file that knows the symbols of a system, and nothing else but what an outcome shows.
 fn shown_alone(system: &System, outcome: &Outcome) -> String {
+    let own = own_states(system);
     // (name, text of the entry): definitions, and fields under names that no definition has
     let mut waiting: Vec<(String, String, String)> = Vec::new();
     for (name, text) in &outcome.definitions {
-        let name = undotted(name);
-        waiting.push((name.clone(), format!("let {name} = {}", undotted(text)), undotted(text)));
+        let (name, text) = (undotted(name), by_states(&undotted(text), &own));
+        waiting.push((name.clone(), format!("let {name} = {text}"), text));
     }
     let mut moved: Vec<String> = Vec::new();
     for (name, text) in &outcome.differentiated_along {
@@ -53,7 +84,6 @@ fn shown_alone(system: &System, outcome: &Outcome) -> String {
         let others = if text.contains("others'") { "" } else { "  others' = 0" };
         waiting.push((format!("field {name}"), format!("field {name}  {text}{others}"), text));
     }
-    let own: Vec<String> = system.states.iter().map(|state| system.symbol_name(*state).to_owned()).collect();
     let mut states = own.clone();
     for name in moved {
         if !states.contains(&name) {
@@ -96,25 +126,30 @@ fn point(system: &System, seed: u64) -> HashMap<String, RBig> {
     symbols.map(|(i, (symbol, _))| (system.symbol_name(symbol).to_owned(), value(i as u64))).collect()
 }
 
-/// The values of an expression's entries at a point, as far as they exist.
-fn values(system: &mut System, text: &str, point: &HashMap<String, RBig>) -> Vec<Option<RBig>> {
-    let entries = match system.evaluate_text(text).unwrap_or_else(|error| panic!("{error}: {text}")) {
+/// The entries of an expression.
+fn entries(system: &mut System, text: &str) -> Vec<NodeId> {
+    match system.evaluate_text(text).unwrap_or_else(|error| panic!("{error}: {text}")) {
         Value::Scalar(id) => vec![id],
         Value::Matrix(matrix) | Value::Rank(matrix) => matrix.entries,
         Value::Pole { expression, factor } => vec![expression, factor],
         Value::CodistributionRank => Vec::new(),
-    };
-    let at: HashMap<Symbol, RBig> = system
-        .symbols()
-        .filter_map(|(symbol, _)| Some((symbol, point.get(system.symbol_name(symbol))?.clone())))
-        .collect();
-    let value = |id| parse_decimal(&certified_value(&system.graph, id, &at, 20).ok()?.decimal);
-    entries.into_iter().map(value).collect()
+    }
 }
 
-fn near(a: &RBig, b: &RBig, relative: f64) -> bool {
-    let (a, b) = (a.to_f64().value(), b.to_f64().value());
-    (a - b).abs() <= relative * a.abs().max(b.abs()).max(1e-6)
+/// The value of an entry at a point in doubles, if it exists.
+fn value(system: &System, entry: NodeId, point: &HashMap<String, RBig>) -> Option<f64> {
+    let program = Program::new(&system.graph, &[entry], |_| false, false);
+    let inputs = program.inputs().iter().map(|input| match input {
+        Input::Plain(symbol) => point.get(system.symbol_name(*symbol)).map(|value| value.to_f64().value()),
+        _ => None,
+    });
+    let inputs: Vec<f64> = inputs.collect::<Option<_>>()?;
+    let found = program.load(Floats).ok()?.run(&inputs, &mut Vec::new()).ok()?[0];
+    found.is_finite().then_some(found)
+}
+
+fn near(a: f64, b: f64, relative: f64) -> bool {
+    (a - b).abs() <= relative * a.abs().max(b.abs()).max(1.0)
 }
 
 /// The texts of the two sides of each statement of a claim.
@@ -153,7 +188,8 @@ fn every_shown_statement_is_read_back_and_has_its_values() {
             let printed = outcome.printed.as_ref().map(|(statement, _)| statement);
             for (i, statement) in printed.into_iter().chain([&outcome.statement]).enumerate() {
                 if !statement.starts_with("rank =") {
-                    text.push_str(&format!("claim {i}: {}\n", undotted(statement)));
+                    let statement = by_states(&undotted(statement), &own_states(&system));
+                    text.push_str(&format!("claim {i}: {statement}\n"));
                 }
             }
             let mut alone = System::parse("shown", &text, Path::new("")).unwrap_or_else(|error| {
@@ -163,19 +199,19 @@ fn every_shown_statement_is_read_back_and_has_its_values() {
             for claim in 0..alone.claims.len() {
                 let (left, right, free) = sides(&alone, claim).remove(0);
                 for (shown, meant) in [(&left, &whole[claim].0), (&right, &whole[claim].1)] {
-                    for seed in 0..2 {
-                        let at = point(&system, seed);
-                        let (shown, meant) =
-                            (values(&mut alone, shown, &at), values(&mut system, meant, &at));
-                        assert_eq!(shown.len(), meant.len(), "{}: {text}", outcome.id);
-                        for pair in shown.iter().zip(&meant) {
-                            let (Some(a), Some(b)) = pair else {
-                                assert_eq!(pair.0, pair.1, "{}: {text}", outcome.id);
-                                continue;
-                            };
-                            assert!(near(a, b, 1e-15), "{}: {a} {b}\n{text}", outcome.id);
-                            compared += 1;
-                        }
+                    let (shown, meant) = (entries(&mut alone, shown), entries(&mut system, meant));
+                    assert_eq!(shown.len(), meant.len(), "{}: {text}", outcome.id);
+                    // of a large matrix some entries, never the same of two claims
+                    let step = shown.len().div_ceil(3).max(1);
+                    let at = point(&system, place as u64 % 7);
+                    for entry in (place % step..shown.len()).step_by(step) {
+                        let (a, b) = (value(&alone, shown[entry], &at), value(&system, meant[entry], &at));
+                        let (Some(a), Some(b)) = (a, b) else {
+                            assert_eq!(a, b, "{}: {text}", outcome.id);
+                            continue;
+                        };
+                        assert!(near(a, b, 1e-9), "{}: {a} {b}\n{text}", outcome.id);
+                        compared += 1;
                     }
                 }
                 let refuted = match (&outcome.printed, &outcome.verdict) {
@@ -187,13 +223,17 @@ fn every_shown_statement_is_read_back_and_has_its_values() {
                     continue;
                 }
                 let at = shown_point(&system, refuted);
-                for (side, value) in [(&left, &refuted.left), (&right, &refuted.right)] {
-                    let found = values(&mut alone, side, &at);
+                for (side, print) in [(&left, &refuted.left), (&right, &refuted.right)] {
+                    let found = entries(&mut alone, side);
                     let columns = columns(&mut alone, side);
                     let entry = refuted.entry.map_or(0, |(row, column)| (row - 1) * columns + column - 1);
-                    let value = parse_decimal(value).unwrap_or_else(|| panic!("{}: {value}", outcome.id));
-                    let found = found[entry].clone().unwrap();
-                    assert!(near(&found, &value, 1e-9), "{}: {found} {value}\n{text}", outcome.id);
+                    let print = parse_decimal(print).unwrap_or_else(|| panic!("{}: {print}", outcome.id));
+                    let found = value(&alone, found[entry], &at).unwrap();
+                    assert!(
+                        near(found, print.to_f64().value(), 1e-7),
+                        "{}: {found} {print}\n{text}",
+                        outcome.id
+                    );
                     at_witnesses += 1;
                 }
             }
@@ -201,7 +241,7 @@ fn every_shown_statement_is_read_back_and_has_its_values() {
     }
     println!("{compared} values, {definitions} definitions, {at_witnesses} at witnesses");
     assert!(
-        compared > 2000 && definitions > 1000 && at_witnesses > 60,
+        compared > 1000 && definitions > 1000 && at_witnesses > 60,
         "{compared} {definitions} {at_witnesses}"
     );
 }
@@ -212,7 +252,7 @@ fn witness_is_a_rank(left: &str, right: &str) -> bool {
 
 fn columns(system: &mut System, text: &str) -> usize {
     match system.evaluate_text(text).unwrap() {
-        Value::Matrix(matrix) => matrix.columns,
+        Value::Matrix(matrix) | Value::Rank(matrix) => matrix.columns,
         _ => 1,
     }
 }
@@ -245,8 +285,9 @@ fn what_the_graph_prints_is_read_back() {
         at.insert("z".to_owned(), RBig::from(1));
         let Value::Scalar(node) = system.evaluate_text(text).unwrap() else { panic!("{text}") };
         let printed = system.graph.text(node);
-        let pair = (values(&mut system, text, &at), values(&mut system, &printed, &at));
-        assert!(near(pair.0[0].as_ref().unwrap(), pair.1[0].as_ref().unwrap(), 1e-15), "{text}: {printed}");
+        let again = entries(&mut system, &printed)[0];
+        let (meant, read) = (value(&system, node, &at).unwrap(), value(&system, again, &at).unwrap());
+        assert!(near(meant, read, 1e-12), "{text}: {printed}");
     }
     // a long one is whole, and what is too long is described: it is never cut
     let long = (1..200).map(|n| format!("{n}*x^{n}")).collect::<Vec<_>>().join(" + ");

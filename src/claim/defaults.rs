@@ -45,7 +45,9 @@ pub(crate) fn at_the_files_values(
     let word = decide(system, &special).word();
     let named =
         values.into_iter().map(|(symbol, value)| (system.symbol_name(symbol).to_owned(), value)).collect();
-    (word != verdict.word()).then_some(AtFilesValues { values: named, word })
+    // with the values put in a condition may have lost the symbol that it was solved for: that says nothing of the claim
+    let unsolved = word == "undecided" && !statement.conditions.is_empty();
+    (word != verdict.word() && !unsolved).then_some(AtFilesValues { values: named, word })
 }
 
 fn part(statement: &Statement, kind: ExprKind) -> Expr {
@@ -56,11 +58,16 @@ fn part(statement: &Statement, kind: ExprKind) -> Expr {
 /// and angles other than zero, whose sines have no exact value.
 fn values_for(system: &mut System, statement: &Statement) -> Vec<(Symbol, RBig)> {
     let mut nodes: Vec<NodeId> = Vec::new();
+    let mut fixed: Vec<Symbol> = Vec::new();
     for side in [&statement.equation.left, &statement.equation.right] {
         match system.elaborate(side) {
             Ok(Value::Scalar(id)) => nodes.push(id),
             Ok(Value::Matrix(m) | Value::Rank(m)) => nodes.extend(m.entries),
-            Ok(Value::Pole { expression, factor }) => nodes.extend([expression, factor]),
+            Ok(Value::Pole { expression, factor }) => {
+                nodes.push(expression);
+                // the order of a pole is asked where these move
+                fixed.extend(system.graph.symbols_of([factor]));
+            }
             Ok(Value::CodistributionRank) => {
                 nodes.extend(system.outputs.iter().map(|(_, node)| *node));
                 for field in system.moving_fields() {
@@ -70,7 +77,6 @@ fn values_for(system: &mut System, statement: &Statement) -> Vec<(Symbol, RBig)>
             Err(_) => return Vec::new(),
         }
     }
-    let mut fixed = Vec::new();
     for condition in &statement.conditions {
         for side in [&condition.left, &condition.right] {
             if let Ok(node) = system.scalar(side) {
