@@ -78,7 +78,7 @@ fn shipped_certificates_are_found_again() {
 /// A box that is made larger, rows of another minor, an end, a guard: none of it is confirmed.
 #[test]
 fn what_was_changed_is_not_confirmed() {
-    let mut pole = system("state x output x rows = [2 + 1/x^2] sample x in [-1, 1]");
+    let mut pole = system("state x output x\nlet rows = [2 + 1/x^2]\nsample x in [-1, 1]");
     let (boxes, _) = certified(&mut pole, RegionRows::Own, 50);
     assert!(matches!(check(&boxes), Finding::Confirmed { .. }));
     // the honest version of a box alone is confirmed, so that what follows is not refused for its form
@@ -115,12 +115,12 @@ fn what_was_changed_is_not_confirmed() {
 #[test]
 fn rows_that_are_not_independent_are_not_confirmed() {
     let mut three = system(
-        "state x, y output x rows = [1 + x^2, y; x, 3; 2 + 2*x^2, 2*y] sample x in [-1, 1] y in [-1, 1]",
+        "state x, y output x\nlet rows = [1 + x^2, y; x, 3; 2 + 2*x^2, 2*y]\nsample x in [-1, 1] y in [-1, 1]",
     );
     let (boxes, _) = certified(&mut three, RegionRows::Own, 10);
     assert!(matches!(check(&boxes), Finding::Confirmed { .. }));
     let mut proportional = system(
-        "state x, y output x rows = [1 + x^2, y; 2 + 2*x^2, 2*y; x, 3] sample x in [-1, 1] y in [-1, 1]",
+        "state x, y output x\nlet rows = [1 + x^2, y; 2 + 2*x^2, 2*y; x, 3]\nsample x in [-1, 1] y in [-1, 1]",
     );
     let (other, _) = certified(&mut proportional, RegionRows::Own, 10);
     let mut wrong = other.clone();
@@ -133,7 +133,7 @@ fn rows_that_are_not_independent_are_not_confirmed() {
     assert_eq!(check(&sealed(wrong.clone())), Finding::NotConfirmed(Doubt::BoxWithoutMinor(0)));
     wrong.boxes[0].rows = vec![0, 7];
     assert_eq!(check(&sealed(wrong)), Finding::NotConfirmed(Doubt::BoxWithoutMinor(0)));
-    let mut logarithm = system("state x output x rows = [1 + log(x + 2)^2] sample x in [-1, 1]");
+    let mut logarithm = system("state x output x\nlet rows = [1 + log(x + 2)^2]\nsample x in [-1, 1]");
     let (boxes, _) = certified(&mut logarithm, RegionRows::Own, 10);
     let mut outside = boxes.clone();
     outside.ranges[0].low = ratio(-4, 1);
@@ -182,7 +182,7 @@ fn a_certificate_is_rechecked_from_its_file_alone() {
     let file = common::write(
         &folder,
         "blind.proof",
-        "system \"s\" state x drift f x' = 1 output x - x sample x in [0, 1]",
+        "system \"s\" state x drift f x' = 1 output x - x\nsample x in [0, 1]",
     );
     let output = palmistry(&["certify", file.to_str().unwrap(), "--verdicts", name, "--json"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -166,8 +166,8 @@ fn values_exist_where_their_terms_do() {
     assert!(matches!(at("sqrt(x)^2", -1), Err(ValueError::Outside(_))));
     assert!(matches!(at("0*log(x)", -5), Err(ValueError::Outside(_))));
     assert!(matches!(at("(x/x)^0", 0), Err(ValueError::Outside(_))));
-    assert_eq!(at("sqrt(x)^2", 3).as_deref(), Ok("3"));
-    assert_eq!(at("1/(1/x)", -2).as_deref(), Ok("-2"));
+    assert_eq!(at("sqrt(x)^2", 3).as_deref(), Ok("3.000000000"));
+    assert_eq!(at("1/(1/x)", -2).as_deref(), Ok("-2.000000000"));
 }
 
 /// The ranks at one state.
@@ -180,6 +180,7 @@ fn ranks(text: &str, fixed: &[(&str, i64)]) -> BTreeMap<usize, u64> {
         seed: 1,
         wanted: Certainty::Certified,
         digits: None,
+        recorded: 0,
         order: None,
         fixed,
         conditions: Vec::new(),
@@ -218,6 +219,7 @@ fn there_is_no_rank_where_a_field_is_not_defined() {
         seed: 1,
         wanted: Certainty::Certified,
         digits: None,
+        recorded: 0,
         order: None,
         fixed: BTreeMap::new(),
         conditions: Vec::new(),

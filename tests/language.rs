@@ -285,3 +285,42 @@ fn within_takes_no_value_from_the_file() {
     let text = "system \"s\" param k = 2 claim 1: k = 2 within 0.1 claim 2: k at {k = 2} = 2 within 0.1";
     assert_eq!(words(text), ["undecided", "proved"]);
 }
+
+/// A refuted rank names a state and the rank there: by hand 1 for [x, 1; x^2, x], whatever x is, and for k = 0 above.
+#[test]
+fn a_refuted_rank_names_a_state() {
+    let text = "system \"s\" state x, y, z drift f x' = y others' = 0 output x*x\n\
+                claim matrix: rank([x, 1; x^2, x]) = 2\n\
+                claim full: rank = 3\n\
+                claim short: rank = 1\n\
+                claim on_a_set: rank([x, 1; x^2, y]) = 2 where y = x";
+    for outcome in decide_all(&system(text), 1, &false.into(), &|_| ()) {
+        let palmistry::Verdict::Refuted { witness, .. } = &outcome.verdict else { panic!("{outcome:?}") };
+        let value = |name: &str| {
+            let found = witness.state.iter().find(|(other, _, _)| other == name);
+            found.map(|(_, exact, _)| palmistry::number::parse_decimal(exact).unwrap())
+        };
+        let (rank, claimed) = match outcome.id.as_str() {
+            "matrix" | "on_a_set" => ("1", "2"),
+            // d(x^2), d(2xy), d(2y^2): two, outside x = 0 and y = 0
+            "full" => ("2", "3"),
+            _ => ("2", "1"),
+        };
+        assert_eq!((witness.left.as_str(), witness.right.as_str()), (rank, claimed), "{outcome:?}");
+        assert!(value("x").is_some_and(|x| !x.is_zero()), "{outcome:?}");
+        if outcome.id == "on_a_set" {
+            assert_eq!(value("x"), value("y"), "{outcome:?}");
+        }
+    }
+}
+
+/// Two sides that are alike to more digits than are shown at first are shown until they differ.
+#[test]
+fn the_two_sides_of_a_witness_differ_in_print() {
+    let text = "system \"s\" param x claim 1: x + 1/123456789012345678901234567890123456789 = x\n\
+                claim 2: pi + 1/123456789012345678901234567890123456789 = pi claim 3: x + 1e-3000 = x";
+    for outcome in decide_all(&system(text), 1, &false.into(), &|_| ()) {
+        let palmistry::Verdict::Refuted { witness, .. } = &outcome.verdict else { panic!("{outcome:?}") };
+        assert_ne!(witness.left, witness.right, "{outcome:?}");
+    }
+}

@@ -279,7 +279,7 @@ impl Arithmetic for Exact {
                 Err(Refusal::NoExactValue(_)) => {}
                 found => return self.kept(Form::from(found?)),
             }
-            let beyond_one = &(value * value) > &RBig::ONE;
+            let beyond_one = value * value > RBig::ONE;
             match function {
                 Function::Asin | Function::Acos if beyond_one => {
                     return Err(Refusal::OutsideDomain(function));

@@ -181,13 +181,13 @@ impl<'c> Cover<'c> {
                 for (side, distance) in distances.iter().enumerate() {
                     let change = combined(&|place| all.slopes[place * self.sides + side]) * *distance;
                     influences[side] += change.magnitude();
-                    by_slopes = by_slopes + change;
+                    by_slopes += change;
                 }
                 let value = plain.intersection(by_slopes).unwrap_or(Interval::WHOLE);
                 if i == j {
                     diagonal = value.mignitude();
                 } else {
-                    rest = rest + Interval::point(value.magnitude());
+                    rest += Interval::point(value.magnitude());
                 }
             }
             regular &= diagonal > rest.high();

@@ -140,6 +140,7 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
             ClaimBody::Scan { scanned, .. } => Some(scanned.clone()),
             _ => None,
         },
+        pole_of: claim.body.pole_of().map(|expr| in_one_line(&system.source, &expr.span)),
         verdict,
         domain,
         evidence,
@@ -280,7 +281,7 @@ fn attempt(
             found.push((size, branch, verdict));
         }
     }
-    Ok(together(found, &solution.unsolved))
+    Ok(together(&question, found, &solution.unsolved))
 }
 
 /// How a branch stands to the set of all states that meet the conditions.
@@ -362,7 +363,8 @@ impl Question {
 }
 
 /// What the verdicts on all branches come to together.
-fn together(found: Vec<(Size, &Branch, OnOneBranch)>, unsolved: &[String]) -> Verdict {
+fn together(question: &Question, found: Vec<(Size, &Branch, OnOneBranch)>, unsolved: &[String]) -> Verdict {
+    let of_rank = !matches!(question, Question::Identity { .. });
     let several = found.len() > 1;
     let (mut verdicts, mut shown, mut needs) = (Vec::new(), false, Vec::new());
     for (size, branch, on_one) in found {
@@ -382,7 +384,7 @@ fn together(found: Vec<(Size, &Branch, OnOneBranch)>, unsolved: &[String]) -> Ve
                 }
                 verdicts.push(match verdict {
                     // of a rank at almost all states this is no counterexample
-                    Verdict::Refuted { witness, .. } if size == Size::Smaller && witness.state.is_empty() => {
+                    Verdict::Refuted { witness, .. } if size == Size::Smaller && of_rank => {
                         Verdict::undecided(format!(
                             "{place}the rank is {} there, on a branch of fewer dimensions than the set",
                             witness.left

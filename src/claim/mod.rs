@@ -12,6 +12,7 @@ mod evidence;
 mod existence;
 mod identity;
 mod pole;
+mod rank_witness;
 mod ranks;
 mod terms;
 mod value;

@@ -2,7 +2,8 @@
 
 use super::existence::{Existence, existence};
 use super::identity::{OnOneBranch, RANDOM_PRIMES};
-use super::terms::OnBranch;
+use super::rank_witness::{Ranks, rank_witness};
+use super::terms::{OnBranch, Terms};
 use super::verdict::{Verdict, Witness};
 use crate::expression::NodeId;
 use crate::observability::{Branch, Codistribution, GenericRank, Length, Stop, generic_rank};
@@ -22,7 +23,8 @@ pub(crate) fn decide_rank(
 ) -> OnOneBranch {
     let entries = on.terms.sides.clone();
     let exists = existence(system, on, rng);
-    on_one_branch(system, exists, &Rows { entries: &entries, columns, scope: "" }, claimed, rng)
+    let rows = Rows { entries: &entries, columns, scope: "", on };
+    on_one_branch(system, exists, &rows, claimed, rng)
 }
 
 /// Decides `rank = claimed` for the codistribution, on the states of a branch.
@@ -59,7 +61,11 @@ pub(crate) fn decide_codistribution(
         _ => ", and longer words do not raise it",
     };
     let columns = system.states.len();
-    Ok(on_one_branch(system, exists, &Rows { entries: &entries, columns, scope }, claimed, rng))
+    // the rows that give the rank at almost all states: no other row adds to it anywhere
+    let terms = Terms { sides: words.needed_entries(), guards: on.terms.guards.clone(), ..Terms::default() };
+    let needed = OnBranch::new(system, branch, &terms)?;
+    let rows = Rows { entries: &entries, columns, scope, on: &needed };
+    Ok(on_one_branch(system, exists, &rows, claimed, rng))
 }
 
 /// Rows of expressions, one after the other.
@@ -68,6 +74,8 @@ struct Rows<'a> {
     columns: usize,
     /// What is said of them beside their rank.
     scope: &'a str,
+    /// Those of them that give the rank, as terms that a state can be put into.
+    on: &'a OnBranch,
 }
 
 fn on_one_branch(
@@ -96,13 +104,15 @@ fn decide(system: &mut System, rows: &Rows<'_>, claimed: usize, rng: &mut impl R
             Verdict::Proved { engine: format!("{engine}{}", rows.scope), log2_error }
         }
         GenericRank::Rank { rank, .. } => {
-            let witness = Witness {
-                state: Vec::new(),
-                left: rank.to_string(),
-                right: claimed.to_string(),
-                entry: None,
-                refutation: None,
-            };
+            let ranks = Ranks { generic: rank, claimed };
+            let witness =
+                rank_witness(system, rows.on, rows.columns, ranks, rng).unwrap_or_else(|| Witness {
+                    state: Vec::new(),
+                    left: rank.to_string(),
+                    right: claimed.to_string(),
+                    entry: None,
+                    refutation: None,
+                });
             Verdict::Refuted { engine: format!("{RANDOM_PRIMES}{}", rows.scope), witness }
         }
         GenericRank::Pole(divisor) => {

@@ -114,6 +114,8 @@ pub struct Outcome {
     pub definitions: Vec<(String, String)>,
     /// The fields along which these statements differentiate: name and components, as they are written.
     pub differentiated_along: Vec<(String, String)>,
+    /// The expression whose pole the claim is about, as it is written.
+    pub pole_of: Option<String>,
     /// The verdict on the claim, or on the corrected form.
     pub verdict: Verdict,
     /// What has to hold for its terms to exist, in words: the verdict is about states at which all of it does.

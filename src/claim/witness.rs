@@ -76,8 +76,12 @@ fn compare(values: &Values, left: usize, right: usize) -> Comparison {
         Values::Exact(values) if values[left] == values[right] => Comparison::Agree(MOST_DIGITS),
         Values::Exact(values) => {
             let shown = |digits: usize| [&values[left], &values[right]].map(|value| shown(value, digits));
-            let [left, right] = until_they_differ(shown);
-            Comparison::Differ(left, right)
+            let [left_text, right_text] = until_they_differ(shown);
+            match left_text == right_text {
+                // numbers that are alike to thousands of digits are shown as what they are
+                true => Comparison::Differ(values[left].to_string(), values[right].to_string()),
+                false => Comparison::Differ(left_text, right_text),
+            }
         }
         Values::Enclosed(values) => {
             let (left, right) = (&values[left], &values[right]);

@@ -131,7 +131,7 @@ impl Certify {
             pictures(&answer, folder, &mut files);
             files.json(&folder.join("certify.json"), &object);
         }
-        let written = self.write_verdicts(&system, &region, &mut files)?;
+        let written = self.write_verdicts(&system, &region, &mut files);
         if let Some(written) = &written {
             object["verdict_boxes"] = json!({ "written": written.boxes, "left_out": written.left_out });
         }
@@ -188,19 +188,16 @@ impl Certify {
     }
 
     /// Writes what the certificate rests on, where that is asked for.
-    fn write_verdicts(
-        &self,
-        system: &System,
-        region: &Region,
-        files: &mut Files,
-    ) -> miette::Result<Option<WrittenBoxes>> {
-        let Some(path) = &self.verdicts else { return Ok(None) };
+    fn write_verdicts(&self, system: &System, region: &Region, files: &mut Files) -> Option<WrittenBoxes> {
+        let path = self.verdicts.as_ref()?;
         let most = self.verdict_boxes as usize;
-        let (file, written) = certificate_file(system, region, most, &INTERRUPTED)
-            .map_err(|why| Unusable::report(why.to_string(), ""))?;
-        let text = file.text().map_err(|why| Unusable::report(why.to_string(), ""))?;
-        files.text(path, &text);
-        Ok(Some(written))
+        let found = certificate_file(system, region, most, &INTERRUPTED).map_err(|why| why.to_string());
+        let (text, written) = match found {
+            Ok((file, written)) => (file.text().map_err(|why| why.to_string()), Some(written)),
+            Err(why) => (Err(why), None),
+        };
+        files.text_or(path, text);
+        written
     }
 
     fn map_of(&self, system: &System) -> miette::Result<Option<(Symbol, Symbol)>> {

@@ -124,7 +124,7 @@ impl Verb {
             Verb::Verify(verb) => verb.run(),
             Verb::Prove(verb) => verb.run(),
             Verb::Rank(verb) => interrupt::watched(move || verb.run(), nothing),
-            Verb::Recheck(verb) => verb.run(),
+            Verb::Recheck(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Certify(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Trade(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Stress(verb) => verb.run(),

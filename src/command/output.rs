@@ -40,6 +40,14 @@ impl Files {
         self.note(path, written.map_err(|error| format!("cannot write {}: {error}", path.display())));
     }
 
+    /// Writes a text that may have failed to come about: then there is nothing to write, and that is noted.
+    pub fn text_or(&mut self, path: &Path, text: Result<String, impl std::fmt::Display>) {
+        match text {
+            Ok(text) => self.text(path, &text),
+            Err(why) => self.note(path, Err(format!("cannot write {}: {why}", path.display()))),
+        }
+    }
+
     /// Writes a value as JSON, indented.
     pub fn json(&mut self, path: &Path, value: &Value) {
         self.text(path, &format!("{}\n", serde_json::to_string_pretty(value).unwrap_or_default()));

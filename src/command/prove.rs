@@ -17,7 +17,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Decides every claim of proof files.
 ///
 /// Exit status 0 only when each claim has the verdict that its file expects: 'claim' proved (or what 'expect' says),
-/// 'erratum' with the printed form refuted and the corrected one proved.
+/// 'erratum' with the printed form refuted and the corrected one proved. A claim is about all values of its symbols, whatever
+/// values the file gives to parameters; where the verdict at these is another one, that is said too.
 #[derive(Args, Clone)]
 pub(crate) struct Prove {
     /// Proof files, or folders in which every .proof file is taken.
@@ -104,12 +105,12 @@ impl Prove {
         let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
         let mut files = Files::default();
         if let Some(path) = &self.junit {
-            files.text(path, &junit(&outcomes)?);
+            files.text_or(path, junit(&outcomes));
         }
         if let Some(path) = &self.verdicts {
             let records = outcomes.iter().flat_map(|outcome| outcome.evidence.iter().cloned()).collect();
             let text = VerdictFile::new(self.seed, records).text();
-            files.text(path, &text.map_err(|why| Unusable::report(why.to_string(), ""))?);
+            files.text_or(path, text);
         }
         let object = json!({
             "ok": failed == 0 && !interrupted(),

@@ -88,7 +88,7 @@ impl Rank {
             let text = records.map_err(|why| why.to_string()).and_then(|records| {
                 VerdictFile::new(self.seed, records).text().map_err(|why| why.to_string())
             });
-            files.text(path, &text.map_err(|why| Unusable::report(why, ""))?);
+            files.text_or(path, text);
         }
         let status = if answer.interrupted() { Status::NotAsExpected } else { Status::AsExpected };
         files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)

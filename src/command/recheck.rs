@@ -1,13 +1,13 @@
 //! `palmistry recheck`: verdicts of a file, evaluated again by the checker alone.
 
-use super::interrupt::INTERRUPTED;
+use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::{CheckedVerdict, Effort, Evidence, Finding, LARGEST_FILE, VerdictFile};
+use palmistry::file::read_text;
 use serde_json::{Value, json};
-use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Checks a file of verdicts that 'prove', 'rank' or 'certify' wrote with '--verdicts', and needs no other file.
 ///
@@ -30,18 +30,20 @@ pub(crate) struct Recheck {
 impl Recheck {
     pub fn run(self) -> miette::Result<Status> {
         let unusable = |why: String| Unusable::report(format!("{}: {why}", self.file.display()), "");
-        let text = read(&self.file).map_err(unusable)?;
+        let text = read_text(&self.file, LARGEST_FILE).map_err(|why| unusable(why.to_string()))?;
         let file = VerdictFile::read(&text).map_err(|why| unusable(why.to_string()))?;
         drop(text);
         let bar = progress(file.verdicts.len() as u64, "checking verdicts");
         let checked = file.check(self.seed, &Effort::default(), &INTERRUPTED, &|| bar.inc(1));
         bar.finish_and_clear();
+        begin_to_tell();
         let failed =
             checked.iter().filter(|verdict| matches!(verdict.finding, Finding::NotConfirmed(_))).count();
         let words = ["confirmed", "consistent", "not checked", "NOT CONFIRMED"];
         let count = |word: &str| checked.iter().filter(|verdict| verdict.finding.word() == word).count();
         let object = json!({
-            "ok": failed == 0,
+            "ok": failed == 0 && !interrupted(),
+            "interrupted": interrupted(),
             "tool": file.tool,
             "confirmed": count("confirmed"),
             "consistent": count("consistent"),
@@ -59,22 +61,9 @@ impl Recheck {
             let lines: Vec<String> = checked.iter().map(verdict_line).collect();
             format!("{}\n{} verdicts: {}", lines.join("\n"), checked.len(), counts.join(", "))
         };
-        let status = if failed == 0 { Status::AsExpected } else { Status::NotAsExpected };
+        let status = if failed == 0 && !interrupted() { Status::AsExpected } else { Status::NotAsExpected };
         Files::default().print(Form::of(self.json), object, in_words, status)
     }
-}
-
-/// The text of a plain file of bounded length.
-fn read(path: &Path) -> Result<String, String> {
-    let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
-    let metadata = file.metadata().map_err(|error| error.to_string())?;
-    if !metadata.is_file() {
-        return Err("it is no plain file".to_owned());
-    }
-    let mut text = String::new();
-    // one byte more than is allowed tells a file that is too long
-    file.take(LARGEST_FILE + 1).read_to_string(&mut text).map_err(|error| error.to_string())?;
-    Ok(text)
 }
 
 fn finding_text(finding: &Finding) -> String {

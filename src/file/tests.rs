@@ -1,7 +1,6 @@
 //! Oracle: the file system itself, looked at before and after.
 
 use super::*;
-use std::io::Write;
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()

@@ -10,7 +10,9 @@ use super::verification::ranks_in_words;
 use crate::claim::{Outcome, Verdict};
 use crate::observability::RankAnswer;
 use crate::tradeoff::Rows;
-use crate::verification::{Appendix, RegimeResult, Verification, equations, in_order_of_the_thesis};
+use crate::verification::{
+    Appendix, DETERMINANT, RegimeResult, Verification, equations, in_order_of_the_thesis,
+};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");
@@ -321,7 +323,7 @@ fn appendix(found: &Appendix, outcomes: &[Outcome]) -> Markup {
             table {
                 thead { tr { th { "the factor that vanishes, and the order of the pole" } th { "verdict" } } }
                 tbody {
-                    @for outcome in outcomes.iter().filter(|outcome| outcome.statement.starts_with("pole(det(A)")) {
+                    @for outcome in outcomes.iter().filter(|outcome| outcome.pole_of.as_deref() == Some(DETERMINANT)) {
                         tr {
                             td.words { code { (outcome.statement) } }
                             td.words { (outcome.word()) ": " (explain(&outcome.verdict)) }

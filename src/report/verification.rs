@@ -8,7 +8,9 @@ use super::stress::stress_json;
 use super::trade::trade_json;
 use crate::observability::RankAnswer;
 use crate::tradeoff::{Map, Rows, Slope};
-use crate::verification::{PrintedValue, RegimeResult, Verification, equations, in_order_of_the_thesis};
+use crate::verification::{
+    DETERMINANT, PrintedValue, RegimeResult, Verification, equations, in_order_of_the_thesis,
+};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -194,7 +196,7 @@ pub fn verification_text(found: &Verification) -> String {
             );
         }
     }
-    for outcome in found.outcomes.iter().filter(|outcome| outcome.statement.starts_with("pole(det(A)")) {
+    for outcome in found.outcomes.iter().filter(|outcome| outcome.pole_of.as_deref() == Some(DETERMINANT)) {
         let _ = writeln!(out, "  {}: {}", outcome.word(), outcome.statement);
     }
     let count = |word: &str| found.outcomes.iter().filter(|outcome| outcome.word() == word).count();

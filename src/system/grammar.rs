@@ -73,6 +73,16 @@ impl ClaimBody {
         }
     }
 
+    /// The expression whose pole a statement is about, of `pole(e, x) = n`.
+    pub fn pole_of(&self) -> Option<&Expr> {
+        self.statements().into_iter().flat_map(|s| [&s.equation.left, &s.equation.right]).find_map(|side| {
+            match &side.kind {
+                ExprKind::Call(name, arguments) if name == "pole" => arguments.first(),
+                _ => None,
+            }
+        })
+    }
+
     /// Whether a statement is about `rank`, the rank of the observability codistribution.
     pub fn is_about_the_codistribution(&self) -> bool {
         let is_rank = |side: &Expr| matches!(&side.kind, ExprKind::Name(name) if name == "rank");

@@ -299,7 +299,10 @@ impl System {
                 "the second one",
             ));
         }
-        if let (Role::Drift, Some(first)) = (role, self.drift()) {
+        // asked in this order: a file of many fields is not gone through for each of them
+        if role == Role::Drift
+            && let Some(first) = self.drift()
+        {
             let message = format!("there is a drift '{}' already", self.fields[first].name);
             return Err(Problem::new(&name.span, message, "the second one").help(format!(
                 "write 'input {0}' if it is driven, 'field {0}' if it is only differentiated along",

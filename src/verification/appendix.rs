@@ -43,8 +43,8 @@ pub struct Appendix {
     pub values: Vec<PrintedValue>,
 }
 
-/// The matrix of appendix A.2.
-const MATRIX: &str = "det(A)";
+/// The determinant of appendix A.2, as the file writes it.
+pub const DETERMINANT: &str = "det(A)";
 /// The digits that a computer-algebra system carries by default.
 const PRINTED_DIGITS: usize = 10;
 /// The orders in which the monomials are added up.
@@ -58,9 +58,9 @@ const CERTIFIED_DIGITS: usize = 40;
 /// In words, where the file has no such matrix or a value cannot be computed.
 pub fn printed_values(system: &System, seed: u64) -> Result<Appendix, String> {
     let mut system = system.clone();
-    let determinant = match system.evaluate_text(MATRIX).map_err(|error| error.to_string())? {
+    let determinant = match system.evaluate_text(DETERMINANT).map_err(|error| error.to_string())? {
         Value::Scalar(node) => node,
-        other => return Err(format!("{MATRIX} is {}", other.describe())),
+        other => return Err(format!("{DETERMINANT} is {}", other.describe())),
     };
     let angles = system.angles();
     let expansion = expand(&mut system.graph, determinant, |symbol| angles.contains(&symbol))?;
@@ -69,7 +69,7 @@ pub fn printed_values(system: &System, seed: u64) -> Result<Appendix, String> {
         let ClaimBody::Erratum { printed, .. } = &claim.body else { continue };
         let ExprKind::At(inner, _) = &printed.equation.left.kind else { continue };
         let ExprKind::Number(_) = &printed.equation.right.kind else { continue };
-        if in_one_line(&system.source, &inner.span) == MATRIX {
+        if in_one_line(&system.source, &inner.span) == DETERMINANT {
             let (left, right) = (&printed.equation.left, &printed.equation.right);
             values.push(examine(&mut system, &claim.id, determinant, &expansion, left, right, seed)?);
         }

@@ -11,7 +11,7 @@ mod regimes;
 mod routes;
 mod stress;
 
-pub use appendix::{Appendix, PrintedValue, printed_values};
+pub use appendix::{Appendix, DETERMINANT, PrintedValue, printed_values};
 pub use dimensions::{DIMENSIONS, UNIT_SYSTEMS, dimension};
 pub use equations::{Equation, NUMBERED, equations, in_order_of_the_thesis};
 pub use motion::SCENES;

@@ -7,6 +7,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+use palmistry::checker::{Effort, VerdictFile};
+use palmistry::claim::{Kept, decide_all_keeping};
 use palmistry::experiment::Scene;
 use palmistry::observability::region::{Limits, Region, RegionRows};
 use palmistry::observer::{FaultRules, OnFault, Record};
@@ -284,7 +286,7 @@ fn expression() {
 /// The state of a search, as `certify --state` keeps it. What was damaged is refused: nothing is taken up from it.
 #[test]
 fn journal() {
-    let text = "system \"s\" state x field f x' = x output x^2 sample x in [-1, 2]";
+    let text = "system \"s\" state x drift f x' = x output x^2 sample x in [-1, 2]";
     let mut system = System::parse("e.proof", text, Path::new("")).unwrap();
     let mut region =
         Region::new(&mut system, RegionRows::Codistribution(None), &BTreeMap::new(), None).unwrap();
@@ -300,4 +302,24 @@ fn journal() {
         }
     });
     reader.try_all(&[saved.into_bytes()]);
+}
+
+/// What `--verdicts` writes, as `recheck` reads it.
+#[test]
+fn verdicts() {
+    let text = "system \"s\" state x, y drift f x' = y y' = x output x\nclaim 1: (x + 1)^2 = x^2 + 2*x + 1\n\
+                claim 2 expect refuted: x = y\nclaim 3: rank = 2\n";
+    let system = System::parse("v.proof", text, Path::new("")).unwrap();
+    let outcomes = decide_all_keeping(Kept::Evidence, &system, 1, &false.into(), &|_| ());
+    let records: Vec<_> = outcomes.into_iter().flat_map(|outcome| outcome.evidence).collect();
+    assert!(records.len() >= 3, "{} records", records.len());
+    let whole = VerdictFile::new(1, records).text().unwrap();
+    let reader = Watched::new("verdicts", |bytes| {
+        if let Ok(text) = std::str::from_utf8(bytes)
+            && let Ok(file) = VerdictFile::read(text)
+        {
+            let _ = file.check(1, &Effort::default(), &false.into(), &|| ()).len();
+        }
+    });
+    reader.try_all(&[whole.into_bytes()]);
 }

@@ -26,11 +26,11 @@ struct Question {
 }
 
 /// Boxes that are looked at in a search.
-const BOXES: u64 = 400;
+const BOXES: u64 = 200;
 
 #[test]
 fn boxes_that_are_proved() {
-    let found = Findings::of("boxes that are proved", 500, one_case);
+    let found = Findings::of("boxes that are proved", 240, one_case);
     found.assert_no_fault("boxes_that_are_proved");
     if found.is_whole() {
         for class in ["own rows", "codistribution"] {

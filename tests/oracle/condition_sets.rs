@@ -78,7 +78,7 @@ pub fn through(point: &Point, dice: &mut Dice) -> Option<Equation> {
             let wave = dice.wave(&ANGLES);
             Equation::new(wave.clone(), at(&wave)?)
         }
-        8 => Equation::new(x.clone(), { angle.clone().plus(at(&x.minus(angle))?) }),
+        8 => Equation::new(x.clone(), angle.clone().plus(at(&x.minus(angle))?)),
         9 => Equation::new(x.clone(), angle),
         10 => {
             let e = x.of(Function::Tan).of(Function::Atan);

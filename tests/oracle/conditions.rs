@@ -23,7 +23,7 @@ struct Set {
 
 #[test]
 fn claims_on_sets() {
-    let found = Findings::of("claims on sets", 700, one_case);
+    let found = Findings::of("claims on sets", 500, one_case);
     found.assert_no_fault("claims_on_sets");
     if found.is_whole() {
         for (class, what) in

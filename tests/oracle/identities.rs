@@ -37,7 +37,7 @@ enum Truth {
 
 #[test]
 fn identities_and_near_misses() {
-    let found = Findings::of("identities and near misses", 700, one_case);
+    let found = Findings::of("identities and near misses", 500, one_case);
     found.assert_no_fault("identities_and_near_misses");
     if found.is_whole() {
         let (proved, open) = (found.counted("true", "proved"), found.counted("true", "undecided"));

@@ -18,7 +18,7 @@ const SYMBOLS: [Symbol; 2] = ["x", "y"];
 
 #[test]
 fn laws_numbers_and_matrices() {
-    let found = Findings::of("laws, numbers and matrices", 500, one_case);
+    let found = Findings::of("laws, numbers and matrices", 400, one_case);
     found.assert_no_fault("laws_numbers_and_matrices");
     if found.is_whole() {
         for (class, what) in [
@@ -30,7 +30,7 @@ fn laws_numbers_and_matrices() {
             ("rank of a matrix", "refuted"),
         ] {
             let count = found.counted(class, what);
-            assert!(count > 20, "{class}: only {count} {what}");
+            assert!(count > 10, "{class}: only {count} {what}");
         }
     }
 }
@@ -239,7 +239,7 @@ fn numbers(dice: &mut Dice, findings: &mut Findings) {
 
 /// Whether an expression does not depend on `k` after all.
 fn cancels(e: &E, x: &RBig, dice: &mut Dice) -> bool {
-    let mut at = |dice: &mut Dice| {
+    let at = |dice: &mut Dice| {
         let number = |value: RBig| Coordinate::Number(Number::Rational(value));
         value(e, &Point::of([("x", number(x.clone())), ("k", number(dice.positive()))]))
     };

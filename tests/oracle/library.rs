@@ -26,6 +26,8 @@ pub struct Said {
     /// The engine, or why it is undecided.
     pub why: String,
     pub witness: Option<Shown>,
+    /// The verdict at the values that the file gives to parameters, where it is another one.
+    pub at_files_values: Option<&'static str>,
 }
 
 /// A witness as it is printed.
@@ -60,7 +62,8 @@ fn said(outcome: &Outcome) -> Said {
         Verdict::Undecided { why } => (Word::Undecided, why.clone(), None),
         other => (Word::Undecided, other.word().to_owned(), None),
     };
-    Said { id: outcome.id.clone(), word, why, witness }
+    let at_files_values = outcome.at_files_values.as_ref().map(|special| special.word);
+    Said { id: outcome.id.clone(), word, why, witness, at_files_values }
 }
 
 /// The verdicts on the claims of a proof file.
@@ -118,6 +121,7 @@ fn rank_of(
                 order: None,
                 fixed,
                 conditions: conditions.to_vec(),
+                recorded: 0,
                 interrupt: &false.into(),
                 progress: &|_| (),
             },

@@ -25,6 +25,7 @@ mod number;
 mod point;
 mod rank;
 mod rank_sets;
+mod reading;
 mod rewriting;
 mod series;
 mod system;

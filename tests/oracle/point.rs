@@ -2,6 +2,7 @@
 
 use super::expression::{Expression, Symbol};
 use super::number::{Number, Trouble, float, is_blurred, threshold};
+use super::reading::read_constant;
 use super::series::value;
 use dashu::base::Abs;
 use dashu::rational::RBig;
@@ -90,7 +91,7 @@ impl Point {
                 Some((sine, cosine)) => {
                     Coordinate::Angle { sine: rational(sine)?, cosine: rational(cosine)? }
                 }
-                None => Coordinate::Number(multiple_of_pi(text)?),
+                None => Coordinate::Number(value(&read_constant(text)?, &Point::default()).ok()?),
             };
             point.put(name, coordinate);
         }
@@ -101,26 +102,6 @@ impl Point {
 /// `-3/2`.
 pub fn rational(text: &str) -> Option<RBig> {
     text.trim().parse().ok()
-}
-
-/// A rational, or a rational multiple of pi in one of the usual ways: `pi`, `-pi/2`, `3*pi/2`, `2 pi`.
-fn multiple_of_pi(text: &str) -> Option<Number> {
-    if let Some(value) = rational(text) {
-        return Some(Number::Rational(value));
-    }
-    let plain: String = text.chars().filter(|c| !matches!(c, ' ' | '*' | '(' | ')')).collect();
-    let (before, after) = plain.split_once("pi")?;
-    let before = match before {
-        "" => RBig::ONE,
-        "-" => RBig::from(-1),
-        text => rational(text)?,
-    };
-    let after = match after.strip_prefix('/') {
-        Some(text) => rational(text)?,
-        None if after.is_empty() => RBig::ONE,
-        None => return None,
-    };
-    Some(Number::turns(before / after))
 }
 
 /// What two sides come to at a state.

@@ -65,14 +65,6 @@ impl Series {
         Series(self.0.iter().map(|(e, value)| (*e, value.negative())).collect())
     }
 
-    fn scaled(&self, factor: &Number) -> Series {
-        let mut found = Series::default();
-        for (exponents, value) in &self.0 {
-            found.put(*exponents, value.multiply(factor));
-        }
-        found
-    }
-
     pub fn multiply(&self, other: &Series, space: &Space) -> Series {
         let mut found = Series::default();
         for (a, x) in &self.0 {

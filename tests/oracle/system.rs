@@ -4,7 +4,7 @@ use super::expression::{Expression, Symbol};
 
 /// How `rank` finds the fields that count. Where it is set, fields are written with their roles, `drift` and `input`,
 /// and a plain `field` is only differentiated along.
-pub const ROLES_ARE_WRITTEN: bool = false;
+pub const ROLES_ARE_WRITTEN: bool = true;
 
 /// What a field is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -69,7 +69,7 @@ pub fn draw(class: &str, dice: &mut Dice) -> Model {
         "hidden states" => return hidden(dice),
         "a parameter with a value" => {
             let value = dice.one_of(&["0", "1", "2", "0", "-1"]);
-            model.parameters = vec![("k", Some(value.to_owned())), ("c", None)];
+            model.parameters = vec![("k", Some(value.to_owned()))];
         }
         _ => {}
     }
@@ -238,6 +238,21 @@ fn claims(class: &str, model: &Model, dice: &mut Dice, findings: &mut Findings) 
         Ok(said) => said,
         Err(why) => return findings.fault("a system is not answered", why, &text),
     };
+    let special = at_files_values(model, dice);
+    if let Some(special) = special.filter(|special| *special != truth)
+        && said[truth].word == Word::Proved
+    {
+        // the rank is another one at the file's values, and that has to be said
+        match said[truth].at_files_values {
+            Some("refuted" | "undecided") => findings.count(class, "told of the rank at the file's values"),
+            other => {
+                let detail = format!(
+                    "rank = {truth} is proved, at the file's values it is {special}, and is {other:?}"
+                );
+                findings.fault("nothing is said of the file's values", detail, &text);
+            }
+        }
+    }
     for (rank, said) in said.iter().enumerate() {
         let detail = format!("rank = {rank} is {:?} ({}), the generic rank is {truth}", said.word, said.why);
         match (said.word, rank == truth) {
@@ -251,6 +266,18 @@ fn claims(class: &str, model: &Model, dice: &mut Dice, findings: &mut Findings) 
             }
         }
     }
+}
+
+/// The generic rank where parameters have the values of the file, if any are given.
+fn at_files_values(model: &Model, dice: &mut Dice) -> Option<usize> {
+    let mut special = model.clone();
+    for (name, value) in &model.parameters {
+        let value = Expression::Number(value.as_ref()?.parse().ok()?);
+        let put = |e: &mut Expression| *e = e.with(name, &value);
+        special.outputs.iter_mut().for_each(put);
+        special.fields.iter_mut().flat_map(|field| &mut field.rates).for_each(put);
+    }
+    if special.parameters.is_empty() { None } else { generic_rank(&special, dice) }
 }
 
 /// The rank at given states. Angles are put at zero, the only angle that is exact for the command.

@@ -23,7 +23,7 @@ use std::time::Duration;
 const HUNG: Duration = Duration::from_secs(240);
 
 /// A small system with something for each command.
-const SMALL: &str = "system \"small\"\nstate x, y\nfield f\n  x' = y\n  y' = -x + x^2\noutput x\nlet rows = [x + 2, y; y, x + 3]\n\
+const SMALL: &str = "system \"small\"\nstate x, y\ndrift f\n  x' = y\n  y' = -x + x^2\noutput x\nlet rows = [x + 2, y; y, x + 3]\n\
                      sample x in [1/2, 1] y in [1/2, 1]\nclaim 1: L(f, x) = y\nclaim 2: rank = 2\n";
 
 fn program(arguments: &[&str]) -> Command {

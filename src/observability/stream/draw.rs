@@ -156,7 +156,7 @@ impl<'a, L: Lanes> Drawer<'a, L> {
                 let Some(axis) = self.axes.get(place) else { break };
                 let parts = unit(words);
                 let row = &mut self.values[place * self.states + start..][..N];
-                if N % L::COUNT == 0 {
+                if N.is_multiple_of(L::COUNT) {
                     for lane in (0..N).step_by(L::COUNT) {
                         axis.at(self.zero.load(&parts[lane..])).store(&mut row[lane..]);
                     }

@@ -268,7 +268,8 @@ mod tests {
         for case in 0..203 {
             // from nearly diagonal, two sweeps, to far from it, six
             let far = 10f64.powi(-(case % 12));
-            let entry = |place: usize| if place % 7 == 0 { 1.0 } else { far * rng.random_range(-1.0..1.0) };
+            let entry =
+                |place: usize| if place.is_multiple_of(7) { 1.0 } else { far * rng.random_range(-1.0..1.0) };
             matrices.push((0..36).map(entry).collect());
         }
         matrices[17][3] = f64::NAN;
