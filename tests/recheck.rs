@@ -473,3 +473,47 @@ fn what_cannot_be_read_ends_with_status_two() {
         );
     }
 }
+
+/// Claims of the thesis through the program and back: every refutation is confirmed, and none is after its sides were made one,
+/// what is printed was changed, or a value of the witness was taken away.
+#[test]
+fn claims_go_through_a_file_and_back() {
+    let folder = folder();
+    let verdicts = folder.path().join("verdicts.json").to_string_lossy().into_owned();
+    let files = ["proofs/moll2002/chapter3_balance.proof", "proofs/moll2002/appendix_a1.proof"];
+    let proved = palmistry(&["prove", files[0], files[1], "--verdicts", &verdicts]);
+    assert!(proved.status.success(), "{}", String::from_utf8_lossy(&proved.stdout));
+    let output = palmistry(&["recheck", &verdicts, "--json"]);
+    let found = printed_json(&output);
+    assert_eq!(output.status.code(), Some(0), "{found}");
+    let of = |kind: &str, finding: &str| {
+        let list = found["verdicts"].as_array().expect("a list");
+        list.iter().filter(|verdict| verdict["kind"] == kind && verdict["finding"] == finding).count()
+    };
+    assert!(of("refuted", "confirmed") >= 10 && of("proved", "consistent") >= 20, "{found}");
+    assert_eq!(of("refuted", "consistent") + found["not_confirmed"].as_u64().unwrap_or(1) as usize, 0);
+
+    let text = std::fs::read_to_string(&verdicts).expect("the file is there");
+    let whole: Value = serde_json::from_str(&text).expect("it is JSON");
+    let tamper: [fn(&mut Value); 3] = [
+        |refuted| refuted["sides"]["right"] = refuted["sides"]["left"].clone(),
+        |refuted| refuted["printed"]["left"] = json!("123456789/7"),
+        |refuted| refuted["state"] = json!({}),
+    ];
+    let mut tampered = 0;
+    for index in 0..whole["verdicts"].as_array().map_or(0, Vec::len) {
+        let verdict = &whole["verdicts"][index];
+        // without symbols there is no witness to be taken away
+        if verdict["evidence"]["refuted"]["state"].as_object().is_none_or(serde_json::Map::is_empty) {
+            continue;
+        }
+        for change in tamper {
+            let mut file = whole.clone();
+            file["verdicts"] = json!([verdict]);
+            change(&mut file["verdicts"][0]["evidence"]["refuted"]);
+            doubt(&file);
+            tampered += 1;
+        }
+    }
+    assert!(tampered >= 20, "{tampered}");
+}
