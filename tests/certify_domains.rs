@@ -1,7 +1,6 @@
 //! Certificates where terms do not exist: what the graph simplifies away guards the box all the same. Poles and edges of
 //! domains are known by construction, so that exact points on them are the oracle: none may lie in a proved box.
 
-use std::f64::consts::FRAC_PI_2;
 use dashu::rational::RBig;
 use palmistry::System;
 use palmistry::expression::Symbol;
@@ -10,6 +9,7 @@ use palmistry::observability::region::{Limits, Region, RegionAnswer, RegionRows,
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
 const ALL: RegionRows = RegionRows::Codistribution(None);

@@ -181,7 +181,7 @@ impl<'c> Cover<'c> {
                 for (side, distance) in distances.iter().enumerate() {
                     let change = combined(&|place| all.slopes[place * self.sides + side]) * *distance;
                     influences[side] += change.magnitude();
-                    by_slopes = by_slopes + change;
+                    by_slopes += change;
                 }
                 *entry_of_product = plain.intersection(by_slopes).unwrap_or(Interval::WHOLE);
             }
@@ -269,7 +269,9 @@ fn without_single_entries(minor: &[&[usize]], values: &[Option<Interval>]) -> Ve
         });
         let Some((at, column)) = single else { return rows };
         rows.remove(at);
-        rows.iter_mut().for_each(|row| drop(row.remove(column)));
+        for row in &mut rows {
+            row.remove(column);
+        }
     }
 }
 
