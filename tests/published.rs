@@ -47,10 +47,8 @@ fn by_states(text: &str, states: &[String]) -> String {
                 open.push((differential, false));
             }
             ',' => open.iter_mut().last().into_iter().for_each(|(_, comma)| *comma = true),
-            ')' | ']' | '}' => {
-                if open.pop() == Some((true, false)) {
-                    out.push_str(&format!(", {}", states.join(", ")));
-                }
+            ')' | ']' | '}' if open.pop() == Some((true, false)) => {
+                out.push_str(&format!(", {}", states.join(", ")));
             }
             _ => {}
         }
@@ -196,9 +194,9 @@ fn every_shown_statement_is_read_back_and_has_its_values() {
                 panic!("{}: {error} at {:?}\n{text}", outcome.id, error.line_and_column())
             });
             let whole = sides(&system, place);
-            for claim in 0..alone.claims.len() {
+            for (claim, of_the_file) in whole.iter().enumerate().take(alone.claims.len()) {
                 let (left, right, free) = sides(&alone, claim).remove(0);
-                for (shown, meant) in [(&left, &whole[claim].0), (&right, &whole[claim].1)] {
+                for (shown, meant) in [(&left, &of_the_file.0), (&right, &of_the_file.1)] {
                     let (shown, meant) = (entries(&mut alone, shown), entries(&mut system, meant));
                     assert_eq!(shown.len(), meant.len(), "{}: {text}", outcome.id);
                     // of a large matrix some entries, never the same of two claims
