@@ -230,3 +230,18 @@ fn there_is_no_rank_where_a_field_is_not_defined() {
     let full = answer.branches[0].full.rank_histogram.get(&1).copied().unwrap_or(0);
     assert!((1500..2500).contains(&full), "{full} of 4000 states lie above zero");
 }
+
+#[test]
+fn a_trade_over_no_rows_is_refused_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("constant.proof");
+    let text = "system \"s\" state x, y drift f x' = y y' = x output 3 sample x in [1,2] y in [1,2]";
+    std::fs::write(&file, text).unwrap();
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_palmistry"))
+        .args(["trade", "--json"])
+        .arg(&file)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("there are no rows"));
+}

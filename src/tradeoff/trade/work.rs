@@ -121,6 +121,10 @@ impl Work {
         let rows = Rows::of(&mut system)?;
         let angles = system.angles();
         let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        if rows.entries.is_empty() {
+            let why = "no output changes with the states: there are no rows, their rank is 0, and nothing is to be traded";
+            return Err(format!("{}: {why}", system.name));
+        }
         let entries = expand_angles(&mut system.graph, &rows.entries, is_angle);
         let constant = |place: &usize| system.graph.constant_value(entries[*place]).is_some();
         let varying: Vec<usize> = (0..entries.len()).filter(|place| !constant(place)).collect();
