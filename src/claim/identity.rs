@@ -6,7 +6,9 @@ use super::terms::OnBranch;
 use super::value::{ValueError, enclose};
 use super::verdict::{Verdict, Witness};
 use super::witness::{Search, search};
-use crate::expression::{Guard, NodeId, Program, Symbol, ZeroTest, expand_angles, identically_zero};
+use crate::expression::{
+    Guard, NodeId, Program, Related, Symbol, ZeroTest, expand_angles, identically_zero, zero_by_relations,
+};
 use crate::system::System;
 use dashu::rational::RBig;
 use rand::Rng;
@@ -56,6 +58,17 @@ pub(crate) fn decide_identity(
             (index..index + 1, "the sides differ as expressions in their functions".to_owned())
         }
         ZeroTest::Unknown(why) => (0..differences.len(), why),
+    };
+    let why = match zero_by_relations(&mut system.graph, &differences, &on.terms.guards, rng) {
+        Related::Zero { log2_error, used, .. } => {
+            let engine = format!("{RANDOM_PRIMES}, with what is known of {used}");
+            return match existence(system, on, rng) {
+                Existence::Nowhere(guard) => OnOneBranch::Empty(guard),
+                found => OnOneBranch::Verdict(proved(&engine, log2_error), found),
+            };
+        }
+        Related::NotShown(why) => why,
+        Related::NoFunctions => why,
     };
     match search(system, on, suspects, rng) {
         Search::Found { witness, point, entry, exact } => {

@@ -1,0 +1,84 @@
+//! Sums of principal values: a sum is zero exactly if its sine is zero, its cosine one, and it lies between whole turns.
+
+use super::form::{Form, as_variable};
+use super::generators::Key;
+use super::signs::CONSTANT_BITS;
+use super::{Adjunction, Halt};
+use crate::expression::NodeId;
+use crate::number::{Arithmetic, Enclosures, Function};
+use dashu::rational::RBig;
+
+impl Adjunction<'_> {
+    /// Whether a sum of multiples of inverse sines, inverse tangents and pi is shown to be zero.
+    ///
+    /// # Errors
+    /// Where the pass has to begin anew.
+    pub(super) fn is_zero_sum_of_values(&mut self, node: NodeId) -> Result<bool, Halt> {
+        let Some(form) = self.form(node) else { return Ok(false) };
+        let pi = self.pi();
+        let mut whole = RBig::ONE;
+        for (monomial, factor) in &form.0 {
+            let key = as_variable(monomial).map(|variable| self.generators.key(variable));
+            match key {
+                _ if pi.0.contains_key(monomial) => {}
+                // that many times the sum has sines of whole multiples
+                Some(Key::Value(..)) => {
+                    let denominator = RBig::from((factor * &whole).denominator().clone());
+                    whole *= denominator;
+                }
+                _ => return Ok(false),
+            }
+        }
+        let form = form.scaled(&whole);
+        if !self.is_within_a_turn(&form) {
+            return Ok(false);
+        }
+        let (sine, cosine) = self.circular(&form)?;
+        let one = self.graph.integer(1);
+        let rest = self.graph.sub(cosine, one);
+        Ok(self.is_zero(&[sine, rest]))
+    }
+
+    /// Whether a sum of values and multiples of pi lies between minus and plus a whole turn, the ends not counted.
+    fn is_within_a_turn(&self, form: &Form) -> bool {
+        let (mut low, mut high) = (RBig::ZERO, RBig::ZERO); // in parts of pi
+        let (mut open_below, mut open_above) = (false, false);
+        for (monomial, factor) in &form.0 {
+            let value = as_variable(monomial).map(|variable| self.generators.key(variable));
+            let (least, most) = match value {
+                Some(Key::Value(function, inner)) => {
+                    let (ends, open) = self.range(*function, inner);
+                    open_below |= if *factor > RBig::ZERO { open.0 } else { open.1 };
+                    open_above |= if *factor > RBig::ZERO { open.1 } else { open.0 };
+                    ends
+                }
+                _ => (RBig::ONE, RBig::ONE),
+            };
+            let ends = (&least * factor, &most * factor);
+            let (least, most) = if ends.0 <= ends.1 { ends } else { (ends.1, ends.0) };
+            low += least;
+            high += most;
+        }
+        let two = RBig::from(2);
+        (low > -two.clone() || open_below && low == -two.clone()) && (high < two || open_above && high == two)
+    }
+
+    /// Between which parts of pi the value of an inverse function lies, and whether it takes neither end.
+    fn range(&self, function: Function, inner: &Form) -> ((RBig, RBig), (bool, bool)) {
+        let numbers = Enclosures::new(CONSTANT_BITS);
+        let constant = self.enclosed(inner, CONSTANT_BITS).and_then(|value| {
+            let value = numbers.apply(function, &value)?;
+            numbers.div(&value, &numbers.pi()?)
+        });
+        if let Ok(value) = constant {
+            return ((value.low(), value.high()), (false, false));
+        }
+        let half = RBig::from_parts(1.into(), 2u8.into());
+        let open = function == Function::Atan;
+        match self.sign(inner) {
+            Some(true) => ((RBig::ZERO, half), (false, open)),
+            Some(false) => ((-half, RBig::ZERO), (open, false)),
+            None => ((-half.clone(), half), (open, open)),
+        }
+    }
+}
