@@ -11,7 +11,7 @@ use dashu::integer::IBig;
 use dashu::rational::RBig;
 
 /// Multiples of an angle beyond this are left alone.
-const LARGEST_MULTIPLE: i64 = 64;
+const LARGEST_MULTIPLE: i64 = 1 << 12;
 /// Values of inverse functions are looked for among the multiples of pi over numbers up to this.
 const MOST_PARTS: u64 = 240;
 

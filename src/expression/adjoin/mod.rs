@@ -179,10 +179,15 @@ impl Adjunction<'_> {
         };
         let mut values = true;
         for image in &images {
-            values = values && (self.is_zero(&[*image]) || self.is_zero_sum_of_values(*image)?);
+            values = values
+                && (self.is_zero(&[*image])
+                    || self.is_zero_sum_of_logarithms(*image)
+                    || self.is_zero_sum_of_values(*image)?);
         }
         if values {
-            self.used.insert("the ranges of principal values");
+            if self.used.contains("inverse functions") {
+                self.used.insert("the ranges of principal values");
+            }
             return Ok(self.zero());
         }
         Ok(Related::NotShown(match self.left.take() {

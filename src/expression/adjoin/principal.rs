@@ -1,4 +1,5 @@
-//! Sums of principal values: a sum is zero exactly if its sine is zero, its cosine one, and it lies between whole turns.
+//! Sums of principal values: a sum is zero exactly if its sine is zero, its cosine one, and it lies between whole turns. And
+//! sums of logarithms: one is zero exactly if the product of the powers is one.
 
 use super::form::{Form, as_variable};
 use super::generators::Key;
@@ -37,6 +38,31 @@ impl Adjunction<'_> {
         let one = self.graph.integer(1);
         let rest = self.graph.sub(cosine, one);
         Ok(self.is_zero(&[sine, rest]))
+    }
+
+    /// Whether a sum of multiples of logarithms is shown to be zero: `c_1 log |b_1| + ...` is, where the even powers `b_1^(2 n
+    /// c_1) ...` have the product one.
+    pub(super) fn is_zero_sum_of_logarithms(&mut self, node: NodeId) -> bool {
+        let Some(form) = self.form(node) else { return false };
+        let (mut whole, mut bases) = (RBig::ONE, Vec::new());
+        for (monomial, factor) in &form.0 {
+            let Some(Key::Log(base)) = as_variable(monomial).map(|variable| self.generators.key(variable)) else {
+                return false;
+            };
+            bases.push((base.clone(), factor.clone()));
+            whole *= RBig::from((factor * &whole).denominator().clone());
+        }
+        let mut product = self.graph.integer(1);
+        for (base, factor) in bases {
+            let power = factor * &whole * RBig::from(2);
+            let Ok(power) = i32::try_from(power.numerator().clone()) else { return false };
+            let base = self.node_of_form(&base);
+            let power = self.graph.power(base, power);
+            product = self.graph.mul(product, power);
+        }
+        let one = self.graph.integer(1);
+        let difference = self.graph.sub(product, one);
+        self.is_zero(&[difference])
     }
 
     /// Whether a sum of values and multiples of pi lies between minus and plus a whole turn, the ends not counted.

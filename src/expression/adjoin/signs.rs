@@ -84,7 +84,11 @@ impl Adjunction<'_> {
             Some(sum)
         };
         // what has a sign is a factor that is looked for
-        let known: Vec<Polynomial> = self.signs.keys().filter_map(polynomial).collect();
+        let mut known: Vec<Polynomial> = self.signs.keys().filter_map(polynomial).collect();
+        // the shortest first: a product may be known beside its factors
+        known.sort_by(|a, b| {
+            (a.degree(), a.len()).cmp(&(b.degree(), b.len())).then_with(|| a.terms().cmp(b.terms()))
+        });
         let found = split(&polynomial(form)?, &known);
         let back = |polynomial: &Polynomial| {
             let mut form = Form::default();
