@@ -59,7 +59,7 @@ pub(crate) fn decide_identity(
         }
         ZeroTest::Unknown(why) => (0..differences.len(), why),
     };
-    let why = match zero_by_relations(&mut system.graph, &differences, &on.terms.guards, rng) {
+    let why = match zero_by_relations(&mut system.graph, &differences, &on.terms.guards, is_angle, rng) {
         Related::Zero { log2_error, used, .. } => {
             let engine = format!("{RANDOM_PRIMES}, with what is known of {used}");
             return match existence(system, on, rng) {

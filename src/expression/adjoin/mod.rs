@@ -27,7 +27,8 @@ mod test;
 mod tests;
 
 use super::domain::Guard;
-use super::graph::{Graph, Node, NodeId};
+use super::graph::{Graph, Node, NodeId, Symbol};
+use super::program::Program;
 use crate::number::{Function, Turn};
 use dashu::rational::RBig;
 use form::Form;
@@ -97,18 +98,24 @@ struct Adjunction<'g> {
 }
 
 /// Tests whether all of some expressions are zero wherever they and all that the assumptions mention exist, and all assumptions
-/// hold. The graph is left as it was.
+/// hold; angles are written out already ([`expand_angles`](super::expand_angles)). The graph is left as it was.
 pub fn zero_by_relations(
     graph: &mut Graph,
     roots: &[NodeId],
     assumptions: &[Guard],
+    is_angle: impl Fn(Symbol) -> bool,
     rng: &mut impl Rng,
 ) -> Related {
-    let needed = graph.reachable(roots.iter().copied());
-    if needed.len() > MOST_NODES || graph.has_no_value(roots) {
-        return Related::NotShown("it is too long".to_owned());
+    // sines and cosines of angles are known to the plain test, unless the angle is met outside of them
+    let plain = Program::new(graph, roots, is_angle, true);
+    if plain.unknown_function(graph).is_none() && plain.bare_angle().is_none() {
+        return Related::NoFunctions;
     }
-    if !needed.iter().any(|id| matches!(graph.node(*id), Node::Apply(..))) {
+    let needed = graph.reachable(roots.iter().copied());
+    if needed.len() > MOST_NODES {
+        return Related::NotShown(format!("its functions are met in more than {MOST_NODES} operations"));
+    }
+    if graph.has_no_value(roots) || !needed.iter().any(|id| matches!(graph.node(*id), Node::Apply(..))) {
         return Related::NoFunctions;
     }
     let Some(turn) = Turn::new(1) else { return Related::NoFunctions };

@@ -389,7 +389,7 @@ fn test_where(system: &mut System, expressions: &[NodeId], guards: &[Guard]) -> 
     if matches!(found, ZeroTest::Zero { .. } | ZeroTest::Pole(_)) {
         return found;
     }
-    match zero_by_relations(&mut system.graph, &expanded, guards, &mut rng) {
+    match zero_by_relations(&mut system.graph, &expanded, guards, is_angle, &mut rng) {
         Related::Zero { log2_error, points, degree, .. } => ZeroTest::Zero { log2_error, points, degree },
         Related::NotShown(_) | Related::NoFunctions => found,
     }
