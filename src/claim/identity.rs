@@ -102,6 +102,63 @@ pub(crate) fn decide_identity(
     }
 }
 
+/// Whether a difference of numbers, or its negative, is a tolerance that is not negative, exactly: the sides are as far from each
+/// other as they may be.
+fn is_the_tolerance(
+    system: &mut System,
+    difference: NodeId,
+    tolerance: NodeId,
+    guards: &[Guard],
+    rng: &mut impl Rng,
+) -> Option<Verdict> {
+    let zero = system.graph.integer(0);
+    let back = system.graph.neg(difference);
+    let no_tolerance = is_zero_number(system, tolerance, guards, rng);
+    for (one, other) in [(difference, tolerance), (back, tolerance), (difference, zero)] {
+        let rest = system.graph.sub(one, other);
+        if let Some(proved) = is_zero_number(system, rest, guards, rng) {
+            match &no_tolerance {
+                Some(nothing) => return Some(Verdict::all([proved, nothing.clone()])),
+                None if is_positive_number(system, tolerance) => return Some(proved),
+                None => {}
+            }
+        }
+    }
+    None
+}
+
+fn is_positive_number(system: &System, number: NodeId) -> bool {
+    let program = Program::new(&system.graph, &[number], |_| false, false);
+    let found = enclose(&system.graph, &program, &HashMap::new(), 512);
+    found.is_ok_and(|found| found[0].low() > RBig::ZERO)
+}
+
+fn is_zero_number(
+    system: &mut System,
+    number: NodeId,
+    guards: &[Guard],
+    rng: &mut impl Rng,
+) -> Option<Verdict> {
+    if let Some(value) = system.graph.constant_value(number) {
+        let engine = "exact arithmetic".to_owned();
+        return value.is_zero().then_some(Verdict::Proved { engine, log2_error: f64::NEG_INFINITY });
+    }
+    match identically_zero(&system.graph, &[number], |_| false, rng) {
+        ZeroTest::Zero { log2_error, .. } => {
+            return Some(Verdict::Proved { engine: RANDOM_PRIMES.to_owned(), log2_error });
+        }
+        ZeroTest::Pole(_) => return None,
+        ZeroTest::Nonzero(_) | ZeroTest::Unknown(_) => {}
+    }
+    match zero_by_relations(&mut system.graph, &[number], guards, |_| false, rng) {
+        Related::Zero { log2_error, used, .. } => Some(Verdict::Proved {
+            engine: format!("{RANDOM_PRIMES}, with what is known of {used}"),
+            log2_error,
+        }),
+        Related::NotShown(_) | Related::NoFunctions => None,
+    }
+}
+
 /// Decides `|left - right| <= tolerance` where all three are numbers: constants, and what `at {...}` makes constants.
 pub(crate) fn decide_nearness(
     system: &mut System,
@@ -109,6 +166,7 @@ pub(crate) fn decide_nearness(
     right: NodeId,
     tolerance: NodeId,
     guards: &[Guard],
+    rng: &mut impl Rng,
 ) -> Verdict {
     let difference = system.graph.sub(left, right);
     let mut wanted = vec![difference, tolerance, left, right];
@@ -117,7 +175,7 @@ pub(crate) fn decide_nearness(
     let program = Program::new(&system.graph, &wanted, |_| false, false);
     // a value in a file is a default, and never part of a claim
     let values: HashMap<Symbol, RBig> = HashMap::new();
-    let mut bits = 128;
+    let (mut bits, mut compared) = (128, false);
     loop {
         let found = match enclose(&system.graph, &program, &values, bits) {
             Ok(found) => found,
@@ -156,6 +214,12 @@ pub(crate) fn decide_nearness(
             let state = Vec::new();
             let witness = Witness { state, left: shown(2), right: shown(3), entry: None, refutation: None };
             return Verdict::Refuted { engine: INTERVALS.to_owned(), witness };
+        }
+        if exists
+            && !std::mem::replace(&mut compared, true)
+            && let Some(proved) = is_the_tolerance(system, difference, tolerance, guards, rng)
+        {
+            return proved;
         }
         if bits >= 1 << 14 {
             return Verdict::undecided("the difference is within rounding of the tolerance");

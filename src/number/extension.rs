@@ -103,7 +103,8 @@ impl Extension {
             (_, length) => {
                 let ((a0, a1), (b0, b1)) = (Self::halves(short, length), Self::halves(long, length));
                 let tops = self.product(a1, b1);
-                let mut low = self.add_up(&self.product(a0, b0), &self.product(&tops, self.radicand(length)), true);
+                let mut low =
+                    self.add_up(&self.product(a0, b0), &self.product(&tops, self.radicand(length)), true);
                 let high = self.add_up(&self.product(a0, b1), &self.product(a1, b0), true);
                 low.resize(length / 2, 0);
                 low.extend(high);

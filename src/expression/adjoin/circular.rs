@@ -199,7 +199,8 @@ impl Adjunction<'_> {
 }
 
 fn count_of(factor: &RBig) -> Result<i64, Halt> {
-    i64::try_from(IBig::clone(factor.numerator())).map_err(|_| Halt::Stop("an angle's factor is too large".into()))
+    i64::try_from(IBig::clone(factor.numerator()))
+        .map_err(|_| Halt::Stop("an angle's factor is too large".into()))
 }
 
 fn common_multiple(a: impl Into<Option<u64>>, b: u64) -> Option<u64> {

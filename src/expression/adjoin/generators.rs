@@ -192,7 +192,8 @@ impl Adjunction<'_> {
             self.generators.divisors.insert(key, finer);
             return Err(Halt::Again);
         }
-        i64::try_from(IBig::clone(count.numerator())).map_err(|_| Halt::Stop("an exponent is too large".into()))
+        i64::try_from(IBig::clone(count.numerator()))
+            .map_err(|_| Halt::Stop("an exponent is too large".into()))
     }
 
     /// Divides a free generator that is known not to be negative (or not positive) into parts; the pass begins anew.
@@ -318,9 +319,10 @@ impl Adjunction<'_> {
         let (mut open, mut done) = (form, Form::default());
         for _ in 0..4000 {
             let Some((monomial, factor)) = open.0.pop_first() else { return Some(done) };
-            let found = monomial.iter().enumerate().find_map(|(place, (variable, power))| {
-                Some((place, self.written_out(*variable, *power)?))
-            });
+            let found = monomial
+                .iter()
+                .enumerate()
+                .find_map(|(place, (variable, power))| Some((place, self.written_out(*variable, *power)?)));
             match found {
                 None => done.insert(monomial, factor),
                 Some((place, (square, twos, left))) => {

@@ -181,7 +181,8 @@ impl Adjunction<'_> {
     fn root_of_prime(&mut self, prime: UBig, power: &RBig) -> Result<NodeId, Halt> {
         let too_large = |_| Halt::Stop("a root of too high a degree is taken".into());
         let parts = u32::try_from(power.denominator().clone()).map_err(too_large)?;
-        let count = i32::try_from(power.numerator().clone()).map_err(|_| Halt::Stop("an exponent is too large".into()))?;
+        let count = i32::try_from(power.numerator().clone())
+            .map_err(|_| Halt::Stop("an exponent is too large".into()))?;
         if !parts.is_power_of_two() {
             let node = self.node_of_key(Key::Power(Form::constant(RBig::from(prime)), parts));
             return Ok(self.graph.power(node, count));
@@ -221,7 +222,8 @@ impl Adjunction<'_> {
         {
             let first = self.power_of_number(&((&a + &d) * &half), &half)?;
             let low = (&a - &d) * &half;
-            let second = if low.is_zero() { self.graph.integer(0) } else { self.power_of_number(&low, &half)? };
+            let second =
+                if low.is_zero() { self.graph.integer(0) } else { self.power_of_number(&low, &half)? };
             let root = if upward { self.graph.add(first, second) } else { self.graph.sub(first, second) };
             return Ok(Some(root));
         }
@@ -235,7 +237,9 @@ impl Adjunction<'_> {
             let node = self.in_turn(&double);
             let Some(double) = self.form(node) else { continue };
             let Some(shifted) = double.plus(&Form::constant(RBig::from(2)), &RBig::ONE) else { continue };
-            let Some(((own, primitive), (scale, other))) = form.primitive().zip(shifted.primitive()) else { continue };
+            let Some(((own, primitive), (scale, other))) = form.primitive().zip(shifted.primitive()) else {
+                continue;
+            };
             if primitive == other && own > RBig::ZERO && scale > RBig::ZERO {
                 // form = (own/scale) (2 + 2 cos 2u) = (own/scale) (2 cos u)^2
                 let front = self.power_of_number(&(own / scale), &half)?;

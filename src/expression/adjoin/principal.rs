@@ -46,7 +46,8 @@ impl Adjunction<'_> {
         let Some(form) = self.form(node) else { return false };
         let (mut whole, mut bases) = (RBig::ONE, Vec::new());
         for (monomial, factor) in &form.0 {
-            let Some(Key::Log(base)) = as_variable(monomial).map(|variable| self.generators.key(variable)) else {
+            let Some(Key::Log(base)) = as_variable(monomial).map(|variable| self.generators.key(variable))
+            else {
                 return false;
             };
             bases.push((base.clone(), factor.clone()));

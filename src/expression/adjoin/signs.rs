@@ -1,9 +1,9 @@
 //! Factors of arguments, and their signs: what is read off, what the assumptions say, and what follows where all factors of
 //! a product but one have known signs.
 
-use super::{Adjunction, Halt};
 use super::form::{Form, Monomial};
 use super::generators::{Key, Measure};
+use super::{Adjunction, Halt};
 use crate::expression::{Guard, Need};
 use crate::number::polynomial::{Exponents, LARGEST_ARITY, Polynomial, Ring};
 use crate::number::{Arithmetic, Enclosure, Enclosures, Function, Refusal, split};
@@ -48,7 +48,9 @@ impl Adjunction<'_> {
             *bases.entry(Form::variable(variable)).or_insert(0) += least;
             common.insert(variable, -least);
         }
-        let (unit, rest) = top.times(&Form::term(common.into_iter().filter(|c| c.1 != 0).collect(), RBig::ONE))?.primitive()?;
+        let (unit, rest) = top
+            .times(&Form::term(common.into_iter().filter(|c| c.1 != 0).collect(), RBig::ONE))?
+            .primitive()?;
         let mut unit = unit;
         if rest.as_constant().is_none() {
             match self.split(&rest) {
@@ -104,7 +106,10 @@ impl Adjunction<'_> {
         for (factor, power) in found.factors {
             // primitive in the order of forms, which is not that of polynomials
             let (content, form) = back(&factor).primitive()?;
-            unit *= RBig::from_parts(content.numerator().pow(power as usize), content.denominator().pow(power as usize));
+            unit *= RBig::from_parts(
+                content.numerator().pow(power as usize),
+                content.denominator().pow(power as usize),
+            );
             factors.push((form, i32::try_from(power).ok()?));
         }
         Some((unit, factors))
@@ -286,7 +291,8 @@ impl Adjunction<'_> {
 
     /// Whether it can be read off that no two terms have different signs.
     fn has_one_sign(&self, form: &Form) -> bool {
-        let signs = |(monomial, factor): (&Monomial, &RBig)| self.sign(&Form::term(monomial.clone(), factor.clone()));
+        let signs =
+            |(monomial, factor): (&Monomial, &RBig)| self.sign(&Form::term(monomial.clone(), factor.clone()));
         let all: Vec<Option<bool>> = form.0.iter().map(signs).collect();
         all.iter().all(|sign| sign.is_some() && *sign == all[0])
     }

@@ -17,8 +17,8 @@
 //! primitive roots are needed there, and no sign of a root is chosen. It may have divisors of zero; a point at which one of
 //! them is divided by is drawn anew, at most [`ATTEMPTS`] times, and the bound is multiplied by that.
 
-use super::generators::Key;
 use super::Adjunction;
+use super::generators::Key;
 use crate::expression::zero_test::{failure_bound, unit_residue};
 use crate::expression::{Input, NodeId, Program, Symbol};
 use crate::number::polynomial::Size;
@@ -65,7 +65,10 @@ impl Adjunction<'_> {
         let roots = self.roots_below(nodes);
         let length = (self.generators.turn.minimal.len() as u64).checked_shl(roots.len() as u32);
         if length.is_none_or(|length| length > LONGEST as u64) {
-            return Tested::NotShown(format!("{} roots are met that do not come of one another", roots.len()));
+            return Tested::NotShown(format!(
+                "{} roots are met that do not come of one another",
+                roots.len()
+            ));
         }
         let program = self.program(nodes);
         let (rounds, log2_error, degree) = match self.size(&program, &roots) {
@@ -83,7 +86,9 @@ impl Adjunction<'_> {
         for _ in 0..rounds {
             match self.round(&program, &roots) {
                 Some(true) => {}
-                Some(false) => return Tested::NotShown("the sides differ as expressions in their functions".into()),
+                Some(false) => {
+                    return Tested::NotShown("the sides differ as expressions in their functions".into());
+                }
                 None => return Tested::NotShown("a divisor is zero for some signs of its roots".into()),
             }
         }
@@ -140,7 +145,10 @@ impl Adjunction<'_> {
                         .entry(symbol)
                         .or_insert_with(|| fractions.element(Size { degree: 2.0, bits: 1.0 }))
                         .clone();
-                    Ok(Fraction { top: fractions.element(Size { degree, bits: 1.0 }).top, bottom: bottom.top })
+                    Ok(Fraction {
+                        top: fractions.element(Size { degree, bits: 1.0 }).top,
+                        bottom: bottom.top,
+                    })
                 };
                 inputs.push(match input {
                     Input::Plain(symbol) => match known.get(symbol) {
@@ -159,7 +167,8 @@ impl Adjunction<'_> {
         for root in roots {
             let Some(radicand) = run(&root.program, &known)?.pop() else { return Err(Refusal::TooLarge) };
             let (top, bottom) = (fractions.expand(&radicand.top)?, fractions.expand(&radicand.bottom)?);
-            let size = Size { degree: (top.degree + bottom.degree) / 2.0, bits: (top.bits + bottom.bits) / 2.0 };
+            let size =
+                Size { degree: (top.degree + bottom.degree) / 2.0, bits: (top.bits + bottom.bits) / 2.0 };
             let root_of_product = fractions.element(size);
             known.insert(root.symbol, Fraction { top: root_of_product.top, bottom: radicand.bottom });
         }
@@ -183,7 +192,8 @@ impl Adjunction<'_> {
             let mut run = |all: &Extension, numbers: &mut HashMap<Symbol, Vec<u64>>, program: &Program| {
                 let mut inputs = Vec::new();
                 for input in program.inputs() {
-                    let mut circle = |symbol| *circles.entry(symbol).or_insert_with(|| unit_residue(&field, rng));
+                    let mut circle =
+                        |symbol| *circles.entry(symbol).or_insert_with(|| unit_residue(&field, rng));
                     inputs.push(match input {
                         Input::Sine(symbol) => vec![circle(*symbol).0],
                         Input::Cosine(symbol) => vec![circle(*symbol).1],

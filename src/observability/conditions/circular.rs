@@ -82,7 +82,8 @@ fn whole_turns_of_others_are_none(system: &mut System, argument: NodeId, rest: N
         return true;
     }
     let wave = system.graph.apply(Function::Cos, argument);
-    slope.denominator().is_one() && others.into_iter().all(|angle| turns_do_not_matter(system, &[wave], angle))
+    slope.denominator().is_one()
+        && others.into_iter().all(|angle| turns_do_not_matter(system, &[wave], angle))
 }
 
 /// The angles between minus a whole turn and a whole one with one of these sines or cosines, each up to whole turns; nothing
@@ -208,7 +209,8 @@ fn sine_or_cosine(system: &mut System, difference: NodeId) -> Option<(Function, 
         }
     }
     let polynomial = image[&difference];
-    if system.graph.symbols_of([polynomial]) != [unknown] || !inside_no_function(system, polynomial, unknown) {
+    if system.graph.symbols_of([polynomial]) != [unknown] || !inside_no_function(system, polynomial, unknown)
+    {
         return None;
     }
     let slope = system.partial(polynomial, unknown);

@@ -138,7 +138,8 @@ fn undone(system: &mut System, left: NodeId, right: NodeId) -> Option<NodeId> {
 
 fn is_positive(system: &System, expression: NodeId) -> bool {
     let constant = enclosed_constant(system, expression);
-    sign(&system.graph, expression) == Some(Sign::Positive) || constant.is_some_and(|value| value.low() > RBig::ZERO)
+    sign(&system.graph, expression) == Some(Sign::Positive)
+        || constant.is_some_and(|value| value.low() > RBig::ZERO)
 }
 
 /// The value of an expression that mentions no symbol.
