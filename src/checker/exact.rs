@@ -234,8 +234,9 @@ impl Exact {
         let twenty_four = IBig::from(24);
         let place = ((parts.numerator() % &twenty_four) + &twenty_four) % &twenty_four;
         let place = i64::try_from(place).ok()?;
-        // three twelfths are an eighth of a turn; four are its sixth
-        let (eighths, sixths) = (place % 4, (place - 3 * (place % 4)) / 4);
+        // three of them are an eighth of a turn and four a sixth: of the first as many as leave a multiple of four
+        let eighths = (-place).rem_euclid(4);
+        let sixths = (place - 3 * eighths) / 4;
         let half = RBig::ONE / RBig::from(2);
         let of_root = |n: i64| Ok(self.apply(Function::Sqrt, &Form::from(RBig::from(n)))?.scaled(&half));
         let units =
