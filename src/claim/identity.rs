@@ -5,7 +5,7 @@ use super::existence::{Existence, existence};
 use super::terms::OnBranch;
 use super::value::{ValueError, enclose};
 use super::verdict::{Verdict, Witness};
-use super::witness::{Search, search};
+use super::witness::{Search, search, until_they_differ};
 use crate::expression::{
     Guard, NodeId, Program, Related, Symbol, ZeroTest, expand_angles, identically_zero, zero_by_relations,
 };
@@ -209,10 +209,12 @@ pub(crate) fn decide_nearness(
             return Verdict::Proved { engine: INTERVALS.to_owned(), log2_error: f64::NEG_INFINITY };
         }
         if exists && smallest > found[1].high() {
-            let shown =
-                |index: usize| found[index].certain_decimal(20).unwrap_or_else(|| found[index].bounds_text());
+            let shown = |index: usize, digits: usize| {
+                found[index].certain_decimal(digits).unwrap_or_else(|| found[index].bounds_text())
+            };
+            let [left, right] = until_they_differ(|digits| [2, 3].map(|index| shown(index, digits)));
             let state = Vec::new();
-            let witness = Witness { state, left: shown(2), right: shown(3), entry: None, refutation: None };
+            let witness = Witness { state, left, right, entry: None, refutation: None };
             return Verdict::Refuted { engine: INTERVALS.to_owned(), witness };
         }
         if exists
