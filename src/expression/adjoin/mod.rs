@@ -87,6 +87,8 @@ struct Adjunction<'g> {
     signs: HashMap<Form, bool>,
     /// Forms that are nowhere zero.
     nonzero: HashSet<Form>,
+    /// Factors that were met: they are tried on other forms.
+    factors: HashSet<Form>,
     /// Inverse functions of constants, as multiples of pi where they are.
     multiples: HashMap<(Function, Form), Option<RBig>>,
     used: BTreeSet<&'static str>,
@@ -127,6 +129,7 @@ pub fn zero_by_relations(
         forms: HashMap::new(),
         signs: HashMap::new(),
         nonzero: HashSet::new(),
+        factors: HashSet::new(),
         multiples: HashMap::new(),
         used: BTreeSet::new(),
         left: None,
@@ -156,6 +159,7 @@ impl Adjunction<'_> {
         self.forms.clear();
         self.signs.clear();
         self.nonzero.clear();
+        self.factors.clear();
         self.multiples.clear();
         self.used.clear();
         self.left = None;

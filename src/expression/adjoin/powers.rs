@@ -97,28 +97,123 @@ impl Adjunction<'_> {
         let Factored { unit, bases } = self.factored(form).ok_or_else(too_long)?;
         let half = RBig::from_parts(1.into(), 2u8.into());
         let mut product = self.power_of_number(&unit, &half)?;
-        let (mut upward, mut together) = (unit >= RBig::ZERO, Form::constant(RBig::ONE));
+        let (mut upward, one) = (unit >= RBig::ZERO, Form::constant(RBig::ONE));
+        // what has no sign of its own: under the root, and whole before it
+        let (mut below, mut before, mut absolute) = (one.clone(), one, Vec::new());
         for (base, power) in bases {
-            let mut even = power;
-            if power % 2 != 0 {
-                match self.sign(&base) {
-                    Some(sign) => upward = upward == sign,
-                    None => {
-                        // its sign is that of the others
-                        even = power - 1;
-                        together = self.times(&together, &base).ok_or_else(too_long)?;
-                    }
+            let sign = self.sign(&base);
+            match sign {
+                Some(sign) => upward = upward == (sign || power % 2 == 0),
+                None if power % 2 != 0 => below = self.times(&below, &base).ok_or_else(too_long)?,
+                None => {}
+            }
+            let whole = power.div_euclid(2);
+            if sign.is_some() {
+                let part = self.absolute_power(&base, &(RBig::from(power) * &half))?;
+                product = self.graph.mul(product, part);
+            } else {
+                // an odd power is an even one times the magnitude
+                let even = self.node_of_form(&base);
+                let even = self.graph.power(even, whole - whole.rem_euclid(2));
+                product = self.graph.mul(product, even);
+                if whole % 2 != 0 {
+                    before = self.times(&before, &base).ok_or_else(too_long)?;
+                    absolute.push(base);
                 }
             }
-            let part = self.absolute_power(&base, &(RBig::from(even) * &half))?;
+        }
+        if !absolute.is_empty() {
+            // of all of them together the sign may be known: from what is assumed, or since the root exists
+            let sign = if before == below { Some(upward) } else { self.sign_of_multiple(&before) };
+            let part = match sign {
+                Some(sign) => {
+                    let node = self.node_of_form(&before);
+                    if sign { node } else { self.graph.neg(node) }
+                }
+                None => {
+                    let mut magnitudes = self.graph.integer(1);
+                    for base in absolute {
+                        let magnitude = self.absolute_power(&base, &RBig::ONE)?;
+                        magnitudes = self.graph.mul(magnitudes, magnitude);
+                    }
+                    magnitudes
+                }
+            };
             product = self.graph.mul(product, part);
         }
-        if together.as_constant().is_none() {
-            let known = if upward { together } else { together.scaled(&RBig::from(-1)) };
-            let root = self.node_of_key(Key::Root(known));
+        if below.as_constant().is_none() {
+            let known = if upward { below } else { below.scaled(&RBig::from(-1)) };
+            let root = match self.root_taken_apart(&known)? {
+                Some(root) => root,
+                None => self.node_of_key(Key::Root(known)),
+            };
             product = self.graph.mul(product, root);
         }
         Ok(product)
+    }
+
+    /// `sqrt(a + b) = sqrt((a+d)/2) + sqrt((a-d)/2)` with the sign of `b` before the second, where `b` has a root as a factor,
+    /// `d^2 = a^2 - b^2` is a square, `a` is not negative and the sign of `b` (and if that is negative, of `d`) is known: the
+    /// two halves add up to `a` and their product is `b^2/4`, so that neither is negative.
+    fn root_taken_apart(&mut self, form: &Form) -> Result<Option<NodeId>, Halt> {
+        let roots = form.variables().into_iter().filter(|v| matches!(self.generators.key(*v), Key::Root(_)));
+        for root in roots.collect::<Vec<_>>() {
+            let (mut a, mut b) = (Form::default(), Form::default());
+            for (monomial, factor) in &form.0 {
+                let part = if monomial.iter().any(|(v, _)| *v == root) { &mut b } else { &mut a };
+                part.insert(monomial.clone(), factor.clone());
+            }
+            let Some((upward, mut d)) = self.halves_of_root(&a, &b) else { continue };
+            if !upward {
+                match self.sign_of_multiple(&d) {
+                    Some(true) => {}
+                    Some(false) => d = d.scaled(&RBig::from(-1)),
+                    None => continue,
+                }
+            }
+            let half = RBig::from_parts(1.into(), 2u8.into());
+            let halves =
+                [RBig::ONE, RBig::from(-1)].map(|sign| a.plus(&d, &sign).map(|sum| sum.scaled(&half)));
+            let [Some(first), Some(second)] = halves else { continue };
+            let (first, second) = (self.root(&first)?, self.root(&second)?);
+            let apart = if upward { self.graph.add(first, second) } else { self.graph.sub(first, second) };
+            return Ok(Some(apart));
+        }
+        Ok(None)
+    }
+
+    /// The sign of `b` and a root of `a^2 - b^2`, where `a` is not negative and there are such.
+    fn halves_of_root(&mut self, a: &Form, b: &Form) -> Option<(bool, Form)> {
+        let upward = self.sign_of_multiple(b)?;
+        if a.is_zero() || !self.sign_of_multiple(a)? {
+            return None;
+        }
+        let (whole, part) = (self.times(a, a)?, self.times(b, b)?);
+        let square = whole.plus(&part, &RBig::from(-1))?;
+        if square.is_zero() {
+            return Some((upward, square));
+        }
+        let Factored { unit, bases } = self.factored(&square)?;
+        let mut d = Form::constant(rational_root(&unit)?);
+        for (base, power) in bases {
+            let power = self.form_to(&base, Some(power / 2).filter(|_| power % 2 == 0)?)?;
+            d = self.times(&d, &power)?;
+        }
+        Some((upward, d))
+    }
+
+    /// The sign of a form that may be a multiple of one whose sign is assumed.
+    fn sign_of_multiple(&mut self, form: &Form) -> Option<bool> {
+        let Some((content, primitive)) = form.primitive() else { return Some(true) };
+        if let Some(sign) = self.sign(&primitive) {
+            return Some(sign == (content > RBig::ZERO));
+        }
+        let Factored { unit, bases } = self.factored(form)?;
+        let mut upward = unit > RBig::ZERO;
+        for (base, _) in bases.iter().filter(|(_, power)| power % 2 != 0) {
+            upward = upward == self.sign(base)?;
+        }
+        Some(upward)
     }
 
     /// `|base|^power`
@@ -147,6 +242,11 @@ impl Adjunction<'_> {
             (_, _, None) if parts == 1 && count % 2 == 0 => base.clone(),
             (_, _, None) => Form::variable(self.variable(Key::Abs(base.clone()))),
         };
+        if parts == 2
+            && let Some(root) = self.root_taken_apart(&now)?
+        {
+            return Ok(self.graph.power(root, count));
+        }
         if parts.is_power_of_two() {
             for _ in 0..parts.trailing_zeros() {
                 now = Form::variable(self.variable(Key::Root(now)));

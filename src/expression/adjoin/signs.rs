@@ -61,7 +61,41 @@ impl Adjunction<'_> {
                 None => *bases.entry(rest).or_insert(0) += 1,
             }
         }
-        Some(Factored { unit, bases: bases.into_iter().filter(|(_, power)| *power != 0).collect() })
+        if self.join_sines(&mut bases) {
+            unit = -unit;
+        }
+        bases.retain(|_, power| *power != 0);
+        // a factor of one is looked for in others
+        self.factors.extend(bases.keys().filter(|base| base.0.len() > 1).cloned());
+        Some(Factored { unit, bases: bases.into_iter().collect() })
+    }
+
+    /// `(cos - 1) (cos + 1)` is minus the square of the sine; whether a factor minus one is left over.
+    fn join_sines(&self, bases: &mut BTreeMap<Form, i32>) -> bool {
+        let mut negative = false;
+        let cosines = bases
+            .keys()
+            .flat_map(Form::variables)
+            .filter(|v| matches!(self.generators.key(*v), Key::Cosine(_)));
+        for cosine in cosines.collect::<Vec<_>>() {
+            // both with a positive last coefficient, as primitive forms have it
+            let above = Form::constant(RBig::ONE).plus(&Form::variable(cosine), &RBig::ONE);
+            let below = Form::variable(cosine).plus(&Form::constant(RBig::ONE), &RBig::from(-1));
+            let (Some(above), Some(below)) = (above, below) else { continue };
+            if let Some(n) = above.times(&below).and_then(|product| bases.remove(&product)) {
+                negative ^= n % 2 != 0;
+                *bases.entry(Form::variable(cosine - 1)).or_insert(0) += 2 * n;
+            }
+            if let (Some(m), Some(n)) = (bases.get(&above).copied(), bases.get(&below).copied())
+                && m == n
+            {
+                negative ^= m % 2 != 0;
+                bases.remove(&above);
+                bases.remove(&below);
+                *bases.entry(Form::variable(cosine - 1)).or_insert(0) += 2 * m;
+            }
+        }
+        negative
     }
 
     /// A primitive sum as a product; nothing where it has too many generators.
@@ -86,7 +120,8 @@ impl Adjunction<'_> {
             Some(sum)
         };
         // what has a sign is a factor that is looked for
-        let mut known: Vec<Polynomial> = self.signs.keys().filter_map(polynomial).collect();
+        let mut known: Vec<Polynomial> =
+            self.signs.keys().chain(&self.factors).filter_map(polynomial).collect();
         // the shortest first: a product may be known beside its factors
         known.sort_by(|a, b| {
             (a.degree(), a.len()).cmp(&(b.degree(), b.len())).then_with(|| a.terms().cmp(b.terms()))
@@ -117,6 +152,10 @@ impl Adjunction<'_> {
 
     /// Whether a form is nowhere negative (`true`) or nowhere positive (`false`), where the assumptions hold.
     pub(super) fn sign(&self, form: &Form) -> Option<bool> {
+        self.sign_term_by_term(form).or_else(|| self.sign_by_parts(form))
+    }
+
+    fn sign_term_by_term(&self, form: &Form) -> Option<bool> {
         if let Some(sign) = self.signs.get(form) {
             return Some(*sign);
         }
@@ -136,6 +175,17 @@ impl Adjunction<'_> {
             }
         }
         all
+    }
+
+    /// The same, also of a known form and what is added to it.
+    fn sign_by_parts(&self, form: &Form) -> Option<bool> {
+        self.signs.iter().find_map(|(known, upward)| {
+            let (monomial, factor) = known.0.iter().next_back()?;
+            let times = form.0.get(monomial)? / factor;
+            let rest = form.plus(known, &-times.clone())?;
+            let sign = *upward == (times > RBig::ZERO);
+            (self.sign_term_by_term(&rest)? == sign || rest.is_zero()).then_some(sign)
+        })
     }
 
     fn sign_of_generator(&self, variable: u32) -> Option<bool> {
