@@ -40,6 +40,7 @@ impl OnBranch {
         StatementAt {
             graph: &system.graph,
             sides: &self.statement.sides,
+            relations: &self.statement.relations,
             within: None,
             conditions: &self.statement.conditions,
             guards: &self.statement.guards,
@@ -162,6 +163,7 @@ pub(super) fn nearness(
     let statement = StatementAt {
         graph: &system.graph,
         sides: &sides,
+        relations: &[],
         within: Some(near.tolerance),
         conditions: &[],
         guards,
@@ -230,8 +232,12 @@ pub(super) fn claimed_rank(
     };
     // the entries of a codistribution are no sides of the statement, and mention more symbols
     let sides = matrix.entries.clone();
-    let terms =
-        Terms { sides, guards: on.statement.guards.clone(), conditions: on.statement.conditions.clone() };
+    let terms = Terms {
+        sides,
+        relations: Vec::new(),
+        guards: on.statement.guards.clone(),
+        conditions: on.statement.conditions.clone(),
+    };
     let Ok(on) = &OnBranch::new(system, branch, &terms) else {
         return Some(Evidence::Unchecked(NO_STATE.to_owned()));
     };
