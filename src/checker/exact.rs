@@ -29,6 +29,9 @@ impl Atom {
     }
 }
 
+/// Sine and cosine.
+type Circular = Result<(Form, Form), Refusal>;
+
 /// Powers of atoms, multiplied.
 type Product = BTreeMap<Atom, i32>;
 
@@ -177,7 +180,7 @@ impl Exact {
     }
 
     /// Sine and cosine of sums of whole multiples of known angles and of some parts of a turn, by the addition theorems.
-    fn circular(&self, a: &Form) -> Option<Result<(Form, Form), Refusal>> {
+    fn circular(&self, a: &Form) -> Option<Circular> {
         if !a.rational.is_zero() {
             return None;
         }
@@ -205,7 +208,7 @@ impl Exact {
         Some(self.turned(turns))
     }
 
-    fn turned(&self, turns: Vec<(Result<(Form, Form), Refusal>, i64)>) -> Result<(Form, Form), Refusal> {
+    fn turned(&self, turns: Vec<(Circular, i64)>) -> Circular {
         let mut total = (Form::default(), Form::from(RBig::ONE));
         for (unit, count) in turns {
             let (sine, cosine) = unit?;
@@ -218,14 +221,14 @@ impl Exact {
     }
 
     /// `sin(a+b) = sin a cos b + cos a sin b`, `cos(a+b) = cos a cos b - sin a sin b`
-    fn turn(&self, a: &(Form, Form), b: &(Form, Form)) -> Result<(Form, Form), Refusal> {
+    fn turn(&self, a: &(Form, Form), b: &(Form, Form)) -> Circular {
         let sine = self.add(&self.mul(&a.0, &b.1)?, &self.mul(&a.1, &b.0)?)?;
         let cosine = self.sub(&self.mul(&a.1, &b.1)?, &self.mul(&a.0, &b.0)?)?;
         Ok((sine, cosine))
     }
 
     /// Sine and cosine of a multiple of pi that is a sum of quarters, thirds and eighths of a turn.
-    fn part_of_turn(&self, times_pi: &RBig) -> Option<Result<(Form, Form), Refusal>> {
+    fn part_of_turn(&self, times_pi: &RBig) -> Option<Circular> {
         let parts = times_pi * RBig::from(12);
         if !parts.denominator().is_one() {
             return None;
@@ -247,7 +250,7 @@ impl Exact {
     }
 
     /// Sine and cosine of an inverse sine or cosine, which exists: one is the argument `u`, the other `sqrt(1 - u^2)`.
-    fn undone(&self, function: Function, u: &Form) -> Result<(Form, Form), Refusal> {
+    fn undone(&self, function: Function, u: &Form) -> Circular {
         let rest = self.sub(&Form::from(RBig::ONE), &self.mul(u, u)?)?;
         let other = self.apply(Function::Sqrt, &rest)?;
         Ok(if function == Function::Asin { (u.clone(), other) } else { (other, u.clone()) })

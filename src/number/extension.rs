@@ -75,7 +75,7 @@ impl Extension {
     }
 
     /// The halves before and after the last root of elements of a length.
-    fn halves<'a>(a: &'a [u64], length: usize) -> (&'a [u64], &'a [u64]) {
+    fn halves(a: &[u64], length: usize) -> (&[u64], &[u64]) {
         if a.len() < length { (a, &[]) } else { a.split_at(length / 2) }
     }
 
