@@ -28,7 +28,6 @@ mod tests;
 
 use super::domain::Guard;
 use super::graph::{Graph, Node, NodeId, Symbol};
-use super::program::Program;
 use crate::number::{Function, Turn};
 use dashu::rational::RBig;
 use form::Form;
@@ -108,12 +107,17 @@ pub fn zero_by_relations(
     is_angle: impl Fn(Symbol) -> bool,
     rng: &mut impl Rng,
 ) -> Related {
+    let needed = graph.reachable(roots.iter().copied());
     // sines and cosines of angles are known to the plain test, unless the angle is met outside of them
-    let plain = Program::new(graph, roots, is_angle, true);
-    if plain.unknown_function(graph).is_none() && plain.bare_angle().is_none() {
+    let is_angle = |id: NodeId| graph.as_symbol(id).is_some_and(&is_angle);
+    let is_known = |id: NodeId| match graph.node(id) {
+        Node::Apply(Function::Sin | Function::Cos, argument) if is_angle(argument) => true,
+        Node::Apply(..) => false,
+        node => !node.operands().any(is_angle),
+    };
+    if needed.iter().all(|id| is_known(*id)) && !roots.iter().any(|root| is_angle(*root)) {
         return Related::NoFunctions;
     }
-    let needed = graph.reachable(roots.iter().copied());
     if needed.len() > MOST_NODES {
         return Related::NotShown(format!("its functions are met in more than {MOST_NODES} operations"));
     }
