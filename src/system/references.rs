@@ -71,11 +71,13 @@ impl System {
             None => {}
         }
         let here = reference.file.is_none();
-        let is_named = |name: &str| self.definition(name).is_some() || self.field(name).is_some();
+        let is_named = |name: &str| {
+            self.definition(name).is_some() || self.field(name).is_some() || self.find_symbol(name).is_some()
+        };
         if here && !follows && is_named(name) {
             return Ok(());
         }
-        let what = if follows { "entry" } else { "entry, definition or field" };
+        let what = if follows { "entry" } else { "entry, definition, field or state" };
         let file = reference.file.as_ref().map(|file| format!(" in {file}")).unwrap_or_default();
         let problem =
             Problem::new(&reference.span, format!("there is no {what} '{name}'{file}"), "not found");

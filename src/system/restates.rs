@@ -73,10 +73,16 @@ impl System {
         }
     }
 
-    /// Whether an expression is a state, or a matrix of states.
+    /// Whether an expression is a state, or a matrix of states, perhaps under a name.
     fn are_states(&self, expr: &Expr) -> bool {
+        let is_symbol = |node| self.graph.as_symbol(node).is_some();
         match &expr.kind {
-            ExprKind::Name(name) => self.find_symbol(name).is_some() && self.definition(name).is_none(),
+            ExprKind::Name(name) => match self.definition(name) {
+                None => self.find_symbol(name).is_some(),
+                Some(Value::Scalar(node)) => is_symbol(*node),
+                Some(Value::Matrix(matrix)) => matrix.entries.iter().all(|node| is_symbol(*node)),
+                Some(_) => false,
+            },
             ExprKind::Matrix(rows) => rows.iter().flatten().all(|entry| self.are_states(entry)),
             _ => false,
         }
