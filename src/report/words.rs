@@ -8,9 +8,9 @@ use std::fmt::Write as _;
 /// The rule by which a damage is given to the author, to the scanner or to neither; shown wherever words are explained.
 pub(crate) const RULE_OF_DAMAGE: &str = "One rule for damage. What is wrong in the text at hand may be the author's, the \
     typesetter's or the scanner's. *Scanning fault* is said only where characters stand that no typesetter sets (glyphs \
-    that are no symbol there, a line set twice or broken off, components or rows cut out of a list that is counted in the \
-    text). *Print or scan* is said where a sign, dot, prime, tilde, bar, index, bracket or letter is missing or another \
-    one, once, and what comes before and after has it right: only the page could tell. *Erratum* is said where the same \
+    that are no symbol there, a line set twice or broken off). *Print or scan* is said where a sign, dot, prime, tilde, \
+    bar, index, bracket, letter or component is missing or another one, once, and what comes before and after has it \
+    right: only the page could tell. *Erratum* is said where the same \
     mistake is carried on, or is one of substance, so that no scanner made it. What is damaged is never *proved*.";
 
 /// What a word says.

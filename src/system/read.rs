@@ -43,7 +43,9 @@ impl System {
         let text = with_plain_line_ends(text);
         let mut reading = Reading::default();
         reading.open.extend(Path::new(name).canonicalize());
+        // what an imported file refers to is looked for where that file itself is read
         System::build(name, &text, folder, Graph::default(), &mut reading)
+            .and_then(|system| system.check_references(folder).map(|()| system))
             .map_err(|problem| problem.locate(name, &text))
     }
 
@@ -112,7 +114,6 @@ impl System {
         for claim in system.claims.clone() {
             system.check(&claim)?;
         }
-        system.check_references(folder)?;
         system.domain = Default::default();
         if system.title.is_empty() {
             return Err(Problem::new(&(0..0), "the file does not name a system", "here")
