@@ -40,7 +40,7 @@ pub(crate) struct Stress {
     #[arg(long, value_enum, default_value_t = Which::Own, value_name = "WHICH")]
     rows: Which,
     /// States on each set from which lines go; the range over them is reported.
-    #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, default_value_t = 10, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     states: u64,
     /// States of the sample box that are looked at in other units.
     #[arg(long, default_value_t = 200, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
