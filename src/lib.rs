@@ -51,6 +51,9 @@ pub mod checker;
 // Lie derivatives, codistribution, rank at sampled states
 pub mod observability;
 
+// inequalities: signs, sums of squares, boxes
+pub mod inequality;
+
 // what verdicts rest on, written down for the checker
 pub mod evidence;
 

@@ -89,6 +89,21 @@ fn what_was_simplified_away_guards_the_box() {
             at_most: 0.999_999_999_9,
             state: zero(),
         },
+        // what vanishes by the square of a root is no minor
+        Hidden {
+            text: "state x drift f x' = 1 output sqrt(x^2)\nsample x in [-1, 1]",
+            rows: ALL,
+            at_least: 0.99,
+            at_most: 0.999_999_999_9,
+            state: zero(),
+        },
+        Hidden {
+            text: "state x drift f x' = 1 output sqrt((x - 1)^2)\nsample x in [-1, 1]",
+            rows: ALL,
+            at_least: 0.99,
+            at_most: 0.999_999_999_99,
+            state: vec![("x", Interval::ONE)],
+        },
         // at the very end of the box
         Hidden {
             text: "state x output x\nlet rows = [x/x]\nsample x in [0, 1]",

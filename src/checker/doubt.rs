@@ -74,6 +74,8 @@ pub enum Doubt {
     RequirementNotShown(usize),
     #[error("the two sides are equal at the state")]
     Equal,
+    #[error("the relation holds at the state")]
+    Holds,
     #[error("the two sides differ at a state that meets every condition")]
     Differ,
     #[error("the two sides cannot be told apart at the state")]

@@ -7,6 +7,7 @@ use super::state::{ExactCoordinate, ExactState};
 use crate::number::{Arithmetic, Enclosure, Enclosures, Function, Refusal};
 use dashu::rational::RBig;
 use std::cell::OnceCell;
+use std::cmp::Ordering;
 
 /// The bits of enclosures, one after the other.
 pub const PRECISIONS: [usize; 5] = [128, 256, 512, 1024, 2048];
@@ -157,6 +158,34 @@ impl<'c> Evaluation<'c> {
             }
         }
         last
+    }
+
+    /// Whether an operation has the value zero, exactly; also `false` where that is not told.
+    ///
+    /// # Errors
+    /// Where it has no value.
+    pub fn is_zero(&self, place: usize) -> Result<bool, Missing> {
+        let exact = Exact::new(Vec::new());
+        match self.exact(place) {
+            Ok(form) => Ok(exact.is_zero(form) == Some(true)),
+            Err(why) if why.is_certain() || why == Missing::Effort => Err(why),
+            Err(_) => Ok(false),
+        }
+    }
+
+    /// How two operations that differ stand to each other; `None` where that is not told.
+    ///
+    /// # Errors
+    /// Where one of them has no value.
+    pub fn order(&self, left: usize, right: usize) -> Result<Option<Ordering>, Missing> {
+        if let (Some(l), Some(r)) = (self.rational(left), self.rational(right)) {
+            return Ok(Some(l.cmp(r)));
+        }
+        self.climb(|precision| {
+            let (l, r) = (self.enclosed(left, precision)?, self.enclosed(right, precision)?);
+            let (less, more) = (l.high() < r.low(), l.low() > r.high());
+            Ok(if less { Some(Ordering::Less) } else { more.then_some(Ordering::Greater) })
+        })
     }
 
     /// Whether two operations have the same value.

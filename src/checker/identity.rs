@@ -4,7 +4,7 @@
 //! numbers that are near each other are *confirmed*.
 
 use super::doubt::{Doubt, Effort, Finding};
-use super::evaluation::{Difference, Evaluation};
+use super::evaluation::Evaluation;
 use super::listing::Listing;
 use super::state::{ExactCoordinate, ExactState, Ratio};
 use super::witness::{Requirement, Sides, holds, is_within};
@@ -73,7 +73,7 @@ impl StatedIdentity {
         for sides in &self.sides {
             match self.within {
                 None => {
-                    if values.difference(sides.left, sides.right)? == Difference::NotZero {
+                    if sides.hold(&values)? == Some(false) {
                         return Err(Doubt::Differ);
                     }
                 }

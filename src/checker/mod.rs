@@ -31,4 +31,4 @@ pub use identity::StatedIdentity;
 pub use listing::{Listing, MOST_STEPS, Step};
 pub use minor::{CertifiedRank, Minor, RankedState};
 pub use state::{ExactCoordinate, ExactState, Ratio};
-pub use witness::{PrintedSides, Refutation, Requirement, RequirementKind, Sides};
+pub use witness::{PrintedSides, Refutation, Requirement, RequirementKind, Sides, SidesRelation};

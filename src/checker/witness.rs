@@ -7,13 +7,66 @@ use super::state::{ExactState, Ratio};
 use dashu::integer::UBig;
 use dashu::rational::RBig;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
-/// The two sides of an equation, as places of a listing.
+/// How one side is claimed to stand to the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SidesRelation {
+    #[default]
+    #[serde(rename = "=")]
+    Equal,
+    #[serde(rename = "!=")]
+    NotEqual,
+    #[serde(rename = "<")]
+    Less,
+    #[serde(rename = "<=")]
+    AtMost,
+    #[serde(rename = ">")]
+    Greater,
+    #[serde(rename = ">=")]
+    AtLeast,
+}
+
+impl SidesRelation {
+    fn is_equality(&self) -> bool {
+        *self == SidesRelation::Equal
+    }
+
+    /// Whether it holds of two numbers that stand so to each other.
+    fn admits(self, order: Ordering) -> bool {
+        match self {
+            SidesRelation::Equal => order.is_eq(),
+            SidesRelation::NotEqual => order.is_ne(),
+            SidesRelation::Less => order.is_lt(),
+            SidesRelation::AtMost => order.is_le(),
+            SidesRelation::Greater => order.is_gt(),
+            SidesRelation::AtLeast => order.is_ge(),
+        }
+    }
+}
+
+/// The two sides of an equation or inequality, as places of a listing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sides {
     pub left: usize,
+    #[serde(default, skip_serializing_if = "SidesRelation::is_equality")]
+    pub relation: SidesRelation,
     pub right: usize,
+}
+
+impl Sides {
+    /// Whether the relation holds; `None` where that is not told.
+    pub(super) fn hold(self, values: &Evaluation<'_>) -> Result<Option<bool>, Missing> {
+        let difference = values.difference(self.left, self.right)?;
+        match (self.relation, difference) {
+            (relation, Difference::Zero) => Ok(Some(relation.admits(Ordering::Equal))),
+            (SidesRelation::Equal, Difference::NotZero) => Ok(Some(false)),
+            (SidesRelation::NotEqual, Difference::NotZero) => Ok(Some(true)),
+            (SidesRelation::Equal | SidesRelation::NotEqual, Difference::Unknown) => Ok(None),
+            (relation, _) => Ok(values.order(self.left, self.right)?.map(|order| relation.admits(order))),
+        }
+    }
 }
 
 /// What a term needs to have a value.
@@ -77,10 +130,11 @@ impl Refutation {
         let values = Evaluation::new(&self.listing, &self.state, effort)?;
         holds(&values, &self.conditions, &self.requirements)?;
         match self.within {
-            None => match values.difference(self.sides.left, self.sides.right)? {
-                Difference::NotZero => {}
-                Difference::Zero => return Err(Doubt::Equal),
-                Difference::Unknown => return Err(Doubt::NotToldApart),
+            None => match self.sides.hold(&values)? {
+                Some(false) => {}
+                Some(true) if self.sides.relation.is_equality() => return Err(Doubt::Equal),
+                Some(true) => return Err(Doubt::Holds),
+                None => return Err(Doubt::NotToldApart),
             },
             Some(tolerance) => match is_within(&values, self.sides, tolerance)? {
                 Some(false) => {}
@@ -88,7 +142,7 @@ impl Refutation {
                 None => return Err(Doubt::ToleranceNotTold),
             },
         }
-        if self.printed.left == self.printed.right {
+        if self.printed.left == self.printed.right && self.sides.relation.is_equality() {
             return Err(Doubt::PrintedAlike);
         }
         let sides =
@@ -111,10 +165,10 @@ pub(super) fn holds(
     requirements: &[Requirement],
 ) -> Result<(), Doubt> {
     for (index, condition) in conditions.iter().enumerate() {
-        match values.difference(condition.left, condition.right)? {
-            Difference::Zero => {}
-            Difference::NotZero => return Err(Doubt::ConditionNotMet(index)),
-            Difference::Unknown => return Err(Doubt::ConditionNotShown(index)),
+        match condition.hold(values)? {
+            Some(true) => {}
+            Some(false) => return Err(Doubt::ConditionNotMet(index)),
+            None => return Err(Doubt::ConditionNotShown(index)),
         }
     }
     for (index, requirement) in requirements.iter().enumerate() {
@@ -139,6 +193,8 @@ impl Requirement {
         }
         match values.rational(self.step) {
             Some(value) => Ok(self.kind.between(value, value)),
+            // a sum of roots, say, may be zero and no rational on its way
+            None if values.is_zero(self.step)? => Ok(self.kind.between(&RBig::ZERO, &RBig::ZERO)),
             None => values.climb(enclosed),
         }
     }

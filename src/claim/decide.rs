@@ -5,12 +5,14 @@ use super::evidence::{Kept, Nearness, RankedMatrix, claimed_rank, identity, near
 use super::existence::{Existence, existence};
 
 use super::identity::{OnOneBranch, decide_identity, decide_nearness};
+use super::inequality::decide_relations;
 use super::pole::decide_pole;
 use super::ranks::{decide_codistribution, decide_rank};
 use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict, Witness};
 use crate::checker::{Evidence, VerdictRecord};
-use crate::expression::{NodeId, Symbol, add_guard};
+use crate::expression::syntax::{Equation, Relation};
+use crate::expression::{Guard, Need, NodeId, Symbol, add_guard};
 use crate::observability::{Branch, solve};
 use crate::system::{Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line};
 use dashu::rational::RBig;
@@ -258,14 +260,34 @@ fn attempt(
         }
         return pole_statement(system, statement, left, right, rng);
     }
-    let solution = solve(system, &statement.conditions).map_err(|unsolved| unsolved.to_string())?;
     let mut conditions = Vec::new();
-    for condition in &statement.conditions {
+    for condition in statement.conditions.iter().filter(|condition| condition.relation == Relation::Equal) {
         let left = system.scalar(&condition.left).map_err(|problem| problem.message)?;
         let right = system.scalar(&condition.right).map_err(|problem| problem.message)?;
         conditions.push(system.graph.sub(left, right));
     }
-    let question = Question::new(system, left, right)?;
+    let question = match equation.relation {
+        Relation::Equal => Question::new(system, left, right)?,
+        _ => Question::relations(system, statement, &mut guards)?,
+    };
+    if let Question::Relations { .. } = question {
+        notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
+    }
+    let sampled =
+        if statement.on_sample { sample_box(system, question.sides(), &conditions) } else { Vec::new() };
+    let (solution, unsolved) = match solve(system, &statement.conditions) {
+        Ok(solution) => (solution, Vec::new()),
+        // what cannot be solved can still be looked at, box by box
+        Err(why) if matches!(question, Question::Relations { .. }) && why.may_be_met() => {
+            let is_inequality = |condition: &&Equation| condition.relation != Relation::Equal;
+            let others: Vec<Equation> = statement.conditions.iter().filter(is_inequality).cloned().collect();
+            let mut solution = solve(system, &others).map_err(|why| why.to_string())?;
+            let exists = guards_of_conditions(system, statement)?;
+            solution.parts.iter_mut().for_each(|part| part.guards.extend(&exists));
+            (solution, conditions.clone())
+        }
+        Err(why) => return Err(why.to_string()),
+    };
     let one_thing_twice = system.says_one_thing_twice(statement);
     let mut found = Vec::new();
     let lists = [
@@ -275,17 +297,20 @@ fn attempt(
     ];
     for (size, branches) in lists {
         for branch in branches {
-            if size == Size::Thinner && !matches!(question, Question::Identity { .. }) {
+            if size == Size::Thinner && question.is_of_a_rank() {
                 continue; // a rank is that at almost all states of the set
             }
             let mut all = branch.guards.clone();
-            guards.iter().for_each(|guard| add_guard(&system.graph, &mut all, *guard));
-            let sides = question.sides().to_vec();
+            sampled.iter().chain(&guards).for_each(|guard| add_guard(&system.graph, &mut all, *guard));
+            let is_assumed: Vec<bool> =
+                all.iter().map(|guard| branch.assumed.contains(guard) || sampled.contains(guard)).collect();
+            let (sides, relations) = (question.sides().to_vec(), question.all_relations().to_vec());
             let conditions = conditions.clone();
-            let terms = Terms { sides, guards: all, conditions, one_thing_twice };
+            let terms = Terms { sides, relations, guards: all, conditions, one_thing_twice };
             let on = OnBranch::new(system, branch, &terms)?;
             let verdict = match &question {
                 Question::Identity { columns, .. } => decide_identity(system, &on, *columns, rng),
+                Question::Relations { .. } => decide_relations(system, &on, &is_assumed, &unsolved, rng),
                 Question::Rank { columns, claimed, .. } => decide_rank(system, &on, *columns, *claimed, rng),
                 Question::Codistribution { claimed } => {
                     decide_codistribution(system, &on, branch, *claimed, rng)?
@@ -299,6 +324,36 @@ fn attempt(
         }
     }
     Ok(together(&question, found, &solution.unsolved))
+}
+
+/// That states lie in the sample box: inequalities for the symbols that a statement mentions, and what is avoided.
+fn sample_box(system: &mut System, sides: &[NodeId], conditions: &[NodeId]) -> Vec<Guard> {
+    let mentioned = system.graph.symbols_of(sides.iter().chain(conditions).copied());
+    let mut found = Vec::new();
+    for symbol in &mentioned {
+        let Some(range) = system.symbol_info(*symbol).and_then(|info| info.range.clone()) else { continue };
+        let (low, high) = (system.graph.rational(range.low), system.graph.rational(range.high));
+        let node = system.graph.symbol(*symbol);
+        for (more, less) in [(node, low), (high, node)] {
+            found.push(Guard { node: system.graph.sub(more, less), need: Need::NotNegative });
+        }
+    }
+    for (_, node) in &system.avoid {
+        if system.graph.symbols_of([*node]).iter().all(|symbol| mentioned.contains(symbol)) {
+            found.push(Guard { node: *node, need: Need::NotZero });
+        }
+    }
+    found
+}
+
+/// Where both sides of all conditions exist.
+fn guards_of_conditions(system: &mut System, statement: &Statement) -> Result<Vec<Guard>, String> {
+    let mut found = Vec::new();
+    for side in statement.conditions.iter().flat_map(|condition| [&condition.left, &condition.right]) {
+        let (_, guards) = system.elaborate_guarded(side).map_err(|problem| problem.message)?;
+        guards.into_iter().for_each(|guard| add_guard(&system.graph, &mut found, guard));
+    }
+    Ok(found)
 }
 
 /// How a branch stands to the set of all states that meet the conditions.
@@ -316,6 +371,8 @@ enum Size {
 enum Question {
     /// Are the entries of two matrices equal, the left ones first?
     Identity { entries: Vec<NodeId>, columns: usize },
+    /// Do inequalities hold? The left sides first.
+    Relations { entries: Vec<NodeId>, relations: Vec<Relation> },
     /// Has a matrix this rank?
     Rank { entries: Vec<NodeId>, columns: usize, claimed: usize },
     /// Has the observability codistribution this rank?
@@ -323,6 +380,41 @@ enum Question {
 }
 
 impl Question {
+    /// Inequalities that are claimed together; what their terms need is added to the guards.
+    fn relations(
+        system: &mut System,
+        statement: &Statement,
+        guards: &mut Vec<Guard>,
+    ) -> Result<Question, String> {
+        let (mut entries, mut right_sides, mut relations) = (Vec::new(), Vec::new(), Vec::new());
+        for relation in statement.relations() {
+            for (side, list) in [(&relation.left, &mut entries), (&relation.right, &mut right_sides)] {
+                let (value, needed) = system.elaborate_guarded(side).map_err(|problem| problem.message)?;
+                let Value::Scalar(value) = value else {
+                    return Err(format!("'{}' compares numbers", relation.relation.sign()));
+                };
+                list.push(value);
+                let needed = needed.into_iter().filter(|guard| guard.is_obvious(&system.graph) != Some(true));
+                needed.for_each(|guard| add_guard(&system.graph, guards, guard));
+            }
+            relations.push(relation.relation);
+        }
+        entries.append(&mut right_sides);
+        Ok(Question::Relations { entries, relations })
+    }
+
+    fn is_of_a_rank(&self) -> bool {
+        matches!(self, Question::Rank { .. } | Question::Codistribution { .. })
+    }
+
+    /// How each left side is claimed to stand to its right one; none where all are equations.
+    fn all_relations(&self) -> &[Relation] {
+        match self {
+            Question::Relations { relations, .. } => relations,
+            _ => &[],
+        }
+    }
+
     fn new(system: &System, left: Value, right: Value) -> Result<Question, String> {
         let claimed = |id: NodeId| {
             let claimed = claimed_integer(system, id)?;
@@ -356,10 +448,13 @@ impl Question {
         rng: &mut ChaCha8Rng,
     ) -> Option<Evidence> {
         let matrix = match (self, verdict) {
-            (Question::Identity { .. }, Verdict::Proved { engine, log2_error }) => {
+            (
+                Question::Identity { .. } | Question::Relations { .. },
+                Verdict::Proved { engine, log2_error },
+            ) => {
                 return Some(identity(system, on, (engine, *log2_error), rng));
             }
-            (Question::Identity { .. }, _) => return None,
+            (Question::Identity { .. } | Question::Relations { .. }, _) => return None,
             (Question::Rank { entries, columns, claimed }, _) => {
                 RankedMatrix::of_file(entries, *columns, *claimed)
             }
@@ -373,7 +468,9 @@ impl Question {
     /// What has to exist.
     fn sides(&self) -> &[NodeId] {
         match self {
-            Question::Identity { entries, .. } | Question::Rank { entries, .. } => entries,
+            Question::Identity { entries, .. }
+            | Question::Relations { entries, .. }
+            | Question::Rank { entries, .. } => entries,
             Question::Codistribution { .. } => &[],
         }
     }
@@ -381,7 +478,7 @@ impl Question {
 
 /// What the verdicts on all branches come to together.
 fn together(question: &Question, found: Vec<(Size, &Branch, OnOneBranch)>, unsolved: &[String]) -> Verdict {
-    let of_rank = !matches!(question, Question::Identity { .. });
+    let of_rank = question.is_of_a_rank();
     let several = found.len() > 1;
     let (mut verdicts, mut shown, mut needs) = (Vec::new(), false, Vec::new());
     for (size, branch, on_one) in found {

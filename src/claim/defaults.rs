@@ -5,7 +5,7 @@
 //! both sides exist. Where the two verdicts differ the outcome says so.
 
 use super::verdict::Verdict;
-use crate::expression::syntax::{Equation, Expr, ExprKind};
+use crate::expression::syntax::{Equation, Expr, ExprKind, Relation};
 use crate::expression::{NodeId, Symbol};
 use crate::system::{Kind, Statement, System, Value};
 use dashu::rational::RBig;
@@ -38,8 +38,10 @@ pub(crate) fn at_the_files_values(
     let mut special = statement.clone();
     let given = values.iter().map(|(symbol, value)| Equation {
         left: part(statement, ExprKind::Name(system.symbol_name(*symbol).to_owned())),
+        relation: Relation::Equal,
         right: part(statement, ExprKind::Number(value.clone())),
         within: None,
+        span: statement.span.clone(),
     });
     special.conditions.splice(0..0, given);
     let word = decide(system, &special).word();
@@ -59,7 +61,7 @@ fn part(statement: &Statement, kind: ExprKind) -> Expr {
 fn values_for(system: &mut System, statement: &Statement) -> Vec<(Symbol, RBig)> {
     let mut nodes: Vec<NodeId> = Vec::new();
     let mut fixed: Vec<Symbol> = Vec::new();
-    for side in [&statement.equation.left, &statement.equation.right] {
+    for side in statement.relations().flat_map(|relation| [&relation.left, &relation.right]) {
         match system.elaborate(side) {
             Ok(Value::Scalar(id)) => nodes.push(id),
             Ok(Value::Matrix(m) | Value::Rank(m)) => nodes.extend(m.entries),
@@ -80,7 +82,9 @@ fn values_for(system: &mut System, statement: &Statement) -> Vec<(Symbol, RBig)>
     for condition in &statement.conditions {
         for side in [&condition.left, &condition.right] {
             if let Ok(node) = system.scalar(side) {
-                fixed.extend(system.graph.as_symbol(node));
+                if condition.relation == Relation::Equal {
+                    fixed.extend(system.graph.as_symbol(node));
+                }
                 nodes.push(node);
             }
         }

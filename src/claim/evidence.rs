@@ -40,6 +40,7 @@ impl OnBranch {
         StatementAt {
             graph: &system.graph,
             sides: &self.statement.sides,
+            relations: &self.statement.relations,
             within: None,
             conditions: &self.statement.conditions,
             guards: &self.statement.guards,
@@ -147,6 +148,7 @@ pub(super) fn nearness(
     let statement = StatementAt {
         graph: &system.graph,
         sides: &sides,
+        relations: &[],
         within: Some(near.tolerance),
         conditions: &[],
         guards,
@@ -214,7 +216,7 @@ pub(super) fn claimed_rank(
     };
     // the entries of a codistribution are no sides of the statement, and mention more symbols
     let sides = matrix.entries.clone();
-    let terms = Terms { sides, ..on.statement.clone() };
+    let terms = Terms { sides, relations: Vec::new(), ..on.statement.clone() };
     let Ok(on) = &OnBranch::new(system, branch, &terms) else {
         return Some(Evidence::Unchecked(NO_STATE.to_owned()));
     };

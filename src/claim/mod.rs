@@ -11,6 +11,7 @@ mod defaults;
 mod evidence;
 mod existence;
 mod identity;
+mod inequality;
 mod pole;
 mod rank_witness;
 mod ranks;

@@ -1,7 +1,9 @@
 //! The terms of a statement on one branch of its conditions, and states at which to look at them.
 
+use crate::expression::syntax::Relation;
 use crate::expression::{Guard, Need, NodeId, Program, Symbol, expand_angles};
-use crate::number::{Enclosure, Enclosures, Function, Rationals, rational_from_f64};
+use crate::inequality::{Bound, Bounds, Range, bounds};
+use crate::number::{Enclosure, Enclosures, Function, Interval, Rationals, rational_from_f64};
 use crate::observability::{Branch, Coordinate, State, StateInWords};
 use crate::system::{Assignment, Kind, System};
 use dashu::rational::RBig;
@@ -20,6 +22,8 @@ const EXACT_BITS: usize = 1 << 16;
 pub(crate) struct Terms {
     /// The entries of the left side, then those of the right.
     pub sides: Vec<NodeId>,
+    /// How each entry of the left is claimed to stand to that of the right; none where all are equations.
+    pub relations: Vec<Relation>,
     pub guards: Vec<Guard>,
     /// Left sides less right sides of the conditions.
     pub conditions: Vec<NodeId>,
@@ -47,6 +51,8 @@ pub(crate) struct OnBranch {
     here: Programs,
     /// What is drawn.
     free: Vec<Symbol>,
+    /// Between what, where guards say so.
+    bounds: Bounds,
     /// What follows, in the order of the symbols: the value, or its sine and cosine.
     solved: Vec<(Symbol, Solved)>,
     /// Whether angles are drawn as exact points of the circle; else as numbers, in radians.
@@ -86,15 +92,25 @@ impl OnBranch {
         let needs: Vec<Need> = statement.guards.iter().map(|guard| guard.need).collect();
         let guards =
             there.iter().zip(&needs).map(|(node, need)| Guard { node: *node, need: *need }).collect();
-        let here = Terms { sides, guards, ..Terms::default() };
+        let relations = statement.relations.clone();
+        let here = Terms { sides, relations, guards, ..Terms::default() };
         let mut solved: Vec<Symbol> = branch.values.keys().copied().collect();
         solved.sort_unstable();
         let values: Vec<NodeId> = solved.iter().map(|symbol| branch.values[symbol]).collect();
         let all = || statement.sides.iter().chain(&nodes).chain(&statement.conditions).chain(&values);
         let mut free = system.graph.symbols_of(all().copied());
         free.retain(|symbol| !branch.values.contains_key(symbol));
-        let circular = bare_angle(system, &all().copied().collect::<Vec<_>>()).is_none()
-            && bare_angle(system, &here.nodes()).is_none();
+        // a guard may ask for more than sine and cosine tell, as that an angle is less than one: enclosures answer that
+        let there = || statement.sides.iter().chain(&statement.conditions).chain(&values);
+        let bounds = bounds(&mut system.graph, &here.guards);
+        // points of the circle stand for angles between minus pi and pi
+        let half_turn = Interval::new(-Interval::PI.low(), Interval::PI.low());
+        let is_beyond = |(symbol, range): (&Symbol, &Range)| {
+            system.is_angle(*symbol) && !half_turn.encloses(range.interval())
+        };
+        let circular = !bounds.iter().any(is_beyond)
+            && bare_angle(system, &there().copied().collect::<Vec<_>>()).is_none()
+            && bare_angle(system, &here.sides).is_none();
         let whole = programs(system, statement, circular);
         let programs_here = programs(system, &here, circular);
         let solved = solved
@@ -109,6 +125,7 @@ impl OnBranch {
             whole,
             here: programs_here,
             free,
+            bounds,
             solved,
             circular,
         })
@@ -119,13 +136,33 @@ impl OnBranch {
     pub fn draw(&self, system: &mut System, attempt: usize, rng: &mut impl Rng) -> Point {
         let mut state = State::default();
         for symbol in &self.free {
-            let value = if self.circular && system.is_angle(*symbol) {
+            let within = self.bounds.get(symbol).and_then(|range| within(range, attempt, rng));
+            let value = if let Some(value) = within {
+                self.within_bounds(system, *symbol, value)
+            } else if self.circular && system.is_angle(*symbol) {
                 Coordinate::from_half_tangent(&half_tangent(system, *symbol, attempt, rng))
             } else {
                 Coordinate::Number(number(system, *symbol, attempt, rng))
             };
             state.values.insert(*symbol, value);
         }
+        self.complete(system, state)
+    }
+
+    /// A number that lies within bounds, as a coordinate.
+    fn within_bounds(&self, system: &System, symbol: Symbol, value: RBig) -> Coordinate {
+        if self.circular && system.is_angle(symbol) {
+            let tangent = (value.to_f64().value() / 2.0).tan();
+            let near = |part: f64| rational_from_f64(tangent + part * tangent.abs().max(1.0) / 1000.0);
+            if let (Some(low), Some(high)) = (near(-1.0), near(1.0)) {
+                return Coordinate::from_half_tangent(&RBig::simplest_in(low, high));
+            }
+        }
+        Coordinate::Number(value)
+    }
+
+    /// The state with what the conditions give.
+    pub fn complete(&self, system: &mut System, mut state: State) -> Point {
         let drawn = state.clone();
         let mut terms = Vec::new();
         for (symbol, solved) in &self.solved {
@@ -171,6 +208,16 @@ impl OnBranch {
         })
     }
 
+    /// The symbols that the conditions leave free.
+    pub fn free_symbols(&self) -> &[Symbol] {
+        &self.free
+    }
+
+    /// Whether angles are drawn as exact points of the circle.
+    pub fn draws_circles(&self) -> bool {
+        self.circular
+    }
+
     /// The symbols that the conditions give, with their values in terms of the others.
     pub fn solved_values(&self) -> Vec<(Symbol, NodeId)> {
         self.solved.iter().map(|(symbol, solved)| (*symbol, solved.value)).collect()
@@ -194,13 +241,6 @@ impl OnBranch {
         all.into_iter()
             .map(|(symbol, (text, value))| (system.symbol_name(symbol).to_owned(), text, value))
             .collect()
-    }
-}
-
-impl Terms {
-    fn nodes(&self) -> Vec<NodeId> {
-        let guards = self.guards.iter().map(|guard| guard.node);
-        self.sides.iter().copied().chain(guards).chain(self.conditions.iter().copied()).collect()
     }
 }
 
@@ -273,6 +313,34 @@ fn exact_values(program: &Program, state: &State) -> Option<Vec<RBig>> {
     let exact = Rationals { bits: EXACT_BITS };
     let inputs = state.inputs(program, &exact).ok()?;
     program.load(exact).ok()?.run(&inputs, &mut Vec::new()).ok()
+}
+
+/// A simple number within a range, every fifth time one of its ends; mostly near the ends where it has one or none.
+fn within(range: &Range, attempt: usize, rng: &mut impl Rng) -> Option<RBig> {
+    let end = |bound: &Option<Bound>, down: bool| {
+        let bound = bound.as_ref()?;
+        let inside = if down { bound.enclosed.high() } else { bound.enclosed.low() };
+        bound.exact.clone().or_else(|| rational_from_f64(inside))
+    };
+    let (low, high) = (end(&range.low, true), end(&range.high, false));
+    if attempt % 5 == 4 {
+        let ends = [(&range.low, &low), (&range.high, &high)];
+        let closed = ends.into_iter().filter(|(bound, _)| bound.as_ref().is_some_and(|bound| !bound.strict));
+        let closed: Vec<RBig> = closed.filter_map(|(_, end)| end.clone()).collect();
+        if !closed.is_empty() {
+            return Some(closed[rng.random_range(0..closed.len())].clone());
+        }
+    }
+    let reach = [RBig::from(3), RBig::ONE, RBig::from(10), RBig::ONE / RBig::from(4)][attempt % 4].clone()
+        * RBig::from([1, 4, 40, 400][(attempt / 60).min(3)]);
+    let (low, high) = match (low, high) {
+        (Some(low), Some(high)) => (low, high),
+        (Some(low), None) => (low.clone(), low + reach),
+        (None, Some(high)) => (&high - reach, high),
+        (None, None) => return None,
+    };
+    // halves, thirds and quarters from the start
+    (low <= high).then(|| simple_between(&low, &high, attempt.max(40), rng))
 }
 
 /// The value that the file gives to a parameter, or a simple number from its range; every third time, and after some

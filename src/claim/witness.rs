@@ -71,6 +71,18 @@ enum Comparison {
     Agree(usize),
 }
 
+/// The values of two sides as they are printed; alike where they are equal.
+pub(super) fn texts_of_sides(values: &Values, left: usize, right: usize) -> [String; 2] {
+    match (compare(values, left, right), values) {
+        (Comparison::Differ(left, right), _) => [left, right],
+        (Comparison::Agree(_), Values::Exact(values)) => {
+            [left, right].map(|side| shown(&values[side], DIGITS))
+        }
+        (Comparison::Agree(_), Values::Enclosed(values)) => [left, right]
+            .map(|side| values[side].certain_decimal(DIGITS).unwrap_or_else(|| values[side].bounds_text())),
+    }
+}
+
 fn compare(values: &Values, left: usize, right: usize) -> Comparison {
     match values {
         Values::Exact(values) if values[left] == values[right] => Comparison::Agree(MOST_DIGITS),

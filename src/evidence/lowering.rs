@@ -1,8 +1,10 @@
 //! From nodes of a graph to a listing: one operation a node, operands first.
 
 use crate::checker::{
-    ExactCoordinate, ExactState, Listing, Missing, Ratio, Requirement, RequirementKind, Sides, Step,
+    ExactCoordinate, ExactState, Listing, Missing, Ratio, Requirement, RequirementKind, Sides, SidesRelation,
+    Step,
 };
+use crate::expression::syntax::Relation;
 use crate::expression::{Graph, Guard, Need, Node, NodeId};
 use crate::observability::{Coordinate, State};
 use dashu::rational::RBig;
@@ -72,8 +74,16 @@ impl<'g> Lowering<'g> {
     ///
     /// # Errors
     /// Where the listing becomes too long.
-    pub fn sides(&mut self, left: NodeId, right: NodeId) -> Result<Sides, Missing> {
-        Ok(Sides { left: self.place(left)?, right: self.place(right)? })
+    pub fn sides(&mut self, left: NodeId, relation: Relation, right: NodeId) -> Result<Sides, Missing> {
+        let relation = match relation {
+            Relation::Equal => SidesRelation::Equal,
+            Relation::NotEqual => SidesRelation::NotEqual,
+            Relation::Less => SidesRelation::Less,
+            Relation::AtMost => SidesRelation::AtMost,
+            Relation::Greater => SidesRelation::Greater,
+            Relation::AtLeast => SidesRelation::AtLeast,
+        };
+        Ok(Sides { left: self.place(left)?, relation, right: self.place(right)? })
     }
 
     /// What a term needs to have a value.
@@ -96,7 +106,9 @@ impl<'g> Lowering<'g> {
     /// # Errors
     /// Where the listing becomes too long.
     pub fn vanishing(&mut self, node: NodeId) -> Result<Sides, Missing> {
-        Ok(Sides { left: self.place(node)?, right: self.listing.push(Step::Constant(RBig::ZERO))? })
+        let left = self.place(node)?;
+        let right = self.listing.push(Step::Constant(RBig::ZERO))?;
+        Ok(Sides { left, relation: SidesRelation::Equal, right })
     }
 
     /// The listing.

@@ -4,9 +4,12 @@ use super::NotWritten;
 use super::lowering::{Lowering, exact_state};
 use super::minors::largest_minor;
 use crate::checker::{CertifiedRank, Evidence, Missing, RankedState, Ratio, VerdictRecord};
+use crate::expression::syntax::Relation;
 use crate::expression::{Guard, NodeId, Program, Symbol, expand_angles};
 use crate::number::PrimeField;
-use crate::observability::{OWN_ROWS, RankAnswer, RecordedState, SweepReport, TakenRow, parse_condition};
+use crate::observability::{
+    OWN_ROWS, RankAnswer, RecordedState, SweepReport, TakenRow, assumed, parse_condition,
+};
 use crate::system::System;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -24,14 +27,20 @@ pub fn rank_records(
     conditions: &[String],
 ) -> Result<Vec<VerdictRecord>, NotWritten> {
     // as they were read, and not as they were solved
-    let mut met = Vec::new();
+    let (mut met, mut inequalities) = (Vec::new(), Vec::new());
     for text in conditions {
-        let equation = parse_condition(text).map_err(NotWritten::Condition)?;
-        let mut side = |expr| system.scalar(expr).map_err(|problem| NotWritten::Condition(problem.message));
-        met.push((side(&equation.left)?, side(&equation.right)?));
+        for condition in parse_condition(text).map_err(NotWritten::Condition)? {
+            let mut side =
+                |expr| system.scalar(expr).map_err(|problem| NotWritten::Condition(problem.message));
+            let (left, right) = (side(&condition.left)?, side(&condition.right)?);
+            match assumed(&mut system.graph, condition.relation, left, right) {
+                None => met.push((left, right)),
+                Some(guard) => inequalities.push(guard),
+            }
+        }
     }
-    let smooth = system.smooth_guards(&system.moving_fields());
-    let own = system.definition_guards(OWN_ROWS);
+    let smooth = [system.smooth_guards(&system.moving_fields()), inequalities.clone()].concat();
+    let own = [system.definition_guards(OWN_ROWS), inequalities].concat();
     let mut records = Vec::new();
     for branch in &answer.branches {
         let place = match branch.conditions.as_slice() {
@@ -93,8 +102,10 @@ fn certified_rank(
         let entries = rows[*row].entries.iter();
         places.push(entries.map(|entry| lowering.place(*entry)).collect::<Result<Vec<_>, _>>()?);
     }
-    let conditions =
-        met.iter().map(|(left, right)| lowering.sides(*left, *right)).collect::<Result<_, _>>()?;
+    let conditions = met
+        .iter()
+        .map(|(left, right)| lowering.sides(*left, Relation::Equal, *right))
+        .collect::<Result<_, _>>()?;
     let requirements = guards.iter().map(|guard| lowering.requirement(*guard)).collect::<Result<_, _>>()?;
     Ok(CertifiedRank {
         columns: system.states.iter().map(|state| graph.symbol_name(*state).to_owned()).collect(),

@@ -5,6 +5,7 @@ use crate::checker::{
     ExactCoordinate, ExactState, Listing, Missing, PrintedSides, Refutation, Requirement, Sides,
     StatedIdentity,
 };
+use crate::expression::syntax::Relation;
 use crate::expression::{Graph, Guard, NodeId, Symbol};
 use crate::observability::State;
 
@@ -14,6 +15,8 @@ pub struct StatementAt<'g> {
     pub graph: &'g Graph,
     /// The entries of the left side, then those of the right.
     pub sides: &'g [NodeId],
+    /// How each entry of the left is claimed to stand to that of the right; none where all are equations.
+    pub relations: &'g [Relation],
     /// Where sides are claimed to be near each other: the tolerance.
     pub within: Option<NodeId>,
     /// Left sides less right sides of the conditions.
@@ -86,7 +89,8 @@ impl StatementAt<'_> {
         let mut sides = Vec::new();
         for (index, (l, r)) in left.iter().zip(right).enumerate() {
             if entry.is_none_or(|entry| entry == index) {
-                sides.push(lowering.sides(*l, *r)?);
+                let relation = self.relations.get(index).copied().unwrap_or(Relation::Equal);
+                sides.push(lowering.sides(*l, relation, *r)?);
             }
         }
         let within = self.within.map(|node| lowering.place(node)).transpose()?;

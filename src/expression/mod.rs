@@ -37,5 +37,5 @@ pub use nodes::Nodes;
 pub use parse::{Expected, parse_expression};
 pub use products::{NodeFractions, Products, Variable};
 pub use program::{Failure, Input, Loaded, Program};
-pub use sign::{Sign, sign};
+pub use sign::{Sign, sign, sign_given};
 pub use zero_test::{ZeroTest, draw_residues, failure_bound, identically_zero, sizes};

@@ -1,7 +1,7 @@
 //! Reading expressions. The parser combinators are winnow's; the error is ours, because it has to say what was
 //! expected, and where.
 
-use super::syntax::{Equation, Expr, ExprKind, Name, Span};
+use super::syntax::{Equation, Expr, ExprKind, Name, Relation, Span};
 use crate::number::parse_decimal;
 use std::cell::Cell;
 use winnow::combinator::{alt, cut_err, not, opt, preceded, separated};
@@ -382,13 +382,79 @@ pub(crate) fn sum(input: &mut Text<'_>) -> Read<Expr> {
     Ok(Expr { kind: ExprKind::Sum(terms), span: begin..end })
 }
 
-/// `left = right`, perhaps `within tolerance`.
-pub(crate) fn equation(input: &mut Text<'_>) -> Read<Equation> {
+/// The sign between two sides.
+fn relation(input: &mut Text<'_>) -> Read<Relation> {
+    // the longer signs first
+    alt((
+        sign("!=").value(Relation::NotEqual),
+        sign("<=").value(Relation::AtMost),
+        sign(">=").value(Relation::AtLeast),
+        sign("<").value(Relation::Less),
+        sign(">").value(Relation::Greater),
+        sign("=").value(Relation::Equal),
+    ))
+    .parse_next(input)
+}
+
+/// `left = right`, perhaps `within tolerance`; `left < right`; and what stands for two of them: `low <= middle < high`,
+/// `name in [low, high]`.
+pub(crate) fn equations(input: &mut Text<'_>) -> Read<Vec<Equation>> {
     let left = sum(input)?;
-    cut_err(sign("=")).context("'=' or an operator").parse_next(input)?;
+    let begin = left.span.start;
+    let one = |left: Expr, relation: Relation, right: Expr, end: usize| Equation {
+        left,
+        relation,
+        right,
+        within: None,
+        span: begin..end,
+    };
+    if opt(keyword("in")).parse_next(input)?.is_some() {
+        let (low, high, end) = cut_err(range).parse_next(input)?;
+        let above = one(left.clone(), Relation::AtLeast, low, end);
+        return Ok(vec![above, one(left, Relation::AtMost, high, end)]);
+    }
+    let expected = "'=', '<', '<=', '>', '>=', '!=' or an operator";
+    let first = cut_err(relation).context(expected).parse_next(input)?;
     let right = cut_err(sum).parse_next(input)?;
-    let within = opt(preceded(keyword("within"), cut_err(sum))).parse_next(input)?;
-    Ok(Equation { left, right, within })
+    let end = right.span.end;
+    let mut found = vec![one(left, first, right, end)];
+    if first == Relation::Equal {
+        found[0].within = opt(preceded(keyword("within"), cut_err(sum))).parse_next(input)?;
+        found[0].span.end = found[0].within.as_ref().map_or(end, |within| within.span.end);
+    } else {
+        chain(input, &mut found)?;
+    }
+    Ok(found)
+}
+
+/// The further links of a chain.
+fn chain(input: &mut Text<'_>, found: &mut Vec<Equation>) -> Read<()> {
+    let first = found[0].relation;
+    let mut at = input.current_token_start();
+    while let Some(next) = opt(relation).parse_next(input)? {
+        if !(first.is_ordering() && next.is_ordering() && first.points_up() == next.points_up()) {
+            let help =
+                "a chain goes one way, as in a <= b < c; write anything else as relations of their own";
+            return stop(at, "the end of the relation", Some(help.into()));
+        }
+        let right = cut_err(sum).parse_next(input)?;
+        let (left, span) = (found[found.len() - 1].right.clone(), found[0].span.start..right.span.end);
+        found.push(Equation { left, relation: next, right, within: None, span });
+        at = input.current_token_start();
+    }
+    let end = found[found.len() - 1].span.end;
+    found.iter_mut().for_each(|link| link.span.end = end);
+    Ok(())
+}
+
+/// `[low, high]`, and where it ends.
+pub(crate) fn range(input: &mut Text<'_>) -> Read<(Expr, Expr, usize)> {
+    sign("[").context("a range [low, high]").parse_next(input)?;
+    let low = cut_err(sum).parse_next(input)?;
+    cut_err(sign(",")).context("','").parse_next(input)?;
+    let high = cut_err(sum).parse_next(input)?;
+    let end = cut_err(closing("]")).context("']'").parse_next(input)?;
+    Ok((low, high, end))
 }
 
 /// Runs a parser over a whole text.

@@ -16,7 +16,8 @@ pub enum Sign {
 }
 
 impl Sign {
-    fn negated(self) -> Sign {
+    /// The sign of the negative.
+    pub fn negated(self) -> Sign {
         match self {
             Sign::Positive => Sign::Negative,
             Sign::NotNegative => Sign::NotPositive,
@@ -30,11 +31,13 @@ impl Sign {
         matches!(self, Sign::Positive | Sign::Negative)
     }
 
-    fn is_upward(self) -> bool {
+    /// Whether it is not negative, for all that is known.
+    pub fn is_upward(self) -> bool {
         matches!(self, Sign::Positive | Sign::NotNegative)
     }
 
-    fn new(upward: bool, strict: bool) -> Sign {
+    /// The sign of what is not negative (`upward`) or not positive, and not zero where that is `strict`.
+    pub fn new(upward: bool, strict: bool) -> Sign {
         match (upward, strict) {
             (true, true) => Sign::Positive,
             (true, false) => Sign::NotNegative,
@@ -46,9 +49,16 @@ impl Sign {
 
 /// The sign of an expression at all values of its symbols at which it exists, where a rule tells it.
 pub fn sign(graph: &Graph, root: NodeId) -> Option<Sign> {
+    sign_given(graph, root, &HashMap::new())
+}
+
+/// The same where some expressions, symbols for example, are known to have a sign.
+pub fn sign_given(graph: &Graph, root: NodeId, given: &HashMap<NodeId, Sign>) -> Option<Sign> {
     let mut known: HashMap<NodeId, Sign> = HashMap::new();
     for id in graph.reachable([root]) {
-        if let Some(sign) = rule(graph, id, &known) {
+        let (found, given) = (rule(graph, id, &known), given.get(&id).copied());
+        // what excludes zero says more
+        if let Some(sign) = given.filter(|sign| sign.is_strict()).or(found).or(given) {
             known.insert(id, sign);
         }
     }

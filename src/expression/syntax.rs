@@ -42,11 +42,49 @@ pub enum ExprKind {
     At(Box<Expr>, Vec<(Name, Expr)>),
 }
 
-/// `left = right`, and how near they have to be where that is not meant exactly.
+/// How one side is said to stand to the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    Equal,
+    NotEqual,
+    Less,
+    AtMost,
+    Greater,
+    AtLeast,
+}
+
+impl Relation {
+    /// The sign that says it.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Relation::Equal => "=",
+            Relation::NotEqual => "!=",
+            Relation::Less => "<",
+            Relation::AtMost => "<=",
+            Relation::Greater => ">",
+            Relation::AtLeast => ">=",
+        }
+    }
+
+    /// Whether it says which side is the greater one.
+    pub fn is_ordering(self) -> bool {
+        !matches!(self, Relation::Equal | Relation::NotEqual)
+    }
+
+    /// Whether it puts the left side below the right one.
+    pub fn points_up(self) -> bool {
+        matches!(self, Relation::Less | Relation::AtMost)
+    }
+}
+
+/// `left = right`, or another relation; and how near they have to be where equality is not meant exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
     pub left: Expr,
+    pub relation: Relation,
     pub right: Expr,
     /// `within tolerance`
     pub within: Option<Expr>,
+    /// All of it; of a chain `a < b < c`, the whole chain.
+    pub span: Span,
 }

@@ -33,8 +33,17 @@ impl Defined {
         }
     }
 
+    /// Whether everything certainly holds at a state.
+    pub fn holds(&self, state: &State) -> bool {
+        self.first_failure(&|_| String::new(), state).is_none()
+    }
+
     /// What does not hold at a state, or may not, in words; nothing where everything certainly exists.
     pub fn failure(&self, graph: &Graph, state: &State) -> Option<String> {
+        self.first_failure(&|node| graph.text(node), state)
+    }
+
+    fn first_failure(&self, text: &dyn Fn(NodeId) -> String, state: &State) -> Option<String> {
         if self.needs.is_empty() {
             return None;
         }
@@ -50,7 +59,7 @@ impl Defined {
                     let failing = self.first(&values, |need, value: &RBig| Some(need.is_met_by(value)));
                     failing.map(|(index, _)| self.not_met(index))
                 }
-                Err(node) => Some(format!("{} is not defined", graph.text(node))),
+                Err(node) => Some(format!("{} is not defined", text(node))),
             };
         }
         let mut found = None;

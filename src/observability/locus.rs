@@ -1,6 +1,7 @@
 //! Where states are drawn from: the sample box of a system, cut by conditions and by values that are held fixed.
 
 use super::conditions::Branch;
+use super::defined::Defined;
 use super::state::{Coordinate, State};
 use crate::expression::{NodeId, Program, Symbol, expand_angles};
 use crate::number::{Floats, Function, Rationals, Refusal, rational_from_f64, rational_to_f64};
@@ -54,6 +55,9 @@ pub struct Locus {
     dependent_program: Program,
     avoid: Vec<String>,
     avoid_program: Program,
+    /// Whether inequalities cut the box, and what they say.
+    pub(super) is_cut: bool,
+    inside: Defined,
     /// The conditions and fixed values, in words.
     pub conditions: Vec<String>,
 }
@@ -88,7 +92,9 @@ impl Locus {
         let values = expand_angles(&mut system.graph, &values, is_angle);
 
         let kept_clear: Vec<NodeId> = system.avoid.iter().map(|(_, node)| *node).collect();
-        let mut needed = system.graph.symbols_of(mentioned.iter().chain(&values).chain(&kept_clear).copied());
+        let assumed: Vec<NodeId> = branch.assumed.iter().map(|guard| guard.node).collect();
+        let all = mentioned.iter().chain(&values).chain(&kept_clear).chain(&assumed);
+        let mut needed = system.graph.symbols_of(all.copied());
         needed.extend(system.states.iter().copied());
         needed.sort_unstable();
         needed.dedup();
@@ -101,6 +107,7 @@ impl Locus {
         }
         let (avoid, avoid_nodes) = avoided(system, branch, &sources, is_angle);
         let mut conditions = branch.steps.clone();
+        conditions.extend(branch.assumed.iter().map(|guard| guard.text(&system.graph)));
         conditions
             .extend(fixed.iter().map(|(symbol, value)| format!("{} = {value}", system.symbol_name(*symbol))));
         Ok(Locus {
@@ -111,6 +118,8 @@ impl Locus {
             avoid,
             avoid_program: Program::new(&system.graph, &avoid_nodes, is_angle, false),
             avoided: avoid_nodes,
+            is_cut: !branch.assumed.is_empty(),
+            inside: Defined::new(system, &branch.assumed),
             conditions,
         })
     }
@@ -130,6 +139,10 @@ impl Locus {
                 state.values.insert(*symbol, source.at(unit));
             }
             if self.complete(&mut state).is_err() {
+                continue;
+            }
+            if self.is_cut && !self.inside.holds(&state) {
+                complaint = "the last one did not meet all inequalities".to_owned();
                 continue;
             }
             match self.avoided_value(&state) {

@@ -29,7 +29,7 @@ mod sweep;
 
 pub use codistribution::{Codistribution, Length, Stop, Word};
 pub use conditions::{
-    Branch, Solution, Unsolved, also_met_otherwise, linear_solution, solve, solve_conditions,
+    Branch, Solution, Unsolved, also_met_otherwise, assumed, linear_solution, solve, solve_conditions,
 };
 pub use defined::Defined;
 pub use digits::{Digits, MOST_DIGITS, NoDigits};

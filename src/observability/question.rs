@@ -5,7 +5,7 @@ use super::conditions::solve_conditions;
 use super::ladder::Certainty;
 use super::locus::Locus;
 use super::sweep::{SweepOptions, SweepReport, sweep};
-use crate::expression::parse::{Depth, equation, read_all};
+use crate::expression::parse::{Depth, equations, read_all};
 use crate::expression::syntax::Equation;
 use crate::expression::{NodeId, Symbol};
 use crate::system::{Assignment, FieldRole, Kind, SymbolInfo, System, Value};
@@ -127,12 +127,12 @@ fn held_parameters<'a>(
     system.symbols().filter_map(held).collect()
 }
 
-/// Reads a condition such as `sin(phi1) = 0`.
+/// Reads a condition such as `sin(phi1) = 0` or `0 < x < 1`, which is two.
 ///
 /// # Errors
 /// In words: what was expected, and where.
-pub fn parse_condition(text: &str) -> Result<Equation, String> {
-    read_all(text, &Depth::default(), "an operator, or the end", equation)
+pub fn parse_condition(text: &str) -> Result<Vec<Equation>, String> {
+    read_all(text, &Depth::default(), "an operator, or the end", equations)
         .map_err(|e| format!("in the condition '{text}', at column {}: {e}", e.at + 1))
 }
 
@@ -147,7 +147,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
     system.require_motion()?;
     let mut equations = Vec::new();
     for text in &question.conditions {
-        equations.push(parse_condition(text)?);
+        equations.extend(parse_condition(text)?);
     }
     let mut branches = solve_conditions(system, &equations).map_err(|unsolved| unsolved.to_string())?;
     for branch in &mut branches {

@@ -77,7 +77,9 @@ impl State {
                 }
                 (Coordinate::Angle { sine, .. }, Some(Function::Sin)) => image(sine)?,
                 (Coordinate::Angle { cosine, .. }, Some(_)) => image(cosine)?,
-                (Coordinate::Angle { .. }, None) => return Err(None),
+                (Coordinate::Angle { sine, cosine }, None) => {
+                    principal_value(arithmetic, sine, cosine).map_err(Some)?
+                }
             });
         }
         Ok(inputs)
@@ -92,6 +94,16 @@ impl State {
             })
             .collect()
     }
+}
+
+/// The angle between minus pi and pi of which sine and cosine are given: `2 atan(sin/(1 + cos))`.
+fn principal_value<A: Arithmetic>(arithmetic: &A, sine: &RBig, cosine: &RBig) -> Result<A::Number, Refusal> {
+    if *cosine == RBig::from(-1) {
+        return arithmetic.pi();
+    }
+    let half = arithmetic.rational(&(sine / (RBig::ONE + cosine)))?;
+    let half = arithmetic.apply(Function::Atan, &half)?;
+    arithmetic.mul(&arithmetic.rational(&RBig::from(2))?, &half)
 }
 
 /// A program's inputs at a state given in doubles, or in any other number of fixed size; angles in radians.

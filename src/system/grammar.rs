@@ -4,7 +4,7 @@ use super::model::Role;
 use super::standing::{Basis, Flaw, Reference, basis, fault};
 use crate::expression::Expected;
 use crate::expression::parse::{
-    Depth, Read, Text, blank, ends_a_line, equation, keyword, name, read_all, sign, stop, sum,
+    Depth, Read, Text, blank, ends_a_line, equations, keyword, name, range, read_all, sign, stop, sum,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};
@@ -28,12 +28,16 @@ pub(crate) enum Item {
     Claim(Box<ClaimSyntax>),
 }
 
-/// An equation and the conditions under which it is claimed.
+/// Equations or other relations, and the conditions under which they are claimed.
 #[derive(Clone, Debug)]
 pub struct Statement {
-    /// What is said to be equal.
+    /// What is said: one equation, or one relation, or those that a chain `a < b < c` stands for.
     pub equation: Equation,
-    /// `where a = b, ...`
+    /// The others of a chain.
+    pub further: Vec<Equation>,
+    /// Whether it is claimed `on sample`, that is for states in the sample box.
+    pub on_sample: bool,
+    /// `where a = b, c > d, ...`
     pub conditions: Vec<Equation>,
     /// The whole, in the text.
     pub span: Span,
@@ -61,6 +65,13 @@ pub enum ClaimBody {
     Definition { text: String },
     /// Something that is not decided, and why.
     Open { reason: String },
+}
+
+impl Statement {
+    /// All that is said, one relation after the other.
+    pub fn relations(&self) -> impl Iterator<Item = &Equation> {
+        std::iter::once(&self.equation).chain(&self.further)
+    }
 }
 
 impl ClaimBody {
@@ -190,19 +201,15 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
 
 fn sample(input: &mut Text<'_>) -> Read<Item> {
     keyword("sample").parse_next(input)?;
-    let range = |input: &mut Text<'_>| -> Read<(Name, Expr, Expr)> {
+    let ranged = |input: &mut Text<'_>| -> Read<(Name, Expr, Expr)> {
         let name = name(input)?;
         cut_err(keyword("in")).context("'in' and a range [low, high]").parse_next(input)?;
-        cut_err(sign("[")).context("'['").parse_next(input)?;
-        let low = cut_err(sum).parse_next(input)?;
-        cut_err(sign(",")).context("','").parse_next(input)?;
-        let high = cut_err(sum).parse_next(input)?;
-        cut_err(sign("]")).context("']'").parse_next(input)?;
+        let (low, high, _) = cut_err(range).parse_next(input)?;
         opt(sign(",")).parse_next(input)?;
         Ok((name, low, high))
     };
     let mut ranges = Vec::new();
-    while let Some(found) = opt(range).parse_next(input)? {
+    while let Some(found) = opt(ranged).parse_next(input)? {
         ranges.push(found);
     }
     let avoid = opt(preceded(keyword("avoid"), cut_err(separated(1.., sum, sign(","))))).parse_next(input)?;
@@ -222,13 +229,21 @@ pub(super) fn identifier(input: &mut Text<'_>) -> Read<Name> {
 
 pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
     let begin = input.current_token_start();
-    let equation_ = cut_err(equation).parse_next(input)?;
-    let conditions: Option<Vec<Equation>> =
-        opt(preceded(keyword("where"), cut_err(separated(1.., equation, sign(","))))).parse_next(input)?;
-    let conditions = conditions.unwrap_or_default();
-    let end = conditions.last().unwrap_or(&equation_);
-    let end = end.within.as_ref().unwrap_or(&end.right).span.end;
-    Ok(Box::new(Statement { equation: equation_, conditions, span: begin..end }))
+    let mut further = cut_err(equations).parse_next(input)?;
+    let equation = further.remove(0);
+    let mut end = equation.span.end;
+    let on_sample = match opt(keyword("on")).parse_next(input)? {
+        None => false,
+        Some(_) => {
+            end = cut_err(keyword("sample")).context("'sample', as in 'on sample'").parse_next(input)?.end;
+            true
+        }
+    };
+    let conditions: Option<Vec<Vec<Equation>>> =
+        opt(preceded(keyword("where"), cut_err(separated(1.., equations, sign(","))))).parse_next(input)?;
+    let conditions: Vec<Equation> = conditions.unwrap_or_default().into_iter().flatten().collect();
+    end = conditions.last().map_or(end, |last| last.span.end);
+    Ok(Box::new(Statement { equation, further, on_sample, conditions, span: begin..end }))
 }
 
 fn claim(input: &mut Text<'_>) -> Read<Item> {

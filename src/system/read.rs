@@ -6,7 +6,7 @@ use super::grammar::{ClaimSyntax, Item, parse_file};
 use super::model::{Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
 use super::written::{Scope, Written, in_one_line, places_in};
 use crate::expression::parse::ends_a_line;
-use crate::expression::syntax::{Expr, Name, Span};
+use crate::expression::syntax::{Expr, Name, Relation, Span};
 use crate::expression::{Derivation, Graph, Guard, Symbol, parse_expression};
 use crate::file::{ReadFailure, read_text};
 use std::collections::btree_map::Entry;
@@ -244,6 +244,20 @@ impl System {
             }
             if !comparable {
                 let message = format!("{} cannot equal {}", values.0.describe(), values.1.describe());
+                return Err(Problem::new(&statement.span, message, "this claim"));
+            }
+            let relation = statement.equation.relation;
+            let of_numbers = matches!(values, (Value::Scalar(_), Value::Scalar(_)));
+            if relation != Relation::Equal && !of_numbers {
+                let (left, right) = (values.0.describe(), values.1.describe());
+                let message = format!("'{}' compares numbers, not {left} and {right}", relation.sign());
+                return Err(Problem::new(&statement.equation.span, message, "this relation"));
+            }
+            for further in &statement.further {
+                self.scalar(&further.right)?;
+            }
+            if statement.on_sample && !of_numbers {
+                let message = "'on sample' is said of numbers; a rank is that at almost all states";
                 return Err(Problem::new(&statement.span, message, "this claim"));
             }
             for condition in &statement.conditions {

@@ -4,7 +4,7 @@
 use super::grammar::Statement;
 use super::model::{System, Value};
 use super::written::in_one_line;
-use crate::expression::syntax::{Expr, ExprKind};
+use crate::expression::syntax::{Expr, ExprKind, Relation};
 use crate::number::Function;
 
 impl System {
@@ -14,7 +14,8 @@ impl System {
     /// conditions, something was calculated.
     pub(crate) fn says_one_thing_twice(&mut self, statement: &Statement) -> bool {
         let equation = &statement.equation;
-        if !statement.conditions.is_empty() || equation.within.is_some() {
+        let is_one_equation = equation.relation == Relation::Equal && statement.further.is_empty();
+        if !is_one_equation || !statement.conditions.is_empty() || equation.within.is_some() {
             return false;
         }
         let (left, right) = (&equation.left, &equation.right);

@@ -334,10 +334,11 @@ impl Regime {
         seed: u64,
     ) -> Result<ModelComparison, String> {
         let (mut small, mut large) = (system.clone(), general.clone());
-        let equations: Vec<_> = conditions
+        let equations: Vec<Vec<_>> = conditions
             .iter()
             .map(|text| crate::observability::parse_condition(text))
             .collect::<Result<_, _>>()?;
+        let equations = equations.concat();
         let branch: Branch = solve_conditions(&mut large, &equations).map_err(|e| e.to_string())?.remove(0);
         let (own, rows) = counterparts(&mut small, &mut large)?;
         let locus = Locus::new(&mut large, &branch, &BTreeMap::new(), &rows).map_err(|e| e.to_string())?;

@@ -13,9 +13,9 @@ mod turns;
 
 pub use single::{also_met_otherwise, linear_solution};
 
-use crate::expression::syntax::Equation;
+use crate::expression::syntax::{Equation, Relation};
 use crate::expression::{
-    Guard, Need, NodeId, Symbol, ZeroTest, add_guard, expand_angles, identically_zero, sign,
+    Graph, Guard, Need, NodeId, Symbol, ZeroTest, add_guard, expand_angles, identically_zero, sign,
 };
 use crate::system::{Assignment, System, Value};
 use rand::SeedableRng;
@@ -34,6 +34,8 @@ pub struct Branch {
     pub(crate) before_turns: Assignment,
     /// What has to hold for the values, and both sides of all conditions, to exist. In terms of all symbols.
     pub guards: Vec<Guard>,
+    /// Those of the guards that were conditions: inequalities.
+    pub assumed: Vec<Guard>,
     /// How each condition was met, in words.
     pub steps: Vec<String>,
 }
@@ -77,6 +79,16 @@ pub enum Unsolved {
     TooMany,
 }
 
+impl Unsolved {
+    /// Whether there may be states that meet the conditions, for all that is known.
+    pub fn may_be_met(&self) -> bool {
+        match self {
+            Unsolved::Unreadable(_) | Unsolved::Never(_) | Unsolved::NeverTogether => false,
+            Unsolved::NotLinear(_) | Unsolved::Several(_) | Unsolved::NotKnown(_) | Unsolved::TooMany => true,
+        }
+    }
+}
+
 /// Conditions are quoted in messages up to so many characters.
 const LONGEST_QUOTE: usize = 80;
 /// No more branches than this are followed.
@@ -106,6 +118,7 @@ struct Partial {
     values: Assignment,
     turns: Vec<(Symbol, NodeId)>,
     guards: Vec<Guard>,
+    assumed: Vec<Guard>,
     steps: Vec<String>,
     open: Vec<Condition>,
     /// How many symbols are solved for.
@@ -186,6 +199,11 @@ fn begin(system: &mut System, conditions: &[Equation]) -> Result<Partial, Unsolv
         for guard in before.into_iter().chain(after) {
             add_guard(&system.graph, &mut partial.guards, guard);
         }
+        if let Some(guard) = assumed(&mut system.graph, condition.relation, left, right) {
+            add_guard(&system.graph, &mut partial.guards, guard);
+            add_guard(&system.graph, &mut partial.assumed, guard);
+            continue;
+        }
         let text = quote(system, left, right);
         let difference = system.graph.sub(left, right);
         if vanishes(system, difference) {
@@ -196,6 +214,18 @@ fn begin(system: &mut System, conditions: &[Equation]) -> Result<Partial, Unsolv
         }
     }
     Ok(partial)
+}
+
+/// What an inequality needs: the greater side less the other one is positive, or not negative. `None` of an equation.
+pub fn assumed(graph: &mut Graph, relation: Relation, left: NodeId, right: NodeId) -> Option<Guard> {
+    let (more, less) = if relation.points_up() { (right, left) } else { (left, right) };
+    let need = match relation {
+        Relation::Equal => return None,
+        Relation::NotEqual => Need::NotZero,
+        Relation::Less | Relation::Greater => Need::Positive,
+        Relation::AtMost | Relation::AtLeast => Need::NotNegative,
+    };
+    Some(Guard { node: graph.sub(more, less), need })
 }
 
 fn quote(system: &System, left: NodeId, right: NodeId) -> String {
@@ -346,6 +376,7 @@ fn finish(system: &mut System, partial: Partial) -> Branch {
         values,
         before_turns: partial.values,
         guards: partial.guards,
+        assumed: partial.assumed,
         steps: partial.steps,
     }
 }

@@ -108,7 +108,11 @@ impl Collector {
             };
             let found = self.sums.iter().filter(is_multiple).map(|(sum, _)| *sum).take(MOST_WITNESSES);
             let mut witnesses: Vec<NodeId> = found.collect();
-            witnesses.extend(self.products.in_squares(graph, polynomial));
+            let squares = self.products.in_squares(graph, polynomial);
+            // the square of a root has become what the root is taken of, and may have cancelled in the one and not the other
+            witnesses.extend(
+                squares.filter(|form| graph.symbols_of([*form]).iter().all(|symbol| own.contains(symbol))),
+            );
             self.expressions[place].witnesses = witnesses;
         }
         self.polynomials.insert(polynomial.clone(), place);

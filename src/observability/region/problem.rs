@@ -8,12 +8,13 @@ use super::domain::{Domain, domain};
 use super::minors::minors as minors_of;
 use super::part::{Minor, Part};
 use super::proved::{HeldSymbol, RegionRow, WrittenRows};
-use crate::expression::{NodeId, Symbol, expand_angles};
+use crate::expression::{NodeId, Symbol, Variable, expand_angles};
 use crate::number::{Interval, Real, rational_to_f64};
+use crate::observability::conditions::vanishes;
 use crate::observability::{Codistribution, Length, OWN_ROWS, Reduction, Stop};
 use crate::system::{Assignment, FieldRole, Kind, System, Value};
 use dashu::rational::RBig;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Which rows are to have full rank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,6 +100,10 @@ impl Problem {
         cleared.sort_by_key(ClearedRow::length); // stable: words of one length stay in order
         let split = minors_of(&collector.products, &cleared, columns, &mut collector.known);
         let mut minors = Vec::new();
+        // to polynomials a root is an unknown of its own, and what is zero by its square is no zero to them
+        let has_unknowns =
+            collector.products.variables().iter().any(|variable| matches!(variable, Variable::Unknown(_)));
+        let mut vanishing: HashMap<usize, bool> = HashMap::new();
         for minor in &split.found {
             let rows = minor.rows.iter().map(|row| names[cleared[*row].row].clone()).collect();
             let graph = &mut system.graph;
@@ -108,6 +113,13 @@ impl Problem {
             for place in &minor.half_cosines {
                 let node = collector.products.half_cosine(graph, *place);
                 factors.extend(node.map(|node| collector.expression(node)));
+            }
+            let mut is_zero = |place: &usize| {
+                let node = collector.node(*place);
+                *vanishing.entry(*place).or_insert_with(|| vanishes(system, node))
+            };
+            if has_unknowns && factors.iter().any(&mut is_zero) {
+                continue;
             }
             let places = minor.rows.iter().map(|row| cleared[*row].row).collect();
             minors.push(Minor { rows, places, factors, below });

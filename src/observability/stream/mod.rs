@@ -69,8 +69,12 @@ pub struct Stream {
 
 impl Stream {
     /// Prepares the rows, by entries of as many columns as the system has states. `None` where something is needed that
-    /// is not drawn: an angle outside of sines and cosines.
+    /// is not drawn: an angle outside of sines and cosines; and where inequalities cut the box, which are decided in exact
+    /// numbers, state by state.
     pub fn new(system: &mut System, locus: &Locus, rows: &[NodeId]) -> Option<Stream> {
+        if locus.is_cut {
+            return None;
+        }
         let angles = system.angles();
         let is_angle = |symbol: Symbol| angles.contains(&symbol);
         let axes: Vec<Axis> =

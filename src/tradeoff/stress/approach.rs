@@ -51,7 +51,7 @@ impl Approach {
             Approach::Set { conditions, .. } => {
                 let equations =
                     conditions.iter().map(|text| parse_condition(text)).collect::<Result<Vec<_>, _>>()?;
-                (solve_conditions(system, &equations).map_err(|why| why.to_string())?, None)
+                (solve_conditions(system, &equations.concat()).map_err(|why| why.to_string())?, None)
             }
             Approach::Infinity { symbol, .. } => {
                 let known = system.find_symbol(symbol).filter(|symbol| !system.is_angle(*symbol));

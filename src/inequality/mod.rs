@@ -1,0 +1,120 @@
+//! Floor 3: does an inequality hold wherever others do?
+//!
+//! Three ways, one after the other. Signs that can be read off ([`crate::expression::sign`]); the signs of polynomial
+//! factors, by their coefficients or as sums of squares (`factors`, `squares`), for all states; and branch and bound in
+//! interval arithmetic on a box (`boxes`), which also proposes states at which the inequality fails.
+//!
+//! This module knows expressions and their domains, and nothing of claims or systems.
+
+mod bounds;
+mod boxes;
+mod crossing;
+mod domain_intervals;
+mod factors;
+mod semidefinite;
+mod squares;
+mod touch;
+
+pub use bounds::{Bound, Bounds, Range, bounds};
+pub use boxes::Proposed;
+pub use crossing::vanishes_somewhere;
+
+use crate::expression::{Graph, Guard, Need, NodeId, Sign, Symbol, sign_given};
+use crate::number::Interval;
+use bounds::known_signs;
+
+/// What may be taken to hold, and where terms exist.
+#[derive(Clone, Copy, Debug)]
+pub struct Given<'g> {
+    /// Inequalities.
+    pub assumed: &'g [Guard],
+    /// Expressions that vanish.
+    pub equations: &'g [NodeId],
+    /// What the terms need to exist; nothing is asked about states at which they do not.
+    pub exists: &'g [Guard],
+}
+
+/// What a goal came to.
+#[derive(Clone, Debug)]
+pub enum Answer {
+    /// It holds wherever it exists and what is given holds; by this argument.
+    Holds(Argument),
+    /// A proposed state was taken as a counterexample.
+    Fails,
+    /// It is not decided.
+    Open(Open),
+}
+
+/// Why a goal holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Argument {
+    /// The signs of factors, some of them sums of squares.
+    Signs,
+    /// Interval arithmetic on so many boxes.
+    Boxes(usize),
+}
+
+/// Where a goal is open.
+#[derive(Clone, Debug)]
+pub struct Open {
+    /// The part of the volume; of unbounded coordinates, of their angles.
+    pub share: f64,
+    /// One of the open boxes.
+    pub sample: Vec<(Symbol, Interval)>,
+    /// So many boxes were looked at.
+    pub boxes: usize,
+}
+
+/// Decides a goal. `refutes` is shown states at which it seems to fail, and says whether one is a counterexample.
+pub fn decide(
+    graph: &mut Graph,
+    goal: Guard,
+    given: Given<'_>,
+    is_angle: &dyn Fn(Symbol) -> bool,
+    refutes: &mut dyn FnMut(&mut Graph, &Proposed) -> bool,
+) -> Answer {
+    // where terms exist is as good as what is assumed
+    let all: Vec<Guard> = given.assumed.iter().chain(given.exists).copied().collect();
+    let bounds = bounds(graph, &all);
+    if by_signs(graph, goal, (&all, given.equations), &bounds, is_angle) {
+        return Answer::Holds(Argument::Signs);
+    }
+    let question = boxes::Question {
+        goal,
+        assumed: given.assumed,
+        equations: given.equations,
+        exists: given.exists,
+        bounds: &bounds,
+    };
+    match boxes::search(graph, &question, is_angle, refutes) {
+        boxes::Found::Holds(boxes) => Answer::Holds(Argument::Boxes(boxes)),
+        boxes::Found::Fails => Answer::Fails,
+        boxes::Found::Open { share, sample, boxes } => Answer::Open(Open { share, sample, boxes }),
+    }
+}
+
+/// Whether a sign is what is needed.
+fn tells(need: Need, sign: Sign) -> bool {
+    match need {
+        Need::NotZero => sign.is_strict(),
+        Need::Positive => sign == Sign::Positive,
+        Need::NotNegative => sign.is_upward(),
+        Need::WithinOne | Need::InsideOne => false,
+    }
+}
+
+/// Whether signs tell that a goal holds.
+fn by_signs(
+    graph: &mut Graph,
+    goal: Guard,
+    (given, equations): (&[Guard], &[NodeId]),
+    bounds: &Bounds,
+    is_angle: &dyn Fn(Symbol) -> bool,
+) -> bool {
+    if goal.is_obvious(graph) == Some(true) {
+        return true;
+    }
+    let known = known_signs(graph, given, bounds);
+    sign_given(graph, goal.node, &known).is_some_and(|sign| tells(goal.need, sign))
+        || factors::tell(graph, goal, (given, equations), is_angle, (bounds, &known))
+}
