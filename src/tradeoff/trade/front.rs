@@ -70,7 +70,7 @@ mod tests {
         let front = |shift: f64, part: f64| {
             // each second one is moved the other way
             let moved = |place: usize, seconds: f64, worst: f64, wrong: u64| {
-                let sign = if place % 2 == 0 { 1.0 } else { -1.0 };
+                let sign = if place.is_multiple_of(2) { 1.0 } else { -1.0 };
                 combination(seconds * (1.0 + sign * part), worst + sign * shift, wrong)
             };
             let mut all = vec![
