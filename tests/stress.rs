@@ -135,6 +135,7 @@ fn what_holds_for_the_thesis() {
     let found = studies(&["--states", "1", "--samples", "20"]);
     let studies = found["studies"].as_array().unwrap();
     assert_eq!(studies.len(), 4);
+    let mut singular = 0;
     for study in studies {
         let file = &study["file"];
         assert_eq!(study["skipped"], Value::Array(Vec::new()), "{file}");
@@ -144,6 +145,32 @@ fn what_holds_for_the_thesis() {
             assert_eq!(line["distances"].as_array().unwrap().len(), 51);
             assert_eq!(line["distances"][50], 2f64.powi(-50));
             assert_eq!(line["ways"]["intervals"]["first_wrong"], Value::Null, "{file} {title}");
+            let on_the_set = |way: &str, what: &str| line["ways"][way]["on_the_set"][what].as_u64().unwrap();
+            let asked = |way: &str| {
+                ["right", "wrong", "cannot_tell", "refused"]
+                    .iter()
+                    .map(|what| on_the_set(way, what))
+                    .sum::<u64>()
+            };
+            assert_eq!(on_the_set("the ladder", "right"), asked("the ladder"), "{file} {title}");
+            assert_eq!(on_the_set("intervals", "wrong"), 0, "{file} {title}");
+            // who always says "full" is never wrong beside a set of full rank around it, and never right on a lower rank
+            let full = study["dimension"].as_u64().unwrap();
+            let ranks = line["on_the_set"]["ranks"].as_array();
+            if ranks.is_some_and(|ranks| ranks.iter().all(|rank| rank.as_u64().unwrap() < full)) {
+                assert_eq!(on_the_set("always full", "right"), 0, "{file} {title}");
+                assert!(asked("always full") >= 10, "{file} {title}");
+                singular += 1;
+            }
+            if line["true_ranks"] == serde_json::json!([full]) {
+                assert_eq!(line["ways"]["always full"]["first_wrong"], Value::Null, "{file} {title}");
+            }
+            for way in line["ways"].as_object().unwrap().values().filter(|way| way["first_wrong"].is_object())
+            {
+                let first = &way["first_wrong"];
+                assert!(first["least_distance"].as_f64() <= first["distance"].as_f64(), "{file} {title}");
+                assert_eq!(first["states"], 1, "{file} {title}");
+            }
             // the ladder climbs until it is certain, however near the set
             let ladder = line["ways"]["the ladder"]["marks"].as_array().unwrap();
             assert!(ladder.iter().all(|mark| mark == "right"), "{file} {title}");
@@ -170,6 +197,7 @@ fn what_holds_for_the_thesis() {
             }
         }
     }
+    assert!(singular >= 4, "{singular} sets of lower rank");
 }
 
 #[test]
@@ -227,4 +255,22 @@ fn the_short_version_has_every_line() {
         assert!(study.lines.iter().all(|line| line.distances.len() == 11 && line.certified));
         assert_eq!(stress_pictures(study).len(), 3);
     }
+}
+
+/// Whoever always says "full" wins no table: beside a set it is never wrong, and on the set always.
+#[test]
+fn saying_full_does_not_win() {
+    let found = study(EQUAL_ROWS, false);
+    let line = found.lines.iter().find(|line| matches!(&line.end, End::Ranks { .. })).unwrap();
+    let (full, ladder) = (&line.ways[Way::AlwaysFull.place()], &line.ways[Way::Ladder.place()]);
+    assert_eq!((&full.wrong, full.on_the_set.right), (&None, 0));
+    assert!(full.on_the_set.wrong >= 10);
+    assert_eq!((&ladder.wrong, ladder.on_the_set.wrong), (&None, 0));
+    assert_eq!(ladder.on_the_set.right, full.on_the_set.wrong);
+    // the range over the states: this set is alike everywhere
+    let double = line.ways[Way::Double.place()].wrong.as_ref().unwrap();
+    assert!(double.least <= double.distance && double.states == line.states, "{double:?}");
+    let text = palmistry::report::stress_text(&[found]);
+    assert!(text.contains("on the set, right at") && text.contains("always full"), "{text}");
+    assert!(text.contains("numpy's rule") && !text.contains("old threshold"), "{text}");
 }

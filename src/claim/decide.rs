@@ -14,7 +14,7 @@ use crate::checker::{Evidence, VerdictRecord};
 use crate::expression::syntax::{Equation, Relation};
 use crate::expression::{Guard, Need, NodeId, Symbol, add_guard};
 use crate::observability::{Branch, solve};
-use crate::system::{ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line};
+use crate::system::{Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line};
 use dashu::rational::RBig;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -106,7 +106,7 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
             at_files_values = special(system, statement, &verdict);
             (text, verdict, Some(*expected))
         }
-        ClaimBody::Erratum { printed: print, corrected } => {
+        ClaimBody::Erratum { printed: print, corrected, .. } => {
             let as_printed = text(system, print);
             let wrong = decide_statement(system, print, kept, &mut rng);
             let refuted = known(wrong, &as_printed, " as printed");
@@ -128,6 +128,14 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
             (reason.clone(), Verdict::Undecided { why: reason.clone() }, Some(Expectation::Undecided))
         }
     };
+    let basis = match (&claim.basis, &claim.body, &verdict) {
+        (Basis::Derived, ClaimBody::Claim { statement, .. }, Verdict::Proved { .. })
+            if system.says_one_thing_twice(statement) =>
+        {
+            Basis::Restates(Vec::new())
+        }
+        (basis, ..) => basis.clone(),
+    };
     let print_is_wrong = printed.as_ref().is_none_or(|(_, verdict)| verdict.meets(Expectation::Refuted));
     let explanations = system.explanations(&claim.body);
     Outcome {
@@ -138,10 +146,17 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
         ok: expected.is_none_or(|expected| verdict.meets(expected)) && print_is_wrong,
         statement,
         printed,
-        scanned: match &claim.body {
+        fault: match &claim.body {
+            ClaimBody::Erratum { fault, .. } | ClaimBody::Scan { fault, .. } => Some(*fault),
+            _ => None,
+        },
+        quoted: match &claim.body {
+            ClaimBody::Erratum { quoted, .. } => quoted.clone(),
             ClaimBody::Scan { scanned, .. } => Some(scanned.clone()),
             _ => None,
         },
+        basis,
+        follows: claim.follows.as_ref().map(|reference| reference.text()),
         pole_of: claim.body.pole_of().map(|expr| in_one_line(&system.source, &expr.span)),
         verdict,
         domain,
@@ -273,6 +288,7 @@ fn attempt(
         }
         Err(why) => return Err(why.to_string()),
     };
+    let one_thing_twice = system.says_one_thing_twice(statement);
     let mut found = Vec::new();
     let lists = [
         (Size::Part, &solution.parts),
@@ -289,7 +305,8 @@ fn attempt(
             let is_assumed: Vec<bool> =
                 all.iter().map(|guard| branch.assumed.contains(guard) || sampled.contains(guard)).collect();
             let (sides, relations) = (question.sides().to_vec(), question.all_relations().to_vec());
-            let terms = Terms { sides, relations, guards: all, conditions: conditions.clone() };
+            let conditions = conditions.clone();
+            let terms = Terms { sides, relations, guards: all, conditions, one_thing_twice };
             let on = OnBranch::new(system, branch, &terms)?;
             let verdict = match &question {
                 Question::Identity { columns, .. } => decide_identity(system, &on, *columns, rng),

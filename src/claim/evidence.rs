@@ -232,12 +232,7 @@ pub(super) fn claimed_rank(
     };
     // the entries of a codistribution are no sides of the statement, and mention more symbols
     let sides = matrix.entries.clone();
-    let terms = Terms {
-        sides,
-        relations: Vec::new(),
-        guards: on.statement.guards.clone(),
-        conditions: on.statement.conditions.clone(),
-    };
+    let terms = Terms { sides, relations: Vec::new(), ..on.statement.clone() };
     let Ok(on) = &OnBranch::new(system, branch, &terms) else {
         return Some(Evidence::Unchecked(NO_STATE.to_owned()));
     };

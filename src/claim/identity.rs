@@ -16,7 +16,10 @@ use std::collections::HashMap;
 
 /// The engine of exact identities, as it is named in reports.
 pub(crate) const RANDOM_PRIMES: &str = "exact arithmetic at random points of random prime fields";
+/// Of a statement that says one thing twice.
 const IDENTICAL: &str = "the two sides are one expression";
+/// Of one whose sides come to one expression when they are differentiated, multiplied out or taken at a point.
+const CALCULATED: &str = "calculation with expressions: both sides come to the same one";
 const EXACT: &str = "exact arithmetic at a state";
 const INTERVALS: &str = "interval arithmetic";
 
@@ -45,7 +48,8 @@ pub(crate) fn decide_identity(
     let (suspects, why) = match test {
         ZeroTest::Zero { points, log2_error, .. } => {
             let verdict = match points {
-                0 => proved(IDENTICAL, f64::NEG_INFINITY),
+                0 if on.statement.one_thing_twice => proved(IDENTICAL, f64::NEG_INFINITY),
+                0 => proved(CALCULATED, f64::NEG_INFINITY),
                 _ => proved(RANDOM_PRIMES, log2_error),
             };
             return match existence(system, on, rng) {

@@ -27,6 +27,8 @@ pub(crate) struct Terms {
     pub guards: Vec<Guard>,
     /// Left sides less right sides of the conditions.
     pub conditions: Vec<NodeId>,
+    /// Whether the sides are one expression once names are put in.
+    pub one_thing_twice: bool,
 }
 
 /// Terms with their angles expanded, as programs that a state can be put into.
@@ -91,7 +93,7 @@ impl OnBranch {
         let guards =
             there.iter().zip(&needs).map(|(node, need)| Guard { node: *node, need: *need }).collect();
         let relations = statement.relations.clone();
-        let here = Terms { sides, relations, guards, conditions: Vec::new() };
+        let here = Terms { sides, relations, guards, ..Terms::default() };
         let mut solved: Vec<Symbol> = branch.values.keys().copied().collect();
         solved.sort_unstable();
         let values: Vec<NodeId> = solved.iter().map(|symbol| branch.values[symbol]).collect();

@@ -3,7 +3,7 @@
 use super::defaults::AtFilesValues;
 use crate::checker::{Refutation, VerdictRecord};
 use crate::observability::StateInWords;
-use crate::system::{Expectation, FieldRole};
+use crate::system::{Basis, Expectation, FieldRole, Flaw};
 
 /// A state in exact numbers at which a statement fails.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,12 +104,18 @@ pub struct Outcome {
     pub file: String,
     /// The claim's number or name.
     pub id: String,
-    /// The statement as it stands in the file; of an erratum, the corrected one.
+    /// The statement as it stands in the file; of a fault, the right one.
     pub statement: String,
-    /// The statement as it was printed, and what became of it; of an erratum only.
+    /// What is the matter with the form in the text; of a fault only.
+    pub fault: Option<Flaw>,
+    /// The form in the text as a statement, and what became of it; of a fault that can be stated.
     pub printed: Option<(String, Verdict)>,
-    /// The text as the scanner left it; of a scanning fault only.
-    pub scanned: Option<String>,
+    /// The words of the text; of a fault where they are quoted.
+    pub quoted: Option<String>,
+    /// On what a claim rests. One whose sides are one expression restates, whether the file says so or not.
+    pub basis: Basis,
+    /// The fault from which this one follows.
+    pub follows: Option<String>,
     /// The abbreviations that these statements use, those of imported files too: name and meaning, as it is written.
     pub definitions: Vec<(String, String)>,
     /// The fields along which these statements differentiate: name and components, as they are written.
@@ -139,26 +145,41 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The verdict in a word; `erratum` where the printed form is refuted and the corrected one proved, `scanning fault`
-    /// where the repaired form is proved.
+    /// The verdict in a word: the fault's where the form in the text is refuted, if it can be stated, and the right one
+    /// proved; `restated`, `consequence` or `example` where a claim is proved that rests on that; else the verdict's own.
     pub fn word(&self) -> &'static str {
-        match (&self.printed, &self.scanned) {
-            (Some(_), _) if self.ok => "erratum",
-            (Some((_, printed)), _) if !matches!(printed, Verdict::Refuted { .. }) => printed.word(),
-            (None, Some(_)) if self.ok => "scanning fault",
+        match (self.fault, &self.printed) {
+            (Some(fault), _) if self.ok => fault.word(),
+            (Some(_), Some((_, printed))) if !matches!(printed, Verdict::Refuted { .. }) => printed.word(),
+            (None, _) if matches!(self.verdict, Verdict::Proved { .. }) => self.basis.word(),
             _ => self.verdict.word(),
         }
     }
 
     /// The word that the file expects.
     pub fn expected_word(&self) -> &'static str {
-        match (&self.printed, &self.scanned, self.expected) {
-            (Some(_), _, _) => "erratum",
-            (None, Some(_), _) => "scanning fault",
-            (None, None, Some(Expectation::Proved)) => "proved",
-            (None, None, Some(Expectation::Refuted)) => "refuted",
-            (None, None, Some(Expectation::Undecided)) => "undecided",
-            (None, None, None) => "definition",
+        match (self.fault, self.expected) {
+            (Some(fault), _) => fault.word(),
+            (None, Some(Expectation::Proved)) => self.basis.word(),
+            (None, Some(Expectation::Refuted)) => "refuted",
+            (None, Some(Expectation::Undecided)) => "undecided",
+            (None, None) => "definition",
         }
     }
+
+    /// All words that an outcome can have, in the order in which reports count them.
+    pub const WORDS: [&'static str; 12] = [
+        "proved",
+        "restated",
+        "definition",
+        "consequence",
+        "example",
+        "erratum",
+        "print or scan",
+        "scanning fault",
+        "convention",
+        "loose wording",
+        "refuted",
+        "undecided",
+    ];
 }

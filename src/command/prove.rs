@@ -6,7 +6,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::claim::{Kept, decide_all_keeping};
-use palmistry::report::{claim_json, claim_line, junit};
+use palmistry::report::{claim_json, claim_line, counts_text, junit};
 use palmistry::{Outcome, System};
 use serde_json::json;
 use std::collections::HashMap;
@@ -17,7 +17,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Decides every claim of proof files.
 ///
 /// Exit status 0 only when each claim has the verdict that its file expects: 'claim' proved (or what 'expect' says),
-/// 'erratum' with the printed form refuted and the corrected one proved. A claim is about all values of its symbols, whatever
+/// 'erratum' with the printed form refuted and the corrected one proved, and likewise 'damaged', 'scan', 'convention' and
+/// 'loose'. A claim whose sides are one expression is 'restated' and not 'proved', which is as expected. A claim is about all values of its symbols, whatever
 /// values the file gives to parameters; where the verdict at these is another one, that is said too.
 #[derive(Args, Clone)]
 pub(crate) struct Prove {
@@ -139,15 +140,8 @@ fn in_words(outcomes: &[Outcome], claims: usize) -> String {
         }
         let _ = writeln!(text, "{}", claim_line(outcome));
     }
-    let words = ["proved", "erratum", "scanning fault", "definition", "refuted", "undecided"];
-    let counts: Vec<String> = words
-        .iter()
-        .map(|word| (outcomes.iter().filter(|outcome| outcome.word() == *word).count(), word))
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, word)| format!("{count} {word}"))
-        .collect();
     let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
-    let _ = write!(text, "{} claims: {}; {failed} not as expected", outcomes.len(), counts.join(", "));
+    let _ = write!(text, "{} claims: {}; {failed} not as expected", outcomes.len(), counts_text(outcomes));
     if outcomes.len() < claims {
         let _ = write!(text, "\ninterrupted: {} claims are not decided", claims - outcomes.len());
     } else if claims == 0 {

@@ -18,10 +18,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 ///
 /// Lines approach every singular set down to a distance of 1e-15 (two rates equal, a rate at zero, the palms in line, a
 /// contact at the joint, a determinant's zero). At each point, an exact rational state, the rank is decided in single
-/// precision, in doubles with the customary threshold, in doubles after equilibration, with the errors that intervals
+/// precision, in doubles by numpy's rule, in doubles after equilibration, with the errors that intervals
 /// know, by intervals alone, in double-doubles, and by the ladder that 'palmistry rank' climbs; beside them stands the
 /// certified rank. For each the table has the
-/// distance at which it first reports another rank, and at which an entry first loses more than half of its digits.
+/// distance at which it first reports another rank, and at which an entry first loses more than half of its digits, each as
+/// a range over the states; and at how many states on the set itself it has the exact rank, since whoever always says
+/// "full" (a column of its own) is never wrong beside a set.
 ///
 /// Then every quantity is scaled from 1e-150 to 1e150, and the states are looked at in other units, which should change
 /// no verdict. Where numbers overflow or are divided by zero, what did so is named.
@@ -37,8 +39,8 @@ pub(crate) struct Stress {
     /// Which rows: the file's own matrix 'rows' where it defines one, or the full codistribution.
     #[arg(long, value_enum, default_value_t = Which::Own, value_name = "WHICH")]
     rows: Which,
-    /// States on each set from which lines go; the worst is reported.
-    #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    /// States on each set from which lines go; the range over them is reported.
+    #[arg(long, default_value_t = 10, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     states: u64,
     /// States of the sample box that are looked at in other units.
     #[arg(long, default_value_t = 200, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]

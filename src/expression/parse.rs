@@ -97,7 +97,7 @@ pub(crate) fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<
 }
 
 /// Words that begin something and so cannot be names.
-pub(crate) const RESERVED: [&str; 27] = [
+pub(crate) const RESERVED: [&str; 30] = [
     "system",
     "cite",
     "use",
@@ -116,6 +116,9 @@ pub(crate) const RESERVED: [&str; 27] = [
     "erratum",
     "printed",
     "corrected",
+    "damaged",
+    "convention",
+    "loose",
     "scan",
     "scanned",
     "repaired",

@@ -16,7 +16,7 @@ use dashu::rational::RBig;
 use std::collections::{BinaryHeap, HashMap};
 
 /// Interval operations that a search may take.
-const WORK: usize = 20_000_000;
+const WORK: usize = 8_000_000;
 /// Boxes that are kept at most.
 const MOST_BOXES: usize = 200_000;
 /// States that are proposed as counterexamples at most.

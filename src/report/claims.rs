@@ -3,6 +3,7 @@
 use super::ranks::{fields_json, fields_text};
 use crate::claim::{AtFilesValues, Outcome, Verdict, Witness};
 use crate::number::{parse_decimal, rational_to_f64, round_to_decimal};
+use crate::system::{Basis, Flaw};
 use dashu::rational::RBig;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde_json::{Value, json};
@@ -61,8 +62,14 @@ pub fn claim_json(outcome: &Outcome) -> Value {
         object["differentiated_along"] =
             outcome.differentiated_along.iter().map(|(name, text)| (name.clone(), json!(text))).collect();
     }
-    if let Some(scanned) = &outcome.scanned {
-        object["scanned"] = json!(scanned);
+    if let Some(quoted) = &outcome.quoted {
+        object["quoted"] = json!(quoted);
+    }
+    if let Basis::Restates(list) = &outcome.basis {
+        object["restates"] = list.iter().map(|reference| json!(reference.text())).collect();
+    }
+    if let Some(from) = &outcome.follows {
+        object["follows"] = json!(from);
     }
     if let Some((statement, verdict)) = &outcome.printed {
         let mut printed = verdict_json(verdict);
@@ -160,17 +167,31 @@ pub fn claim_line(outcome: &Outcome) -> String {
         Verdict::Definition { text } => text.clone(),
         Verdict::Undecided { why } => why.clone(),
     };
-    if let Some(scanned) = &outcome.scanned {
-        line.push_str(&format!("\n         scanned    {scanned}\n         repaired   {}", outcome.statement));
+    let [_, before, between] = outcome.fault.unwrap_or(Flaw::Erratum).keywords();
+    if let Some(quoted) = &outcome.quoted {
+        line.push_str(&format!("\n         {before:<10} {quoted}"));
+    }
+    if let (Some(_), None) = (outcome.fault, &outcome.printed) {
+        line.push_str(&format!("\n         {between:<10} {}", outcome.statement));
     }
     match &outcome.printed {
         None => match &outcome.verdict {
-            Verdict::Proved { .. } => line.push_str(&format!("  ({})", explain(&outcome.verdict))),
+            Verdict::Proved { .. } => {
+                let of = match &outcome.basis {
+                    Basis::Restates(list) if !list.is_empty() => {
+                        let names: Vec<String> = list.iter().map(|reference| reference.text()).collect();
+                        format!("of {}; ", names.join(", "))
+                    }
+                    _ => String::new(),
+                };
+                line.push_str(&format!("  ({of}{})", explain(&outcome.verdict)));
+            }
             verdict => line.push_str(&format!("\n         {}", explain(verdict))),
         },
         Some((statement, verdict)) => {
             line.push_str(&format!(
-                "\n         printed    {statement}\n                    {}: {}",
+                "\n         {:<10} {statement}\n                    {}: {}",
+                if outcome.quoted.is_some() { "as" } else { before },
                 verdict.word(),
                 explain(verdict)
             ));
@@ -179,12 +200,15 @@ pub fn claim_line(outcome: &Outcome) -> String {
             }
             let corrected = &outcome.verdict;
             line.push_str(&format!(
-                "\n         corrected  {}\n                    {}: {}",
+                "\n         {between:<10} {}\n                    {}: {}",
                 outcome.statement,
                 corrected.word(),
                 explain(corrected)
             ));
         }
+    }
+    if let Some(from) = &outcome.follows {
+        line.push_str(&format!("\n         follows    {from}"));
     }
     if let Some(special) = &outcome.at_files_values {
         line.push_str(&format!("\n         {}", special_text(special)));

@@ -2,71 +2,95 @@
 //! numbers with both values.
 
 use super::claims::{error_bound, explanations, special_text, with_decimal};
+use super::words::{meaning, words_markdown};
 use crate::claim::{Outcome, Verdict, Witness};
+use crate::system::{Basis, Flaw};
 use crate::verification::{Equation, equations, in_order_of_the_thesis};
 use std::fmt::Write;
 
-/// The errata, the scanning faults, and a table of all numbered equations, in Markdown.
+/// What is the matter with forms in the text, by kinds, and a table of all numbered equations, in Markdown.
 pub fn errata_markdown(outcomes: &[Outcome]) -> String {
     let mut out = String::from(
         "# Errata to M. Moll, *Shape Reconstruction Using Active Tactile Sensors* (2002)\n\n\
-         Written by `palmistry verify`; every statement below is checked each time it runs. A printed form is refuted by a \
-         state in exact numbers at which its two sides differ; the corrected form is proved. What may be the doing of the \
-         scanner, and not of the author, is said where it is so.\n\n",
+         Written by `palmistry verify`; every statement below is checked each time it runs. A form of the text that is \
+         called wrong is refuted by a state in exact numbers at which its two sides differ, wherever it can be stated; the \
+         right form is proved.\n\n",
     );
-    let of_kind = |word: &'static str| {
-        in_order_of_the_thesis(outcomes.iter().filter(move |outcome| outcome.word() == word))
-    };
-    for outcome in of_kind("erratum") {
-        erratum(outcome, &mut out);
-    }
-    let _ =
-        writeln!(out, "# Scanning faults\n\nThe formula is right once the damage of the scan is repaired.\n");
-    for outcome in of_kind("scanning fault") {
-        let _ = writeln!(out, "## {}\n", outcome.id);
-        let _ = writeln!(
-            out,
-            "Scanned:\n\n{}\nRepaired, and proved:\n",
-            block(outcome.scanned.as_deref().unwrap_or(""))
-        );
-        let _ = writeln!(out, "{}", block(&outcome.statement));
-        definitions(outcome, &mut out);
-        if let Some(remark) = &outcome.remark {
-            let _ = writeln!(out, "{remark}\n");
+    words_markdown(outcomes, &mut out);
+    for fault in Flaw::ALL {
+        let of_kind = outcomes.iter().filter(|outcome| outcome.fault == Some(fault) && outcome.ok);
+        let of_kind = in_order_of_the_thesis(of_kind);
+        if of_kind.is_empty() {
+            continue;
+        }
+        let _ = writeln!(out, "# {}\n\n{}.\n", heading(fault), capitalised(meaning(fault.word())));
+        for outcome in of_kind {
+            entry(outcome, fault, &mut out);
         }
     }
     table(&equations(outcomes), &mut out);
     out
 }
 
+fn heading(fault: Flaw) -> &'static str {
+    match fault {
+        Flaw::Erratum => "Errata",
+        Flaw::PrintOrScan => "Print or scan",
+        Flaw::Scan => "Scanning faults",
+        Flaw::Convention => "Conventions",
+        Flaw::Loose => "Loose wording",
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
+}
+
 fn block(code: &str) -> String {
     format!("```\n{code}\n```\n")
 }
 
-fn erratum(outcome: &Outcome, out: &mut String) {
-    let Some((printed, refutation)) = &outcome.printed else { return };
+/// One form that does not hold as the text has it.
+fn entry(outcome: &Outcome, fault: Flaw, out: &mut String) {
+    let [_, before, between] = fault.keywords();
+    let (before, between) = (capitalised(before), capitalised(between));
     let _ = writeln!(out, "## {}\n", outcome.id);
-    let _ = writeln!(out, "Printed:\n\n{}", block(printed));
-    let _ = writeln!(out, "Corrected:\n\n{}", block(&outcome.statement));
+    if let Some(quoted) = &outcome.quoted {
+        let _ = writeln!(out, "{before}:\n\n{}", block(quoted));
+    }
+    if let Some((printed, _)) = &outcome.printed {
+        let label = if outcome.quoted.is_some() { "As a statement" } else { before.as_str() };
+        let _ = writeln!(out, "{label}:\n\n{}", block(printed));
+    }
+    let _ = writeln!(out, "{between}:\n\n{}", block(&outcome.statement));
     definitions(outcome, out);
-    if let Verdict::Refuted { witness, .. } = refutation {
+    if let Some((_, Verdict::Refuted { witness, .. })) = &outcome.printed {
         let _ = writeln!(out, "{}\n", in_words(witness));
     }
     if let Some(special) = &outcome.printed_at_files_values {
-        let _ = writeln!(out, "Of the printed form: {}.\n", special_text(special));
+        let _ = writeln!(out, "Of the form in the text: {}.\n", special_text(special));
     }
     if let Verdict::Proved { log2_error, .. } = &outcome.verdict {
+        let form = match fault {
+            Flaw::Erratum => "corrected form",
+            Flaw::PrintOrScan | Flaw::Scan => "repaired form",
+            Flaw::Convention | Flaw::Loose => "form that is meant",
+        };
         let certainty = match *log2_error {
-            f64::NEG_INFINITY => "The corrected form is proved.".to_owned(),
+            f64::NEG_INFINITY => format!("The {form} is proved."),
             bound => format!(
-                "The corrected form is proved; the probability that the proof errs is below {}.",
+                "The {form} is proved; the probability that the proof errs is below {}.",
                 error_bound(bound)
             ),
         };
         let _ = writeln!(out, "{certainty}\n");
     }
     if let Some(special) = &outcome.at_files_values {
-        let _ = writeln!(out, "Of the corrected form: {}.\n", special_text(special));
+        let _ = writeln!(out, "Of the right form: {}.\n", special_text(special));
+    }
+    if let Some(from) = &outcome.follows {
+        let _ = writeln!(out, "Follows {from}.\n");
     }
     if let Some(remark) = &outcome.remark {
         let _ = writeln!(out, "{remark}\n");
@@ -85,9 +109,9 @@ fn in_words(witness: &Witness) -> String {
     let state: Vec<String> =
         witness.state.iter().map(|(name, exact, _)| format!("{name}: {exact}")).collect();
     let side = match witness.entry {
-        None => "left side of the printed form".to_owned(),
+        None => "left side of the form in the text".to_owned(),
         Some((row, column)) => {
-            format!("entry in row {row}, column {column} of the left side of the printed form")
+            format!("entry in row {row}, column {column} of the left side of the form in the text")
         }
     };
     let place =
@@ -101,10 +125,10 @@ fn in_words(witness: &Witness) -> String {
 
 fn table(all: &[Equation<'_>], out: &mut String) {
     let _ = writeln!(out, "# All numbered equations\n");
-    let words = ["proved", "erratum", "scanning fault", "definition", "undecided", "refuted", "no entry"];
-    let counts: Vec<String> = words
-        .iter()
-        .map(|word| (all.iter().filter(|equation| equation.word() == *word).count(), word))
+    let counts: Vec<String> = Outcome::WORDS
+        .into_iter()
+        .chain(["no entry"])
+        .map(|word| (all.iter().filter(|equation| equation.word() == word).count(), word))
         .filter(|(count, _)| *count > 0)
         .map(|(count, word)| format!("{count} {word}"))
         .collect();
@@ -115,14 +139,8 @@ fn table(all: &[Equation<'_>], out: &mut String) {
         counts.join(", ")
     );
     for equation in all {
-        let entries: Vec<String> = equation
-            .entries
-            .iter()
-            .map(|outcome| match outcome.word() {
-                word if word == equation.word() => outcome.id.clone(),
-                word => format!("{} ({word})", outcome.id),
-            })
-            .collect();
+        let entries: Vec<String> =
+            equation.entries.iter().map(|outcome| in_the_table(outcome, equation.word())).collect();
         let reasons: Vec<&str> = equation
             .entries
             .iter()
@@ -137,4 +155,22 @@ fn table(all: &[Equation<'_>], out: &mut String) {
         }
         let _ = writeln!(out, "| {} | {} | {last} |", equation.number, equation.word());
     }
+}
+
+/// An entry beside its equation: with its word where that is another one, with what it restates or follows.
+fn in_the_table(outcome: &Outcome, word: &str) -> String {
+    let mut notes = Vec::new();
+    if outcome.word() != word {
+        notes.push(outcome.word().to_owned());
+    }
+    if let Basis::Restates(list) = &outcome.basis
+        && !list.is_empty()
+    {
+        let names: Vec<String> = list.iter().map(|reference| reference.text()).collect();
+        notes.push(format!("of {}", names.join(", ")));
+    }
+    if let Some(from) = &outcome.follows {
+        notes.push(format!("follows {from}"));
+    }
+    if notes.is_empty() { outcome.id.clone() } else { format!("{} ({})", outcome.id, notes.join(" ")) }
 }

@@ -24,6 +24,7 @@ mod stress_plot;
 mod trade;
 mod trade_plot;
 mod verification;
+mod words;
 
 pub use claims::{claim_json, claim_line, junit};
 pub use errata::errata_markdown;
@@ -38,3 +39,4 @@ pub use stress_plot::{conditioning_picture, lines_picture, scalings_picture};
 pub use trade::{TRADE_FRONT_HEADINGS, trade_front_table, trade_json, trade_text};
 pub use trade_plot::trade_plot;
 pub use verification::{printed_value_json, verification_json, verification_text};
+pub use words::counts_text;

@@ -7,8 +7,10 @@ use super::observe_section::observed_section;
 use super::plot;
 use super::ranks::fields_text;
 use super::verification::ranks_in_words;
+use super::words::{RULE_OF_DAMAGE, counts, errors, meaning};
 use crate::claim::{Outcome, Verdict};
 use crate::observability::RankAnswer;
+use crate::system::Flaw;
 use crate::tradeoff::Rows;
 use crate::verification::{
     Appendix, DETERMINANT, RegimeResult, Verification, equations, in_order_of_the_thesis,
@@ -19,7 +21,6 @@ const STYLE: &str = include_str!("page.css");
 
 /// The page as HTML.
 pub fn page(found: &Verification) -> String {
-    let count = |word: &str| found.outcomes.iter().filter(|outcome| outcome.word() == word).count();
     let failed = found.outcomes.iter().filter(|outcome| !outcome.ok).count();
     let experiments: Vec<Observed<'_>> =
         found.experiments.iter().map(|(experiment, answers)| Observed::of(experiment, answers)).collect();
@@ -41,14 +42,13 @@ pub fn page(found: &Verification) -> String {
                         "on its singular sets, and the determinants of appendix A.2. "
                         "Each verdict says what stands behind it: " b { "proved" } " is exact arithmetic with the "
                         "probability of an error stated, " b { "refuted" } " a state in exact numbers at which the two "
-                        "sides differ, " b { "erratum" } " a printed form refuted and its corrected form proved."
+                        "sides differ, " b { "erratum" } " a printed form refuted and its corrected form proved. "
+                        b { "Restated" } " is no proof: the two sides are one expression once names are put in."
                     }
                     ul.tally {
-                        li { b { (count("proved")) } " proved" }
-                        li { b { (count("erratum")) } " errata" }
-                        li { b { (count("scanning fault")) } " scanning faults" }
-                        li { b { (count("definition")) } " definitions" }
-                        li { b { (count("undecided")) } " undecided" }
+                        @for (word, count) in counts(&found.outcomes) {
+                            li title=(meaning(word)) { b { (count) } " " (word) }
+                        }
                         li class=[(failed > 0).then_some("bad")] { b { (failed) } " not as expected" }
                         li { b { (format!("{:.0} s", found.seconds)) } " in all" }
                     }
@@ -56,7 +56,7 @@ pub fn page(found: &Verification) -> String {
                     nav {
                         a href="#equations" { "All equations" }
                         a href="#errata" { "Errata" }
-                        a href="#scan" { "Scanning faults" }
+                        a href="#damage" { "Damage and wording" }
                         @for (i, result) in found.regimes.iter().enumerate() {
                             a href=(format!("#regime{i}")) { (result.title) }
                         }
@@ -69,7 +69,7 @@ pub fn page(found: &Verification) -> String {
                 }
                 (all_equations(&found.outcomes))
                 (errata(&found.outcomes))
-                (scanning_faults(&found.outcomes))
+                (damage(&found.outcomes))
                 @for (i, result) in found.regimes.iter().enumerate() { (regime(i, result)) }
                 @if let Some(values) = &found.appendix { (appendix(values, &found.outcomes)) }
                 (derivatives(found))
@@ -87,27 +87,40 @@ fn errata(outcomes: &[Outcome]) -> Markup {
         section #errata {
             h2 { "Errata" }
             p { "The printed form is refuted by a state that a pocket calculator can check; the corrected form is proved." }
-            @for outcome in in_order_of_the_thesis(outcomes.iter().filter(|outcome| outcome.printed.is_some())) {
-                article class=[(!outcome.ok).then_some("bad")] {
-                    h3 { (outcome.id) }
-                    @if let Some((statement, verdict)) = &outcome.printed {
-                        p.printed { span.label { "printed" } code { (statement) } }
-                        p { span.label { (verdict.word()) } (explain(verdict)) }
-                        @if let Some(special) = &outcome.printed_at_files_values { p { (special_text(special)) } }
-                    }
-                    p.corrected { span.label { "corrected" } code { (outcome.statement) } }
-                    p { span.label { (outcome.verdict.word()) } (explain(&outcome.verdict)) }
-                    @if let Some(special) = &outcome.at_files_values { p { (special_text(special)) } }
-                    @let lines = explanations(outcome);
-                    @if !lines.is_empty() {
-                        details {
-                            summary { "what the names mean" }
-                            @for line in lines { div { code { (line) } } }
-                        }
-                    }
-                    @if let Some(remark) = &outcome.remark { p.remark { (remark) } }
+            p { (errors(outcomes, Flaw::Erratum).text("erratum")) }
+            @for outcome in in_order_of_the_thesis(outcomes.iter().filter(|o| o.fault == Some(Flaw::Erratum))) {
+                (fault_entry(outcome, Flaw::Erratum))
+            }
+        }
+    }
+}
+
+/// A form in the text that does not hold, and the right one.
+fn fault_entry(outcome: &Outcome, fault: Flaw) -> Markup {
+    let [_, before, between] = fault.keywords();
+    html! {
+        article class=[(!outcome.ok).then_some("bad")] {
+            h3 { (outcome.id) }
+            @if let Some(quoted) = &outcome.quoted {
+                p.printed { span.label { (before) } code { (quoted) } }
+            }
+            @if let Some((statement, verdict)) = &outcome.printed {
+                p.printed { span.label { @if outcome.quoted.is_some() { "as" } @else { (before) } } code { (statement) } }
+                p { span.label { (verdict.word()) } (explain(verdict)) }
+                @if let Some(special) = &outcome.printed_at_files_values { p { (special_text(special)) } }
+            }
+            p.corrected { span.label { (between) } code { (outcome.statement) } }
+            p { span.label { (outcome.verdict.word()) } (explain(&outcome.verdict)) }
+            @if let Some(special) = &outcome.at_files_values { p { (special_text(special)) } }
+            @let lines = explanations(outcome);
+            @if !lines.is_empty() {
+                details {
+                    summary { "what the names mean" }
+                    @for line in lines { div { code { (line) } } }
                 }
             }
+            @if let Some(from) = &outcome.follows { p { "Follows " (from) "." } }
+            @if let Some(remark) = &outcome.remark { p.remark { (remark) } }
         }
     }
 }
@@ -140,26 +153,21 @@ fn class_of(word: &str) -> String {
     format!("cell {}", word.replace(' ', "-"))
 }
 
-fn scanning_faults(outcomes: &[Outcome]) -> Markup {
+/// What is not, or not for sure, the author's mistake.
+fn damage(outcomes: &[Outcome]) -> Markup {
     html! {
-        section #scan {
-            h2 { "Scanning faults" }
-            p { "What the scanner damaged; the formula is right once repaired." }
-            div.scroll { table {
-                thead { tr { th { "id" } th { "scanned" } th { "repaired, and proved" } } }
-                tbody {
-                    @for outcome in in_order_of_the_thesis(outcomes.iter().filter(|outcome| outcome.scanned.is_some())) {
-                        tr class=[(!outcome.ok).then_some("bad")] {
-                            td { (outcome.id) }
-                            td.words { code { (outcome.scanned.as_deref().unwrap_or_default()) } }
-                            td.words {
-                                code { (outcome.statement) }
-                                @if let Some(remark) = &outcome.remark { p.remark { (remark) } }
-                            }
-                        }
+        section #damage {
+            h2 { "Damage and wording" }
+            p { (RULE_OF_DAMAGE.replace('*', "")) }
+            @for fault in Flaw::ALL.into_iter().filter(|fault| *fault != Flaw::Erratum) {
+                @let of_kind = in_order_of_the_thesis(outcomes.iter().filter(|o| o.fault == Some(fault)));
+                @if !of_kind.is_empty() {
+                    details {
+                        summary { (errors(outcomes, fault).text(fault.word())) ": " (meaning(fault.word())) }
+                        @for outcome in of_kind { (fault_entry(outcome, fault)) }
                     }
                 }
-            } }
+            }
         }
     }
 }

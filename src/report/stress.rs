@@ -1,13 +1,16 @@
 //! The extremes, as JSON and as tables.
 
 use super::stress_plot::{conditioning_picture, lines_picture, ranks_text, scalings_picture};
-use crate::tradeoff::stress::{Conditioning, End, First, Line, Scaling, Study, UnitsRow, Way};
+use crate::tradeoff::stress::{Conditioning, End, First, Line, OnTheSet, Scaling, Study, UnitsRow, Way};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 fn first_json(first: &Option<First>) -> Value {
-    first.as_ref().map_or(Value::Null, |first| json!({ "distance": first.distance, "said": first.said }))
+    first.as_ref().map_or(Value::Null, |first| {
+        let First { distance, least, states, said } = first;
+        json!({ "distance": distance, "least_distance": least, "states": states, "said": said })
+    })
 }
 
 /// An object with a field for each way.
@@ -37,6 +40,12 @@ fn line_json(line: &Line) -> Value {
                 "first_lost_half_its_digits": first_json(&found.lost),
                 "first_cannot_tell": first_json(&found.open),
                 "first_refused": first_json(&found.refused),
+                "on_the_set": {
+                    "right": found.on_the_set.right,
+                    "wrong": found.on_the_set.wrong,
+                    "cannot_tell": found.on_the_set.open,
+                    "refused": found.on_the_set.refused,
+                },
                 "marks": found.marks.iter().map(|mark| mark.map(|m| m.name())).collect::<Vec<_>>(),
                 "digits": found.digits,
             })
@@ -84,11 +93,11 @@ fn histogram_json(histogram: &BTreeMap<i32, usize>) -> Value {
 fn conditioning_json(found: &Conditioning) -> Value {
     json!({
         "states": found.states,
-        "old_scaling": histogram_json(&found.old),
+        "rows_of_length_one": histogram_json(&found.old),
         "equilibrated": histogram_json(&found.new),
         "fixed_thresholds": found.thresholds.iter().map(|(threshold, old, new)| json!({
             "part_of_the_largest": threshold,
-            "wrong_old_scaling": old,
+            "wrong_rows_of_length_one": old,
             "wrong_equilibrated": new,
         })).collect::<Vec<_>>(),
     })
@@ -124,8 +133,13 @@ pub fn stress_json(studies: &[Study], seed: u64) -> Value {
 fn cell(line: &Line, way: Way) -> String {
     let found = &line.ways[way.place()];
     let firsts = [('w', &found.wrong), ('d', &found.lost), ('?', &found.open), ('!', &found.refused)];
-    let words =
-        firsts.iter().filter_map(|(letter, first)| Some(format!("{letter}{:.0e}", first.as_ref()?.distance)));
+    let words = firsts.iter().filter_map(|(letter, first)| {
+        let First { distance, least, states, .. } = first.as_ref()?;
+        let range = if least < distance { format!("..{least:.0e}") } else { String::new() };
+        let part =
+            if *states < line.states { format!(" at {states}/{}", line.states) } else { String::new() };
+        Some(format!("{letter}{distance:.0e}{range}{part}"))
+    });
     let words: Vec<String> = words.collect();
     if words.is_empty() { "-".to_owned() } else { words.join(" ") }
 }
@@ -165,6 +179,8 @@ fn lines_text(study: &Study, out: &mut String) {
         (line.title.chars().take(64).collect(), cells)
     });
     table("into", &columns, rows.collect(), out);
+    out.push('\n');
+    on_the_sets_text(study, out);
     for (title, why) in &study.skipped {
         let _ = writeln!(out, "  no line: {title}: {why}");
     }
@@ -172,6 +188,32 @@ fn lines_text(study: &Study, out: &mut String) {
         let _ =
             writeln!(out, "  not every true rank is certified: there is no exact arithmetic for these rows");
     }
+}
+
+/// How many verdicts are right on the sets themselves: whoever always says "full" is never wrong beside a set, and always wrong here.
+fn on_the_sets_text(study: &Study, out: &mut String) {
+    let right = |found: &OnTheSet| match found.states() {
+        0 => "-".to_owned(),
+        states => format!("{}/{states}", found.right),
+    };
+    let mut all = vec![OnTheSet::default(); Way::ALL.len()];
+    let mut rows = Vec::new();
+    for line in &study.lines {
+        let End::Ranks { ranks, .. } = &line.end else { continue };
+        let mut cells = vec![ranks_text(ranks.iter())];
+        for (way, sum) in line.ways.iter().zip(&mut all) {
+            cells.push(right(&way.on_the_set));
+            sum.add(&way.on_the_set);
+        }
+        rows.push((line.title.chars().take(64).collect(), cells));
+    }
+    rows.push((
+        "all of them".to_owned(),
+        std::iter::once(String::new()).chain(all.iter().map(right)).collect(),
+    ));
+    let mut columns = vec!["rank"];
+    columns.extend(Way::ALL.map(Way::name));
+    table("on the set, right at", &columns, rows, out);
 }
 
 fn scalings_text(study: &Study, out: &mut String) {
@@ -244,7 +286,11 @@ fn conditioning_text(states: &str, found: &Conditioning, out: &mut String) {
 pub fn stress_text(studies: &[Study]) -> String {
     let mut out = String::from(
         "Lines: the distance at which a way first reports a wrong rank (w), has lost more than half of an entry's\n\
-         digits (d), says that it cannot tell (?), refuses and names why (!); '-' none of it down to 9e-16.\n\
+         digits (d), says that it cannot tell (?), refuses and names why (!), as a range over the states from which\n\
+         lines go (at how many of them, where not at all); '-' none of it down to 9e-16.\n\
+         On the set: at how many of the states on the set itself the verdict is the exact rank there.\n\
+         'always full' looks at nothing. numpy's rule: all rows, of length one and not equilibrated; what exceeds\n\
+         max(rows, columns) * 2^-52 of the largest singular value counts.\n\
          Scaling: the exponents of ten within which the rank is right.\n\
          Units: wrong ranks; ~ verdicts that differ from those in the file's units; (n) of no rank, but not wrong.\n",
     );

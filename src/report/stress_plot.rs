@@ -179,7 +179,7 @@ pub fn scalings_picture(study: &Study) -> String {
     bars(&format!("{}: every quantity scaled", study.title), "times the quantity's value", &ticks, &rows)
 }
 
-/// How the states (of the box, on the sets and near them) are conditioned in the old and in the new scaling.
+/// How the states (of the box, on the sets and near them) are conditioned with rows of length one, and equilibrated.
 pub fn conditioning_picture(study: &Study, title: &str) -> String {
     let mut found = study.conditioning.clone();
     for (all, near) in

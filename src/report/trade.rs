@@ -1,7 +1,9 @@
 //! Speed against accuracy, as JSON and as text; the picture is in `trade_plot`.
 
 use super::ranks::{fields_json, fields_text};
-use crate::tradeoff::{Combination, DerivativeResult, Digits, LeftOut, Trade};
+use crate::tradeoff::{
+    Combination, DIGITS_TOLERANCE, DerivativeResult, Digits, LeftOut, TIME_TOLERANCE, Trade,
+};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -184,8 +186,10 @@ pub fn trade_text(trade: &Trade) -> String {
     let right = trade.combinations.iter().filter(|c| c.not_right() == 0).count();
     let _ = writeln!(
         out,
-        "\n{} combinations, {right} of them right at every state; on the Pareto front (time, digits\nat the worst state, right verdicts, certain ones):",
+        "\n{} combinations, {right} of them right at every state; on the Pareto front (time, digits\nat the worst state, right verdicts, certain ones; {:.0} % of time and {} of a digit do not decide):",
         trade.combinations.len(),
+        100.0 * TIME_TOLERANCE,
+        DIGITS_TOLERANCE,
     );
     let line = |cells: [&str; 8]| {
         format!(

@@ -6,7 +6,9 @@ use super::ranks::rank_json;
 use super::region::region_json;
 use super::stress::stress_json;
 use super::trade::trade_json;
+use super::words::{counts, counts_text, errors};
 use crate::observability::RankAnswer;
+use crate::system::Flaw;
 use crate::tradeoff::{Map, Rows, Slope};
 use crate::verification::{
     DETERMINANT, PrintedValue, RegimeResult, Verification, equations, in_order_of_the_thesis,
@@ -94,7 +96,10 @@ pub fn verification_json(found: &Verification) -> Value {
         "interrupted": found.interrupted,
         "seed": found.seed,
         "claims": found.outcomes.iter().map(claim_json).collect::<Vec<_>>(),
+        "words": counts(&found.outcomes).into_iter().collect::<std::collections::BTreeMap<_, _>>(),
         "errata": found.outcomes.iter().filter(|o| o.word() == "erratum").map(|o| &o.id).collect::<Vec<_>>(),
+        "independent_errata":
+            errors(&found.outcomes, Flaw::Erratum).independent.iter().map(|o| &o.id).collect::<Vec<_>>(),
         "equations": equations(&found.outcomes).iter().map(|equation| json!({
             "number": equation.number,
             "verdict": equation.word(),
@@ -199,21 +204,16 @@ pub fn verification_text(found: &Verification) -> String {
     for outcome in found.outcomes.iter().filter(|outcome| outcome.pole_of.as_deref() == Some(DETERMINANT)) {
         let _ = writeln!(out, "  {}: {}", outcome.word(), outcome.statement);
     }
-    let count = |word: &str| found.outcomes.iter().filter(|outcome| outcome.word() == word).count();
-    let errata = found.outcomes.iter().filter(|outcome| outcome.word() == "erratum");
-    let errata: Vec<&str> = in_order_of_the_thesis(errata).into_iter().map(|o| o.id.as_str()).collect();
-    let _ = writeln!(
-        out,
-        "{} claims: {} proved, {} scanning faults, {} definitions, {} undecided, {} errata ({}), {} not as expected",
-        found.outcomes.len(),
-        count("proved"),
-        count("scanning fault"),
-        count("definition"),
-        count("undecided"),
-        errata.len(),
-        errata.join(", "),
-        found.outcomes.iter().filter(|outcome| !outcome.ok).count()
-    );
+    for fault in Flaw::ALL {
+        let found = errors(&found.outcomes, fault);
+        let ids: Vec<&str> = found.independent.iter().map(|outcome| outcome.id.as_str()).collect();
+        if !(ids.is_empty() && found.following.is_empty()) {
+            let _ = writeln!(out, "{}; on their own: {}", found.text(fault.word()), ids.join(", "));
+        }
+    }
+    let failed = found.outcomes.iter().filter(|outcome| !outcome.ok).count();
+    let (claims, counts) = (found.outcomes.len(), counts_text(&found.outcomes));
+    let _ = writeln!(out, "{claims} claims: {counts}, {failed} not as expected");
     if found.interrupted {
         let _ = writeln!(out, "interrupted: this is what was done until then");
     }

@@ -1,6 +1,7 @@
 //! The grammar of a proof file, without the meaning of its names. The README documents it; it is a public interface.
 
 use super::model::Role;
+use super::standing::{Basis, Flaw, Reference, basis, fault};
 use crate::expression::Expected;
 use crate::expression::parse::{
     Depth, Read, Text, blank, ends_a_line, equations, keyword, name, range, read_all, sign, stop, sum,
@@ -55,10 +56,11 @@ pub enum Expectation {
 pub enum ClaimBody {
     /// A statement with the verdict that is expected of it.
     Claim { statement: Box<Statement>, expected: Expectation },
-    /// A printed statement that is to be refuted, and a corrected one that is to be proved.
-    Erratum { printed: Box<Statement>, corrected: Box<Statement> },
-    /// A statement that the scanner damaged: as it stands in the scan, in words, and repaired, which is to be proved.
-    Scan { scanned: String, repaired: Box<Statement> },
+    /// A form in the text that is to be refuted, and the right one that is to be proved; whose doing the difference is, and
+    /// the words of the text where they are quoted.
+    Erratum { fault: Flaw, quoted: Option<String>, printed: Box<Statement>, corrected: Box<Statement> },
+    /// A form in the text that is no statement, in words, and the right one that is to be proved.
+    Scan { fault: Flaw, scanned: String, repaired: Box<Statement> },
     /// Something that is defined and not claimed.
     Definition { text: String },
     /// Something that is not decided, and why.
@@ -79,7 +81,7 @@ impl ClaimBody {
             ClaimBody::Claim { statement, .. } | ClaimBody::Scan { repaired: statement, .. } => {
                 vec![statement]
             }
-            ClaimBody::Erratum { printed, corrected } => vec![printed, corrected],
+            ClaimBody::Erratum { printed, corrected, .. } => vec![printed, corrected],
             ClaimBody::Definition { .. } | ClaimBody::Open { .. } => Vec::new(),
         }
     }
@@ -110,12 +112,16 @@ pub struct ClaimSyntax {
     pub span: Span,
     /// What it says.
     pub body: ClaimBody,
+    /// On what it rests; of a claim.
+    pub basis: Basis,
+    /// The fault of which this one is a consequence.
+    pub follows: Option<Reference>,
     /// A remark in quotation marks behind it.
     pub remark: Option<String>,
 }
 
 /// A text in double quotation marks.
-fn quoted(input: &mut Text<'_>) -> Read<String> {
+pub(super) fn quoted(input: &mut Text<'_>) -> Read<String> {
     literal("\"").void().context("a text in double quotation marks").parse_next(input)?;
     let text = take_till(0.., |c| c == '"').parse_next(input)?;
     cut_err(literal("\"")).context("a closing quotation mark").parse_next(input)?;
@@ -211,7 +217,7 @@ fn sample(input: &mut Text<'_>) -> Read<Item> {
 }
 
 /// The number or name of a claim.
-fn identifier(input: &mut Text<'_>) -> Read<Name> {
+pub(super) fn identifier(input: &mut Text<'_>) -> Read<Name> {
     let (text, span) = take_while(1.., |c: char| c.is_alphanumeric() || matches!(c, '.' | '_' | '-'))
         .with_span()
         .context("the claim's number or name")
@@ -221,7 +227,7 @@ fn identifier(input: &mut Text<'_>) -> Read<Name> {
     Ok(Name { text, span })
 }
 
-fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
+pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
     let begin = input.current_token_start();
     let mut further = cut_err(equations).parse_next(input)?;
     let equation = further.remove(0);
@@ -243,6 +249,8 @@ fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
 fn claim(input: &mut Text<'_>) -> Read<Item> {
     keyword("claim").parse_next(input)?;
     let id = cut_err(identifier).parse_next(input)?;
+    let given = input.current_token_start();
+    let basis = basis(input)?;
     let verdict = alt((
         keyword("proved").value(Expectation::Proved),
         keyword("refuted").value(Expectation::Refuted),
@@ -254,43 +262,24 @@ fn claim(input: &mut Text<'_>) -> Read<Item> {
         Some(Some(verdict)) => verdict,
         Some(None) => return stop(at + "expect ".len(), "'proved', 'refuted' or 'undecided'", None),
     };
+    if basis != Basis::Derived && expected != Expectation::Proved {
+        return stop(given, "either what the claim rests on or a verdict other than 'proved'", None);
+    }
     cut_err(sign(":")).context("':' and what is claimed").parse_next(input)?;
     let statement = statement(input)?;
     let remark = opt(quoted).parse_next(input)?;
     let body = ClaimBody::Claim { statement, expected };
-    Ok(Item::Claim(Box::new(ClaimSyntax { id: id.text, span: id.span, body, remark })))
+    let (id, span) = (id.text, id.span);
+    Ok(Item::Claim(Box::new(ClaimSyntax { id, span, body, basis, follows: None, remark })))
 }
 
-fn erratum(input: &mut Text<'_>) -> Read<Item> {
-    keyword("erratum").parse_next(input)?;
-    let id = cut_err(identifier).parse_next(input)?;
-    cut_err(sign(":")).context("':'").parse_next(input)?;
-    cut_err(keyword("printed")).context("'printed' and the statement as it is printed").parse_next(input)?;
-    let printed = statement(input)?;
-    cut_err(keyword("corrected"))
-        .context("'corrected' and the statement as it should be")
-        .parse_next(input)?;
-    let corrected = statement(input)?;
+/// `erratum`, `damaged`, `scan`, `convention` and `loose`.
+fn faulty(input: &mut Text<'_>) -> Read<Item> {
+    let entry = fault(input)?;
     let remark = opt(quoted).parse_next(input)?;
-    let body = ClaimBody::Erratum { printed, corrected };
-    Ok(Item::Claim(Box::new(ClaimSyntax { id: id.text, span: id.span, body, remark })))
-}
-
-fn scan(input: &mut Text<'_>) -> Read<Item> {
-    keyword("scan").parse_next(input)?;
-    let id = cut_err(identifier).parse_next(input)?;
-    cut_err(sign(":")).context("':'").parse_next(input)?;
-    cut_err(keyword("scanned"))
-        .context("'scanned' and the damaged text in quotation marks")
-        .parse_next(input)?;
-    let scanned = cut_err(quoted).parse_next(input)?;
-    cut_err(keyword("repaired"))
-        .context("'repaired' and the statement as it must have been")
-        .parse_next(input)?;
-    let repaired = statement(input)?;
-    let remark = opt(quoted).parse_next(input)?;
-    let body = ClaimBody::Scan { scanned, repaired };
-    Ok(Item::Claim(Box::new(ClaimSyntax { id: id.text, span: id.span, body, remark })))
+    let (id, span, follows) = (entry.id.text, entry.id.span, entry.follows);
+    let (body, basis) = (entry.body, Basis::Derived);
+    Ok(Item::Claim(Box::new(ClaimSyntax { id, span, body, basis, follows, remark })))
 }
 
 /// `definition ID: "text"` and `undecided ID: "reason"`.
@@ -301,11 +290,13 @@ fn remark_only(input: &mut Text<'_>) -> Read<Item> {
     cut_err(sign(":")).context("':'").parse_next(input)?;
     let text = cut_err(quoted).parse_next(input)?;
     let body = if open { ClaimBody::Open { reason: text } } else { ClaimBody::Definition { text } };
-    Ok(Item::Claim(Box::new(ClaimSyntax { id: id.text, span: id.span, body, remark: None })))
+    let (id, span) = (id.text, id.span);
+    let basis = Basis::Derived;
+    Ok(Item::Claim(Box::new(ClaimSyntax { id, span, body, basis, follows: None, remark: None })))
 }
 
-const ENTRY: &str = "one of: system, use, state, param, angle, let, drift, input, field, output, sample, claim, erratum, scan, \
-                     definition, undecided";
+const ENTRY: &str = "one of: system, use, state, param, angle, let, drift, input, field, output, sample, claim, erratum, \
+                     damaged, scan, convention, loose, definition, undecided";
 
 fn item(input: &mut Text<'_>) -> Read<Item> {
     alt((
@@ -317,13 +308,13 @@ fn item(input: &mut Text<'_>) -> Read<Item> {
         definition,
         field,
         preceded(keyword("output"), cut_err(separated(1.., sum, sign(",")))).map(Item::Output),
-        alt((sample, claim, erratum, scan, remark_only)),
+        alt((sample, claim, faulty, remark_only)),
     ))
     .parse_next(input)
 }
 
 /// The words that begin an entry.
-const ENTRIES: [&str; 16] = [
+const ENTRIES: [&str; 19] = [
     "system",
     "use",
     "state",
@@ -337,7 +328,10 @@ const ENTRIES: [&str; 16] = [
     "sample",
     "claim",
     "erratum",
+    "damaged",
     "scan",
+    "convention",
+    "loose",
     "definition",
     "undecided",
 ];

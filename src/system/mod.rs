@@ -15,6 +15,9 @@ mod grammar;
 mod matrices;
 mod model;
 mod read;
+mod references;
+mod restates;
+mod standing;
 mod written;
 
 pub use error::ReadError;
@@ -24,4 +27,5 @@ pub use model::{
     Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,
 };
 pub(crate) use read::load;
+pub use standing::{Basis, Flaw, Reference};
 pub(crate) use written::in_one_line;

@@ -191,6 +191,8 @@ pub struct System {
     pub(crate) aliases: Vec<String>,
     /// The symbols that this file gives a range to.
     pub(crate) sampled: HashSet<Symbol>,
+    /// The definitions that stand for the result of a calculation, and not for a formula; imported ones included.
+    pub(crate) calculated: HashSet<String>,
 }
 
 impl System {

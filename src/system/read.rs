@@ -43,7 +43,9 @@ impl System {
         let text = with_plain_line_ends(text);
         let mut reading = Reading::default();
         reading.open.extend(Path::new(name).canonicalize());
+        // what an imported file refers to is looked for where that file itself is read
         System::build(name, &text, folder, Graph::default(), &mut reading)
+            .and_then(|system| system.check_references(folder).map(|()| system))
             .map_err(|problem| problem.locate(name, &text))
     }
 
@@ -97,6 +99,7 @@ impl System {
             states_are_final: false,
             aliases: Vec::new(),
             sampled: HashSet::new(),
+            calculated: HashSet::new(),
         };
         let mut ids = HashSet::new();
         for item in items {
@@ -178,6 +181,9 @@ impl System {
                         .help("choose another name, or declare the symbol with 'param'"));
                 }
                 let (value, domain) = self.apart(|system| system.elaborate(&expr))?;
+                if !self.calculates_nothing(&expr) {
+                    self.calculated.insert(name.text.clone());
+                }
                 if value == Value::CodistributionRank {
                     return Err(Problem::new(
                         &expr.span,
@@ -500,6 +506,7 @@ impl System {
         for (name, value) in &other.definitions {
             self.definitions.insert(format!("{}.{name}", alias.text), value.clone());
         }
+        self.calculated.extend(other.calculated.iter().map(|name| format!("{}.{name}", alias.text)));
         for (name, domain) in &other.definition_domains {
             let domain = domain.clone().under(&alias.text);
             self.definition_domains.insert(format!("{}.{name}", alias.text), domain);
@@ -546,7 +553,7 @@ fn name_of(path: &Path) -> String {
 
 /// A text in which every line ends with a line feed, whatever its editor took for the end of a line, and without a
 /// byte-order mark: so that the reader, the error and the person who looks count the same lines.
-fn with_plain_line_ends(text: &str) -> String {
+pub(super) fn with_plain_line_ends(text: &str) -> String {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut plain = String::with_capacity(text.len());
     let mut characters = text.chars().peekable();

@@ -19,6 +19,6 @@ pub use point_programs::{LoadedPoints, PointPrograms};
 pub use rounding::{RoundingStudy, study_rounding};
 pub use term_by_term::term_by_term;
 pub use trade::{
-    Combination, Derivative, DerivativeResult, Digits, LeftOut, Number, RankMethod, RankResult, Trade,
-    TradeQuestion, trade,
+    Combination, DIGITS_TOLERANCE, Derivative, DerivativeResult, Digits, LeftOut, Number, RankMethod,
+    RankResult, TIME_TOLERANCE, Trade, TradeQuestion, beats, trade,
 };

@@ -1,6 +1,7 @@
 //! The numbered equations of the thesis, and which entries speak of each. Nothing is left out silently.
 
 use crate::claim::Outcome;
+use crate::system::Flaw;
 use std::collections::BTreeMap;
 
 /// The chapters that have numbered equations, with the number of the last one.
@@ -16,15 +17,22 @@ pub struct Equation<'o> {
 }
 
 impl Equation<'_> {
-    /// One word for all entries: what most needs saying among them; `no entry` where there are none. That a variant is
-    /// refuted, where the file expects it, says nothing against the equation.
+    /// One word for all entries; `no entry` where there are none. What is the matter with a form in the text comes first,
+    /// then what is undecided; else it is the word of the entry that has the equation's own number, and where there are only
+    /// parts, the one that claims least. That a variant is refuted, where the file expects it, says nothing against the
+    /// equation.
     pub fn word(&self) -> &'static str {
-        const ORDER: [&str; 5] = ["erratum", "scanning fault", "undecided", "proved", "definition"];
         if let Some(bad) = self.entries.iter().find(|outcome| !outcome.ok) {
             return bad.word();
         }
-        let has = |word: &str| self.entries.iter().any(|outcome| outcome.word() == word);
-        ORDER.into_iter().find(|word| has(word)).unwrap_or("no entry")
+        let has = |word: &&str| self.entries.iter().any(|outcome| outcome.word() == *word);
+        let matters = Flaw::ALL.map(Flaw::word).into_iter().chain(["undecided"]).find(has);
+        let own = || self.entries.iter().find(|outcome| outcome.id == self.number);
+        let parts = ["example", "consequence", "restated", "proved", "definition"];
+        matters
+            .or_else(|| own().map(|outcome| outcome.word()))
+            .or_else(|| parts.into_iter().find(has))
+            .unwrap_or("no entry")
     }
 }
 
@@ -59,18 +67,13 @@ pub fn in_order_of_the_thesis<'o>(outcomes: impl IntoIterator<Item = &'o Outcome
     sorted
 }
 
-/// The equation that an id speaks of: `4.31` for `4.31.s2`, nothing for `A.2.generic` (a section) or `rank.level`.
+/// The equation that an id speaks of: `4.31` for `4.31.s2`, nothing for `A.section2.generic` or `rank.level`.
 fn number_of(id: &str) -> Option<String> {
     let mut parts = id.split('.');
     let chapter = parts.next().filter(|c| NUMBERED.iter().any(|(known, _)| known == c))?;
     let number: u32 = parts.next()?.parse().ok()?;
-    let section = chapter == "A" && SECTION_IDS.iter().any(|known| id.starts_with(known));
-    (!section).then(|| format!("{chapter}.{number}"))
+    Some(format!("{chapter}.{number}"))
 }
-
-/// Ids of what the appendix's section A.2 prints without numbers.
-const SECTION_IDS: [&str; 5] =
-    ["A.2.generic", "A.2.same_rate", "A.2.palm_1_fixed", "A.2.pole", "A.2.section"];
 
 #[cfg(test)]
 mod tests {
@@ -80,8 +83,7 @@ mod tests {
     fn parts_belong_to_their_equation_and_sections_to_none() {
         assert_eq!(number_of("4.31.s2").as_deref(), Some("4.31"));
         assert_eq!(number_of("A.16").as_deref(), Some("A.16"));
-        assert_eq!(number_of("A.2.generic"), None);
-        assert_eq!(number_of("A.2.pole_1"), None);
+        assert_eq!(number_of("A.section2.generic"), None);
         assert_eq!(number_of("3.text.curvature"), None);
         assert_eq!(number_of("rank.level"), None);
     }

@@ -19,6 +19,7 @@ mod dice;
 mod expression;
 mod findings;
 mod identities;
+mod inequalities;
 mod laws;
 mod library;
 mod number;

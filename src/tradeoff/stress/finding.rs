@@ -55,6 +55,7 @@ impl Subject {
         Way::ALL
             .iter()
             .map(|way| match way {
+                Way::AlwaysFull => Finding { verdict: Verdict::Rank(self.columns), digits: None },
                 Way::Single => self.finding(&singles, *way, |all| {
                     let picked = self.pick(all);
                     let found = digits(&picked.iter().map(|x| f64::from(*x)).collect::<Vec<_>>());

@@ -20,13 +20,54 @@ pub enum End {
     Infinity,
 }
 
-/// Where something first happens on the way into the set.
+/// Where something first happens on the way into the set: a range over the base states.
 #[derive(Clone, Debug, PartialEq)]
 pub struct First {
-    /// The largest distance at which it happens, at any of the base states.
+    /// The largest distance at which it first happens, over the base states.
     pub distance: f64,
-    /// What is said there instead of the truth.
+    /// The least one, over those base states at which it happens.
+    pub least: f64,
+    /// At how many base states it happens.
+    pub states: usize,
+    /// What is said at the largest distance instead of the truth.
     pub said: String,
+}
+
+/// What one way says at states on the set itself, where the rank is another one than around it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OnTheSet {
+    /// The exact rank there.
+    pub right: usize,
+    /// Another one.
+    pub wrong: usize,
+    /// That it cannot tell.
+    pub open: usize,
+    /// Nothing, by name.
+    pub refused: usize,
+}
+
+impl OnTheSet {
+    /// The states that were asked about.
+    pub fn states(&self) -> usize {
+        self.right + self.wrong + self.open + self.refused
+    }
+
+    /// Adds the states of another set.
+    pub fn add(&mut self, other: &OnTheSet) {
+        self.right += other.right;
+        self.wrong += other.wrong;
+        self.open += other.open;
+        self.refused += other.refused;
+    }
+
+    fn count(&mut self, mark: Mark) {
+        match mark {
+            Mark::Right | Mark::Lost => self.right += 1,
+            Mark::Open => self.open += 1,
+            Mark::Refused => self.refused += 1,
+            Mark::Wrong => self.wrong += 1,
+        }
+    }
 }
 
 /// What one way makes of a line.
@@ -45,6 +86,8 @@ pub struct WayOnLine {
     pub open: Option<First>,
     /// Where it first refuses, and what it names.
     pub refused: Option<First>,
+    /// What it says on the set.
+    pub on_the_set: OnTheSet,
 }
 
 /// Lines into one set.
@@ -112,8 +155,33 @@ impl Prepared {
             .collect()
     }
 
-    /// The walks from all base states as one line.
-    pub fn line(&self, subject: &Subject, states: usize, halvings: &[usize], walks: &[Walk]) -> Line {
+    /// What all ways say at states on the set, in the order of [`Way::ALL`]; nothing at states that have no rank, and nothing
+    /// of a set at infinity.
+    pub fn on_the_set(&self, subject: &Subject, states: &[State]) -> Vec<OnTheSet> {
+        let mut found = vec![OnTheSet::default(); Way::ALL.len()];
+        if self.to_infinity {
+            return found;
+        }
+        let judge = subject.judge();
+        for state in states {
+            let Ok(truth) = subject.truth(state) else { continue };
+            let findings = subject.findings(&judge, state, &truth, None);
+            for ((finding, way), count) in findings.iter().zip(Way::ALL).zip(&mut found) {
+                count.count(finding.mark(way, &truth));
+            }
+        }
+        found
+    }
+
+    /// The walks from all base states as one line; `on_the_set` is what [`Prepared::on_the_set`] found.
+    pub fn line(
+        &self,
+        subject: &Subject,
+        states: usize,
+        halvings: &[usize],
+        walks: &[Walk],
+        on_the_set: &[OnTheSet],
+    ) -> Line {
         let distances: Vec<f64> = halvings.iter().map(|k| 0.5f64.powi(*k as i32)).collect();
         let truths = || walks.iter().flatten().flatten();
         let ways = Way::ALL.iter().map(|way| {
@@ -121,17 +189,28 @@ impl Prepared {
             let at = |place: usize| {
                 walks.iter().filter_map(move |walk| walk[place].as_ref().map(|(_, _, all)| &all[way.place()]))
             };
-            let first = |wanted: Mark| {
-                (0..distances.len()).find_map(|place| {
-                    let (finding, _) = at(place).find(|(_, mark)| *mark == wanted)?;
-                    Some(First { distance: distances[place], said: finding.said() })
+            // where it first happens from each base state, and what is said there
+            let range = |happens: &dyn Fn(&(Finding, Mark)) -> Option<String>| {
+                let each = walks.iter().filter_map(|walk| {
+                    walk.iter()
+                        .enumerate()
+                        .find_map(|(place, found)| Some((place, happens(&found.as_ref()?.2[way.place()])?)))
+                });
+                let each: Vec<(usize, String)> = each.collect();
+                let (place, said) = each.iter().min_by_key(|(place, _)| *place)?;
+                let last = each.iter().map(|(place, _)| *place).max()?;
+                Some(First {
+                    distance: distances[*place],
+                    least: distances[last],
+                    states: each.len(),
+                    said: said.clone(),
                 })
             };
+            let first = |wanted: Mark| range(&|(finding, mark)| (*mark == wanted).then(|| finding.said()));
             // a rank may be wrong and the digits lost at once, so that digits are asked for themselves
-            let lost = (0..distances.len()).find_map(|place| {
-                let digits = at(place).filter_map(|(finding, _)| finding.digits).reduce(f64::min)?;
-                (digits < way.digits() / 2.0)
-                    .then(|| First { distance: distances[place], said: format!("{digits:.1} digits") })
+            let lost = range(&|(finding, _)| {
+                let digits = finding.digits.filter(|digits| *digits < way.digits() / 2.0)?;
+                Some(format!("{digits:.1} digits"))
             });
             WayOnLine {
                 way: *way,
@@ -143,6 +222,7 @@ impl Prepared {
                 lost,
                 open: first(Mark::Open),
                 refused: first(Mark::Refused),
+                on_the_set: on_the_set.get(way.place()).copied().unwrap_or_default(),
             }
         });
         Line {
@@ -193,7 +273,7 @@ impl Finding {
             Way::Single => subject.rounded_to_zero::<f32>(state),
             Way::Customary | Way::Double => subject.rounded_to_zero::<f64>(state),
             Way::DoubleDouble => subject.rounded_to_zero::<DoubleDouble>(state),
-            Way::Radii | Way::Interval | Way::Ladder => None,
+            Way::AlwaysFull | Way::Radii | Way::Interval | Way::Ladder => None,
         }
     }
 }

@@ -18,7 +18,7 @@ mod units;
 
 pub use approach::{Approach, approaches_of};
 pub use finding::Finding;
-pub use line::{End, First, Line, WayOnLine};
+pub use line::{End, First, Line, OnTheSet, WayOnLine};
 pub use run::{Stress, StressOptions, Study, rows_of};
 pub use scaling::{Quantity, Scaling, WayScaled};
 pub use subject::{Subject, Truth};
@@ -27,9 +27,12 @@ pub use units::{Conditioning, Rescaling, UnitsRow, WayInUnits};
 /// A number type together with a way to decide a rank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Way {
+    /// Looks at nothing and says that the rank is full: what any column is to be compared with.
+    AlwaysFull,
     /// Single precision throughout: singular values (one-sided Jacobi) of the equilibrated rows.
     Single,
-    /// Doubles, the customary threshold: rows of length one, `max(rows, columns) * 2^-52` of the largest singular value.
+    /// Doubles by numpy's rule (`matrix_rank`): singular values above `max(rows, columns) * 2^-52` of the largest one count.
+    /// All rows, scaled to length one and not equilibrated, in the units of the file.
     Customary,
     /// Doubles, equilibrated, nothing known of the errors of the entries.
     Double,
@@ -45,8 +48,16 @@ pub enum Way {
 
 impl Way {
     /// All, from the cheapest; at last what `palmistry rank` does.
-    pub const ALL: [Way; 7] =
-        [Way::Single, Way::Customary, Way::Double, Way::Radii, Way::Interval, Way::DoubleDouble, Way::Ladder];
+    pub const ALL: [Way; 8] = [
+        Way::AlwaysFull,
+        Way::Single,
+        Way::Customary,
+        Way::Double,
+        Way::Radii,
+        Way::Interval,
+        Way::DoubleDouble,
+        Way::Ladder,
+    ];
 
     /// The place in [`Way::ALL`].
     pub fn place(self) -> usize {
@@ -56,8 +67,9 @@ impl Way {
     /// In a word or two.
     pub fn name(self) -> &'static str {
         match self {
+            Way::AlwaysFull => "always full",
             Way::Single => "f32",
-            Way::Customary => "f64, old threshold",
+            Way::Customary => "f64, numpy's rule",
             Way::Double => "f64",
             Way::Radii => "f64 with radii",
             Way::Interval => "intervals",

@@ -2,7 +2,7 @@
 
 use super::super::landscape::Rows;
 use super::approach::{Approach, Prepared, approaches_of};
-use super::line::{Line, Walk};
+use super::line::{Line, OnTheSet, Walk};
 use super::scaling::{Quantity, Scaling};
 use super::subject::Subject;
 use super::units::{Conditioning, Rescaling, Seen, UnitsRow, conditioning, in_units};
@@ -15,6 +15,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Distances are `2^-k` for `k` from 0 to this: down to 8.9e-16.
 const MOST_HALVINGS: usize = 50;
+
+/// States on each set at which it is asked what every way says there.
+const STATES_ON_THE_SET: u64 = 20;
 
 /// Distances from the sets, in halvings, at which it is asked how states are conditioned: 1e-3, 1e-6, 1e-9.
 const NEAR: [usize; 3] = [10, 20, 30];
@@ -129,7 +132,12 @@ impl Stress {
         let (mut lines, mut skipped) = (Vec::new(), Vec::new());
         let mut met = std::collections::HashSet::new();
         for approach in approaches {
-            match approach.prepare(system, rows, options.states.max(options.samples_on_sets), options.seed) {
+            match approach.prepare(
+                system,
+                rows,
+                options.states.max(options.samples_on_sets).max(STATES_ON_THE_SET),
+                options.seed,
+            ) {
                 // two ways to write one set
                 Ok(found) => lines.extend(
                     found.into_iter().filter(|line| line.to_infinity || met.insert(line.steps.clone())),
@@ -169,10 +177,19 @@ impl Stress {
                 Some(walk)
             })
             .collect();
-        let lines = self.lines.iter().zip(walks.chunks(states.max(1))).filter_map(|(prepared, walks)| {
+        let on_the_sets: Vec<Vec<OnTheSet>> = self
+            .lines
+            .par_iter()
+            .map(|line| match stopped() {
+                true => Vec::new(),
+                false => line.on_the_set(subject, &line.bases),
+            })
+            .collect();
+        let lines = self.lines.iter().zip(walks.chunks(states.max(1))).zip(&on_the_sets);
+        let lines = lines.filter_map(|((prepared, walks), on_the_set)| {
             // a line with a base state missing would look better than it is
             let walks = walks.iter().cloned().collect::<Option<Vec<Walk>>>()?;
-            Some(prepared.line(subject, states, &halvings, &walks))
+            Some(prepared.line(subject, states, &halvings, &walks, on_the_set))
         });
         let lines: Vec<Line> = lines.collect();
         let base = self.box_states.draw(options.seed, 0).ok();

@@ -26,6 +26,7 @@ mod work;
 pub use combination::{
     Combination, Derivative, DerivativeResult, Digits, LeftOut, Number, RankMethod, RankResult, Trade,
 };
+pub use front::{DIGITS_TOLERANCE, TIME_TOLERANCE, beats};
 
 use crate::system::System;
 use front::mark_front;
