@@ -50,6 +50,8 @@ pub(super) enum Measure {
 #[derive(Clone, Debug)]
 pub(super) struct Generators {
     pub keys: Vec<Key>,
+    /// How deep each generator is nested: one more than those that it is made of.
+    depths: Vec<usize>,
     places: HashMap<Key, Variable>,
     nodes: Vec<NodeId>,
     of_symbol: HashMap<Symbol, Variable>,
@@ -62,6 +64,8 @@ pub(super) struct Generators {
     pub turn: Turn,
 }
 
+/// Functions of functions, and fractions in denominators, are followed no deeper.
+pub(super) const DEEPEST: usize = 24;
 /// No further than into so many parts a monomial or a generator is divided.
 const MOST_PARTS: u64 = 48;
 
@@ -69,6 +73,7 @@ impl Generators {
     pub fn new(turn: Turn) -> Self {
         Generators {
             keys: Vec::new(),
+            depths: Vec::new(),
             places: HashMap::new(),
             nodes: Vec::new(),
             of_symbol: HashMap::new(),
@@ -81,6 +86,31 @@ impl Generators {
 
     pub fn key(&self, variable: Variable) -> &Key {
         &self.keys[variable as usize]
+    }
+
+    /// How deep the deepest generator of a form is nested.
+    pub fn depth(&self, form: &Form) -> usize {
+        form.0.keys().map(|monomial| self.depth_of_monomial(monomial)).max().unwrap_or(0)
+    }
+
+    fn depth_of_monomial(&self, monomial: &Monomial) -> usize {
+        monomial.iter().map(|(variable, _)| self.depths[*variable as usize]).max().unwrap_or(0)
+    }
+
+    fn depth_of_key(&self, key: &Key) -> usize {
+        match key {
+            Key::Symbol(_) | Key::Pi | Key::Turn | Key::Opaque(..) => 0,
+            Key::Exp(monomial) | Key::Sine(monomial) | Key::Cosine(monomial) => {
+                1 + self.depth_of_monomial(monomial)
+            }
+            Key::Root(form)
+            | Key::Abs(form)
+            | Key::Log(form)
+            | Key::Power(form, _)
+            | Key::Value(_, form)
+            | Key::Inverse(form) => 1 + self.depth(form),
+            Key::Part(whole) => self.depths[*whole as usize],
+        }
     }
 
     /// The generator of a plain symbol of the rewritten expressions.
@@ -107,7 +137,10 @@ impl Adjunction<'_> {
             _ => self.graph.intern(&format!("#{place}")),
         };
         let node = self.graph.symbol(symbol);
+        let depth = self.generators.depth_of_key(&key);
+        self.generators.depths.push(depth);
         if let Key::Sine(monomial) = &key {
+            self.generators.depths.push(depth);
             let cosine = Key::Cosine(monomial.clone());
             let nodes = [Function::Sin, Function::Cos].map(|function| self.graph.apply(function, node));
             self.generators.nodes.extend(nodes);
@@ -288,6 +321,7 @@ impl Adjunction<'_> {
                     let inverse = monomial.iter().map(|(variable, power)| (*variable, -power)).collect();
                     self.reduced(Form::term(inverse, RBig::ONE / factor))?
                 }
+                None if self.generators.depth(base) >= DEEPEST => return None,
                 None => {
                     let (content, rest) = base.primitive()?;
                     let inverse = Form::variable(self.variable(Key::Inverse(rest)));

@@ -31,7 +31,7 @@ use super::graph::{Graph, Node, NodeId, Symbol};
 use crate::number::{Function, Turn};
 use dashu::rational::RBig;
 use form::Form;
-use generators::{Generators, Key};
+use generators::{DEEPEST, Generators, Key};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -254,6 +254,9 @@ impl Adjunction<'_> {
     fn applied(&mut self, function: Function, argument: NodeId) -> Result<NodeId, Halt> {
         let too_long = || Halt::Stop(format!("the argument of {} is too long", function.name()));
         let form = self.form(argument).ok_or_else(too_long)?;
+        if self.generators.depth(&form) >= DEEPEST {
+            return Err(Halt::Stop(format!("functions are met more than {DEEPEST} deep")));
+        }
         self.used.insert(match function {
             Function::Exp => "exponentials",
             Function::Log => "logarithms",

@@ -15,6 +15,8 @@ use dashu::rational::RBig;
 const LARGEST_MULTIPLE: i64 = 12;
 /// Angles are written as multiples of pi over numbers up to this, where they are such.
 const MOST_PARTS: u32 = 120;
+/// And only where they have no more operations.
+const LONGEST_ANGLE: usize = 100;
 
 /// A sine or cosine and the constants, one of which it has to be; solved for an angle. All angles with such a sine differ from
 /// the values by whole turns.
@@ -150,7 +152,8 @@ fn quarter(system: &mut System, function: Function, value: NodeId) -> Option<Nod
 
 /// A rational multiple of pi in one way: what it is called does not depend on how it was found.
 fn in_parts_of_pi(system: &mut System, angle: NodeId) -> NodeId {
-    if !system.graph.symbols_of([angle]).is_empty() {
+    // what was made here of a few numbers
+    if !system.graph.symbols_of([angle]).is_empty() || system.graph.reachable([angle]).len() > LONGEST_ANGLE {
         return angle;
     }
     let Some(factor) = factor_of_pi(system, angle) else { return angle };
