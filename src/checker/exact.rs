@@ -1,7 +1,7 @@
 //! Exact values: rational combinations of products of pi, roots, angles and values of functions that have no shorter name.
 //!
-//! Zero in this form is zero for certain. What is not zero in this form may still be zero (`sin(1)^2 + cos(1)^2 - 1`), unless
-//! it is rational: the checker then does not know.
+//! Zero in this form is zero for certain. What is not zero in this form may still be zero (`exp(1)^2 - exp(2)`), unless it is
+//! rational: the checker then does not know. Twelfths of pi, inverse sines and cosines, and squares of sines have their rule.
 
 use crate::number::{Arithmetic, Function, Rationals, Refusal};
 use dashu::base::BitTest;
@@ -28,6 +28,9 @@ impl Atom {
         matches!(self, Atom::Pi | Atom::Root(_) | Atom::Value(Function::Exp, _))
     }
 }
+
+/// Sine and cosine.
+type Circular = Result<(Form, Form), Refusal>;
 
 /// Powers of atoms, multiplied.
 type Product = BTreeMap<Atom, i32>;
@@ -61,6 +64,11 @@ impl Form {
     /// Whether it is zero for certain.
     pub fn is_zero(&self) -> bool {
         self.rest.is_empty() && self.rational.is_zero()
+    }
+
+    fn scaled(&self, factor: &RBig) -> Form {
+        let rest = self.rest.iter().map(|(product, value)| (product.clone(), value * factor)).collect();
+        Form { rational: &self.rational * factor, rest }
     }
 
     fn depth(&self) -> usize {
@@ -171,8 +179,8 @@ impl Exact {
         Ok(Form { rational: RBig::ZERO, rest: BTreeMap::from([(inverse, factor)]) })
     }
 
-    /// Sine and cosine of whole multiples of known angles and of quarter turns, by the addition theorems.
-    fn circular(&self, a: &Form) -> Option<Result<(RBig, RBig), Refusal>> {
+    /// Sine and cosine of sums of whole multiples of known angles and of some parts of a turn, by the addition theorems.
+    fn circular(&self, a: &Form) -> Option<Circular> {
         if !a.rational.is_zero() {
             return None;
         }
@@ -181,8 +189,14 @@ impl Exact {
             let mut atoms = product.iter();
             let (Some((atom, 1)), None) = (atoms.next(), atoms.next()) else { return None };
             let (unit, count) = match atom {
-                Atom::Pi => ((RBig::ONE, RBig::ZERO), value * RBig::from(2)),
-                Atom::Angle(place) => (self.circle.get(*place)?.clone(), value.clone()),
+                Atom::Pi => (self.part_of_turn(value)?, RBig::ONE),
+                Atom::Angle(place) => {
+                    let (sine, cosine) = self.circle.get(*place)?.clone();
+                    (Ok((Form::from(sine), Form::from(cosine))), value.clone())
+                }
+                Atom::Value(function @ (Function::Asin | Function::Acos), inner) => {
+                    (self.undone(*function, inner), value.clone())
+                }
                 _ => return None,
             };
             let whole = i64::try_from(IBig::clone(count.numerator())).ok()?;
@@ -191,25 +205,83 @@ impl Exact {
             }
             turns.push((unit, whole));
         }
-        let mut total = (RBig::ZERO, RBig::ONE);
-        for ((sine, cosine), count) in turns {
-            let unit = if count < 0 { (-sine, cosine) } else { (sine, cosine) };
+        Some(self.turned(turns))
+    }
+
+    fn turned(&self, turns: Vec<(Circular, i64)>) -> Circular {
+        let mut total = (Form::default(), Form::from(RBig::ONE));
+        for (unit, count) in turns {
+            let (sine, cosine) = unit?;
+            let unit = if count < 0 { (self.neg(&sine)?, cosine) } else { (sine, cosine) };
             for _ in 0..count.abs() {
-                total = match self.turn(&total, &unit) {
-                    Ok(total) => total,
-                    Err(refusal) => return Some(Err(refusal)),
-                };
+                total = self.turn(&total, &unit)?;
             }
         }
-        Some(Ok(total))
+        Ok(total)
     }
 
     /// `sin(a+b) = sin a cos b + cos a sin b`, `cos(a+b) = cos a cos b - sin a sin b`
-    fn turn(&self, a: &(RBig, RBig), b: &(RBig, RBig)) -> Result<(RBig, RBig), Refusal> {
-        let q = &self.numbers;
-        let sine = q.add(&q.mul(&a.0, &b.1)?, &q.mul(&a.1, &b.0)?)?;
-        let cosine = q.sub(&q.mul(&a.1, &b.1)?, &q.mul(&a.0, &b.0)?)?;
+    fn turn(&self, a: &(Form, Form), b: &(Form, Form)) -> Circular {
+        let sine = self.add(&self.mul(&a.0, &b.1)?, &self.mul(&a.1, &b.0)?)?;
+        let cosine = self.sub(&self.mul(&a.1, &b.1)?, &self.mul(&a.0, &b.0)?)?;
         Ok((sine, cosine))
+    }
+
+    /// Sine and cosine of a multiple of pi that is a sum of quarters, thirds and eighths of a turn.
+    fn part_of_turn(&self, times_pi: &RBig) -> Option<Circular> {
+        let parts = times_pi * RBig::from(12);
+        if !parts.denominator().is_one() {
+            return None;
+        }
+        // in twelfths of pi: whole turns are nothing
+        let twenty_four = IBig::from(24);
+        let place = ((parts.numerator() % &twenty_four) + &twenty_four) % &twenty_four;
+        let place = i64::try_from(place).ok()?;
+        // three of them are an eighth of a turn and four a sixth: of the first as many as leave a multiple of four
+        let eighths = (-place).rem_euclid(4);
+        let sixths = (place - 3 * eighths) / 4;
+        let half = RBig::ONE / RBig::from(2);
+        let of_root = |n: i64| Ok(self.apply(Function::Sqrt, &Form::from(RBig::from(n)))?.scaled(&half));
+        let units =
+            || Ok::<_, Refusal>([(of_root(2)?, of_root(2)?), (of_root(3)?, Form::from(half.clone()))]);
+        Some(
+            units().and_then(|[eighth, sixth]| self.turned(vec![(Ok(eighth), eighths), (Ok(sixth), sixths)])),
+        )
+    }
+
+    /// Sine and cosine of an inverse sine or cosine, which exists: one is the argument `u`, the other `sqrt(1 - u^2)`.
+    fn undone(&self, function: Function, u: &Form) -> Circular {
+        let rest = self.sub(&Form::from(RBig::ONE), &self.mul(u, u)?)?;
+        let other = self.apply(Function::Sqrt, &rest)?;
+        Ok(if function == Function::Asin { (u.clone(), other) } else { (other, u.clone()) })
+    }
+
+    /// The form with `sin^2 = 1 - cos^2` put in.
+    fn without_squares_of_sines(&self, form: Form) -> Result<Form, Refusal> {
+        let is_sine = |atom: &Atom| matches!(atom, Atom::Value(Function::Sin, _));
+        let mut done = form;
+        for _ in 0..MOST_TERMS {
+            let square = |product: &Product| {
+                product.iter().find(|(atom, n)| is_sine(atom) && **n >= 2).map(|(a, _)| a.clone())
+            };
+            let Some((product, atom)) = done.rest.keys().find_map(|p| Some((p.clone(), square(p)?))) else {
+                return Ok(done);
+            };
+            let Some(value) = done.rest.remove(&product) else { return Ok(done) };
+            let Atom::Value(_, argument) = &atom else { return Ok(done) };
+            let mut rest = product;
+            rest.entry(atom.clone()).and_modify(|n| *n -= 2);
+            rest.retain(|_, n| *n != 0);
+            let (_, with_cosine) =
+                self.join(&rest, &Product::from([(Atom::Value(Function::Cos, argument.clone()), 2)]))?;
+            let one = |product: Product| match product.is_empty() {
+                true => Form::from(RBig::ONE),
+                false => Form { rational: RBig::ZERO, rest: BTreeMap::from([(product, RBig::ONE)]) },
+            };
+            done = self.combine(&done, &one(rest), &value)?;
+            done = self.combine(&done, &one(with_cosine), &-value)?;
+        }
+        Err(Refusal::TooLarge)
     }
 }
 
@@ -264,7 +336,7 @@ impl Arithmetic for Exact {
                 product = self.combine(&product, &term, &RBig::ONE)?;
             }
         }
-        self.kept(product)
+        self.kept(self.without_squares_of_sines(product)?)
     }
     fn div(&self, a: &Form, b: &Form) -> Result<Form, Refusal> {
         self.mul(a, &self.reciprocal(b)?)
@@ -304,7 +376,7 @@ impl Arithmetic for Exact {
             Function::Sin | Function::Cos => {
                 if let Some(found) = self.circular(a) {
                     let (sine, cosine) = found?;
-                    return self.kept(Form::from(if function == Function::Sin { sine } else { cosine }));
+                    return self.kept(if function == Function::Sin { sine } else { cosine });
                 }
             }
             Function::Atan | Function::Exp => {}
@@ -354,6 +426,37 @@ mod tests {
         assert_eq!(all.apply(Function::Sin, &all.pi().unwrap()).unwrap(), number(0));
     }
 
+    /// By hand: all twelfths of pi as a calculator has them; cos(2 acos(1/3)) = 2/9 - 1.
+    #[test]
+    fn parts_of_a_turn_and_inverse_functions_have_sines() {
+        let all = Exact::new(Vec::new());
+        let pi = all.pi().unwrap();
+        for twelfths in -30..30i64 {
+            let angle = all.div(&all.mul(&pi, &number(twelfths)).unwrap(), &number(12)).unwrap();
+            for (function, expected) in
+                [(Function::Sin, f64::sin as fn(f64) -> f64), (Function::Cos, f64::cos as fn(f64) -> f64)]
+            {
+                let form = all.apply(function, &angle).unwrap();
+                let root = |n: &UBig| n.to_f64().value().sqrt();
+                let term = |(product, value): (&Product, &RBig)| {
+                    let roots = product.keys().map(|atom| match atom {
+                        Atom::Root(inner) => root(inner),
+                        other => panic!("{other:?}"),
+                    });
+                    value.to_f64().value() * roots.product::<f64>()
+                };
+                let near = form.rational.to_f64().value() + form.rest.iter().map(term).sum::<f64>();
+                let angle = twelfths as f64 * std::f64::consts::PI / 12.0;
+                assert!((near - expected(angle)).abs() < 1e-12, "{function:?} of {twelfths}");
+            }
+        }
+        let third = all.div(&number(1), &number(3)).unwrap();
+        let angle = all.apply(Function::Acos, &third).unwrap();
+        let twice = all.mul(&number(2), &angle).unwrap();
+        let cosine = all.apply(Function::Cos, &twice).unwrap();
+        assert_eq!(cosine, Form::from(RBig::from_parts((-7).into(), 9u8.into())));
+    }
+
     #[test]
     fn what_is_not_known_is_not_said() {
         let all = Exact::new(Vec::new());
@@ -361,7 +464,9 @@ mod tests {
             (all.apply(Function::Sin, &number(1)).unwrap(), all.apply(Function::Cos, &number(1)).unwrap());
         let square = |form: &Form| all.mul(form, form).unwrap();
         let one = all.add(&square(&sine), &square(&cosine)).unwrap();
-        assert_eq!(all.is_zero(&all.sub(&one, &number(1)).unwrap()), None);
+        assert_eq!(one, number(1));
+        let e = |n: i64| all.apply(Function::Exp, &number(n)).unwrap();
+        assert_eq!(all.is_zero(&all.sub(&square(&e(1)), &e(2)).unwrap()), None);
         assert_eq!(all.div(&number(1), &sine).unwrap_err(), Refusal::DivisorNotSeparated);
         assert!(all.sub(&sine, &all.apply(Function::Sin, &number(1)).unwrap()).unwrap().is_zero());
         for (function, outside) in [(Function::Asin, 2), (Function::Sqrt, -1), (Function::Log, 0)] {

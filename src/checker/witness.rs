@@ -2,8 +2,10 @@
 
 use super::doubt::{Doubt, Effort, Finding, Missing};
 use super::evaluation::{Difference, Evaluation};
+use super::exact::{Exact, Form};
 use super::listing::Listing;
 use super::state::{ExactState, Ratio};
+use crate::number::Arithmetic;
 use dashu::integer::UBig;
 use dashu::rational::RBig;
 use serde::{Deserialize, Serialize};
@@ -231,12 +233,31 @@ pub(super) fn is_within(
         let difference = left - right;
         return Ok(Some(magnitudes(difference.clone(), difference).1 <= *most));
     }
-    values.climb(|precision| {
+    let told = values.climb(|precision| {
         let at = |place| values.enclosed(place, precision);
         let (left, right, most) = (at(sides.left)?, at(sides.right)?, at(tolerance)?);
         let (least, largest) = magnitudes(left.low() - right.high(), left.high() - right.low());
         Ok(if largest <= most.low() { Some(true) } else { (least > most.high()).then_some(false) })
-    })
+    })?;
+    if told.is_some() {
+        return Ok(told);
+    }
+    // the difference may be the tolerance itself, which is not negative where it is near a magnitude, or both are zero
+    let exact = Exact::new(Vec::new());
+    let is_the_tolerance = |left: usize, right: usize| {
+        let (left, right, most) =
+            (values.exact(left).ok()?, values.exact(right).ok()?, values.exact(tolerance).ok()?);
+        Some(exact.sub(&exact.sub(left, right).ok()?, most).ok()?.is_zero())
+    };
+    let equal = is_the_tolerance(sides.left, sides.right) == Some(true)
+        || is_the_tolerance(sides.right, sides.left) == Some(true);
+    let no_less_than_zero = values.exact(tolerance).is_ok_and(Form::is_zero)
+        || values
+            .climb(
+                |precision| Ok((values.enclosed(tolerance, precision)?.low() >= RBig::ZERO).then_some(())),
+            )?
+            .is_some();
+    Ok((equal && no_less_than_zero).then_some(true))
 }
 
 /// A printed number: its value, and by how much what it stands for may differ from it.

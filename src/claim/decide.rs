@@ -236,7 +236,7 @@ fn attempt(
         guards.extend(needed);
         return match (left, right, tolerance) {
             (Value::Scalar(l), Value::Scalar(r), Value::Scalar(t)) if statement.conditions.is_empty() => {
-                let verdict = decide_nearness(system, l, r, t, &guards);
+                let verdict = decide_nearness(system, l, r, t, &guards, rng);
                 let near = Nearness { left: l, right: r, tolerance: t };
                 let evidence = nearness(system, near, &guards, &verdict).map_err(|doubt| {
                     format!(

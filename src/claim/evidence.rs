@@ -114,7 +114,22 @@ pub(super) fn identity(
         Ok(stated) if paired == plain || agrees(&stated) => Ok(stated),
         _ => stated(&plain),
     };
-    found.map_or_else(not_written, Evidence::Proved)
+    match on.statement.conditions.is_empty() {
+        true => found.map_or_else(not_written, Evidence::Proved),
+        // there are constants of which the checker has no rule that shows a condition to hold
+        false => found.map_or_else(not_written, as_far_as_it_can_be_told),
+    }
+}
+
+/// A proof for the checker, unless it does not know at the very state what the proof takes for granted there: that says nothing
+/// against it, and could not be told from a fault later on.
+fn as_far_as_it_can_be_told(stated: StatedIdentity) -> Evidence {
+    match stated.check(1, &Effort::new(WORK)) {
+        Finding::NotConfirmed(
+            doubt @ (Doubt::ConditionNotShown(_) | Doubt::RequirementNotShown(_) | Doubt::ToleranceNotTold),
+        ) => Evidence::Unchecked(format!("the checker cannot tell: {doubt}")),
+        _ => Evidence::Proved(stated),
+    }
 }
 
 fn not_written(why: Missing) -> Evidence {
@@ -157,7 +172,8 @@ pub(super) fn nearness(
     };
     Ok(match verdict {
         Verdict::Proved { engine, log2_error } => {
-            Some(statement.identity(engine, *log2_error, None).map_or_else(not_written, Evidence::Proved))
+            let stated = statement.identity(engine, *log2_error, None);
+            Some(stated.map_or_else(not_written, as_far_as_it_can_be_told))
         }
         Verdict::Refuted { witness, .. } => {
             let printed = PrintedSides { left: witness.left.clone(), right: witness.right.clone() };

@@ -5,8 +5,10 @@ use super::existence::{Existence, existence};
 use super::terms::OnBranch;
 use super::value::{ValueError, enclose};
 use super::verdict::{Verdict, Witness};
-use super::witness::{Search, search};
-use crate::expression::{Guard, NodeId, Program, Symbol, ZeroTest, expand_angles, identically_zero};
+use super::witness::{Search, search, until_they_differ};
+use crate::expression::{
+    Guard, NodeId, Program, Related, Symbol, ZeroTest, expand_angles, identically_zero, zero_by_relations,
+};
 use crate::system::System;
 use dashu::rational::RBig;
 use rand::Rng;
@@ -61,6 +63,17 @@ pub(crate) fn decide_identity(
         }
         ZeroTest::Unknown(why) => (0..differences.len(), why),
     };
+    let why = match zero_by_relations(&mut system.graph, &differences, &on.terms.guards, is_angle, rng) {
+        Related::Zero { log2_error, used, .. } => {
+            let engine = format!("{RANDOM_PRIMES}, with what is known of {used}");
+            return match existence(system, on, rng) {
+                Existence::Nowhere(guard) => OnOneBranch::Empty(guard),
+                found => OnOneBranch::Verdict(proved(&engine, log2_error), found),
+            };
+        }
+        Related::NotShown(why) => why,
+        Related::NoFunctions => why,
+    };
     match search(system, on, suspects, rng) {
         Search::Found { witness, point, entry, exact } => {
             let refutation = match refutation(system, on, &point, entry, &witness) {
@@ -93,6 +106,63 @@ pub(crate) fn decide_identity(
     }
 }
 
+/// Whether a difference of numbers, or its negative, is a tolerance that is not negative, exactly: the sides are as far from each
+/// other as they may be.
+fn is_the_tolerance(
+    system: &mut System,
+    difference: NodeId,
+    tolerance: NodeId,
+    guards: &[Guard],
+    rng: &mut impl Rng,
+) -> Option<Verdict> {
+    let zero = system.graph.integer(0);
+    let back = system.graph.neg(difference);
+    let no_tolerance = is_zero_number(system, tolerance, guards, rng);
+    for (one, other) in [(difference, tolerance), (back, tolerance), (difference, zero)] {
+        let rest = system.graph.sub(one, other);
+        if let Some(proved) = is_zero_number(system, rest, guards, rng) {
+            match &no_tolerance {
+                Some(nothing) => return Some(Verdict::all([proved, nothing.clone()])),
+                None if is_positive_number(system, tolerance) => return Some(proved),
+                None => {}
+            }
+        }
+    }
+    None
+}
+
+fn is_positive_number(system: &System, number: NodeId) -> bool {
+    let program = Program::new(&system.graph, &[number], |_| false, false);
+    let found = enclose(&system.graph, &program, &HashMap::new(), 512);
+    found.is_ok_and(|found| found[0].low() > RBig::ZERO)
+}
+
+fn is_zero_number(
+    system: &mut System,
+    number: NodeId,
+    guards: &[Guard],
+    rng: &mut impl Rng,
+) -> Option<Verdict> {
+    if let Some(value) = system.graph.constant_value(number) {
+        let engine = "exact arithmetic".to_owned();
+        return value.is_zero().then_some(Verdict::Proved { engine, log2_error: f64::NEG_INFINITY });
+    }
+    match identically_zero(&system.graph, &[number], |_| false, rng) {
+        ZeroTest::Zero { log2_error, .. } => {
+            return Some(Verdict::Proved { engine: RANDOM_PRIMES.to_owned(), log2_error });
+        }
+        ZeroTest::Pole(_) => return None,
+        ZeroTest::Nonzero(_) | ZeroTest::Unknown(_) => {}
+    }
+    match zero_by_relations(&mut system.graph, &[number], guards, |_| false, rng) {
+        Related::Zero { log2_error, used, .. } => Some(Verdict::Proved {
+            engine: format!("{RANDOM_PRIMES}, with what is known of {used}"),
+            log2_error,
+        }),
+        Related::NotShown(_) | Related::NoFunctions => None,
+    }
+}
+
 /// Decides `|left - right| <= tolerance` where all three are numbers: constants, and what `at {...}` makes constants.
 pub(crate) fn decide_nearness(
     system: &mut System,
@@ -100,6 +170,7 @@ pub(crate) fn decide_nearness(
     right: NodeId,
     tolerance: NodeId,
     guards: &[Guard],
+    rng: &mut impl Rng,
 ) -> Verdict {
     let difference = system.graph.sub(left, right);
     let mut wanted = vec![difference, tolerance, left, right];
@@ -108,7 +179,7 @@ pub(crate) fn decide_nearness(
     let program = Program::new(&system.graph, &wanted, |_| false, false);
     // a value in a file is a default, and never part of a claim
     let values: HashMap<Symbol, RBig> = HashMap::new();
-    let mut bits = 128;
+    let (mut bits, mut compared) = (128, false);
     loop {
         let found = match enclose(&system.graph, &program, &values, bits) {
             Ok(found) => found,
@@ -142,11 +213,19 @@ pub(crate) fn decide_nearness(
             return Verdict::Proved { engine: INTERVALS.to_owned(), log2_error: f64::NEG_INFINITY };
         }
         if exists && smallest > found[1].high() {
-            let shown =
-                |index: usize| found[index].certain_decimal(20).unwrap_or_else(|| found[index].bounds_text());
+            let shown = |index: usize, digits: usize| {
+                found[index].certain_decimal(digits).unwrap_or_else(|| found[index].bounds_text())
+            };
+            let [left, right] = until_they_differ(|digits| [2, 3].map(|index| shown(index, digits)));
             let state = Vec::new();
-            let witness = Witness { state, left: shown(2), right: shown(3), entry: None, refutation: None };
+            let witness = Witness { state, left, right, entry: None, refutation: None };
             return Verdict::Refuted { engine: INTERVALS.to_owned(), witness };
+        }
+        if exists
+            && !std::mem::replace(&mut compared, true)
+            && let Some(proved) = is_the_tolerance(system, difference, tolerance, guards, rng)
+        {
+            return proved;
         }
         if bits >= 1 << 14 {
             return Verdict::undecided("the difference is within rounding of the tolerance");

@@ -117,7 +117,7 @@ fn shown(value: &RBig, digits: usize) -> String {
 }
 
 /// Two texts to as many digits as it takes to tell them apart.
-fn until_they_differ(texts: impl Fn(usize) -> [String; 2]) -> [String; 2] {
+pub(super) fn until_they_differ(texts: impl Fn(usize) -> [String; 2]) -> [String; 2] {
     let mut digits = DIGITS;
     loop {
         let found = texts(digits);

@@ -121,18 +121,29 @@ fn sine_cosine(graph: &mut Graph, combination: &Combination) -> (NodeId, NodeId)
     };
     for (&symbol, &count) in &combination.angles {
         let angle = graph.symbol(symbol);
-        let mut unit = (graph.apply(Function::Sin, angle), graph.apply(Function::Cos, angle));
-        if count < 0 {
-            unit.0 = graph.neg(unit.0);
-        }
-        for bit in (0..64).take_while(|bit| count.unsigned_abs() >> bit > 0) {
-            if count.unsigned_abs() >> bit & 1 == 1 {
-                (sine, cosine) = addition(graph, (sine, cosine), unit);
-            }
-            unit = addition(graph, unit, unit);
-        }
+        let unit = (graph.apply(Function::Sin, angle), graph.apply(Function::Cos, angle));
+        (sine, cosine) = add_multiple(graph, (sine, cosine), unit, count);
     }
     (sine, cosine)
+}
+
+/// Sine and cosine of an angle and a whole multiple of another one.
+pub(super) fn add_multiple(
+    graph: &mut Graph,
+    mut total: (NodeId, NodeId),
+    mut unit: (NodeId, NodeId),
+    count: i64,
+) -> (NodeId, NodeId) {
+    if count < 0 {
+        unit.0 = graph.neg(unit.0);
+    }
+    for bit in (0..64).take_while(|bit| count.unsigned_abs() >> bit > 0) {
+        if count.unsigned_abs() >> bit & 1 == 1 {
+            total = addition(graph, total, unit);
+        }
+        unit = addition(graph, unit, unit);
+    }
+    total
 }
 
 /// `sin(a+b) = sin a cos b + cos a sin b`, `cos(a+b) = cos a cos b - sin a sin b`.

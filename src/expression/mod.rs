@@ -5,6 +5,7 @@
 //!
 //! This floor knows nothing of states, outputs or claims.
 
+mod adjoin;
 mod angle;
 mod block;
 mod common_factor;
@@ -24,6 +25,7 @@ mod zero_test;
 
 pub(crate) mod parse;
 
+pub use adjoin::{Related, zero_by_relations};
 pub use angle::expand_angles;
 pub use block::{BlockProgram, Machine};
 pub use common_factor::share_a_factor;

@@ -136,7 +136,7 @@ pub fn draw_residues(program: &Program, field: &PrimeField, rng: &mut impl Rng) 
 }
 
 /// A random point of the unit circle modulo the prime.
-fn unit_residue(field: &PrimeField, rng: &mut impl Rng) -> (u64, u64) {
+pub(super) fn unit_residue(field: &PrimeField, rng: &mut impl Rng) -> (u64, u64) {
     loop {
         if let Ok(pair) = half_tangent(field, &field.draw(rng)) {
             return pair;

@@ -15,6 +15,7 @@ mod dual;
 mod dual_number;
 mod enclosure;
 mod error_free;
+mod extension;
 mod factorisation;
 mod float;
 mod fraction;
@@ -29,6 +30,7 @@ mod rung;
 mod sine;
 mod taylor;
 mod tower;
+mod turn;
 pub mod univariate;
 
 pub use bounded::Bounded;
@@ -37,6 +39,7 @@ pub use double_double::DoubleDouble;
 pub use dual::{Differentiable, Duals};
 pub use enclosure::{Enclosure, Enclosures};
 pub(crate) use enclosure::{common_decimal, round_to_decimal};
+pub use extension::Extension;
 pub use factorisation::{Factorisation, primitive, split};
 pub use float::Floats;
 pub use fraction::{Factors, Fraction, Fractions};
@@ -49,6 +52,7 @@ pub use residue::{LOG2_PRIMES, PrimeField};
 pub use rung::Rung;
 pub use taylor::{Coefficients, Recurrences};
 pub use tower::Tower;
+pub use turn::Turn;
 
 use dashu::rational::RBig;
 

@@ -12,6 +12,7 @@ use super::series::value;
 use super::witness::{Equation, Standing, examine};
 use Expression as E;
 use dashu::base::Abs;
+use dashu::integer::UBig;
 use dashu::rational::RBig;
 
 const SYMBOLS: [Symbol; 2] = ["x", "y"];
@@ -23,6 +24,7 @@ fn laws_numbers_and_matrices() {
     if found.is_whole() {
         for (class, what) in [
             ("a law", "proved"),
+            ("constants", "proved"),
             ("a law of part of the domain", "refuted"),
             ("within", "proved"),
             ("within", "refuted"),
@@ -32,6 +34,10 @@ fn laws_numbers_and_matrices() {
             let count = found.counted(class, what);
             assert!(count > 10, "{class}: only {count} {what}");
         }
+        // what functions satisfy is known: what is open are laws of terms that exist nowhere that we know
+        let (proved, open) = (found.counted("a law", "proved"), found.counted("a law", "undecided"));
+        assert!(open * 8 < proved, "{open} laws are undecided, {proved} proved");
+        assert_eq!(found.counted("constants", "undecided"), 0);
     }
 }
 
@@ -244,7 +250,10 @@ fn cancels(e: &E, x: &RBig, dice: &mut Dice) -> bool {
         value(e, &Point::of([("x", number(x.clone())), ("k", number(dice.positive()))]))
     };
     match (at(dice), at(dice)) {
-        (Ok(a), Ok(b)) => a.subtract(&b).is_exact_zero(),
+        // numbers of 240 digits that differ in none of 200 are meant to be equal
+        (Ok(a), Ok(b)) => {
+            a.subtract(&b).digits().abs() < float(&RBig::from_parts(1.into(), UBig::from(10u8).pow(200)))
+        }
         _ => true,
     }
 }

@@ -8,6 +8,7 @@
 //! of all states less `k`; what is thinner than that (as the edge of a sheet is) need not be solved where a statement is about
 //! almost all states, and is named. Which condition is taken first is decided by what it says and not by where it stands.
 
+mod circular;
 mod single;
 mod turns;
 
@@ -15,12 +16,13 @@ pub use single::{also_met_otherwise, linear_solution};
 
 use crate::expression::syntax::{Equation, Relation};
 use crate::expression::{
-    Graph, Guard, Need, NodeId, Symbol, ZeroTest, add_guard, expand_angles, identically_zero, sign,
+    Graph, Guard, Need, NodeId, Related, Symbol, ZeroTest, add_guard, expand_angles, identically_zero, sign,
+    zero_by_relations,
 };
 use crate::system::{Assignment, System, Value};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use single::{Apart, Way, is_a_constant_but_zero, way};
+use single::{Apart, Way, is_a_constant_but_zero, way, way_apart_from_turns};
 use turns::turns_do_not_matter;
 
 /// One way to meet all conditions: values for some symbols in terms of the others.
@@ -206,7 +208,7 @@ fn begin(system: &mut System, conditions: &[Equation]) -> Result<Partial, Unsolv
         }
         let text = quote(system, left, right);
         let difference = system.graph.sub(left, right);
-        if vanishes(system, difference) {
+        if vanish_where(system, &[difference], &partial.guards) {
             continue; // it says nothing, wherever both sides exist
         }
         if !partial.open.iter().any(|other| (other.left, other.right) == (left, right)) {
@@ -294,10 +296,13 @@ fn step(system: &mut System, mut partial: Partial, count: usize) -> Step {
         return Step::Empty(guard.text(&system.graph));
     }
     let mut open = Vec::new();
+    let nodes: Vec<NodeId> = partial.guards.iter().map(|guard| guard.node).collect();
+    let there = partial.put_in(system, &nodes).into_iter().zip(&partial.guards);
+    let guards: Vec<Guard> = there.map(|(node, guard)| Guard { node, need: guard.need }).collect();
     for condition in std::mem::take(&mut partial.open) {
         let sides = partial.put_in(system, &[condition.left, condition.right]);
         let difference = system.graph.sub(sides[0], sides[1]);
-        if vanishes(system, difference) {
+        if vanish_where(system, &[difference], &guards) {
             continue; // it holds already
         }
         if sign(&system.graph, difference).is_some_and(|sign| sign.is_strict())
@@ -314,7 +319,12 @@ fn step(system: &mut System, mut partial: Partial, count: usize) -> Step {
             let why = Unsolved::NotKnown(condition.text.clone());
             return Step::Stuck(Partial { open, ..partial }, why);
         }
-        let way = way(system, condition.left, condition.right);
+        // an angle that is known up to whole turns, and was not put in: the condition tells these apart
+        let mentioned = system.graph.symbols_of([condition.left, condition.right]);
+        let way = match partial.turns.iter().any(|(angle, _)| mentioned.contains(angle)) {
+            true => way_apart_from_turns(system, condition.left, condition.right),
+            false => way(system, condition.left, condition.right),
+        };
         let length = system.graph.reachable([condition.left, condition.right]).len();
         let key = (way.rank(), length, quote(system, condition.left, condition.right));
         if best.as_ref().is_none_or(|(least, ..)| key < *least) {
@@ -388,13 +398,30 @@ pub(crate) fn vanishes(system: &mut System, expression: NodeId) -> bool {
 
 /// Whether all of some expressions are.
 pub(crate) fn all_vanish(system: &mut System, expressions: &[NodeId]) -> bool {
-    matches!(test(system, expressions), ZeroTest::Zero { .. })
+    vanish_where(system, expressions, &[])
+}
+
+/// Whether all of some expressions are zero wherever they exist and the guards hold.
+fn vanish_where(system: &mut System, expressions: &[NodeId], guards: &[Guard]) -> bool {
+    matches!(test_where(system, expressions, guards), ZeroTest::Zero { .. })
 }
 
 fn test(system: &mut System, expressions: &[NodeId]) -> ZeroTest {
+    test_where(system, expressions, &[])
+}
+
+/// The test for zero: functions as unknowns, and if these do not cancel, by what the functions satisfy.
+fn test_where(system: &mut System, expressions: &[NodeId], guards: &[Guard]) -> ZeroTest {
     let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
     let expanded = expand_angles(&mut system.graph, expressions, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(0x7a65_726f); // any fixed seed: the same file gives the same answer
-    identically_zero(&system.graph, &expanded, is_angle, &mut rng)
+    let found = identically_zero(&system.graph, &expanded, is_angle, &mut rng);
+    if matches!(found, ZeroTest::Zero { .. } | ZeroTest::Pole(_)) {
+        return found;
+    }
+    match zero_by_relations(&mut system.graph, &expanded, guards, is_angle, &mut rng) {
+        Related::Zero { log2_error, points, degree, .. } => ZeroTest::Zero { log2_error, points, degree },
+        Related::NotShown(_) | Related::NoFunctions => found,
+    }
 }

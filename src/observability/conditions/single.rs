@@ -1,9 +1,10 @@
 //! One condition, solved: for a name, for a symbol in which it is linear, for an angle whose sine or cosine is known, or
 //! taken apart into its factors.
 
+use super::circular::circular;
 use super::{all_vanish, test, vanishes};
-use crate::expression::{Node, NodeId, Program, Symbol, ZeroTest, expand_angles, share_a_factor, sign};
-use crate::number::{Enclosures, Function};
+use crate::expression::{Node, NodeId, Program, Sign, Symbol, ZeroTest, expand_angles, share_a_factor, sign};
+use crate::number::{Enclosure, Enclosures, Function};
 use crate::system::{Assignment, Kind, System};
 use dashu::rational::RBig;
 use rand::SeedableRng;
@@ -66,6 +67,15 @@ impl Way {
 
 /// The way to meet `left = right`.
 pub(super) fn way(system: &mut System, left: NodeId, right: NodeId) -> Way {
+    let difference = system.graph.sub(left, right);
+    match circular(system, difference) {
+        Some(way) if system.graph.as_symbol(left).or(system.graph.as_symbol(right)).is_none() => way,
+        _ => way_apart_from_turns(system, left, right),
+    }
+}
+
+/// The way to meet `left = right` for what is no angle.
+pub(super) fn way_apart_from_turns(system: &mut System, left: NodeId, right: NodeId) -> Way {
     // a name on one side, not met on the other
     for (name, value) in [(left, right), (right, left)] {
         if let Some(symbol) = system.graph.as_symbol(name)
@@ -74,10 +84,10 @@ pub(super) fn way(system: &mut System, left: NodeId, right: NodeId) -> Way {
             return Way::Value(symbol, value);
         }
     }
-    let difference = system.graph.sub(left, right);
-    if let Some(way) = circular(system, difference) {
-        return way;
+    if let Some(inner) = undone(system, left, right).or_else(|| undone(system, right, left)) {
+        return Way::Factors(vec![inner]);
     }
+    let difference = system.graph.sub(left, right);
     // states before parameters, in the order of the file, so that the answer does not depend on anything else
     let mut candidates = system.states.clone();
     candidates
@@ -112,15 +122,39 @@ pub(super) fn way(system: &mut System, left: NodeId, right: NodeId) -> Way {
     best
 }
 
-/// Whether an expression mentions no symbol and is certainly not zero.
-pub(super) fn is_a_constant_but_zero(system: &System, expression: NodeId) -> bool {
+/// What vanishes where a function that takes no value twice has this value: `u - v` for `exp(u) = exp(v)`, `u - log(c)` for
+/// `exp(u) = c` where `c` is positive, `u - exp(v)` for `log(u) = v`.
+fn undone(system: &mut System, left: NodeId, right: NodeId) -> Option<NodeId> {
+    let Node::Apply(function, argument) = system.graph.node(left) else { return None };
+    let value = match (function, system.graph.node(right)) {
+        (Function::Sin | Function::Cos, _) => return None,
+        (_, Node::Apply(other, inner)) if function == other => inner,
+        (Function::Exp, _) if is_positive(system, right) => system.graph.apply(Function::Log, right),
+        (Function::Log, _) => system.graph.apply(Function::Exp, right),
+        _ => return None,
+    };
+    Some(system.graph.sub(argument, value))
+}
+
+fn is_positive(system: &System, expression: NodeId) -> bool {
+    let constant = enclosed_constant(system, expression);
+    sign(&system.graph, expression) == Some(Sign::Positive)
+        || constant.is_some_and(|value| value.low() > RBig::ZERO)
+}
+
+/// The value of an expression that mentions no symbol.
+pub(super) fn enclosed_constant(system: &System, expression: NodeId) -> Option<Enclosure> {
     if !system.graph.symbols_of([expression]).is_empty() {
-        return false;
+        return None;
     }
     let program = Program::new(&system.graph, &[expression], |_| false, false);
-    let enclosures = Enclosures::new(CONSTANT_BITS);
-    let value = program.load(enclosures).ok().and_then(|loaded| loaded.run(&[], &mut Vec::new()).ok());
-    value.is_some_and(|value| !value[0].contains_zero())
+    let loaded = program.load(Enclosures::new(CONSTANT_BITS)).ok()?;
+    loaded.run(&[], &mut Vec::new()).ok()?.pop()
+}
+
+/// Whether an expression mentions no symbol and is certainly not zero.
+pub(super) fn is_a_constant_but_zero(system: &System, expression: NodeId) -> bool {
+    enclosed_constant(system, expression).is_some_and(|value| !value.contains_zero())
 }
 
 /// Whether a function other than the sine or cosine of an angle is met.
@@ -167,91 +201,15 @@ pub fn also_met_otherwise(system: &mut System, expression: NodeId, symbol: Symbo
     share_a_factor(&system.graph, both[0], both[1], is_angle, &mut rng) != Some(false)
 }
 
-/// `sin(u) = c` and `cos(u) = c` where `c` is zero or plus or minus one, for an integer combination `u` of angles, solved
-/// for an angle whose factor in it is plus or minus one.
-fn circular(system: &mut System, difference: NodeId) -> Option<Way> {
-    let (function, argument, value) = sine_or_cosine(system, difference)?;
-    let pi = system.graph.pi();
-    let zero = system.graph.integer(0);
-    let two = system.graph.integer(2);
-    let quarter = system.graph.div(pi, two);
-    let back = system.graph.neg(quarter);
-    let roots = match (function, value) {
-        (Function::Sin, 0) => vec![zero, pi],
-        (Function::Sin, 1) => vec![quarter],
-        (Function::Sin, _) => vec![back],
-        (_, 0) => vec![quarter, back],
-        (_, 1) => vec![zero],
-        _ => vec![pi],
-    };
-    for symbol in system.graph.symbols_of([argument]) {
-        if !system.is_angle(symbol) {
-            continue;
-        }
-        let slope = system.partial(argument, symbol);
-        let Some(sign) = system.graph.constant_value(slope).cloned() else { continue };
-        if !sign.is_one() && sign != RBig::from(-1) {
-            continue;
-        }
-        let rest = system.graph.substitute(&[argument], &Assignment::from([(symbol, zero)]))[0];
-        // the argument has to be a combination of angles, or a turn of this one would not be one of the whole
-        let line = if sign.is_one() {
-            system.graph.symbol(symbol)
-        } else {
-            let node = system.graph.symbol(symbol);
-            system.graph.neg(node)
-        };
-        let whole = system.graph.add(line, rest);
-        let rest_of_it = system.graph.sub(argument, whole);
-        if !inside_no_function(system, argument, symbol) || !vanishes_as_numbers(system, rest_of_it) {
-            continue;
-        }
-        let values = roots.iter().map(|root| {
-            let moved = system.graph.sub(*root, rest);
-            if sign.is_one() { moved } else { system.graph.neg(moved) }
-        });
-        return Some(Way::Turns(symbol, values.collect()));
-    }
-    None
-}
-
-/// The sine or cosine that has to be minus one, zero or one for an expression to vanish.
-fn sine_or_cosine(system: &System, difference: NodeId) -> Option<(Function, NodeId, i8)> {
-    let graph = &system.graph;
-    let wave = |node: NodeId| match graph.node(node) {
-        Node::Apply(function @ (Function::Sin | Function::Cos), argument) => Some((function, argument)),
-        _ => None,
-    };
-    let unit = |node: NodeId| {
-        let value = graph.constant_value(node)?;
-        [-1i8, 0, 1].into_iter().find(|unit| *value == RBig::from(*unit))
-    };
-    match graph.node(difference) {
-        Node::Neg(inner) => sine_or_cosine(system, inner),
-        Node::Sub(a, b) => match (wave(a), wave(b)) {
-            (Some((function, argument)), None) => Some((function, argument, unit(b)?)),
-            (None, Some((function, argument))) => Some((function, argument, unit(a)?)),
-            _ => None,
-        },
-        Node::Add(a, b) => match (wave(a), wave(b)) {
-            (Some((function, argument)), None) => Some((function, argument, -unit(b)?)),
-            (None, Some((function, argument))) => Some((function, argument, -unit(a)?)),
-            _ => None,
-        },
-        Node::Apply(..) => wave(difference).map(|(function, argument)| (function, argument, 0)),
-        _ => None,
-    }
-}
-
 /// Whether a combination of angles, taken as numbers, is zero whatever they are.
-fn vanishes_as_numbers(system: &System, expression: NodeId) -> bool {
+pub(super) fn vanishes_as_numbers(system: &System, expression: NodeId) -> bool {
     let mut rng = ChaCha8Rng::seed_from_u64(0x6e75_6d62);
     let test = crate::expression::identically_zero(&system.graph, &[expression], |_| false, &mut rng);
     matches!(test, ZeroTest::Zero { .. })
 }
 
 /// Whether a symbol stands inside no function's argument, so that derivatives by it tell all of it.
-fn inside_no_function(system: &System, expression: NodeId, symbol: Symbol) -> bool {
+pub(super) fn inside_no_function(system: &System, expression: NodeId, symbol: Symbol) -> bool {
     let arguments: Vec<NodeId> = system
         .graph
         .reachable([expression])

@@ -1,9 +1,9 @@
 //! Whole turns: `sin(phi) = 0` fixes an angle up to multiples of two pi, and what tells these apart cannot be decided by one
 //! of them.
 
-use super::Branch;
+use super::{Branch, all_vanish};
 use crate::expression::{Input, NodeId, Program, Symbol, expand_angles};
-use crate::system::System;
+use crate::system::{Assignment, System};
 
 impl Branch {
     /// Refuses a codistribution that tells apart what the conditions leave open; see [`Branch::put_in`].
@@ -57,9 +57,21 @@ pub(super) fn turns_do_not_matter(system: &mut System, expressions: &[NodeId], a
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
     let expanded = expand_angles(&mut system.graph, expressions, is_angle);
     let program = Program::new(&system.graph, &expanded, is_angle, true);
-    program.inputs().iter().all(|input| match input {
-        Input::Plain(symbol) => *symbol != angle,
-        Input::Opaque(node) => !system.graph.symbols_of([*node]).contains(&angle),
-        Input::Sine(_) | Input::Cosine(_) => true,
-    })
+    let bare = program.inputs().contains(&Input::Plain(angle));
+    let within = |input: &Input| match input {
+        Input::Opaque(node) => system.graph.symbols_of([*node]).contains(&angle),
+        _ => false,
+    };
+    if bare || !program.inputs().iter().any(within) {
+        return !bare;
+    }
+    // inside of functions: a turn further all is as it was
+    let (pi, two) = (system.graph.pi(), system.graph.integer(2));
+    let turn = system.graph.mul(two, pi);
+    let here = system.graph.symbol(angle);
+    let further = system.graph.add(here, turn);
+    let turned = system.graph.substitute(expressions, &Assignment::from([(angle, further)]));
+    let differences: Vec<NodeId> =
+        turned.iter().zip(expressions).map(|(there, here)| system.graph.sub(*there, *here)).collect();
+    all_vanish(system, &differences)
 }
