@@ -107,7 +107,7 @@ fn drawn(system: &mut System, rows: RegionRows, condition: &str, count: u64) -> 
     let mut branch = Branch::default();
     if !condition.is_empty() {
         let equation = palmistry::observability::parse_condition(condition).unwrap();
-        branch = palmistry::observability::solve_conditions(system, &[equation]).unwrap().remove(0);
+        branch = palmistry::observability::solve_conditions(system, &equation).unwrap().remove(0);
     }
     let entries = match (rows, system.definition("rows").cloned()) {
         (RegionRows::Own, Some(palmistry::system::Value::Matrix(matrix))) => matrix.entries,

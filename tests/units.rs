@@ -56,7 +56,7 @@ struct Case {
 fn case(file: &str, conditions: &[&str], count: u64) -> Vec<Case> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(file);
     let mut system = System::read(&path).unwrap();
-    let equations: Vec<_> = conditions.iter().map(|text| parse_condition(text).unwrap()).collect();
+    let equations: Vec<_> = conditions.iter().flat_map(|text| parse_condition(text).unwrap()).collect();
     let branches: Vec<Branch> = solve_conditions(&mut system, &equations).unwrap();
     branches
         .into_iter()

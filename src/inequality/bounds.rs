@@ -98,13 +98,12 @@ impl Bound {
     }
 
     fn is_tighter(&self, known: &Bound, is_low: bool) -> bool {
-        let inside = match (&self.exact, &known.exact) {
-            (Some(a), Some(b)) if a == b => return self.strict && !known.strict,
-            (Some(a), Some(b)) => return (a > b) == is_low,
+        match (&self.exact, &known.exact) {
+            (Some(a), Some(b)) if a == b => self.strict && !known.strict,
+            (Some(a), Some(b)) => (a > b) == is_low,
             _ if is_low => self.enclosed.low() > known.enclosed.low(),
             _ => self.enclosed.high() < known.enclosed.high(),
-        };
-        inside
+        }
     }
 }
 

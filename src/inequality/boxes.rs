@@ -229,13 +229,14 @@ impl Search<'_> {
         let weights: Vec<f64> =
             slopes.iter().zip(sides).map(|(slope, side)| slope.magnitude() * side.width()).collect();
         let everywhere = exists.iter().all(|met| *met == Some(true));
-        if everywhere && need != Need::NotZero {
-            if let Some(done) = self.on_faces(graph, sides, &slopes) {
-                return match done {
-                    Face::Holds => Look::Done,
-                    Face::Fails(state) => Look::Propose(state, weights),
-                };
-            }
+        if everywhere
+            && need != Need::NotZero
+            && let Some(face) = self.on_faces(graph, sides, &slopes)
+        {
+            return match face {
+                Face::Holds => Look::Done,
+                Face::Fails(state) => Look::Propose(state, weights),
+            };
         }
         if everywhere {
             let bounds: Vec<_> = self.symbols.iter().map(|symbol| question.bounds.get(symbol)).collect();

@@ -7,7 +7,7 @@ use crate::expression::{
     Graph, Guard, Input, Need, Node, NodeId, Program, Sign, Symbol, expand_angles, sign_given,
 };
 use crate::number::polynomial::{LARGEST_ARITY, Polynomial, Ring};
-use crate::number::{Factors, Fractions, Function, primitive, split};
+use crate::number::{Factorisation, Factors, Fractions, Function, primitive, split};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use std::collections::HashMap;
@@ -15,6 +15,8 @@ use std::rc::Rc;
 
 /// Longer polynomials are not looked at.
 const LONGEST: usize = 400;
+/// Powers of a sine beyond this are not taken out.
+const MOST_SINES: u32 = 64;
 /// So many assumptions are tried as multipliers.
 const MOST_MULTIPLIERS: usize = 3;
 
@@ -25,6 +27,8 @@ pub struct Signs {
     normal: Rc<dyn Fn(Polynomial) -> Polynomial>,
     /// Polynomials that are zero.
     vanishing: Vec<Polynomial>,
+    /// For each sine its place, and `1 - cos^2`, which it becomes when it is squared.
+    squares_of_sines: Vec<(usize, Polynomial)>,
     /// Variables that are roots: their places, and numerator and denominator of what they are taken of.
     roots: Vec<(usize, Polynomial, Polynomial)>,
     /// Polynomials that are not negative, and whether they are positive.
@@ -33,11 +37,14 @@ pub struct Signs {
     not_zero: Vec<Polynomial>,
 }
 
+/// A number that is not passed, and whether it is not reached either.
+type End = (RBig, bool);
+
 /// A variable: its sign, and a number that it does not pass.
 struct Variable {
     sign: Option<Sign>,
-    low: Option<(RBig, bool)>,
-    high: Option<(RBig, bool)>,
+    low: Option<End>,
+    high: Option<End>,
 }
 
 /// What is read together with a goal.
@@ -121,6 +128,8 @@ impl Reading {
         (bounds, known): (&Bounds, &HashMap<NodeId, Sign>),
     ) -> Option<(Signs, Factors, Factors)> {
         let circles = circles(self.program.inputs());
+        let squares_of_sines =
+            circles.iter().map(|(sine, cosine)| (*sine, square_of_sine(*cosine))).collect::<Vec<_>>();
         let normal: Rc<dyn Fn(Polynomial) -> Polynomial> = Rc::new(move |p| reduced(p, &circles));
         let inner = normal.clone();
         let fractions = Fractions::<Polynomial>::with_normal_form(move |p| inner(p));
@@ -146,6 +155,7 @@ impl Reading {
         }
         vanishing.retain(|p| !p.is_zero() && p.len() <= LONGEST);
         let mut signs = Signs {
+            squares_of_sines,
             fractions,
             variables,
             normal,
@@ -190,7 +200,7 @@ impl Variable {
 }
 
 /// Rational numbers that pi and principal values do not reach.
-fn constant_bounds(node: Node) -> (Option<(RBig, bool)>, Option<(RBig, bool)>) {
+fn constant_bounds(node: Node) -> (Option<End>, Option<End>) {
     // 333/106 < pi < 355/113
     let (below_pi, above_pi) = (RBig::from(333) / RBig::from(106), RBig::from(355) / RBig::from(113));
     let quarter = &above_pi / RBig::from(2);
@@ -239,11 +249,15 @@ fn principal_values(graph: &Graph, inputs: &[Input]) -> Vec<(Polynomial, bool)> 
 
 /// With each sine at most to the first power.
 fn reduced(polynomial: Polynomial, circles: &[(usize, usize)]) -> Polynomial {
-    circles.iter().fold(polynomial, |p, (sine, cosine)| {
-        let c = Polynomial::variable(*cosine);
-        let square = c.mul(&c).map(|square| Polynomial::integer(&IBig::ONE).add(&square.neg()));
-        square.and_then(|square| p.reduce_square(*sine, &square)).unwrap_or(p)
-    })
+    circles
+        .iter()
+        .fold(polynomial, |p, (sine, cosine)| p.reduce_square(*sine, &square_of_sine(*cosine)).unwrap_or(p))
+}
+
+/// `1 - cos^2`
+fn square_of_sine(cosine: usize) -> Polynomial {
+    let c = Polynomial::variable(cosine);
+    Polynomial::integer(&IBig::ONE).add(&c.mul(&c).unwrap_or_default().neg())
 }
 
 impl Signs {
@@ -257,7 +271,7 @@ impl Signs {
         // what is different from zero is so in each of its factors
         if strict {
             for place in top.keys() {
-                let found = split(&self.fractions.factor(*place), &[]).factors;
+                let found = self.split(&self.fractions.factor(*place)).factors;
                 self.not_zero.extend(found.into_iter().map(|(factor, _)| factor));
             }
         }
@@ -328,9 +342,54 @@ impl Signs {
         })
     }
 
+    /// A product of polynomials, sines first: with `sin^2 = 1 - cos^2` a sine divides what becomes a multiple of that when
+    /// it is multiplied by the sine.
+    fn split(&self, polynomial: &Polynomial) -> Factorisation {
+        let (mut rest, mut sines) = (polynomial.clone(), Vec::new());
+        for (sine, square) in &self.squares_of_sines {
+            let sine = Polynomial::variable(*sine);
+            let mut power = 0;
+            while power < MOST_SINES
+                && let Some(raised) = rest.mul(&sine).map(|raised| (self.normal)(raised))
+                && let Some(quotient) = raised.divide_exactly(square)
+            {
+                (rest, power) = (quotient, power + 1);
+            }
+            if power > 0 {
+                sines.push((sine, power));
+            }
+        }
+        let known: Vec<Polynomial> = self
+            .squares_of_sines
+            .iter()
+            .map(|(_, square)| square)
+            .chain(self.assumed.iter().map(|(known, _)| known))
+            .chain(&self.not_zero)
+            .cloned()
+            .collect();
+        let mut found = split(&rest, &known);
+        for (sine, power) in sines {
+            match found.factors.iter_mut().find(|(factor, _)| *factor == sine) {
+                Some((_, known)) => *known += power,
+                None => found.factors.push((sine, power)),
+            }
+        }
+        found
+    }
+
+    /// The sine of which a polynomial is the square, and whether with its sign.
+    fn as_square_of_a_sine(&self, polynomial: &Polynomial) -> Option<(Polynomial, bool)> {
+        let of = |(sine, square): &(usize, Polynomial)| {
+            let same = polynomial == square;
+            (same || *polynomial == square.neg()).then(|| (Polynomial::variable(*sine), same))
+        };
+        self.squares_of_sines.iter().find_map(of)
+    }
+
     fn is_not_zero(&self, polynomial: &Polynomial) -> bool {
-        split(polynomial, &[]).factors.iter().all(|(factor, _)| {
-            let primitive = primitive(factor);
+        self.split(polynomial).factors.iter().all(|(factor, _)| {
+            let sine = self.as_square_of_a_sine(factor).map(|(sine, _)| sine);
+            let primitive = primitive(sine.as_ref().unwrap_or(factor));
             primitive.is_some_and(|p| self.not_zero.contains(&p) || self.not_zero.contains(&p.neg()))
         })
     }
@@ -342,7 +401,7 @@ impl Signs {
         if let Some(sign) = self.of_one_piece(polynomial, false) {
             return Some(sign);
         }
-        let found = split(polynomial, &[]);
+        let found = self.split(polynomial);
         let mut product = Sign::new(found.unit > IBig::ZERO, true);
         let one = found.factors.len() == 1 && found.factors[0].1 == 1;
         for (factor, power) in &found.factors {
@@ -364,6 +423,9 @@ impl Signs {
             let upward = |p: &Polynomial| p.content() > IBig::ZERO;
             (a == b).then(|| upward(polynomial) == upward(known))
         };
+        if let Some((sine, upward)) = self.as_square_of_a_sine(polynomial) {
+            return Some(Sign::new(upward, self.is_not_zero(&sine)));
+        }
         for (known, strict) in &self.assumed {
             if let Some(upward) = scaled(known) {
                 return Some(Sign::new(upward, *strict || self.is_not_zero(polynomial)));
@@ -438,7 +500,7 @@ impl Signs {
             if found.is_some() {
                 break;
             }
-            let product = polynomial.mul(factor).map(|product| normal(product));
+            let product = polynomial.mul(factor).map(normal);
             found = product.and_then(|p| bounded_below(&p, &assumed, &self.vanishing, normal));
         }
         found

@@ -243,12 +243,15 @@ fn prune(monomials: &mut Vec<Exponents>, polynomial: &Polynomial, normal: &dyn F
     }
 }
 
+/// Coefficients, by place.
+type Row = Vec<(usize, RBig)>;
+
 /// The entries for which `sum u_k products[k]` is the polynomial: some free, the others by these.
 struct Space {
     count: usize,
     free: Vec<usize>,
     /// For each entry that is not free: the entry, its constant, and the coefficients of free ones (by place in `free`).
-    bound: Vec<(usize, RBig, Vec<(usize, RBig)>)>,
+    bound: Vec<(usize, RBig, Row)>,
 }
 
 impl Space {

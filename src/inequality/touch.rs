@@ -176,7 +176,7 @@ impl Touch {
         let n = sides.len();
         for k in 0..n {
             let pivot = matrix[k * n + k];
-            if !(pivot.low() > 0.0) {
+            if pivot.low() <= 0.0 {
                 return false;
             }
             for i in k + 1..n {
