@@ -92,13 +92,19 @@ fn judge(
         Word::Refuted => {
             findings.count(class, "refuted");
             let point = said.witness.as_ref().and_then(|shown| Point::read(&shown.state));
-            let Some(point) = point else {
+            let Some(mut point) = point else {
                 return findings.fault(
                     "a refutation without a witness that can be read",
                     said.why.clone(),
                     line,
                 );
             };
+            // what a witness leaves out is needed by nothing: any value will do
+            for name in PLAIN.into_iter().chain([ANGLE]) {
+                if point.get(name).is_none() {
+                    point.put(name, Coordinate::Number(Number::ONE));
+                }
+            }
             for condition in conditions {
                 if !matches!(condition.holds(&point), Ok(Some(true) | None)) {
                     let detail = format!("{} at {}", condition.text(), point.text());
