@@ -127,6 +127,10 @@ fn what_fails_fails_at_a_state() {
         "x < y where y > x - 1",
         "0 < x < 1 where 0 < x",
         "g*x >= x",
+        // where a square vanishes a product says nothing of the other factor
+        "y >= 0 where x^2*y >= 0",
+        "y >= 0 where sin(phi)^2*y >= 0",
+        "z >= 0 where x*y*z >= 0, x >= 0, y >= 0",
     ];
     let outcomes = outcomes(&statements);
     for (outcome, text) in outcomes.iter().zip(statements) {

@@ -8,7 +8,7 @@ use super::verdict::{Verdict, Witness};
 use super::witness::texts_of_sides;
 use crate::checker::{Doubt, Refutation};
 use crate::expression::syntax::Relation;
-use crate::expression::{Guard, Need, NodeId, Symbol, ZeroTest, expand_angles, identically_zero};
+use crate::expression::{Guard, LOG2_ERROR, Need, NodeId, Symbol, ZeroTest, expand_angles, identically_zero};
 use crate::inequality::{Answer, Argument, Given, Open, Proposed, decide, vanishes_somewhere};
 use crate::number::{rational_from_f64, rational_to_f64};
 use crate::observability::{Coordinate, State, assumed};
@@ -119,11 +119,22 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
         refuted
     });
     system.graph = graph;
-    let proved = |engine: String| Verdict::Proved { engine, log2_error: f64::NEG_INFINITY };
+    let certain = |engine: String| Verdict::Proved { engine, log2_error: f64::NEG_INFINITY };
     match answer {
-        Answer::Holds(Argument::Signs) => proved(SIGNS.to_owned()),
-        Answer::Holds(Argument::Boxes(1)) => proved(BOXES.replace("boxes", "the whole box")),
-        Answer::Holds(Argument::Boxes(boxes)) => proved(BOXES.replace("boxes", &format!("{boxes} boxes"))),
+        Answer::Holds(Argument::Signs) => certain(SIGNS.to_owned()),
+        Answer::Holds(Argument::Boxes { boxes, touches }) => {
+            let engine = match boxes {
+                1 => BOXES.replace("boxes", "the whole box"),
+                _ => BOXES.replace("boxes", &format!("{boxes} boxes")),
+            };
+            match touches {
+                false => certain(engine),
+                true => Verdict::Proved {
+                    engine: format!("{engine}, and derivatives where it is met with equality"),
+                    log2_error: LOG2_ERROR,
+                },
+            }
+        }
         Answer::Fails => tries.verdict(system),
         Answer::Open(open) => {
             if solved {

@@ -13,6 +13,7 @@ mod existence;
 mod identity;
 mod inequality;
 mod pole;
+mod question;
 mod rank_witness;
 mod ranks;
 mod terms;

@@ -97,17 +97,9 @@ impl Need {
         self.is_met_between(&value.low(), &value.high())
     }
 
-    /// The same of a value between two doubles.
+    /// The same of a value in an interval.
     pub fn is_met_by_interval(self, value: Interval) -> Option<bool> {
-        let (low, high) = (value.low(), value.high());
-        let (all, none) = match self {
-            Need::NotZero => (low > 0.0 || high < 0.0, low == 0.0 && high == 0.0),
-            Need::Positive => (low > 0.0, high <= 0.0),
-            Need::NotNegative => (low >= 0.0, high < 0.0),
-            Need::WithinOne => (low >= -1.0 && high <= 1.0, low > 1.0 || high < -1.0),
-            Need::InsideOne => (low > -1.0 && high < 1.0, low >= 1.0 || high <= -1.0),
-        };
-        if all { Some(true) } else { none.then_some(false) }
+        self.is_met_in(value.low(), value.high())
     }
 }
 

@@ -40,4 +40,4 @@ pub use parse::{Expected, parse_expression};
 pub use products::{NodeFractions, Products, Variable};
 pub use program::{Failure, Input, Loaded, Program};
 pub use sign::{Sign, sign, sign_given};
-pub use zero_test::{ZeroTest, draw_residues, failure_bound, identically_zero, sizes};
+pub use zero_test::{LOG2_ERROR, ZeroTest, draw_residues, failure_bound, identically_zero, sizes};

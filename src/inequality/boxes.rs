@@ -48,8 +48,9 @@ pub type Proposed = Vec<(Symbol, RBig, RBig)>;
 
 /// What a search came to.
 pub enum Found {
-    /// It holds on all of the box; so many boxes were looked at.
-    Holds(usize),
+    /// It holds on all of the box; so many boxes were looked at, and whether it is met with equality somewhere, as exact
+    /// arithmetic modulo primes has found.
+    Holds { boxes: usize, touches: bool },
     /// A proposed state was taken as a counterexample.
     Fails,
     /// It is open on this part of the volume; one of the open boxes, by symbol.
@@ -65,6 +66,7 @@ struct Search<'q> {
     program: &'q Program,
     registers: Vec<Interval>,
     touch: Touch,
+    touches: bool,
     work: usize,
 }
 
@@ -133,8 +135,17 @@ pub fn search(
     let Ok(loaded) = program.load(WhereDefined) else {
         return Found::Open { share: 1.0, sample: Vec::new(), boxes: 0 };
     };
-    let mut search =
-        Search { question, symbols, start, loaded, program: &program, registers: Vec::new(), touch, work: 0 };
+    let mut search = Search {
+        question,
+        symbols,
+        start,
+        loaded,
+        program: &program,
+        registers: Vec::new(),
+        touch,
+        touches: false,
+        work: 0,
+    };
     search.run(graph, refutes)
 }
 
@@ -179,7 +190,7 @@ impl Search<'_> {
         stuck.extend(open);
         let largest = stuck.iter().max().map(|cell| cell.sides.clone());
         match largest {
-            None => Found::Holds(boxes),
+            None => Found::Holds { boxes, touches: self.touches },
             Some(sides) => {
                 let share = stuck.iter().map(|cell| cell.measure).sum::<f64>().min(1.0);
                 Found::Open { share, sample: self.symbols.iter().copied().zip(sides).collect(), boxes }
@@ -245,6 +256,7 @@ impl Search<'_> {
                 ends.into_iter().any(|bound| bound.strict && bound.exact.as_ref() == Some(value))
             };
             if self.touch.holds(graph, need, sides, &is_left_out) {
+                self.touches = true;
                 return Look::Done;
             }
         }

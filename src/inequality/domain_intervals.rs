@@ -67,3 +67,32 @@ impl Arithmetic for WhereDefined {
 fn reciprocal_below(value: f64) -> f64 {
     if value.is_infinite() { 0.0 } else { (1.0 / value).next_down().max(0.0) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every value at which the operation exists lies in the interval, also beside poles and infinities.
+    #[test]
+    fn what_exists_is_enclosed() {
+        let all = WhereDefined;
+        let divide = |a: (f64, f64), b: (f64, f64)| {
+            all.div(&Interval::new(a.0, a.1), &Interval::new(b.0, b.1)).unwrap()
+        };
+        assert!(divide((0.0, 0.0), (0.0, 2.0)).contains(0.0));
+        assert!(divide((0.0, 0.0), (-2.0, 0.0)).contains(0.0));
+        assert!(divide((-1.0, 0.0), (-2.0, 0.0)).encloses(Interval::new(0.0, 1e6)));
+        let above = divide((1.0, 2.0), (0.0, 4.0));
+        assert!(above.low() > 0.2499 && above.contains(1e300));
+        let below = divide((1.0, 2.0), (-4.0, 0.0));
+        assert!(below.high() < -0.2499 && below.contains(-1e300));
+        assert_eq!(divide((1.0, 2.0), (-1.0, 1.0)), Interval::WHOLE);
+        let of = |function, low, high| all.apply(function, &Interval::new(low, high)).unwrap();
+        assert!(of(Function::Sqrt, -4.0, 9.0).encloses(Interval::new(0.0, 3.0)));
+        assert!(of(Function::Sqrt, -4.0, 9.0).low() >= 0.0);
+        let log = of(Function::Log, -1.0, 1.0);
+        assert!(log.contains(-1e300) && log.contains(0.0) && log.high() < 1e-9);
+        assert_eq!(of(Function::Log, -2.0, -1.0), Interval::WHOLE);
+        assert!(of(Function::Asin, 0.5, 7.0).contains(1.5));
+    }
+}

@@ -1,58 +1,28 @@
 //! The sign of an expression by those of its factors: over one denominator, split into polynomials, each of which is
 //! assumed to have a sign, has coefficients of one sign in variables whose signs are known, or is a sum of squares.
 
-use super::bounds::{Bounds, Range};
+use super::bounds::Bounds;
+use super::reading::{LONGEST, Polynomials, Reading, Variable};
 use super::squares::{Bounded, bounded_below};
-use crate::expression::{
-    Graph, Guard, Input, Need, Node, NodeId, Program, Sign, Symbol, expand_angles, sign_given,
-};
-use crate::number::polynomial::{LARGEST_ARITY, Polynomial, Ring};
-use crate::number::{Factorisation, Factors, Fractions, Function, primitive, split};
+use crate::expression::{Graph, Guard, Need, NodeId, Sign, Symbol};
+use crate::number::polynomial::{Polynomial, Ring};
+use crate::number::{Factorisation, Factors, Fraction, primitive, split};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use std::collections::HashMap;
-use std::rc::Rc;
 
-/// Longer polynomials are not looked at.
-const LONGEST: usize = 400;
 /// Powers of a sine beyond this are not taken out.
 const MOST_SINES: u32 = 64;
 /// So many assumptions are tried as multipliers.
 const MOST_MULTIPLIERS: usize = 3;
 
-/// What is known of the variables of some polynomials, and of polynomials in them.
-pub struct Signs {
-    fractions: Fractions<Polynomial>,
-    variables: Vec<Variable>,
-    normal: Rc<dyn Fn(Polynomial) -> Polynomial>,
-    /// Polynomials that are zero.
-    vanishing: Vec<Polynomial>,
-    /// For each sine its place, and `1 - cos^2`, which it becomes when it is squared.
-    squares_of_sines: Vec<(usize, Polynomial)>,
-    /// Variables that are roots: their places, and numerator and denominator of what they are taken of.
-    roots: Vec<(usize, Polynomial, Polynomial)>,
+/// What is known of some polynomials.
+struct Signs {
+    read: Polynomials,
     /// Polynomials that are not negative, and whether they are positive.
     assumed: Vec<(Polynomial, bool)>,
     /// Primitive polynomials that are not zero.
     not_zero: Vec<Polynomial>,
-}
-
-/// A number that is not passed, and whether it is not reached either.
-type End = (RBig, bool);
-
-/// A variable: its sign, and a number that it does not pass.
-struct Variable {
-    sign: Option<Sign>,
-    low: Option<End>,
-    high: Option<End>,
-}
-
-/// What is read together with a goal.
-struct Reading {
-    /// For goal, assumptions, equations, and what roots are taken of, with sums of angles expanded.
-    program: Program,
-    /// Roots among the inputs: their places, and those of their squares among the nodes.
-    roots: Vec<(usize, usize)>,
 }
 
 /// Whether factors tell that a goal holds, wherever it exists, what is assumed holds and the equations' left sides vanish.
@@ -72,195 +42,31 @@ pub fn tell(
             None => return false,
         },
     };
-    let Some((signs, top, bottom)) = reading.signs(graph, (assumed, equations), (bounds, known)) else {
+    let Some(read) = reading.polynomials(graph, (assumed.len(), equations.len()), (bounds, known)) else {
         return false;
     };
+    let signs = Signs::new(read, assumed);
+    let Fraction { top, bottom } = &signs.read.goal;
     if goal.need == Need::NotZero {
-        return signs.is_not_zero_product(&top);
+        return signs.is_not_zero_product(top);
     }
-    signs.of_fraction(&top, &bottom).is_some_and(|sign| super::tells(goal.need, sign))
-}
-
-impl Reading {
-    /// `None` where there are too many variables.
-    fn new(
-        graph: &mut Graph,
-        goal: NodeId,
-        (assumed, equations): (&[Guard], &[NodeId]),
-        is_angle: &dyn Fn(Symbol) -> bool,
-    ) -> Option<Reading> {
-        let mut nodes = vec![goal];
-        nodes.extend(assumed.iter().map(|guard| guard.node));
-        nodes.extend(equations);
-        let mut nodes = expand_angles(graph, &nodes, is_angle);
-        let mut squares: Vec<(NodeId, usize)> = Vec::new();
-        loop {
-            let program = Program::new(graph, &nodes, is_angle, true);
-            if program.inputs().len() > LARGEST_ARITY {
-                return None;
-            }
-            let root = |input: &Input| match input {
-                Input::Opaque(node) => match graph.node(*node) {
-                    Node::Apply(Function::Sqrt, argument) => Some((*node, argument)),
-                    _ => None,
-                },
-                _ => None,
-            };
-            let new = program
-                .inputs()
-                .iter()
-                .filter_map(root)
-                .find(|(node, _)| squares.iter().all(|(known, _)| known != node));
-            let Some((node, argument)) = new else {
-                let place = |node: NodeId| program.inputs().iter().position(|i| *i == Input::Opaque(node));
-                let roots = squares.iter().filter_map(|(node, square)| Some((place(*node)?, *square)));
-                return Some(Reading { roots: roots.collect(), program });
-            };
-            squares.push((node, nodes.len()));
-            nodes.extend(expand_angles(graph, &[argument], is_angle));
-        }
-    }
-
-    fn signs(
-        &self,
-        graph: &mut Graph,
-        (assumed, equations): (&[Guard], &[NodeId]),
-        (bounds, known): (&Bounds, &HashMap<NodeId, Sign>),
-    ) -> Option<(Signs, Factors, Factors)> {
-        let circles = circles(self.program.inputs());
-        let squares_of_sines =
-            circles.iter().map(|(sine, cosine)| (*sine, square_of_sine(*cosine))).collect::<Vec<_>>();
-        let normal: Rc<dyn Fn(Polynomial) -> Polynomial> = Rc::new(move |p| reduced(p, &circles));
-        let inner = normal.clone();
-        let fractions = Fractions::<Polynomial>::with_normal_form(move |p| inner(p));
-        let inputs = self.program.inputs();
-        let variables = inputs.iter().map(|input| Variable::new(graph, *input, bounds, known)).collect();
-        let elements: Vec<_> =
-            (0..inputs.len()).map(|i| fractions.element(Polynomial::variable(i))).collect();
-        let values = self.program.load(&fractions).ok()?.run(&elements, &mut Vec::new()).ok()?;
-        // what vanishes: numerators of equations, and squares of roots less what they are taken of
-        let (mut vanishing, mut roots): (Vec<Polynomial>, Vec<_>) = (Vec::new(), Vec::new());
-        for value in &values[1 + assumed.len()..][..equations.len()] {
-            vanishing.extend(fractions.expand(&value.top).ok());
-        }
-        for (place, square) in &self.roots {
-            let root = Polynomial::variable(*place);
-            let value = &values[*square];
-            if let (Ok(top), Ok(bottom), Some(squared)) =
-                (fractions.expand(&value.top), fractions.expand(&value.bottom), root.mul(&root))
-            {
-                vanishing.extend(squared.mul(&bottom).map(|left| left.add(&top.neg())));
-                roots.push((*place, top, bottom));
-            }
-        }
-        vanishing.retain(|p| !p.is_zero() && p.len() <= LONGEST);
-        let mut signs = Signs {
-            squares_of_sines,
-            fractions,
-            variables,
-            normal,
-            vanishing,
-            roots,
-            assumed: Vec::new(),
-            not_zero: Vec::new(),
-        };
-        signs.assumed = principal_values(graph, inputs);
-        // those of fewer factors first: they help to read the others
-        let mut order: Vec<usize> = (0..assumed.len()).collect();
-        order.sort_by_key(|place| values[place + 1].top.len() + values[place + 1].bottom.len());
-        for place in order {
-            let value = &values[place + 1];
-            signs.assume(&value.top, &value.bottom, assumed[place].need);
-        }
-        Some((signs, values[0].top.clone(), values[0].bottom.clone()))
-    }
-}
-
-impl Variable {
-    fn new(graph: &mut Graph, input: Input, bounds: &Bounds, known: &HashMap<NodeId, Sign>) -> Variable {
-        let free = Variable { sign: None, low: None, high: None };
-        match input {
-            Input::Plain(symbol) => {
-                let node = graph.symbol(symbol);
-                let Some(Range { low, high }) = bounds.get(&symbol) else {
-                    return Variable { sign: known.get(&node).copied(), ..free };
-                };
-                let end = |bound: &Option<super::bounds::Bound>| {
-                    bound.as_ref().and_then(|bound| Some((bound.exact.clone()?, bound.strict)))
-                };
-                Variable { sign: known.get(&node).copied(), low: end(low), high: end(high) }
-            }
-            Input::Opaque(node) => {
-                let (low, high) = constant_bounds(graph.node(node));
-                Variable { sign: sign_given(graph, node, known), low, high }
-            }
-            Input::Sine(_) | Input::Cosine(_) => free,
-        }
-    }
-}
-
-/// Rational numbers that pi and principal values do not reach.
-fn constant_bounds(node: Node) -> (Option<End>, Option<End>) {
-    // 333/106 < pi < 355/113
-    let (below_pi, above_pi) = (RBig::from(333) / RBig::from(106), RBig::from(355) / RBig::from(113));
-    let quarter = &above_pi / RBig::from(2);
-    let strictly = |value: RBig| Some((value, true));
-    match node {
-        Node::Pi => (strictly(below_pi), strictly(above_pi)),
-        Node::Apply(Function::Asin | Function::Atan, _) => (strictly(-quarter.clone()), strictly(quarter)),
-        Node::Apply(Function::Acos, _) => (Some((RBig::ZERO, false)), strictly(above_pi)),
-        _ => (None, None),
-    }
-}
-
-/// Places of the sine and the cosine of each angle that has a sine.
-fn circles(inputs: &[Input]) -> Vec<(usize, usize)> {
-    let place = |wanted: Input| inputs.iter().position(|input| *input == wanted);
-    let of = |(i, input): (usize, &Input)| match input {
-        Input::Sine(symbol) => Some((i, place(Input::Cosine(*symbol))?)),
-        _ => None,
-    };
-    inputs.iter().enumerate().filter_map(of).collect()
-}
-
-/// Between what principal values lie, where pi is met too: `pi - 2 atan(u) > 0`.
-fn principal_values(graph: &Graph, inputs: &[Input]) -> Vec<(Polynomial, bool)> {
-    let node = |input: &Input| match input {
-        Input::Opaque(node) => Some(graph.node(*node)),
-        _ => None,
-    };
-    let mut found = Vec::new();
-    let Some(pi) = inputs.iter().position(|input| node(input) == Some(Node::Pi)) else { return found };
-    let pi = Polynomial::variable(pi);
-    for (place, input) in inputs.iter().enumerate() {
-        let value = Polynomial::variable(place);
-        let twice = value.add(&value);
-        match node(input) {
-            Some(Node::Apply(function @ (Function::Asin | Function::Atan), _)) => {
-                let strict = function == Function::Atan;
-                found.extend([(pi.add(&twice), strict), (pi.add(&twice.neg()), strict)]);
-            }
-            Some(Node::Apply(Function::Acos, _)) => found.push((pi.add(&value.neg()), false)),
-            _ => {}
-        }
-    }
-    found
-}
-
-/// With each sine at most to the first power.
-fn reduced(polynomial: Polynomial, circles: &[(usize, usize)]) -> Polynomial {
-    circles
-        .iter()
-        .fold(polynomial, |p, (sine, cosine)| p.reduce_square(*sine, &square_of_sine(*cosine)).unwrap_or(p))
-}
-
-/// `1 - cos^2`
-fn square_of_sine(cosine: usize) -> Polynomial {
-    let c = Polynomial::variable(cosine);
-    Polynomial::integer(&IBig::ONE).add(&c.mul(&c).unwrap_or_default().neg())
+    signs.of_fraction(top, bottom).is_some_and(|sign| super::tells(goal.need, sign))
 }
 
 impl Signs {
+    fn new(read: Polynomials, assumed: &[Guard]) -> Signs {
+        let mut values: Vec<(Fraction, Need)> =
+            read.assumed.iter().cloned().zip(assumed.iter().map(|guard| guard.need)).collect();
+        let principal = read.principal_values.clone();
+        let mut signs = Signs { read, assumed: principal, not_zero: Vec::new() };
+        // those of fewer factors first: they help to read the others
+        values.sort_by_key(|(value, _)| value.top.len() + value.bottom.len());
+        for (value, need) in values {
+            signs.assume(&value.top, &value.bottom, need);
+        }
+        signs
+    }
+
     /// Notes what an assumption about a fraction says of polynomials.
     fn assume(&mut self, top: &Factors, bottom: &Factors, need: Need) {
         let strict = match need {
@@ -271,7 +77,7 @@ impl Signs {
         // what is different from zero is so in each of its factors
         if strict {
             for place in top.keys() {
-                let found = self.split(&self.fractions.factor(*place)).factors;
+                let found = self.split(&self.read.fractions.factor(*place)).factors;
                 self.not_zero.extend(found.into_iter().map(|(factor, _)| factor));
             }
         }
@@ -280,8 +86,12 @@ impl Signs {
         }
         let (mut upward, mut rest) = (true, Some(Polynomial::integer(&IBig::ONE)));
         for (place, power) in top.iter().chain(bottom) {
-            let factor = self.fractions.factor(*place);
+            let factor = self.read.fractions.factor(*place);
             if power % 2 == 0 {
+                // where a square vanishes the product says nothing of the rest
+                if !strict && !bottom.contains_key(place) && !self.is_not_zero(&factor) {
+                    rest = rest.and_then(|rest| rest.mul(&factor)?.mul(&factor));
+                }
                 continue;
             }
             match self.of_polynomial(&factor, false) {
@@ -289,7 +99,7 @@ impl Signs {
                 _ => rest = rest.and_then(|rest| rest.mul(&factor)),
             }
         }
-        if let Some(rest) = rest.map(|rest| (self.normal)(rest))
+        if let Some(rest) = rest.map(|rest| (self.read.normal)(rest))
             && rest.degree() > 0
             && rest.len() <= LONGEST
         {
@@ -301,7 +111,7 @@ impl Signs {
         let mut product = Some(Sign::Positive);
         let mut open = Polynomial::integer(&IBig::ONE);
         for (place, power) in top.iter().chain(bottom) {
-            let factor = self.fractions.factor(*place);
+            let factor = self.read.fractions.factor(*place);
             if factor.is_zero() {
                 return None;
             }
@@ -327,7 +137,7 @@ impl Signs {
             return Some(product);
         }
         // factors without a sign may have one together
-        let open = (self.normal)(open);
+        let open = (self.read.normal)(open);
         (open.len() <= LONGEST)
             .then(|| self.of_one_piece(&open, true))
             .flatten()
@@ -337,7 +147,7 @@ impl Signs {
     /// Whether no factor of a product is ever zero.
     fn is_not_zero_product(&self, top: &Factors) -> bool {
         top.keys().all(|place| {
-            let factor = self.fractions.factor(*place);
+            let factor = self.read.fractions.factor(*place);
             self.is_not_zero(&factor) || self.of_polynomial(&factor, true).is_some_and(Sign::is_strict)
         })
     }
@@ -346,11 +156,11 @@ impl Signs {
     /// it is multiplied by the sine.
     fn split(&self, polynomial: &Polynomial) -> Factorisation {
         let (mut rest, mut sines) = (polynomial.clone(), Vec::new());
-        for (sine, square) in &self.squares_of_sines {
+        for (sine, square) in &self.read.squares_of_sines {
             let sine = Polynomial::variable(*sine);
             let mut power = 0;
             while power < MOST_SINES
-                && let Some(raised) = rest.mul(&sine).map(|raised| (self.normal)(raised))
+                && let Some(raised) = rest.mul(&sine).map(|raised| (self.read.normal)(raised))
                 && let Some(quotient) = raised.divide_exactly(square)
             {
                 (rest, power) = (quotient, power + 1);
@@ -360,6 +170,7 @@ impl Signs {
             }
         }
         let known: Vec<Polynomial> = self
+            .read
             .squares_of_sines
             .iter()
             .map(|(_, square)| square)
@@ -383,7 +194,7 @@ impl Signs {
             let same = polynomial == square;
             (same || *polynomial == square.neg()).then(|| (Polynomial::variable(*sine), same))
         };
-        self.squares_of_sines.iter().find_map(of)
+        self.read.squares_of_sines.iter().find_map(of)
     }
 
     fn is_not_zero(&self, polynomial: &Polynomial) -> bool {
@@ -457,7 +268,7 @@ impl Signs {
 
     /// The sign of `a + b sqrt(u)`: that of the side whose square is the greater one.
     fn beside_a_root(&self, polynomial: &Polynomial, squares: bool) -> Option<Sign> {
-        for (place, top, bottom) in &self.roots {
+        for (place, top, bottom) in &self.read.roots {
             let mut parts = polynomial.coefficients_in(*place);
             if parts.keys().max() != Some(&1) || top.degree_in(*place) + bottom.degree_in(*place) > 0 {
                 continue;
@@ -471,7 +282,7 @@ impl Signs {
             };
             let square = |p: &Polynomial, factor: &Polynomial| p.mul(p)?.mul(factor);
             let (of_rest, of_root) = (square(&a, bottom)?, square(&b, top)?);
-            let more = (self.normal)(of_root.add(&of_rest.neg()));
+            let more = (self.read.normal)(of_root.add(&of_rest.neg()));
             let upward = |sign: Sign| sign.is_upward() == below.is_upward();
             // the root's part outweighs the rest
             if let Some(sign) = self.of_polynomial(&more, squares).filter(|sign| upward(*sign)) {
@@ -490,18 +301,18 @@ impl Signs {
     /// Sums of squares: by itself; with what is assumed; and times something positive that is assumed.
     fn by_squares(&self, polynomial: &Polynomial) -> Option<Bounded> {
         let assumed = self.all_assumed();
-        let normal = &*self.normal;
+        let normal = &*self.read.normal;
         let mut found = bounded_below(polynomial, &[], &[], normal);
-        if found == Some(Bounded::Positive) || assumed.is_empty() && self.vanishing.is_empty() {
+        if found == Some(Bounded::Positive) || assumed.is_empty() && self.read.vanishing.is_empty() {
             return found;
         }
-        found = bounded_below(polynomial, &assumed, &self.vanishing, normal).or(found);
+        found = bounded_below(polynomial, &assumed, &self.read.vanishing, normal).or(found);
         for (factor, _) in assumed.iter().filter(|(_, strict)| *strict).take(MOST_MULTIPLIERS) {
             if found.is_some() {
                 break;
             }
             let product = polynomial.mul(factor).map(normal);
-            found = product.and_then(|p| bounded_below(&p, &assumed, &self.vanishing, normal));
+            found = product.and_then(|p| bounded_below(&p, &assumed, &self.read.vanishing, normal));
         }
         found
     }
@@ -510,20 +321,20 @@ impl Signs {
     /// an odd power of highest degree, or a negative value at the origin.
     fn fails_somewhere(&self, polynomial: &Polynomial) -> bool {
         self.all_assumed().is_empty()
-            && self.vanishing.is_empty()
+            && self.read.vanishing.is_empty()
             && polynomial.degree() % 2 == 1
             && polynomial.terms().all(|(e, _)| {
                 // with relations between sines and cosines the degree says nothing
                 let as_term = Polynomial::term(*e, IBig::ONE);
                 let square = as_term.mul(&as_term);
-                square.is_some_and(|square| (self.normal)(square.clone()) == square)
+                square.is_some_and(|square| (self.read.normal)(square.clone()) == square)
             })
     }
 
     /// What is assumed, the ends of variables included.
     fn all_assumed(&self) -> Vec<(Polynomial, bool)> {
         let mut all = self.assumed.clone();
-        for (place, variable) in self.variables.iter().enumerate() {
+        for (place, variable) in self.read.variables.iter().enumerate() {
             let x = Polynomial::variable(place);
             let mut note = |polynomial: Polynomial, strict: bool| {
                 if !all.iter().any(|(known, _)| *known == polynomial) {
@@ -551,7 +362,7 @@ impl Signs {
     fn by_coefficients(&self, polynomial: &Polynomial) -> Option<bool> {
         let mut shifted = polynomial.clone();
         let mut signs: Vec<Option<bool>> = Vec::new();
-        for (place, variable) in self.variables.iter().enumerate() {
+        for (place, variable) in self.read.variables.iter().enumerate() {
             let x = Polynomial::variable(place);
             let (moved, strict) = match (variable, variable.sign) {
                 (Variable { low: Some((low, strict)), .. }, _) => (Some((x, low, true)), Some(*strict)),

@@ -11,7 +11,9 @@ mod boxes;
 mod crossing;
 mod domain_intervals;
 mod factors;
+mod reading;
 mod semidefinite;
+mod space;
 mod squares;
 mod touch;
 
@@ -50,8 +52,9 @@ pub enum Answer {
 pub enum Argument {
     /// The signs of factors, some of them sums of squares.
     Signs,
-    /// Interval arithmetic on so many boxes.
-    Boxes(usize),
+    /// Interval arithmetic on so many boxes, and whether it is met with equality somewhere: that derivatives vanish there was
+    /// found by exact arithmetic at random points, and may be wrong with a probability below 2^-100.
+    Boxes { boxes: usize, touches: bool },
 }
 
 /// Where a goal is open.
@@ -87,7 +90,7 @@ pub fn decide(
         bounds: &bounds,
     };
     match boxes::search(graph, &question, is_angle, refutes) {
-        boxes::Found::Holds(boxes) => Answer::Holds(Argument::Boxes(boxes)),
+        boxes::Found::Holds { boxes, touches } => Answer::Holds(Argument::Boxes { boxes, touches }),
         boxes::Found::Fails => Answer::Fails,
         boxes::Found::Open { share, sample, boxes } => Answer::Open(Open { share, sample, boxes }),
     }
