@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The name of the schema, and the version that is written and read.
+/// The name of the schema, and the version that is written. Version 1, which knows equations only, is read as well.
 const SCHEMA: &str = "palmistry-verdicts";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// No verdict file is longer, in bytes.
 pub const LARGEST_FILE: u64 = 1 << 28;
 
@@ -76,7 +76,7 @@ pub enum Unreadable {
     Damaged(#[from] serde_json::Error),
     #[error("it is no verdict file: its schema is '{0}' and not '{SCHEMA}'")]
     OtherSchema(String),
-    #[error("its version is {0}, and this program reads version {VERSION}")]
+    #[error("its version is {0}, and this program reads versions up to {VERSION}")]
     OtherVersion(u32),
 }
 
@@ -106,7 +106,7 @@ impl VerdictFile {
         if header.schema != SCHEMA {
             return Err(Unreadable::OtherSchema(header.schema));
         }
-        if header.version != VERSION {
+        if !(1..=VERSION).contains(&header.version) {
             return Err(Unreadable::OtherVersion(header.version));
         }
         Ok(serde_json::from_str(text)?)
