@@ -369,7 +369,7 @@ fn what_is_no_verdict_file_is_told_why() {
     }
     for (part, other, why) in [
         ("/schema", json!("verdicts"), "its schema is 'verdicts'"),
-        ("/version", json!(2), "its version is 2"),
+        ("/version", json!(3), "its version is 3"),
         ("/version", json!(-1), "no verdict file"),
         ("/verdicts/0/evidence", json!({"sworn": {}}), "unknown variant"),
         ("/verdicts/0/evidence/refuted/listing", json!([["symbol", ""]]), "operation 0"),
