@@ -195,6 +195,12 @@ fn conditions(class: &str, dice: &mut Dice) -> Vec<Inequality> {
         let sign = dice.one_of(&["<", ">=", "!="]);
         found.push(Inequality { left: symbol(dice), sign, right: symbol(dice) });
     }
+    // where a square vanishes this says nothing of the other factor
+    if dice.once_in(4) {
+        let (a, b) = (symbol(dice), symbol(dice));
+        let left = if dice.once_in(2) { a.power(2).times(b) } else { a.times(b) };
+        found.push(Inequality { left, sign: dice.one_of(&[">=", ">", "<="]), right: E::integer(0) });
+    }
     // an inequality of a symbol with itself says nothing or too much
     found.retain(|inequality| inequality.left != inequality.right);
     found
@@ -209,6 +215,7 @@ fn claimed(class: &str, dice: &mut Dice) -> Inequality {
         ("polynomials", 0) => square(a.clone().minus(b)).plus(square(a)),
         ("polynomials", 1) => square(a.plus(b.times(number(2))).plus(c)).times(number(3)),
         ("polynomials", 2) => square(square(a).minus(b)).plus(square(c)),
+        ("polynomials", 3) if dice.once_in(2) => a.times(b),
         ("polynomials", 3) => a.clone().power(4).minus(a.times(number(4))).plus(number(3)),
         ("polynomials", _) => dice.polynomial(&PLAIN, 2, 4),
         ("rational", 0) => square(a.clone()).over(square(a).plus(number(1))),
