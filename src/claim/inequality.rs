@@ -308,7 +308,11 @@ impl OnBranch {
         low: RBig,
         high: RBig,
     ) -> Option<Coordinate> {
-        let simple = |low: RBig, high: RBig| if low < high { RBig::simplest_in(low, high) } else { low };
+        let simple = |low: RBig, high: RBig| match (low.cmp(&RBig::ZERO), high.cmp(&RBig::ZERO)) {
+            (Ordering::Less, Ordering::Greater) => RBig::ZERO,
+            _ if low < high => RBig::simplest_in(low, high),
+            _ => low,
+        };
         if !self.draws_circles() || !system.is_angle(symbol) {
             return Some(Coordinate::Number(simple(low, high)));
         }

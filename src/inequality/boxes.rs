@@ -152,9 +152,8 @@ pub fn search(
 /// What one box came to.
 enum Look {
     Done,
-    /// A state at which the goal fails may lie here.
-    Propose(Proposed, Vec<f64>),
-    Open(Vec<f64>),
+    /// It is open: states at which the goal may fail, and how much the goal varies along each coordinate.
+    Open(Vec<Proposed>, Vec<f64>),
 }
 
 impl Search<'_> {
@@ -169,14 +168,15 @@ impl Search<'_> {
             boxes += 1;
             let weights = match self.look(graph, &cell.sides) {
                 Look::Done => continue,
-                Look::Propose(state, weights) => {
-                    proposed += 1;
-                    if proposed <= MOST_STATES && refutes(graph, &state) {
-                        return Found::Fails;
+                Look::Open(states, weights) => {
+                    for state in states {
+                        proposed += 1;
+                        if proposed <= MOST_STATES && refutes(graph, &state) {
+                            return Found::Fails;
+                        }
                     }
                     weights
                 }
-                Look::Open(weights) => weights,
             };
             match self.halve(&cell, &weights) {
                 Some(halves) => {
@@ -217,7 +217,7 @@ impl Search<'_> {
     fn look(&mut self, graph: &mut Graph, sides: &[Interval]) -> Look {
         let question = self.question;
         let nothing = vec![0.0; sides.len()];
-        let Some(values) = self.values(sides) else { return Look::Open(nothing) };
+        let Some(values) = self.values(sides) else { return Look::Open(Vec::new(), nothing) };
         let (goal, rest) = (values[0], &values[1..]);
         let (assumed, rest) = rest.split_at(question.assumed.len());
         let (equations, rest) = rest.split_at(question.equations.len());
@@ -239,15 +239,16 @@ impl Search<'_> {
         let slopes = slopes.to_vec();
         let weights: Vec<f64> =
             slopes.iter().zip(sides).map(|(slope, side)| slope.magnitude() * side.width()).collect();
+        let mut states = Vec::new();
         let everywhere = exists.iter().all(|met| *met == Some(true));
         if everywhere
             && need != Need::NotZero
             && let Some(face) = self.on_faces(graph, sides, &slopes)
         {
-            return match face {
-                Face::Holds => Look::Done,
-                Face::Fails(state) => Look::Propose(state, weights),
-            };
+            match face {
+                Face::Holds => return Look::Done,
+                Face::Fails(state) => states.push(state),
+            }
         }
         if everywhere {
             let bounds: Vec<_> = self.symbols.iter().map(|symbol| question.bounds.get(symbol)).collect();
@@ -261,7 +262,7 @@ impl Search<'_> {
             }
         }
         let middle: Vec<Interval> = sides.iter().map(|side| Interval::point(side.mid())).collect();
-        let Some(at_middle) = self.values(&middle) else { return Look::Open(weights) };
+        let Some(at_middle) = self.values(&middle) else { return Look::Open(states, weights) };
         if everywhere {
             let mean = slopes
                 .iter()
@@ -287,9 +288,9 @@ impl Search<'_> {
             && may(&at_middle[there..there + question.exists.len()], question.exists)
             && let Some(state) = self.near(sides, &middle, narrow)
         {
-            return Look::Propose(state, weights);
+            states.push(state);
         }
-        Look::Open(weights)
+        Look::Open(states, weights)
     }
 
     /// Numbers near the middle of a box, or anywhere in it.
