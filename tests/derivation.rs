@@ -140,6 +140,8 @@ fn known_statements_have_their_verdicts() {
         // simple numbers first, but not only
         ("refuted", "k*x = 2*x where k = 3"),
         ("refuted", "sqrt(x^2) = x"),
+        // it holds up to half a turn
+        ("refuted", "cos(x/2) = sqrt((1 + cos(x))/2)"),
         ("refuted", "(k - 2)*x = 0"),
         // at x = -1, whose powers are short
         ("refuted", "(((x^1000)^1000)^1000)^1000 = x"),
