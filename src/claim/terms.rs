@@ -348,8 +348,11 @@ fn within(range: &Range, attempt: usize, rng: &mut impl Rng) -> Option<RBig> {
 fn number(system: &System, symbol: Symbol, attempt: usize, rng: &mut impl Rng) -> RBig {
     let info = system.symbol_info(symbol).filter(|info| info.kind != Kind::Imported);
     let any = |rng: &mut _| {
-        // beyond a half turn before a search ends: identities of principal values and roots hold up to there
-        let reach = [3, 7, 30, 1000][(attempt / 15).min(3)];
+        let reach = match attempt {
+            // now and then beyond a half turn, up to which identities of roots and principal values hold
+            _ if attempt >= SIMPLE && attempt % 7 == 5 => [7, 30, 1000][attempt / 7 % 3],
+            _ => [3, 3, 30, 1000][(attempt / 60).min(3)],
+        };
         simple_between(&RBig::from(-reach), &RBig::from(reach), attempt, rng)
     };
     let far = attempt % 3 == 2 && attempt >= SIMPLE || attempt >= 100;
