@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Bases of more monomials are not tried.
 const LONGEST_BASIS: usize = 28;
 /// More unknowns are not looked for.
-const MOST_UNKNOWNS: usize = 320;
+const MOST_UNKNOWNS: usize = 160;
 /// Of so many assumptions products of two are used as well.
 const PAIRED: usize = 3;
 
