@@ -2,7 +2,6 @@
 //! Each case was once proved, refuted or certified, and false; what is right is said beside it, from a pocket calculation.
 
 use palmistry::claim::{ValueError, certified_value, exists_at};
-use palmistry::observability::Certainty;
 use palmistry::system::Value;
 use palmistry::{Outcome, RankQuestion, System, Verdict, answer_rank, decide_all};
 use std::collections::BTreeMap;
@@ -175,18 +174,7 @@ fn ranks(text: &str, fixed: &[(&str, i64)]) -> BTreeMap<usize, u64> {
     let mut system = System::parse("edges.proof", text, Path::new("")).unwrap();
     let fixed =
         fixed.iter().map(|(name, value)| (system.find_symbol(name).unwrap(), (*value).into())).collect();
-    let question = RankQuestion {
-        samples: 1,
-        seed: 1,
-        wanted: Certainty::Certified,
-        digits: None,
-        recorded: 0,
-        order: None,
-        fixed,
-        conditions: Vec::new(),
-        interrupt: &false.into(),
-        progress: &|_| (),
-    };
+    let question = RankQuestion { samples: 1, fixed, ..RankQuestion::default() };
     let answer = answer_rank(&mut system, &question).unwrap();
     answer.branches[0].full.rank_histogram.clone()
 }
@@ -214,18 +202,7 @@ fn there_is_no_rank_where_a_field_is_not_defined() {
     // in a stream of states, too: half of this box lies outside of the domain
     let half = "system \"s\" state x drift f x' = 1 output sqrt(x)^2 sample x in [-1,1]";
     let mut system = System::parse("edges.proof", half, Path::new("")).unwrap();
-    let question = RankQuestion {
-        samples: 4000,
-        seed: 1,
-        wanted: Certainty::Certified,
-        digits: None,
-        recorded: 0,
-        order: None,
-        fixed: BTreeMap::new(),
-        conditions: Vec::new(),
-        interrupt: &false.into(),
-        progress: &|_| (),
-    };
+    let question = RankQuestion { samples: 4000, ..RankQuestion::default() };
     let answer = answer_rank(&mut system, &question).unwrap();
     let full = answer.branches[0].full.rank_histogram.get(&1).copied().unwrap_or(0);
     assert!((1500..2500).contains(&full), "{full} of 4000 states lie above zero");

@@ -3,7 +3,6 @@
 
 use palmistry::checker::{Effort, Evidence, Finding};
 use palmistry::claim::{Kept, decide_all_keeping};
-use palmistry::observability::Certainty;
 use palmistry::{Outcome, RankQuestion, System, Verdict, answer_rank, decide_all};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -174,21 +173,57 @@ fn conditions_take_part_everywhere() {
     let mut system = System::parse("rank.proof", text, Path::new("")).unwrap();
     let question = RankQuestion {
         samples: 200,
-        seed: 1,
-        wanted: Certainty::Certified,
-        digits: None,
-        recorded: 0,
-        order: None,
-        fixed: BTreeMap::new(),
         conditions: vec!["x > 1/2".to_owned(), "-1/4 < y < 1/4".to_owned()],
-        interrupt: &false.into(),
-        progress: &|_| (),
+        ..RankQuestion::default()
     };
     let answer = answer_rank(&mut system, &question).unwrap();
     let worst = answer.branches[0].full.worst.as_ref().expect("a worst state");
     let value = |name: &str| worst.0.iter().find(|(n, ..)| n == name).map(|(.., value)| *value).unwrap();
     assert!(value("x") > 0.5 && value("y").abs() < 0.25, "{:?}", worst.0);
     assert_eq!(answer.branches[0].full.certified, 200);
+}
+
+/// One of each edge: nothing there, ends, poles, equality, turns, products of which a factor may vanish.
+#[test]
+fn at_the_edges() {
+    let found = |word: &str| {
+        let all: &[&str] = match word {
+            "proved" => &[
+                "x >= 1 where x in [1, 1]",
+                "x != 1 on sample",
+                "1/x > 0 where x >= 0",
+                "x/x >= 1",
+                "1 < 2",
+                "sqrt(2)*sqrt(3) >= sqrt(6)",
+                "x^2 > 0 where x != 0",
+                "phi >= 0 where phi in [0, 7]",
+                "x >= 0 where x^3 >= 0",
+                "y >= 0 where y/x^2 >= 0",
+                "x > 0 where 1/x > 0",
+                "x >= 0 where x*exp(y) >= 0",
+            ],
+            "refuted" => &[
+                "x > 5 where x in [1, 1]",
+                "2 < 1",
+                "1 != 1",
+                "sin(phi) >= 0 where phi in [0, 4]",
+                "y > 0 where x*y > 0",
+                "x*y >= 0 where x*y > -1",
+                "y >= 0 where y*sqrt(x) >= 0",
+                "y >= 0 where y*(1 - cos(phi)) >= 0",
+                "acos(x) > 0",
+                "sqrt(x) > 0",
+                "sqrt(2)*sqrt(3) > sqrt(6)",
+                "sin(x)^2 + cos(x)^2 < 1",
+                // no range says where k is
+                "k > 0 on sample",
+            ],
+            // no state meets the first two; the last is false, and the checker has no rule for it
+            _ => &["x > 0 where x in [2, 1]", "0*log(x) >= 0 where x < 0", "exp(2*x) > exp(x)^2"],
+        };
+        all_are(word, all);
+    };
+    ["proved", "refuted", "undecided"].into_iter().for_each(found);
 }
 
 /// What is kept of each verdict is found again by the checker, and what is changed is not.

@@ -2,13 +2,16 @@
 
 use super::evidence::refutation;
 use super::existence::{Existence, existence};
-use super::identity::OnOneBranch;
+use super::identity::{OnOneBranch, RANDOM_PRIMES};
 use super::terms::{OnBranch, Point, Values};
 use super::verdict::{Verdict, Witness};
 use super::witness::texts_of_sides;
 use crate::checker::{Doubt, Refutation};
 use crate::expression::syntax::Relation;
-use crate::expression::{Guard, LOG2_ERROR, Need, NodeId, Symbol, ZeroTest, expand_angles, identically_zero};
+use crate::expression::{
+    Guard, LOG2_ERROR, Need, NodeId, Related, Symbol, ZeroTest, expand_angles, identically_zero,
+    zero_by_relations,
+};
 use crate::inequality::{Answer, Argument, Given, Open, Proposed, decide, vanishes_somewhere};
 use crate::number::{rational_from_f64, rational_to_f64};
 use crate::observability::{Coordinate, State, assumed};
@@ -92,7 +95,7 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
     let Some(goal) = assumed(&mut system.graph, relation, left, right) else {
         return Verdict::undecided("an equation among inequalities");
     };
-    let mut tries = Tries { entry, relation, doubt: None, found: None };
+    let mut tries = Tries { entry, relation, are_equal: false, doubt: None, found: None };
     if solved {
         for attempt in 0..FIRST {
             let point = on.draw(system, attempt, rng);
@@ -169,21 +172,33 @@ fn where_equal(
     let angles = system.angles();
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
     let expanded = expand_angles(&mut system.graph, &[goal.node], is_angle);
-    let ZeroTest::Zero { log2_error, .. } = identically_zero(&system.graph, &expanded, is_angle, rng) else {
-        return None;
+    let (engine, log2_error) = match identically_zero(&system.graph, &expanded, is_angle, rng) {
+        ZeroTest::Zero { log2_error, .. } => (RANDOM_PRIMES.to_owned(), log2_error),
+        _ => match zero_by_relations(&mut system.graph, &expanded, &on.terms.guards, is_angle, rng) {
+            Related::Zero { log2_error, used, .. } => {
+                (format!("{RANDOM_PRIMES}, with what is known of {used}"), log2_error)
+            }
+            Related::NotShown(_) | Related::NoFunctions => return None,
+        },
     };
     if goal.need == Need::NotNegative {
-        return Some(Verdict::Proved { engine: super::identity::RANDOM_PRIMES.to_owned(), log2_error });
+        return Some(Verdict::Proved { engine, log2_error });
     }
+    tries.are_equal = true;
     for attempt in 0..LAST {
         let point = on.draw(system, attempt, rng);
         if may_refute && tries.refute(system, on, point) {
             return Some(tries.verdict(system));
         }
     }
-    Some(Verdict::undecided(
-        "both sides are equal wherever they exist, and no state was found at which they do",
-    ))
+    Some(Verdict::undecided(match &tries.doubt {
+        Some(doubt) => format!(
+            "both sides are equal wherever they exist, so that it fails there, which the checker does not confirm: {doubt}"
+        ),
+        None => {
+            "both sides are equal wherever they exist, and no state was found at which they do".to_owned()
+        }
+    }))
 }
 
 /// Where a goal is open, in words.
@@ -221,6 +236,8 @@ fn in_words(system: &System, open: &Open) -> String {
 struct Tries {
     entry: usize,
     relation: Relation,
+    /// Whether the sides are known to be equal wherever they exist, and the relation excludes that.
+    are_equal: bool,
     /// Why the checker did not confirm one.
     doubt: Option<Doubt>,
     found: Option<(Witness, bool)>,
@@ -231,7 +248,8 @@ impl Tries {
     fn refute(&mut self, system: &System, on: &OnBranch, point: Point) -> bool {
         let Some(values) = on.sides(&point) else { return false };
         let entries = on.terms.relations.len();
-        if !fails(&values, self.relation, self.entry, self.entry + entries) {
+        // of sides that are equal the checker decides, in exact numbers of its own
+        if !self.are_equal && !fails(&values, self.relation, self.entry, self.entry + entries) {
             return false;
         }
         let exact = matches!(values, Values::Exact(_));

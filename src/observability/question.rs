@@ -36,6 +36,27 @@ pub struct RankQuestion<'a> {
     pub progress: &'a (dyn Fn(u64) + Sync),
 }
 
+/// Never set.
+static UNINTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+impl Default for RankQuestion<'_> {
+    /// A thousand states of the sample box, every rank certified, from words that are taken until the rank stops growing.
+    fn default() -> Self {
+        RankQuestion {
+            samples: 1000,
+            seed: 1,
+            wanted: Certainty::Certified,
+            digits: None,
+            order: None,
+            fixed: BTreeMap::new(),
+            conditions: Vec::new(),
+            recorded: 0,
+            interrupt: &UNINTERRUPTED,
+            progress: &|_| (),
+        }
+    }
+}
+
 /// A row whose rank was decided.
 pub struct TakenRow {
     /// The word of which it is the differential; of the file's own rows, their number, counted from one.
