@@ -107,3 +107,20 @@ fn a_verdict_does_not_depend_on_its_neighbours() {
     }
     assert!(compared > 20, "{compared}");
 }
+
+/// What is named once may be met many times: sixty names, each the double of the one before, are sixty steps and not 2^60.
+#[test]
+fn shared_parts_are_walked_once() {
+    let names = many(59, |i| format!("let a{i} = a{} + a{}\n", i - 1, i - 1));
+    let claims = "claim turns: cos(phi + a45)^2 = 1 where sin(phi + a45) = 0\n\
+                  claim sign: x + a59 > 0 where x > 0\n\
+                  claim value: sin(a45)^2 = 3/4\n";
+    let text = format!(
+        "system \"shared\"\nstate x, phi\nangle phi\nlet a0 = pi + pi/3\n{names}drift f\n x' = 1\n phi' = 1\noutput x\n{claims}"
+    );
+    let folder = folder();
+    let file = write(&folder, "shared.proof", text);
+    let output = finish(&mut program(&["prove", file.to_str().unwrap(), "--json"]));
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output));
+    assert_eq!(json(&output)["claims"].as_array().unwrap().len(), 3);
+}

@@ -10,6 +10,7 @@ use crate::number::{Arithmetic, Enclosures, Function};
 use crate::system::{Assignment, System};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
+use std::collections::HashMap;
 
 /// An angle is solved for from sines of multiples up to this.
 const LARGEST_MULTIPLE: i64 = 12;
@@ -168,24 +169,31 @@ fn in_parts_of_pi(system: &mut System, angle: NodeId) -> NodeId {
     system.graph.div(top, bottom)
 }
 
-/// How many times pi a sum of rational multiples of pi is.
+/// How many times pi a sum of rational multiples of pi is. Each node once: an angle may hold one node many times.
 fn factor_of_pi(system: &System, angle: NodeId) -> Option<RBig> {
     let graph = &system.graph;
-    let of = |node| factor_of_pi(system, node);
-    let number = |node| graph.constant_value(node).cloned();
-    Some(match graph.node(angle) {
-        Node::Pi => RBig::ONE,
-        Node::Constant(_) if number(angle)?.is_zero() => RBig::ZERO,
-        Node::Neg(a) => -of(a)?,
-        Node::Add(a, b) => of(a)? + of(b)?,
-        Node::Sub(a, b) => of(a)? - of(b)?,
-        Node::Mul(a, b) => match number(a) {
-            Some(factor) => factor * of(b)?,
-            None => of(a)? * number(b)?,
-        },
-        Node::Div(a, b) => of(a)? / number(b).filter(|b| !b.is_zero())?,
-        _ => return None,
-    })
+    let mut factors: HashMap<NodeId, RBig> = HashMap::new();
+    for id in graph.reachable([angle]) {
+        let of = |node| factors.get(&node).cloned();
+        let number = |node| graph.constant_value(node).cloned();
+        let factor = match graph.node(id) {
+            Node::Pi => Some(RBig::ONE),
+            Node::Constant(_) => number(id).filter(RBig::is_zero),
+            Node::Neg(a) => of(a).map(|a| -a),
+            Node::Add(a, b) => of(a).zip(of(b)).map(|(a, b)| a + b),
+            Node::Sub(a, b) => of(a).zip(of(b)).map(|(a, b)| a - b),
+            Node::Mul(a, b) => match number(a) {
+                Some(factor) => of(b).map(|b| factor * b),
+                None => of(a).zip(number(b)).map(|(a, b)| a * b),
+            },
+            Node::Div(a, b) => of(a).zip(number(b).filter(|b| !b.is_zero())).map(|(a, b)| a / b),
+            _ => None,
+        };
+        if let Some(factor) = factor {
+            factors.insert(id, factor);
+        }
+    }
+    factors.remove(&angle)
 }
 
 /// The sine or cosine whose values alone decide whether an expression vanishes, and those at which it does.
@@ -203,7 +211,7 @@ fn sine_or_cosine(system: &mut System, difference: NodeId) -> Option<(Function, 
     // no name of a file begins like this
     let unknown = system.graph.intern("#wave");
     let place = system.graph.symbol(unknown);
-    let mut image = std::collections::HashMap::from([(wave, place)]);
+    let mut image = HashMap::from([(wave, place)]);
     for id in all {
         if !image.contains_key(&id) {
             let node = system.graph.node(id);
