@@ -4,7 +4,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use palmistry::observability::Certainty;
+use palmistry::sweep::Certainty;
 use palmistry::{RankQuestion, System, answer_rank};
 use std::collections::BTreeMap;
 use std::path::Path;

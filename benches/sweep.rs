@@ -8,9 +8,8 @@ use divan::{Bencher, black_box};
 use palmistry::System;
 use palmistry::expression::{BlockProgram, Input, NodeId, expand_angles};
 use palmistry::number::{Instructions, rational_to_f64};
-use palmistry::observability::{
-    Branch, Certainty, Locus, OWN_ROWS, Stream, StreamOptions, StreamReport, solve_conditions,
-};
+use palmistry::observability::{Branch, Locus, OWN_ROWS, solve_conditions};
+use palmistry::sweep::{Certainty, Stream, StreamOptions, StreamReport};
 use palmistry::system::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -6,7 +6,7 @@
 //! identity is tested in exact arithmetic at random points of random prime fields ([`number`]), a rank by minors, a
 //! number by intervals ([`claim`]).
 //! [`answer_rank`] asks at sampled states whether the differentials of the outputs and of their Lie derivatives span
-//! the state space ([`observability`]). Real bodies, moved by Newton's laws alone, are a second witness for the physics
+//! the state space ([`observability`], [`sweep`]), and [`certificate`] on which boxes they do. Real bodies, moved by Newton's laws alone, are a second witness for the physics
 //! ([`mechanics`]). An [`observer`] recovers states from what is measured, and an [`experiment`] has such observers recover
 //! the shape of a real body from touch. And [`report`] writes down what came of it all.
 //!
@@ -48,8 +48,14 @@ pub mod system;
 // what was found, evaluated again by code that shares nothing with what found it
 pub mod checker;
 
-// Lie derivatives, codistribution, rank at sampled states
+// Lie derivatives, codistribution, conditions
 pub mod observability;
+
+// the rank at many states
+pub mod sweep;
+
+// full rank on boxes
+pub mod certificate;
 
 // inequalities: signs, sums of squares, boxes
 pub mod inequality;
@@ -79,5 +85,5 @@ pub mod verification;
 pub mod report;
 
 pub use claim::{Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all};
-pub use observability::{RankAnswer, RankQuestion, answer_rank};
+pub use sweep::{RankAnswer, RankQuestion, answer_rank};
 pub use system::{ReadError, System};

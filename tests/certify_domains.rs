@@ -3,9 +3,9 @@
 
 use dashu::rational::RBig;
 use palmistry::System;
+use palmistry::certificate::{Limits, Region, RegionAnswer, RegionRows, Standing};
 use palmistry::expression::Symbol;
 use palmistry::number::{Interval, Real};
-use palmistry::observability::region::{Limits, Region, RegionAnswer, RegionRows, Standing};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;

@@ -5,9 +5,9 @@ mod common;
 use common::{folder, json, palmistry};
 use dashu::rational::RBig;
 use palmistry::System;
+use palmistry::certificate::{Limits, Region, RegionRows};
 use palmistry::checker::{CertifiedBoxes, Doubt, Effort, Evidence, Finding, Ratio, VerdictFile};
 use palmistry::evidence::certificate_file;
-use palmistry::observability::region::{Limits, Region, RegionRows};
 use std::collections::BTreeMap;
 use std::path::Path;
 

@@ -3,9 +3,8 @@
 use palmistry::System;
 use palmistry::expression::NodeId;
 use palmistry::number::Instructions;
-use palmistry::observability::{
-    Certainty, Locus, Stream, StreamOptions, StreamReport, Verdict, Verdicts, solve_conditions,
-};
+use palmistry::observability::{Locus, solve_conditions};
+use palmistry::sweep::{Certainty, Stream, StreamOptions, StreamReport, Verdict, Verdicts};
 use palmistry::system::Value;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -5,9 +5,9 @@ use palmistry::System;
 use palmistry::expression::{NodeId, Program, expand_angles};
 use palmistry::number::{Floats, Instructions, PrimeField, Rationals, rational_to_f64};
 use palmistry::observability::{
-    Certainty, Coordinate, Locus, Reduction, StatesError, Stream, StreamOptions, StreamReport, Verdict,
-    Verdicts, float_inputs, rank, singular_values, solve_conditions,
+    Coordinate, Locus, Reduction, float_inputs, rank, singular_values, solve_conditions,
 };
+use palmistry::sweep::{Certainty, StatesError, Stream, StreamOptions, StreamReport, Verdict, Verdicts};
 use palmistry::system::Value;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

@@ -5,9 +5,10 @@ use palmistry::System;
 use palmistry::expression::expand_angles;
 use palmistry::number::{Floats, PrimeField};
 use palmistry::observability::{
-    Branch, Certainty, Codistribution, Coordinate, Defined, Judge, Judged, Length, Locus, State, StateReport,
-    customary_singular_values, parse_condition, solve_conditions,
+    Branch, Codistribution, Coordinate, Defined, Length, Locus, State, customary_singular_values,
+    parse_condition, solve_conditions,
 };
+use palmistry::sweep::{Certainty, Judge, Judged, StateReport};
 use palmistry::system::Value;
 use proptest::prelude::*;
 use std::collections::BTreeMap;

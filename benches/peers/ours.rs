@@ -6,9 +6,8 @@
 
 use palmistry::System;
 use palmistry::expression::{BlockProgram, Input, NodeId, expand_angles, gradient};
-use palmistry::observability::{
-    Certainty, Locus, Stream, Verdict, Verdicts, lie_derivative_by_series, solve_conditions,
-};
+use palmistry::observability::{Locus, lie_derivative_by_series, solve_conditions};
+use palmistry::sweep::{Certainty, Stream, Verdict, Verdicts};
 use palmistry::system::Value;
 use std::collections::BTreeMap;
 use std::io::{BufRead, Write};

@@ -5,7 +5,7 @@ use crate::number::{
     Arithmetic, DoubleDouble, Enclosure, Enclosures, Floats, Interval, Rationals, Refusal, Rung,
     common_decimal, rational_from_f64, round_to_decimal,
 };
-use crate::observability::Certainty;
+use crate::sweep::Certainty;
 use dashu::rational::RBig;
 use std::collections::HashMap;
 

@@ -6,7 +6,7 @@ use dashu::rational::RBig;
 use palmistry::System;
 use palmistry::expression::Symbol;
 use palmistry::number::parse_decimal;
-use palmistry::observability::Certainty;
+use palmistry::sweep::Certainty;
 use std::collections::HashMap;
 
 /// What a verdict has to be.

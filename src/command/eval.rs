@@ -8,7 +8,7 @@ use clap::Args;
 use dashu::rational::RBig;
 use palmistry::claim::{PointValue, computed_value, exists_at};
 use palmistry::expression::{NodeId, Symbol};
-use palmistry::observability::Certainty;
+use palmistry::sweep::Certainty;
 use palmistry::{System, ValueError, certified_value, system::Value};
 use serde_json::{Value as Json, json};
 use std::collections::HashMap;

@@ -1,10 +1,10 @@
 //! A certificate as boxes, each with the rows of its minor, written down for the checker.
 
 use super::lowering::Lowering;
+use crate::certificate::{HeldSymbol, ProvedBox, Region};
 use crate::checker::{
     CertifiedBox, CertifiedBoxes, Evidence, Missing, Ratio, SymbolRange, VerdictFile, VerdictRecord,
 };
-use crate::observability::region::{HeldSymbol, ProvedBox, Region};
 use crate::system::System;
 use dashu::integer::IBig;
 use dashu::rational::RBig;

@@ -7,9 +7,8 @@ use crate::checker::{CertifiedRank, Evidence, Missing, RankedState, Ratio, Verdi
 use crate::expression::syntax::Relation;
 use crate::expression::{Guard, NodeId, Program, Symbol, expand_angles};
 use crate::number::PrimeField;
-use crate::observability::{
-    OWN_ROWS, RankAnswer, RecordedState, SweepReport, TakenRow, assumed, parse_condition,
-};
+use crate::observability::{OWN_ROWS, assumed, parse_condition};
+use crate::sweep::{RankAnswer, RecordedState, SweepReport, TakenRow};
 use crate::system::System;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

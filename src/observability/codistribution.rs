@@ -10,6 +10,9 @@ use crate::system::{Assignment, System};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+/// The name of the matrix that holds a paper's own choice of rows.
+pub const OWN_ROWS: &str = "rows";
+
 /// A repeated Lie derivative of an output: `L_{X1} L_{X2} ... h`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Word {

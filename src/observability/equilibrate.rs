@@ -10,7 +10,7 @@
 /// An entry's error counts so many times in the lengths: a row that is nothing but rounding noise is not lifted to the
 /// size of the others, where its noise would drown them. Multiplying an entry and its error by the same number leaves
 /// the weight of one against the other alone, so this too does not depend on units. (The square root of 2^52.)
-pub(super) const WEIGHT_OF_ERRORS: f64 = 67_108_864.0;
+pub(crate) const WEIGHT_OF_ERRORS: f64 = 67_108_864.0;
 
 /// Scaling has converged when no row's length changes by more than this.
 const CONVERGED: f64 = 1e-4;

@@ -18,7 +18,7 @@ pub const AVOIDED: f64 = 0.05;
 /// Coordinates are drawn on a grid of this many binary places, so that exact arithmetic has short numbers to work on.
 const GRID_BITS: usize = 16;
 
-pub(super) const ATTEMPTS: usize = 2000;
+pub(crate) const ATTEMPTS: usize = 2000;
 
 /// Why states cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -35,7 +35,7 @@ pub enum LocusError {
 
 /// Where one symbol comes from.
 #[derive(Clone, Debug)]
-pub(super) enum Source {
+pub(crate) enum Source {
     Fixed(Coordinate),
     Between(RBig, RBig),
     /// An angle in radians.
@@ -45,18 +45,18 @@ pub(super) enum Source {
 /// A set of states that can be drawn from.
 #[derive(Clone, Debug)]
 pub struct Locus {
-    pub(super) sources: BTreeMap<Symbol, Source>,
+    pub(crate) sources: BTreeMap<Symbol, Source>,
     /// What the conditions give, as expressions of the rest.
-    pub(super) values: Assignment,
+    pub(crate) values: Assignment,
     /// What is avoided, as expressions of what is drawn.
-    pub(super) avoided: Vec<NodeId>,
+    pub(crate) avoided: Vec<NodeId>,
     /// Solved symbols: value, or sine and cosine.
     dependent: Vec<(Symbol, bool)>,
     dependent_program: Program,
     avoid: Vec<String>,
     avoid_program: Program,
     /// Whether inequalities cut the box, and what they say.
-    pub(super) is_cut: bool,
+    pub(crate) is_cut: bool,
     inside: Defined,
     /// The conditions and fixed values, in words.
     pub conditions: Vec<String>,
@@ -156,7 +156,7 @@ impl Locus {
     }
 
     /// Adds the symbols that the conditions give.
-    pub(super) fn complete(&self, state: &mut State) -> Result<(), Refusal> {
+    pub(crate) fn complete(&self, state: &mut State) -> Result<(), Refusal> {
         let exact = Rationals::default();
         let inputs =
             state.inputs(&self.dependent_program, &exact).map_err(|r| r.unwrap_or(Refusal::NotFinite))?;

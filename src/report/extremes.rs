@@ -5,7 +5,7 @@ use super::region_plot::{region_curve, region_map};
 use super::stress::stress_pictures;
 use super::trade::{TRADE_FRONT_HEADINGS, trade_front_table};
 use super::trade_plot::trade_plot;
-use crate::observability::region::RegionAnswer;
+use crate::certificate::RegionAnswer;
 use crate::tradeoff::Trade;
 use crate::tradeoff::stress::Study;
 use crate::verification::Verification;

@@ -9,7 +9,7 @@ use super::ranks::fields_text;
 use super::verification::ranks_in_words;
 use super::words::{RULE_OF_DAMAGE, counts, errors, meaning};
 use crate::claim::{Outcome, Verdict};
-use crate::observability::RankAnswer;
+use crate::sweep::RankAnswer;
 use crate::system::Flaw;
 use crate::tradeoff::Rows;
 use crate::verification::{

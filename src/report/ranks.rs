@@ -1,9 +1,8 @@
 //! Answers about ranks, as JSON and as text.
 
 use super::claims::{values_json, values_text};
-use crate::observability::{
-    BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, Spectrum, Stop, SweepReport,
-};
+use crate::observability::{Spectrum, Stop};
+use crate::sweep::{BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, SweepReport};
 use crate::system::FieldRole;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

@@ -1,9 +1,9 @@
 //! Certificates on regions, as JSON and as text.
 
 use super::ranks::{fields_json, fields_text};
+use crate::certificate::{OpenBox, PartAnswer, RegionAnswer, Standing, Vanishing};
 use crate::number::rational_from_f64;
 use crate::observability::AVOIDED;
-use crate::observability::region::{OpenBox, PartAnswer, RegionAnswer, Standing, Vanishing};
 use dashu::rational::RBig;
 use serde_json::{Value, json};
 use std::fmt::Write;

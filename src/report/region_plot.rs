@@ -1,7 +1,7 @@
 //! Certificates on regions, as pictures.
 
 use super::plot::{INK, svg};
-use crate::observability::region::{RegionAnswer, RegionMap, Standing};
+use crate::certificate::{RegionAnswer, RegionMap, Standing};
 use plotters::prelude::*;
 
 const LINE: RGBColor = RGBColor(0, 114, 178);

@@ -7,7 +7,7 @@ use super::region::region_json;
 use super::stress::stress_json;
 use super::trade::trade_json;
 use super::words::{counts, counts_text, errors};
-use crate::observability::RankAnswer;
+use crate::sweep::RankAnswer;
 use crate::system::Flaw;
 use crate::tradeoff::{Map, Rows, Slope};
 use crate::verification::{

@@ -19,9 +19,9 @@ pub use regimes::{Picture, REGIMES, Regime, RegimeResult, SingularSet};
 pub use routes::{RouteAgreement, compare_routes};
 pub use stress::{prepare_regimes, short_stress};
 
+use crate::certificate::{RegionAnswer, certify_region};
 use crate::claim::{Outcome, decide_all};
 use crate::experiment::{Answer, Experiment};
-use crate::observability::region::{RegionAnswer, certify_region};
 use crate::system::{ReadError, System};
 use crate::tradeoff::stress::Study;
 use crate::tradeoff::{Growth, Trade, TradeQuestion, growth_of_lie_derivatives, trade};

@@ -2,10 +2,8 @@
 
 use super::Options;
 use crate::expression::NodeId;
-use crate::observability::{
-    Branch, Certainty, Codistribution, Length, Locus, OWN_ROWS, RankAnswer, RankQuestion, answer_rank,
-    solve_conditions,
-};
+use crate::observability::{Branch, Codistribution, Length, Locus, OWN_ROWS, solve_conditions};
+use crate::sweep::{Certainty, RankAnswer, RankQuestion, answer_rank};
 use crate::system::{Assignment, System, Value};
 use crate::tradeoff::{Landscape, Map, ModelComparison, Rows, Slope, Target, compare_models};
 use std::collections::BTreeMap;

@@ -7,10 +7,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+use palmistry::certificate::{Limits, Region, RegionRows};
 use palmistry::checker::{Effort, VerdictFile};
 use palmistry::claim::{Kept, decide_all_keeping};
 use palmistry::experiment::Scene;
-use palmistry::observability::region::{Limits, Region, RegionRows};
 use palmistry::observer::{FaultRules, OnFault, Record};
 use palmistry::system::System;
 use proptest::prelude::*;

@@ -1,10 +1,10 @@
 //! What the library says: the only file of the oracle that calls it.
 
 use dashu::rational::RBig;
+use palmistry::certificate::{Limits, Region, RegionRows, Standing};
 use palmistry::expression::Symbol;
 use palmistry::number::{Interval, Real};
-use palmistry::observability::region::{Limits, Region, RegionRows, Standing};
-use palmistry::observability::{BranchAnswer, Certainty};
+use palmistry::sweep::{BranchAnswer, Certainty};
 use palmistry::{Outcome, RankQuestion, System, Verdict, answer_rank, decide_all};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};

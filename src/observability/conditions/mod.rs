@@ -11,8 +11,10 @@
 mod circular;
 mod single;
 mod turns;
+mod written;
 
 pub use single::{also_met_otherwise, linear_solution};
+pub use written::parse_condition;
 
 use crate::expression::syntax::{Equation, Relation};
 use crate::expression::{

@@ -3,9 +3,8 @@
 use super::subject::{Subject, Truth};
 use super::{Mark, Verdict, Way, jacobi};
 use crate::number::{DoubleDouble, Floats, Interval, Real, rational_to_f64};
-use crate::observability::{
-    Judge, Judged, Spectrum, State, certain_rank, customary_singular_values, singular_values,
-};
+use crate::observability::{Spectrum, State, certain_rank, customary_singular_values, singular_values};
+use crate::sweep::{Judge, Judged};
 use dashu::rational::RBig;
 
 /// What one way finds at a state.

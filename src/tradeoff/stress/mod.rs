@@ -42,7 +42,7 @@ pub enum Way {
     Interval,
     /// Double-doubles throughout: singular values as for single precision.
     DoubleDouble,
-    /// The ladder of [`Judge`](crate::observability::Judge), certified: intervals, residues, exact numbers, enclosures.
+    /// The ladder of [`Judge`](crate::sweep::Judge), certified: intervals, residues, exact numbers, enclosures.
     Ladder,
 }
 

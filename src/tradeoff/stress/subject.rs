@@ -3,9 +3,9 @@
 use crate::expression::{Failure, NodeId, Program, expand_angles};
 use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, PrimeField, Rationals, Real, Refusal};
 use crate::observability::{
-    Certainty, Defined, Judge, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank,
-    singular_values,
+    Defined, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank, singular_values,
 };
+use crate::sweep::{Certainty, Judge};
 use crate::system::System;
 use dashu::rational::RBig;
 use rand::SeedableRng;

@@ -5,7 +5,7 @@ use super::ranks::{RankWay, Verdict};
 use super::work::Block;
 use crate::expression::BlockProgram;
 use crate::number::{Bounded, Instructions, Lanes, MOST_LANES, Vectorised};
-use crate::observability::{Elimination, Jacobi};
+use crate::sweep::{Elimination, Jacobi};
 
 /// The values of a block program and bounds on their errors, from inputs that are the doubles nearest to exact ones:
 /// state by state, all results of one after the other; not numbers where a state has none.

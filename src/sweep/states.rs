@@ -1,15 +1,12 @@
 //! The rank of a set of rows at many sampled states.
 
-use super::codistribution::Codistribution;
-use super::defined::Defined;
+use super::certainty::Certainty;
 use super::digits::{Digits, NoDigits};
-use super::ladder::{Certainty, Judge, Judged, StateReport};
-use super::locus::{Locus, LocusError};
-use super::singular::Spectrum;
-use super::state::{State, StateInWords};
+use super::ladder::{Judge, Judged, StateReport};
 use super::stream::{Stream, StreamOptions};
 use crate::expression::{Guard, NodeId, Symbol, add_guard, expand_angles};
 use crate::number::{PrimeField, Rung, rational_to_f64};
+use crate::observability::{Codistribution, Defined, Locus, LocusError, Spectrum, State, StateInWords};
 use crate::system::System;
 use dashu::rational::RBig;
 use rand::SeedableRng;

@@ -1,13 +1,11 @@
 //! The whole question of a rank, from a system and some conditions to sweeps of every branch.
 
-use super::codistribution::{Codistribution, Length, Stop};
-use super::conditions::solve_conditions;
-use super::ladder::Certainty;
-use super::locus::Locus;
-use super::sweep::{SweepOptions, SweepReport, sweep};
-use crate::expression::parse::{Depth, equations, read_all};
-use crate::expression::syntax::Equation;
+use super::states::{SweepOptions, SweepReport, sweep};
 use crate::expression::{NodeId, Symbol};
+use crate::observability::{
+    Codistribution, Length, Locus, OWN_ROWS, Stop, parse_condition, solve_conditions,
+};
+use crate::sweep::certainty::Certainty;
 use crate::system::{Assignment, FieldRole, Kind, SymbolInfo, System, Value};
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
@@ -111,9 +109,6 @@ impl RankAnswer {
     }
 }
 
-/// The name of the matrix that holds a paper's own choice of rows.
-pub const OWN_ROWS: &str = "rows";
-
 /// Symbols that every drawn state has the same value of: parameters with a value and no range, and ranges of no width.
 fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol, RBig)> {
     let held = |(symbol, info): (Symbol, &SymbolInfo)| {
@@ -146,15 +141,6 @@ fn held_parameters<'a>(
         (!given).then(|| (system.symbol_name(symbol).to_owned(), value))
     };
     system.symbols().filter_map(held).collect()
-}
-
-/// Reads a condition such as `sin(phi1) = 0` or `0 < x < 1`, which is two.
-///
-/// # Errors
-/// In words: what was expected, and where.
-pub fn parse_condition(text: &str) -> Result<Vec<Equation>, String> {
-    read_all(text, &Depth::default(), "an operator, or the end", equations)
-        .map_err(|e| format!("in the condition '{text}', at column {}: {e}", e.at + 1))
 }
 
 /// Answers a question about the rank of a system's observability codistribution.
@@ -229,7 +215,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             }
             None => None,
         };
-        let word = |(word, entries): (&super::Word, &Vec<NodeId>)| TakenRow {
+        let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
             word: word.text(system),
             entries: entries.clone(),
         };

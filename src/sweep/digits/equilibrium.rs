@@ -12,7 +12,7 @@
 
 use super::numbers::{Approximate, Enclosing, dot, inverse};
 use crate::number::{Arithmetic, Function, Refusal, rational_from_f64};
-use crate::observability::stream::Equilibrium;
+use crate::sweep::stream::Equilibrium;
 use dashu::rational::RBig;
 
 /// After so many steps of Newton's method there is no equilibrium near, or none at all.

@@ -1,4 +1,4 @@
-//! Certificates on regions: is the rank full not at sampled states only, but at every state of a box?
+//! Certificates on boxes: is the rank full not at sampled states only, but at every state of a box?
 //!
 //! [`Region::new`] takes a system, a choice of rows and the sample box, brings the minors of the rows to products of
 //! factors, and keeps a few of them. Where all factors of one minor are different from zero, and the system is defined,

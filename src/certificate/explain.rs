@@ -4,7 +4,7 @@ use super::boxes::{DEEPEST, Place, Volume};
 use super::factor::Desk;
 use super::part::Part;
 use super::search::Cell;
-use crate::observability::locus::AVOIDED;
+use crate::observability::AVOIDED;
 use std::collections::VecDeque;
 
 /// Why nothing is proved on a box.

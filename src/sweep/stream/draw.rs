@@ -6,7 +6,7 @@
 use super::random::{threefry, unit};
 use crate::expression::{BlockProgram, Input, Machine, Symbol};
 use crate::number::{Bounded, Lanes, MOST_LANES, Task, rational_from_f64, rational_to_f64};
-use crate::observability::locus::{ATTEMPTS, AVOIDED, Source};
+use crate::observability::{ATTEMPTS, AVOIDED, Source};
 use dashu::rational::RBig;
 
 /// One coordinate that is drawn.

@@ -4,8 +4,7 @@ use super::certain::Elimination;
 use super::equilibrate::Equilibrium;
 use super::jacobi::Jacobi;
 use crate::number::{Bounded, Lanes, MOST_LANES};
-use crate::observability::equilibrate::WEIGHT_OF_ERRORS;
-use crate::observability::singular::SEPARATED;
+use crate::observability::{SEPARATED, WEIGHT_OF_ERRORS};
 
 /// What was found in each lane; as many of the places are used as there are lanes.
 #[derive(Clone, Copy, Debug, Default)]

@@ -8,7 +8,7 @@ use super::draw::Wish;
 use super::{Stream, StreamReport};
 use crate::expression::{Machine, Symbol};
 use crate::number::{Bounded, Lanes, MOST_LANES, Vectorised};
-use crate::observability::Certainty;
+use crate::sweep::Certainty;
 
 /// The verdict for one state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

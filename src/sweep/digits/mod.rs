@@ -9,11 +9,11 @@ mod decomposition;
 mod equilibrium;
 mod numbers;
 
-use super::ladder::Certainty;
 use crate::number::{
     Arithmetic, DoubleDouble, Enclosures, Floats, Interval, Refusal, Rung, common_decimal, rational_from_f64,
     round_to_decimal,
 };
+use crate::sweep::certainty::Certainty;
 use dashu::rational::RBig;
 use decomposition::{approximate_values, enclosed_values};
 use equilibrium::{approximately_equilibrated, equilibrated};

@@ -1,7 +1,7 @@
 //! What a stream of states came to, in a memory that does not grow with it.
 
 use super::decide::Found;
-use crate::observability::Certainty;
+use crate::sweep::Certainty;
 use std::collections::BTreeMap;
 
 /// Powers of ten of the condition that are told apart; all beyond are counted with the last.

@@ -17,12 +17,10 @@ mod jacobi;
 mod random;
 mod report;
 
-use super::ladder::Certainty;
-use super::locus::{Locus, LocusError, Source};
-use super::reduction::Reduction;
-use super::state::{Coordinate, State};
 use crate::expression::{BlockProgram, Graph, Guard, Input, Need, Node, NodeId, Symbol, expand_angles};
 use crate::number::{Bounded, Function, Instructions, Lanes, MOST_LANES, Vectorised, rational_from_f64};
+use crate::observability::{Coordinate, Locus, LocusError, Reduction, Source, State};
+use crate::sweep::certainty::Certainty;
 use crate::system::System;
 pub use certain::Elimination;
 use dashu::rational::RBig;

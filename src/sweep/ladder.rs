@@ -12,26 +12,16 @@
 //! state begins with intervals. Doubles that do not are on no rung: where a row vanishes they see noise of full rank.
 //! Where intervals fall short, a computed rank is taken from enclosures, a certified one by exact numbers.
 
-use super::defined::Defined;
+use super::certainty::Certainty;
 use super::digits::{Digits, Matrices, NoDigits, digits_of};
-use super::elimination::{certain_rank, kernel, rank};
-use super::reduction::Reduction;
-use super::singular::{Spectrum, singular_values};
-use super::state::State;
 use crate::expression::{Failure, Graph, Loaded, NodeId, Program, Symbol};
 use crate::number::{
     Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals, Refusal, Rung,
 };
+use crate::observability::{
+    Defined, Reduction, Spectrum, State, certain_rank, kernel, rank, singular_values,
+};
 use dashu::rational::RBig;
-
-/// How a rank is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Certainty {
-    /// Proved for the very state.
-    Certified,
-    /// By numbers that round, or that cannot tell zero from very small.
-    Computed,
-}
 
 /// The bits of enclosures, one after the other.
 const PRECISE: [usize; 2] = [128, 512];

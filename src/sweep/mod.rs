@@ -1,0 +1,24 @@
+//! The rank at many states: how certain it is at each, on the cheapest rung of the ladder of numbers that can tell, and what is
+//! seen of all of them together.
+//!
+//! [`answer_rank`] takes a whole question; [`sweep`] decides every state that a [`Locus`](crate::observability::Locus) draws,
+//! once by singular values (*computed*) and once by exact arithmetic at that very state (*certified*); a [`Stream`] does so
+//! eight states at a time, and leaves to [`Judge`] those that it cannot decide.
+//!
+//! This floor knows nothing of claims or palms.
+
+mod certainty;
+mod digits;
+mod ladder;
+mod question;
+mod states;
+mod stream;
+
+pub use certainty::Certainty;
+pub use digits::{Digits, MOST_DIGITS, NoDigits};
+pub use ladder::{Judge, Judged, StateReport};
+pub use question::{BranchAnswer, RankAnswer, RankQuestion, TakenRow, answer_rank};
+pub use states::{RecordedState, SweepOptions, SweepReport, UnseenDirection, sweep};
+pub use stream::{
+    DECADES, Elimination, Jacobi, StatesError, Stream, StreamOptions, StreamReport, Verdict, Verdicts,
+};
