@@ -1,7 +1,7 @@
 //! Answers about ranks, as JSON and as text.
 
-use super::claims::{values_json, values_text};
 use crate::observability::{Spectrum, Stop};
+use crate::report::claims::outcomes::{values_json, values_text};
 use crate::sweep::{BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, SweepReport};
 use crate::system::FieldRole;
 use serde_json::{Value, json};

@@ -1,16 +1,16 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
-use super::observe::{Observed, ended_in_words, fault_lines, method_name};
-use super::observe_frames::{frames, recovered_outline};
-use super::observe_plot::{errors, sensor_errors, state};
-use super::observe_shape::{outline, shown};
-use super::observe_study_plot as study_plot;
-use super::observe_table::{ends, noise_table, notes, pace, updates};
 use crate::experiment::{ARRIVED, NOMINAL, Shape, error};
+use crate::report::motion::answers::{Observed, ended_in_words, fault_lines, method_name};
+use crate::report::motion::frames::{frames, recovered_outline};
+use crate::report::motion::plot::{errors, sensor_errors, state};
+use crate::report::motion::shape::{outline, shown};
+use crate::report::motion::study_plot;
+use crate::report::motion::table::{ends, noise_table, notes, pace, updates};
 use maud::{Markup, PreEscaped, html};
 
 /// Experiments, as a section of the page of the thesis.
-pub(super) fn observed_section(experiments: &[Observed<'_>]) -> Markup {
+pub(in crate::report) fn observed_section(experiments: &[Observed<'_>]) -> Markup {
     html! {
         section #observers {
             h2 { "Bodies in motion" }

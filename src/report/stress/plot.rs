@@ -1,6 +1,6 @@
 //! Pictures of the extremes: for every set and every way a bar from far to near, coloured by what its verdict is worth.
 
-use super::plot::{INK, svg};
+use crate::report::plot::{INK, svg};
 use crate::tradeoff::stress::{End, Mark, Study, Way};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

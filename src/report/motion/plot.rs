@@ -1,8 +1,8 @@
 //! What observers made of an experiment, over time: as figure 4.4, and the errors beside the bound.
 
-use super::observe::{Observed, method_name};
-use super::observe_curves::{Curve, Frame, Shown, draw};
 use crate::experiment::Answer;
+use crate::report::motion::answers::{Observed, method_name};
+use crate::report::motion::curves::{Curve, Frame, Shown, draw};
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 

@@ -1,9 +1,9 @@
 //! Certificates on regions, as JSON and as text.
 
-use super::ranks::{fields_json, fields_text};
 use crate::certificate::{OpenBox, PartAnswer, RegionAnswer, Standing, Vanishing};
 use crate::number::rational_from_f64;
 use crate::observability::AVOIDED;
+use crate::report::ranks::answer::{fields_json, fields_text};
 use dashu::rational::RBig;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -199,7 +199,7 @@ fn shortened(factor: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::percent;
+    use crate::report::certificate::percent;
 
     #[test]
     fn percents_are_rounded_down() {

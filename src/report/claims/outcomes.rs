@@ -1,8 +1,8 @@
 //! Outcomes of claims, in three notations.
 
-use super::ranks::{fields_json, fields_text};
 use crate::claim::{AtFilesValues, Outcome, Verdict, Witness};
 use crate::number::{parse_decimal, rational_to_f64, round_to_decimal};
+use crate::report::ranks::answer::{fields_json, fields_text};
 use crate::system::{Basis, Flaw};
 use dashu::rational::RBig;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};

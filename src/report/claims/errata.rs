@@ -1,9 +1,9 @@
 //! The errata as a text that a code host shows: for each the equation as printed, as it should be, and a state in exact
 //! numbers with both values.
 
-use super::claims::{error_bound, explanations, special_text, with_decimal};
-use super::words::{meaning, words_markdown};
 use crate::claim::{Outcome, Verdict, Witness};
+use crate::report::claims::outcomes::{error_bound, explanations, special_text, with_decimal};
+use crate::report::claims::words::{meaning, words_markdown};
 use crate::system::{Basis, Flaw};
 use crate::verification::{Equation, equations, in_order_of_the_thesis};
 use std::fmt::Write;

@@ -1,6 +1,6 @@
 //! Speed against accuracy, as a picture.
 
-use super::plot::{INK, svg};
+use crate::report::plot::{INK, svg};
 use crate::tradeoff::{Combination, Derivative, Digits, Number, Trade};
 use plotters::coord::CoordTranslate;
 use plotters::prelude::*;

@@ -1,8 +1,8 @@
 //! Curves of several observers in one frame: their looks, the axes, and what of a curve fits between these.
 
-use super::observe::method_name;
-use super::plot::{INK, svg};
 use crate::experiment::Method;
+use crate::report::motion::answers::method_name;
+use crate::report::plot::{INK, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 

@@ -1,6 +1,6 @@
 //! The extremes, as JSON and as tables.
 
-use super::stress_plot::{conditioning_picture, lines_picture, ranks_text, scalings_picture};
+use crate::report::stress::plot::{conditioning_picture, lines_picture, ranks_text, scalings_picture};
 use crate::tradeoff::stress::{Conditioning, End, First, Line, OnTheSet, Scaling, Study, UnitsRow, Way};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;

@@ -1,10 +1,10 @@
 //! Studies of observers as pictures: the error over noise beside its bound, and the first guesses from which a method arrives.
 
-use super::observe::{Observed, method_name};
-use super::observe_curves::number;
-use super::observe_plot::unit_of;
-use super::plot::{INK, svg};
 use crate::experiment::Basin;
+use crate::report::motion::answers::{Observed, method_name};
+use crate::report::motion::curves::number;
+use crate::report::motion::plot::unit_of;
+use crate::report::plot::{INK, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 

@@ -1,9 +1,9 @@
 //! Pictures of the body between its palms, and of the outline that was recovered.
 
-use super::observe::Observed;
-use super::observe_shape::{Instant, Outline, turned};
-use super::plot::{Drawing, INK, svg};
 use crate::mechanics::moving::Shape;
+use crate::report::motion::answers::Observed;
+use crate::report::motion::shape::{Instant, Outline, turned};
+use crate::report::plot::{Drawing, INK, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 

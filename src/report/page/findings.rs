@@ -1,12 +1,12 @@
 //! The main job's findings as JSON and as lines for the terminal.
 
-use super::claims::{claim_json, claim_line};
-use super::observe::{Observed, observe_json};
-use super::ranks::rank_json;
-use super::region::region_json;
-use super::stress::stress_json;
-use super::trade::trade_json;
-use super::words::{counts, counts_text, errors};
+use crate::report::certificate::answer::region_json;
+use crate::report::claims::outcomes::{claim_json, claim_line};
+use crate::report::claims::words::{counts, counts_text, errors};
+use crate::report::motion::answers::{Observed, observe_json};
+use crate::report::ranks::answer::rank_json;
+use crate::report::stress::answer::stress_json;
+use crate::report::trade::answer::trade_json;
 use crate::sweep::RankAnswer;
 use crate::system::Flaw;
 use crate::tradeoff::{Map, Rows, Slope};

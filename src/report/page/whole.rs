@@ -1,14 +1,14 @@
 //! The page that the main job writes: one file, with its plots and nothing from elsewhere.
 
-use super::claims::{error_bound, explanations, special_text, witness_line};
-use super::extremes::extremes;
-use super::observe::Observed;
-use super::observe_section::observed_section;
-use super::plot;
-use super::ranks::fields_text;
-use super::verification::ranks_in_words;
-use super::words::{RULE_OF_DAMAGE, counts, errors, meaning};
 use crate::claim::{Outcome, Verdict};
+use crate::report::claims::outcomes::{error_bound, explanations, special_text, witness_line};
+use crate::report::claims::words::{RULE_OF_DAMAGE, counts, errors, meaning};
+use crate::report::motion::answers::Observed;
+use crate::report::motion::section::observed_section;
+use crate::report::page::extremes::extremes;
+use crate::report::page::findings::ranks_in_words;
+use crate::report::plot;
+use crate::report::ranks::answer::fields_text;
 use crate::sweep::RankAnswer;
 use crate::system::Flaw;
 use crate::tradeoff::Rows;
@@ -17,7 +17,7 @@ use crate::verification::{
 };
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-const STYLE: &str = include_str!("page.css");
+const STYLE: &str = include_str!("../page.css");
 
 /// The page as HTML.
 pub fn page(found: &Verification) -> String {

@@ -1,7 +1,7 @@
 //! Certificates on regions, as pictures.
 
-use super::plot::{INK, svg};
 use crate::certificate::{RegionAnswer, RegionMap, Standing};
+use crate::report::plot::{INK, svg};
 use plotters::prelude::*;
 
 const LINE: RGBColor = RGBColor(0, 114, 178);

@@ -1,11 +1,13 @@
 //! The page of an experiment.
 
-use super::observe::Observed;
-use super::observe_section::{body_pictures, faults, sensor_pictures, state_pictures, studies, summary};
-use super::observe_table::{ends, notes, updates};
+use crate::report::motion::answers::Observed;
+use crate::report::motion::section::{
+    body_pictures, faults, sensor_pictures, state_pictures, studies, summary,
+};
+use crate::report::motion::table::{ends, notes, updates};
 use maud::{DOCTYPE, PreEscaped, html};
 
-const STYLE: &str = include_str!("page.css");
+const STYLE: &str = include_str!("../page.css");
 
 /// The page as HTML.
 pub fn observe_page(observed: &Observed<'_>) -> String {
@@ -49,8 +51,8 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
 mod tests {
     use super::*;
     use crate::experiment::{BasinStudy, Experiment, NoiseStudy, Scene, basins, noise_study};
-    use crate::report::observe_section::observed_section;
-    use crate::report::observe_shape::outline;
+    use crate::report::motion::section::observed_section;
+    use crate::report::motion::shape::outline;
     use std::sync::atomic::AtomicBool;
 
     const SCENE: &str = r#"

@@ -1,11 +1,11 @@
 //! The part of the page that is about speed, accuracy and the extremes.
 
-use super::region::region_text;
-use super::region_plot::{region_curve, region_map};
-use super::stress::stress_pictures;
-use super::trade::{TRADE_FRONT_HEADINGS, trade_front_table};
-use super::trade_plot::trade_plot;
 use crate::certificate::RegionAnswer;
+use crate::report::certificate::answer::region_text;
+use crate::report::certificate::plot::{region_curve, region_map};
+use crate::report::stress::answer::stress_pictures;
+use crate::report::trade::answer::{TRADE_FRONT_HEADINGS, trade_front_table};
+use crate::report::trade::plot::trade_plot;
 use crate::tradeoff::Trade;
 use crate::tradeoff::stress::Study;
 use crate::verification::Verification;

@@ -1,9 +1,9 @@
 //! What each observer found, as tables: at the end, update by update, and what it could not see.
 
-use super::observe::{Observed, method_name, standing_name};
-use super::observe_plot::unit_of;
 use crate::experiment::{Answer, error};
 use crate::observer::{Standing, Update};
+use crate::report::motion::answers::{Observed, method_name, standing_name};
+use crate::report::motion::plot::unit_of;
 use maud::{Markup, html};
 
 /// More updates than these are in the JSON only.

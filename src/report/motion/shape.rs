@@ -2,10 +2,10 @@
 //!
 //! This is geometry of two flat palms about the origin; what is true comes only from the simulation.
 
-use super::observe::Observed;
 use crate::experiment::{Answer, Experiment, Method};
 use crate::mechanics::moving::Shape;
 use crate::number::rational_to_f64;
+use crate::report::motion::answers::Observed;
 use std::f64::consts::TAU;
 
 /// The palms, and what was recovered between them, at one sample.

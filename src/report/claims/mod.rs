@@ -1,0 +1,9 @@
+//! Claims: their outcomes as lines, JSON and JUnit, what their words are counted as, and the errata.
+
+pub(super) mod errata;
+pub(super) mod outcomes;
+pub(super) mod words;
+
+pub use errata::errata_markdown;
+pub use outcomes::{claim_json, claim_line, junit};
+pub use words::counts_text;

@@ -1,0 +1,14 @@
+//! Bodies in motion and what observers made of them.
+
+pub(super) mod answers;
+pub(super) mod curves;
+pub(super) mod frames;
+pub(super) mod page;
+pub(super) mod plot;
+pub(super) mod section;
+pub(super) mod shape;
+pub(super) mod study_plot;
+pub(super) mod table;
+
+pub use answers::{Observed, ended_in_words, fault_lines, method_name, observe_json, observe_text};
+pub use page::observe_page;

@@ -1,0 +1,7 @@
+//! Speed against accuracy.
+
+pub(super) mod answer;
+pub(super) mod plot;
+
+pub use answer::{TRADE_FRONT_HEADINGS, trade_front_table, trade_json, trade_text};
+pub use plot::trade_plot;
