@@ -6,8 +6,8 @@
 //! one (of these the largest) with its minor.
 
 use super::boxes::{DEEPEST, Side, Volume};
-use super::certificate::Region;
 use super::progress::{Progress, Searches};
+use super::region::Region;
 use super::search::{Cell, ProvedCell, Search, Turn};
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write;

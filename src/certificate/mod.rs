@@ -15,7 +15,6 @@
 
 mod answer;
 mod boxes;
-mod certificate;
 mod choice;
 mod cleared;
 mod collector;
@@ -28,6 +27,7 @@ mod part;
 mod problem;
 mod progress;
 mod proved;
+mod region;
 mod search;
 mod slots;
 mod tally;
@@ -35,7 +35,7 @@ mod tape;
 
 pub use answer::{OpenBox, PartAnswer, Patch, RegionAnswer, RegionMap, RegionMinor, Standing, Vanishing};
 pub use boxes::FreeCoordinate;
-pub use certificate::{Region, certify_region};
 pub use problem::RegionRows;
 pub use progress::{Limits, Progress};
 pub use proved::{HeldSymbol, ProvedBox, RegionRow};
+pub use region::{Region, certify_region};

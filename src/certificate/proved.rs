@@ -2,7 +2,7 @@
 //! each with the rows of the minor by which it was proved.
 
 use super::boxes::Side;
-use super::certificate::Region;
+use super::region::Region;
 use crate::expression::{Guard, NodeId, Symbol};
 use dashu::integer::UBig;
 use dashu::rational::RBig;

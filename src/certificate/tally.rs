@@ -2,9 +2,9 @@
 
 use super::answer::{OpenBox, PartAnswer, Patch, RegionAnswer, RegionMap, RegionMinor, Standing, Vanishing};
 use super::boxes::{FreeCoordinate, Side, Volume};
-use super::certificate::Region;
 use super::explain::{Why, explain, sampled_volume};
 use super::part::Part;
+use super::region::Region;
 use super::search::Search;
 use crate::expression::Symbol;
 use crate::number::{Interval, Real};
