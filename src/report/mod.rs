@@ -5,6 +5,7 @@
 mod certificate;
 mod claims;
 mod motion;
+mod names;
 mod page;
 mod plot;
 mod ranks;

@@ -1,10 +1,9 @@
 //! Outcomes of claims, in three notations.
 
 use crate::claim::{AtFilesValues, Outcome, Verdict, Witness};
-use crate::number::{parse_decimal, rational_to_f64, round_to_decimal};
-use crate::report::ranks::answer::{fields_json, fields_text};
+use crate::number::{parse_decimal, rational_to_f64};
+use crate::report::names::{fields_json, fields_text, values_json, values_text};
 use crate::system::{Basis, Flaw};
-use dashu::rational::RBig;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde_json::{Value, json};
 
@@ -114,29 +113,6 @@ pub(crate) fn with_decimal(value: &str) -> String {
 
 fn special_json(special: &AtFilesValues) -> Value {
     json!({ "values": values_json(&special.values), "verdict": special.word })
-}
-
-/// Names and exact values, as people write them.
-pub(crate) fn values_json(values: &[(String, RBig)]) -> Value {
-    let each = values.iter().map(|(name, value)| (name.clone(), json!(plain_number(value))));
-    each.collect::<serde_json::Map<_, _>>().into()
-}
-
-/// The same in words: `g = -9.81, m = 1`.
-pub(crate) fn values_text(values: &[(String, RBig)]) -> String {
-    let each: Vec<String> =
-        values.iter().map(|(name, value)| format!("{name} = {}", plain_number(value))).collect();
-    each.join(", ")
-}
-
-/// A rational as a decimal where a short one is exact, else as a fraction.
-pub(crate) fn plain_number(value: &RBig) -> String {
-    let decimal = round_to_decimal(value, 20);
-    let short = match decimal.contains('.') && !decimal.contains('e') {
-        true => decimal.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => decimal,
-    };
-    if parse_decimal(&short).as_ref() == Some(value) { short } else { value.to_string() }
 }
 
 /// That a statement has another verdict where its parameters have the values of the file.

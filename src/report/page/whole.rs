@@ -5,10 +5,10 @@ use crate::report::claims::outcomes::{error_bound, explanations, special_text, w
 use crate::report::claims::words::{RULE_OF_DAMAGE, counts, errors, meaning};
 use crate::report::motion::answers::Observed;
 use crate::report::motion::section::observed_section;
+use crate::report::names::fields_text;
 use crate::report::page::extremes::extremes;
 use crate::report::page::findings::ranks_in_words;
 use crate::report::plot;
-use crate::report::ranks::answer::fields_text;
 use crate::sweep::RankAnswer;
 use crate::system::Flaw;
 use crate::tradeoff::Rows;
