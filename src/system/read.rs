@@ -8,7 +8,7 @@ use super::written::{Scope, Written, in_one_line, places_in};
 use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Expr, Name, Relation, Span};
 use crate::expression::{Derivation, Graph, Guard, Symbol, parse_expression};
-use crate::file::{ReadFailure, read_text};
+use crate::file::{self, ReadFailure, read_text};
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ impl System {
     pub fn parse(name: &str, text: &str, folder: &Path) -> Result<System, ReadError> {
         let text = with_plain_line_ends(text);
         let mut reading = Reading::default();
-        reading.open.extend(Path::new(name).canonicalize());
+        reading.open.extend(file::identity(Path::new(name)));
         // what an imported file refers to is looked for where that file itself is read
         System::build(name, &text, folder, Graph::default(), &mut reading)
             .and_then(|system| system.check_references(folder).map(|()| system))
@@ -440,7 +440,7 @@ impl System {
     ) -> Result<(), Problem> {
         let refuse = |message: String| Problem::new(span, message, "this file");
         let place =
-            path.canonicalize().map_err(|e| refuse(format!("cannot read {}: {e}", path.display())))?;
+            file::identity(path).map_err(|e| refuse(format!("cannot read {}: {e}", path.display())))?;
         if let Some(begin) = reading.open.iter().position(|open| *open == place) {
             let round = reading.open[begin..].iter().chain([&place]);
             let names: Vec<String> = round.map(|file| name_of(file)).collect();
