@@ -88,6 +88,10 @@ impl System {
             output_guards: Vec::new(),
             avoid: Vec::new(),
             claims: Vec::new(),
+            sets: Vec::new(),
+            maps: Vec::new(),
+            lines: Vec::new(),
+            reductions: Vec::new(),
             symbols: BTreeMap::new(),
             definitions: BTreeMap::new(),
             definition_domains: HashMap::new(),
@@ -214,6 +218,7 @@ impl System {
             }
             Item::Sample { ranges, avoid } => self.sample(&ranges, &avoid)?,
             Item::Claim(claim) => self.claims.push(*claim),
+            Item::View(view) => self.enter_view(*view)?,
         }
         Ok(())
     }
@@ -269,6 +274,13 @@ impl System {
             }
             if let Some(within) = &statement.equation.within {
                 self.scalar(within)?;
+            }
+            if statement.carried.is_some() {
+                let is_print = statement.equation.right.is_literal();
+                if !is_print || !of_numbers || relation != Relation::Equal {
+                    let message = "'carrying ... digits' is said of a number in print, as in e at {x = 1} = 2.718 carrying 10 digits";
+                    return Err(Problem::new(&statement.span, message, "this claim"));
+                }
             }
         }
         Ok(())
@@ -439,13 +451,13 @@ impl System {
             let message = "a name with a dot belongs to what an imported system imports";
             return Err(Problem::new(&alias.span, message, "choose one without"));
         }
-        if self.aliases.contains(&alias.text) {
+        if self.aliases.iter().any(|(known, _)| *known == alias.text) {
             let message = format!("'{}' is the name of an imported system already", alias.text);
             return Err(
                 Problem::new(&alias.span, message, "the second one").help("choose another name for this one")
             );
         }
-        self.aliases.push(alias.text.clone());
+        self.aliases.push((alias.text.clone(), path.to_owned()));
         let other = match reading.done.get(&place) {
             Some(known) => known.clone(),
             None if reading.open.len() > DEEPEST_IMPORT => {
