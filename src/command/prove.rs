@@ -6,7 +6,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::claim::{Kept, decide_all_keeping};
-use palmistry::report::{claim_json, claim_line, counts_text, junit};
+use palmistry::report::{claim_json, claim_line, counts_text, junit, statement_latex};
 use palmistry::{Outcome, System};
 use serde_json::json;
 use std::collections::HashMap;
@@ -34,6 +34,9 @@ pub(crate) struct Prove {
     /// Write what the verdicts rest on to a file that 'palmistry recheck' checks alone.
     #[arg(long, value_name = "FILE")]
     verdicts: Option<PathBuf>,
+    /// Give each statement in LaTeX too: a line of its own, or 'latex' in the JSON.
+    #[arg(long)]
+    latex: bool,
     /// Seed of the random points.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -98,6 +101,18 @@ impl Prove {
         Ok(())
     }
 
+    /// An outcome as JSON, with its formulas where they are asked for.
+    fn claim(&self, outcome: &Outcome) -> serde_json::Value {
+        let mut object = claim_json(outcome);
+        if self.latex {
+            object["latex"] = json!(statement_latex(&outcome.statement));
+            if let Some((printed, _)) = &outcome.printed {
+                object["printed"]["latex"] = json!(statement_latex(printed));
+            }
+        }
+        object
+    }
+
     /// Prints and writes what is decided, in the order of the files.
     fn tell(&self, decided: &Mutex<Decided>) -> miette::Result<Status> {
         let Decided { claims, places, mut outcomes } = std::mem::take(&mut *hold(decided));
@@ -117,11 +132,11 @@ impl Prove {
             "ok": failed == 0 && !interrupted(),
             "interrupted": interrupted(),
             "seed": self.seed,
-            "claims": outcomes.iter().map(claim_json).collect::<Vec<_>>(),
+            "claims": outcomes.iter().map(|outcome| self.claim(outcome)).collect::<Vec<_>>(),
         });
         let all = failed == 0 && claims > 0 && outcomes.len() == claims;
         let status = if all { Status::AsExpected } else { Status::NotAsExpected };
-        files.print(Form::of(self.json), object, || in_words(&outcomes, claims), status)
+        files.print(Form::of(self.json), object, || in_words(&outcomes, claims, self.latex), status)
     }
 }
 
@@ -130,7 +145,7 @@ fn hold(decided: &Mutex<Decided>) -> std::sync::MutexGuard<'_, Decided> {
 }
 
 /// The outcomes, a line each, and their number.
-fn in_words(outcomes: &[Outcome], claims: usize) -> String {
+fn in_words(outcomes: &[Outcome], claims: usize, latex: bool) -> String {
     let mut text = String::new();
     let mut file = "";
     for outcome in outcomes {
@@ -139,6 +154,9 @@ fn in_words(outcomes: &[Outcome], claims: usize) -> String {
             let _ = writeln!(text, "{file}");
         }
         let _ = writeln!(text, "{}", claim_line(outcome));
+        if let Some(formula) = latex.then(|| statement_latex(&outcome.statement)).flatten() {
+            let _ = writeln!(text, "         {:<10} {formula}", "latex");
+        }
     }
     let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
     let _ = write!(text, "{} claims: {}; {failed} not as expected", outcomes.len(), counts_text(outcomes));

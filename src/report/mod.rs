@@ -4,6 +4,7 @@
 
 mod certificate;
 mod claims;
+mod formula;
 mod motion;
 mod page;
 mod plot;
@@ -13,6 +14,7 @@ mod trade;
 
 pub use certificate::{percent, region_curve, region_json, region_map, region_text};
 pub use claims::{claim_json, claim_line, counts_text, errata_markdown, junit};
+pub use formula::{conditions_mathml, definition_mathml, expression_latex, formula_mathml, statement_latex};
 pub use motion::{
     Observed, ended_in_words, fault_lines, method_name, observe_json, observe_page, observe_text,
 };
