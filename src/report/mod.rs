@@ -4,6 +4,7 @@
 
 mod certificate;
 mod claims;
+mod drawing;
 mod formula;
 mod motion;
 mod page;

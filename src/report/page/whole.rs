@@ -250,7 +250,7 @@ fn regime(index: usize, result: &RegimeResult) -> Markup {
                 div.pair {
                     @for (kind, map) in &result.maps {
                         @let title = if *kind == Rows::Own { "the thesis's own rows" } else { "the full codistribution" };
-                        (PreEscaped(plot::map(map, title)))
+                        (PreEscaped(plot::map(map, title, [None, None])))
                     }
                 }
                 figcaption {
@@ -260,7 +260,7 @@ fn regime(index: usize, result: &RegimeResult) -> Markup {
                 }
             }
             figure {
-                div.grid { @for (title, slope) in &result.lines { (PreEscaped(plot::slope(slope, title))) } }
+                div.grid { @for (title, slope) in &result.lines { (PreEscaped(plot::slope(slope, title, None))) } }
                 figcaption {
                     "The singular values of the thesis's own rows on the way into a singularity; the smallest in red. "
                     "Distances are in the coordinate that moves."
