@@ -4,6 +4,8 @@
 
 mod certificate;
 mod claims;
+mod drawing;
+mod formula;
 mod layout;
 mod motion;
 mod page;
@@ -14,9 +16,10 @@ mod trade;
 
 pub use certificate::{percent, region_curve, region_json, region_map, region_text};
 pub use claims::{
-    ClaimsSummary, Shown, claim_json, claim_line, claim_text, claims_text, counts_text, errata_markdown,
-    junit,
+    ClaimsForm, ClaimsSummary, Shown, claim_json, claim_line, claim_text, claims_text, counts_text,
+    errata_markdown, junit,
 };
+pub use formula::{conditions_mathml, definition_mathml, expression_latex, formula_mathml, statement_latex};
 pub use layout::{Colour, Layout, Tone};
 pub use motion::{
     Observed, ended_in_words, fault_lines, method_name, observe_json, observe_page, observe_text,

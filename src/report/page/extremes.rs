@@ -40,7 +40,7 @@ fn certified(regions: &[&RegionAnswer]) -> Markup {
                 summary { (region_text(answer).lines().take(2).collect::<Vec<_>>().join(": ")) }
                 pre { (region_text(answer)) }
                 figure { (PreEscaped(region_curve(answer, "proved"))) }
-                @if let Some(map) = &answer.map { figure { (PreEscaped(region_map(map, "the box, in two coordinates"))) } }
+                @if let Some(map) = &answer.map { figure { (PreEscaped(region_map(map, "the box, in two coordinates", [None, None]))) } }
             }
         }
     }

@@ -246,7 +246,7 @@ fn file_section(index: usize, file: &FileFindings) -> Markup {
                     div.pair {
                         @for (kind, drawn) in &map.maps {
                             @let title = if *kind == Rows::Own { "the file's own rows" } else { "the full codistribution" };
-                            (PreEscaped(plot::map(drawn, title)))
+                            (PreEscaped(plot::map(drawn, title, [None, None])))
                         }
                     }
                     figcaption {
@@ -259,7 +259,7 @@ fn file_section(index: usize, file: &FileFindings) -> Markup {
             }
             @if !file.lines.is_empty() {
                 figure {
-                    div.grid { @for line in &file.lines { (PreEscaped(plot::slope(&line.slope, &line.view.title))) } }
+                    div.grid { @for line in &file.lines { (PreEscaped(plot::slope(&line.slope, &line.view.title, None))) } }
                     figcaption {
                         "The singular values of the file's own rows (of the full codistribution where it has none) along lines; the "
                         "smallest in red. Distances are in the coordinate that moves."
