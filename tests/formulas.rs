@@ -6,7 +6,6 @@ use common::{folder, json, palmistry, write};
 use palmistry::System;
 use palmistry::report::{definition_mathml, formula_mathml, statement_latex};
 use serde_json::json;
-use std::path::Path;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/proofs");
 

@@ -19,7 +19,7 @@ pub use formula::{conditions_mathml, definition_mathml, expression_latex, formul
 pub use motion::{
     Observed, ended_in_words, fault_lines, method_name, observe_json, observe_page, observe_text,
 };
-pub use page::{page, printed_value_json, verification_json, verification_text};
+pub use page::{findings_json, findings_text, page, printed_value_json};
 pub use ranks::{rank_json, rank_text};
 pub use stress::{
     conditioning_picture, lines_picture, scalings_picture, stress_json, stress_pictures, stress_text,

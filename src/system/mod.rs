@@ -18,6 +18,7 @@ mod read;
 mod references;
 mod restates;
 mod standing;
+mod views;
 mod written;
 
 pub use error::ReadError;
@@ -28,4 +29,5 @@ pub use model::{
 };
 pub(crate) use read::load;
 pub use standing::{Basis, Flaw, Reference};
+pub use views::{LineEnd, LineView, MapView, NamedSet, Point, ReductionTo};
 pub(crate) use written::in_one_line;

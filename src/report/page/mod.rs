@@ -4,5 +4,5 @@ pub(super) mod extremes;
 pub(super) mod findings;
 pub(super) mod whole;
 
-pub use findings::{printed_value_json, verification_json, verification_text};
+pub use findings::{findings_json, findings_text, printed_value_json};
 pub use whole::page;

@@ -1,6 +1,7 @@
 //! The page that the main job writes: one file, with its plots and nothing from elsewhere.
 
 use crate::claim::{Outcome, Verdict};
+use crate::paper::{Derivatives, FileFindings, Findings, Numbering, ReductionFound};
 use crate::report::claims::outcomes::{error_bound, explanations, special_text, witness_line};
 use crate::report::claims::words::{RULE_OF_DAMAGE, counts, errors, meaning};
 use crate::report::motion::answers::Observed;
@@ -11,17 +12,16 @@ use crate::report::plot;
 use crate::report::ranks::answer::fields_text;
 use crate::sweep::RankAnswer;
 use crate::system::Flaw;
+use crate::tradeoff::PrintedExpression;
 use crate::tradeoff::Rows;
-use crate::verification::{
-    Appendix, DETERMINANT, RegimeResult, Verification, equations, in_order_of_the_thesis,
-};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("../page.css");
 
 /// The page as HTML.
-pub fn page(found: &Verification) -> String {
-    let failed = found.outcomes.iter().filter(|outcome| !outcome.ok).count();
+pub fn page(found: &Findings) -> String {
+    let outcomes: Vec<&Outcome> = found.outcomes().collect();
+    let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
     let experiments: Vec<Observed<'_>> =
         found.experiments.iter().map(|(experiment, answers)| Observed::of(experiment, answers)).collect();
     let content = html! {
@@ -30,23 +30,23 @@ pub fn page(found: &Verification) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Palmistry: what holds in Moll 2002, and what does not" }
+                title { (found.paper.title) ": what holds, and what does not" }
                 style { (PreEscaped(STYLE)) }
             }
             body {
                 header {
                     h1 { "What holds, and what does not" }
                     p {
-                        "M. Moll, " em { "Shape Reconstruction Using Active Tactile Sensors" }
-                        " (2002), checked from first principles: every numbered equation, the rank of every regime of chapter 4 "
-                        "on its singular sets, and the determinants of appendix A.2. "
+                        (PreEscaped(found.paper.reference(|title| html! { em { (title) } }.into_string())))
+                        @if let Some(source) = &found.paper.source { ", " (source) }
+                        ", checked from first principles. "
                         "Each verdict says what stands behind it: " b { "proved" } " is exact arithmetic with the "
                         "probability of an error stated, " b { "refuted" } " a state in exact numbers at which the two "
                         "sides differ, " b { "erratum" } " a printed form refuted and its corrected form proved. "
                         b { "Restated" } " is no proof: the two sides are one expression once names are put in."
                     }
                     ul.tally {
-                        @for (word, count) in counts(&found.outcomes) {
+                        @for (word, count) in counts(outcomes.iter().copied()) {
                             li title=(meaning(word)) { b { (count) } " " (word) }
                         }
                         li class=[(failed > 0).then_some("bad")] { b { (failed) } " not as expected" }
@@ -54,41 +54,46 @@ pub fn page(found: &Verification) -> String {
                     }
                     @if found.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
                     nav {
-                        a href="#equations" { "All equations" }
+                        @if found.paper.numbering.count() > 0 { a href="#equations" { "All equations" } }
                         a href="#errata" { "Errata" }
                         a href="#damage" { "Damage and wording" }
-                        @for (i, result) in found.regimes.iter().enumerate() {
-                            a href=(format!("#regime{i}")) { (result.title) }
+                        @for (i, file) in found.files.iter().enumerate().filter(|(_, file)| has_a_section(file)) {
+                            a href=(format!("#file{i}")) { (file.system.title) }
                         }
-                        a href="#appendix" { "Appendix A.2" }
-                        a href="#derivatives" { "Lie derivatives" }
                         a href="#extremes" { "Speed against accuracy" }
                         @if !experiments.is_empty() { a href="#observers" { "Bodies in motion" } }
                         a href="#claims" { "All claims" }
                     }
                 }
-                (all_equations(&found.outcomes))
-                (errata(&found.outcomes))
-                (damage(&found.outcomes))
-                @for (i, result) in found.regimes.iter().enumerate() { (regime(i, result)) }
-                @if let Some(values) = &found.appendix { (appendix(values, &found.outcomes)) }
-                (derivatives(found))
+                @if found.paper.numbering.count() > 0 { (all_equations(&found.paper.numbering, &outcomes)) }
+                (errata(&found.paper.numbering, &outcomes))
+                (damage(&found.paper.numbering, &outcomes))
+                @for (i, file) in found.files.iter().enumerate().filter(|(_, file)| has_a_section(file)) {
+                    (file_section(i, file))
+                }
                 (extremes(found))
                 @if !experiments.is_empty() { (observed_section(&experiments)) }
-                (all_claims(&found.outcomes))
+                (all_claims(&outcomes))
             }
         }
     };
     content.into_string()
 }
 
-fn errata(outcomes: &[Outcome]) -> Markup {
+fn has_a_section(file: &FileFindings) -> bool {
+    !file.ranks.is_empty()
+        || !file.printed.is_empty()
+        || !file.left_out.is_empty()
+        || file.derivatives.is_some()
+}
+
+fn errata(numbering: &Numbering, outcomes: &[&Outcome]) -> Markup {
     html! {
         section #errata {
             h2 { "Errata" }
             p { "The printed form is refuted by a state that a pocket calculator can check; the corrected form is proved." }
-            p { (errors(outcomes, Flaw::Erratum).text("erratum")) }
-            @for outcome in in_order_of_the_thesis(outcomes.iter().filter(|o| o.fault == Some(Flaw::Erratum))) {
+            p { (errors(numbering, outcomes.iter().copied(), Flaw::Erratum).text("erratum")) }
+            @for outcome in numbering.in_order(outcomes.iter().copied().filter(|o| o.fault == Some(Flaw::Erratum))) {
                 (fault_entry(outcome, Flaw::Erratum))
             }
         }
@@ -126,8 +131,8 @@ fn fault_entry(outcome: &Outcome, fault: Flaw) -> Markup {
 }
 
 /// One cell for each numbered equation, coloured by its verdict.
-fn all_equations(outcomes: &[Outcome]) -> Markup {
-    let all = equations(outcomes);
+fn all_equations(numbering: &Numbering, outcomes: &[&Outcome]) -> Markup {
+    let all = numbering.equations(outcomes.iter().copied());
     let mut words: Vec<&str> = all.iter().map(|equation| equation.word()).collect();
     words.sort_unstable();
     words.dedup();
@@ -154,16 +159,16 @@ fn class_of(word: &str) -> String {
 }
 
 /// What is not, or not for sure, the author's mistake.
-fn damage(outcomes: &[Outcome]) -> Markup {
+fn damage(numbering: &Numbering, outcomes: &[&Outcome]) -> Markup {
     html! {
         section #damage {
             h2 { "Damage and wording" }
             p { (RULE_OF_DAMAGE.replace('*', "")) }
             @for fault in Flaw::ALL.into_iter().filter(|fault| *fault != Flaw::Erratum) {
-                @let of_kind = in_order_of_the_thesis(outcomes.iter().filter(|o| o.fault == Some(fault)));
+                @let of_kind = numbering.in_order(outcomes.iter().copied().filter(|o| o.fault == Some(fault)));
                 @if !of_kind.is_empty() {
                     details {
-                        summary { (errors(outcomes, fault).text(fault.word())) ": " (meaning(fault.word())) }
+                        summary { (errors(numbering, outcomes.iter().copied(), fault).text(fault.word())) ": " (meaning(fault.word())) }
                         @for outcome in of_kind { (fault_entry(outcome, fault)) }
                     }
                 }
@@ -208,29 +213,76 @@ fn distinct_words(answer: &RankAnswer) -> Vec<String> {
     found
 }
 
-fn regime(index: usize, result: &RegimeResult) -> Markup {
+fn reduction(found: &ReductionFound) -> Markup {
+    let proved = found.claims.iter().filter(|outcome| outcome.ok).count();
     html! {
-        section #(format!("regime{index}")) {
-            h2 { (result.title) }
-            p { "Left out: " (result.regime.left_out) "." }
-            @if let Some(c) = &result.comparison {
-                p {
-                    (c.small_states) " states instead of " (c.large_states) ". That the general regime becomes this one is "
-                    "proved among the claims (" code { "reduce.*" } "); numerically the Lie derivatives' differentials agree to "
-                    (format!("{:.0e}", c.largest_difference.max(f64::EPSILON))) " relative. One state's matrix and singular values take "
-                    b { (format!("{:.1}", c.large_seconds / c.small_seconds)) } " times as long with all ten states ("
+        p {
+            "This is " em { (found.of) } " where " code { (found.reduction.written.join(", ")) } ": "
+            b { (proved) } " of " (found.claims.len()) " statements proved (the conditions stay met, what is left out stays as it "
+            "is, fields and differentials are the same). Left out: " (found.left_out.join(", ")) "."
+            @if let Some(remark) = &found.reduction.remark { " " (remark) "." }
+            @match &found.comparison {
+                Ok(c) => {
+                    " " (c.small_states) " states instead of " (c.large_states) "; differentials agree to "
+                    (format!("{:.0e}", c.largest_difference.max(f64::EPSILON))) " relative. One state's matrix and singular values "
+                    "take " b { (format!("{:.1}", c.large_seconds / c.small_seconds)) } " times as long with all states ("
                     (c.large_operations) " operations against " (c.small_operations) ")."
                 }
+                Err(why) => { " Not counted: " (why) "." }
             }
+        }
+    }
+}
+
+fn file_section(index: usize, file: &FileFindings) -> Markup {
+    html! {
+        section #(format!("file{index}")) {
+            h2 { (file.system.title) }
+            @for found in &file.reductions { (reduction(found)) }
+            @for left in &file.left_out { p.bad { "Not done: " (left.what) ": " (left.why) } }
+            @if !file.ranks.is_empty() { (ranks(file)) }
+            @for map in &file.maps {
+                figure {
+                    div.pair {
+                        @for (kind, drawn) in &map.maps {
+                            @let title = if *kind == Rows::Own { "the file's own rows" } else { "the full codistribution" };
+                            (PreEscaped(plot::map(drawn, title, [None, None])))
+                        }
+                    }
+                    figcaption {
+                        b { (map.view.title) ". " }
+                        "The smallest singular value (of what remains without unit rows, equilibrated; computed, not certified) over "
+                        "two coordinates. "
+                        @if let Some(caption) = &map.view.caption { (caption) }
+                    }
+                }
+            }
+            @if !file.lines.is_empty() {
+                figure {
+                    div.grid { @for line in &file.lines { (PreEscaped(plot::slope(&line.slope, &line.view.title, None))) } }
+                    figcaption {
+                        "The singular values of the file's own rows (of the full codistribution where it has none) along lines; the "
+                        "smallest in red. Distances are in the coordinate that moves."
+                    }
+                }
+            }
+            @for printed in &file.printed { (printed_numbers(printed, &file.outcomes)) }
+            @if let Some(found) = &file.derivatives { (derivatives(found)) }
+        }
+    }
+}
+
+fn ranks(result: &FileFindings) -> Markup {
+    html! {
             div.scroll { table {
                 thead { tr {
                     th { "states" } th { "sampled" } th { "certified" } th { "rank, full codistribution" } th { "words needed" }
-                    th { "not seen" } th { "rank, thesis's own rows" } th { "not seen by these" } th { "worst condition" }
+                    th { "not seen" } th { "rank, the file's own rows" } th { "not seen by these" } th { "worst condition" }
                 } }
                 tbody {
-                    @for (set, found) in &result.ranks {
-                        tr { td { (set.title) @if !set.conditions.is_empty() { br; code { (set.conditions.join(", ")) } } }
-                        @match found {
+                    @for rank in &result.ranks {
+                        tr { td { (rank.name()) @if let Some(set) = &rank.set { br; code { (set.written.join(", ")) } } }
+                        @match &rank.found {
                             Ok(answer) => {
                                 td.number { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
                                 td.number { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
@@ -246,27 +298,6 @@ fn regime(index: usize, result: &RegimeResult) -> Markup {
                     }
                 }
             } }
-            figure {
-                div.pair {
-                    @for (kind, map) in &result.maps {
-                        @let title = if *kind == Rows::Own { "the thesis's own rows" } else { "the full codistribution" };
-                        (PreEscaped(plot::map(map, title, [None, None])))
-                    }
-                }
-                figcaption {
-                    "The smallest singular value (of what remains without unit rows, equilibrated; computed, not certified) over two "
-                    "coordinates. "
-                    (result.regime.picture.caption)
-                }
-            }
-            figure {
-                div.grid { @for (title, slope) in &result.lines { (PreEscaped(plot::slope(slope, title, None))) } }
-                figcaption {
-                    "The singular values of the thesis's own rows on the way into a singularity; the smallest in red. "
-                    "Distances are in the coordinate that moves."
-                }
-            }
-        }
     }
 }
 
@@ -278,19 +309,21 @@ fn worst(answer: &RankAnswer) -> String {
     }
 }
 
-fn appendix(found: &Appendix, outcomes: &[Outcome]) -> Markup {
+fn printed_numbers(found: &PrintedExpression, outcomes: &[Outcome]) -> Markup {
+    let digits = found.values.first().map_or(0, |value| value.carried);
     html! {
-        section #appendix {
-            h2 { "The appendix's determinants" }
-            p {
-                "Multiplied out over its common denominator, as a computer-algebra system's " code { "simplify" }
-                " leaves it, the determinant has " b { (found.monomials) } " monomials: "
-                code { (found.front) " * (" (found.beginning) ") / (" (denominator(found)) ")" } "."
+            h3 { "Numbers in print: " code { (found.text) } }
+            @if let Some(expanded) = &found.expanded {
+                p {
+                    "Multiplied out over its common denominator, as a computer-algebra system's " code { "simplify" }
+                    " leaves it, it has " b { (expanded.monomials) } " monomials: "
+                    code { (expanded.front) " * (" (expanded.beginning) ") / (" (denominator(expanded)) ")" } "."
+                }
             }
             div.scroll { table {
                 thead { tr {
                     th { "point" } th { "printed" } th { "certified to forty digits" } th { "digits that agree" } th { "error of print" }
-                    th { "errors of ten-digit sums" } th { "print is" }
+                    th { "errors of sums in " (digits) " digits" } th { "print is" }
                 } }
                 tbody {
                     @for value in &found.values {
@@ -300,38 +333,44 @@ fn appendix(found: &Appendix, outcomes: &[Outcome]) -> Markup {
                             td.number { (value.certified.decimal) }
                             td.number { (value.digits_that_agree) }
                             td.number { (format!("{:+.2e}", value.error)) }
-                            td.number {
-                                (format!("{:+.1e}", value.study.errors.first().copied().unwrap_or(0.0))) " to "
-                                (format!("{:+.1e}", value.study.errors.last().copied().unwrap_or(0.0)))
-                                ", rms " (format!("{:.1e}", value.study.deviation()))
+                            @match &value.study {
+                                Ok(study) => {
+                                    td.number {
+                                        (format!("{:+.1e}", study.errors.first().copied().unwrap_or(0.0))) " to "
+                                        (format!("{:+.1e}", study.errors.last().copied().unwrap_or(0.0)))
+                                        ", rms " (format!("{:.1e}", study.deviation()))
+                                    }
+                                    td { @if study.contains(value.error) { "inside" } @else { "outside" } }
+                                }
+                                Err(why) => { td colspan="2" { "not known: " (why) } }
                             }
-                            td { @if value.study.contains(value.error) { "inside" } @else { "outside" } }
                         }
                     }
                 }
             } }
-            figure {
+            @let studied: &[_] = &found.values.iter().filter_map(|v| Some((v, v.study.as_ref().ok()?))).collect::<Vec<_>>();
+            @if !studied.is_empty() { figure {
                 div.grid {
-                    @for value in &found.values {
-                        (PreEscaped(plot::rounding(&value.study, value.error, &format!("printed {}", value.printed))))
+                    @for (value, study) in studied {
+                        (PreEscaped(plot::rounding(study, value.error, &format!("printed {}", value.printed))))
                     }
                 }
                 figcaption {
-                    "The determinant's monomials added up in ten-digit decimal arithmetic, in "
-                    (found.values.first().map_or(0, |v| v.study.errors.len()))
+                    "The monomials added up in decimal arithmetic of " (digits) " digits, in "
+                    (studied.first().map_or(0, |(_, study)| study.errors.len()))
                     " random orders: how far each sum is from the certified value. The red line is the number in print. The "
                     "largest monomial is "
-                    @for (i, value) in found.values.iter().enumerate() {
-                        @if i > 0 { ", " } (format!("{:.0}", value.study.cancellation))
+                    @for (i, (_, study)) in studied.iter().enumerate() {
+                        @if i > 0 { ", " } (format!("{:.0}", study.cancellation))
                     }
                     " times the sum: that is where the digits go."
                 }
-            }
-            h3 { "Where the thesis met a division by zero" }
+            } }
+            h3 { "Its poles" }
             table {
                 thead { tr { th { "the factor that vanishes, and the order of the pole" } th { "verdict" } } }
                 tbody {
-                    @for outcome in outcomes.iter().filter(|outcome| outcome.pole_of.as_deref() == Some(DETERMINANT)) {
+                    @for outcome in outcomes.iter().filter(|outcome| outcome.pole_of.as_deref() == Some(found.text.as_str())) {
                         tr {
                             td.words { code { (outcome.statement) } }
                             td.words { (outcome.word()) ": " (explain(&outcome.verdict)) }
@@ -339,11 +378,10 @@ fn appendix(found: &Appendix, outcomes: &[Outcome]) -> Markup {
                     }
                 }
             }
-        }
     }
 }
 
-fn denominator(found: &Appendix) -> String {
+fn denominator(found: &crate::tradeoff::ExpandedText) -> String {
     let factor = |(text, power): &(String, u32)| {
         let text = if text.contains(' ') { format!("({text})") } else { text.clone() };
         if *power == 1 { text } else { format!("{text}^{power}") }
@@ -351,13 +389,12 @@ fn denominator(found: &Appendix) -> String {
     found.denominator.iter().map(factor).collect::<Vec<_>>().join(" ")
 }
 
-fn derivatives(found: &Verification) -> Markup {
+fn derivatives(found: &Derivatives) -> Markup {
     html! {
-        section #derivatives {
-            h2 { "Lie derivatives by two routes" }
+            h3 { "Lie derivatives by two routes" }
             p {
                 "The derivatives of the shared expression graph against num-dual's nested dual numbers, which share no rule of "
-                "differentiation; same-rate regime, " code { "L(f, L(f, ... s1))" } "."
+                "differentiation: " (found.output) " along " (found.field) ", again and again."
             }
             div.pair {
                 table {
@@ -372,11 +409,10 @@ fn derivatives(found: &Verification) -> Markup {
                 }
                 (PreEscaped(plot::growth(&found.growth, "operations of the graph; grey: order^3")))
             }
-        }
     }
 }
 
-fn all_claims(outcomes: &[Outcome]) -> Markup {
+fn all_claims(outcomes: &[&Outcome]) -> Markup {
     html! {
         section #claims {
             h2 { "All claims" }
