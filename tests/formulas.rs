@@ -70,7 +70,7 @@ fn prove_and_eval_give_latex() {
     let folder = folder();
     let text = "system \"one\"\nstate x, omega0\nclaim 1: (x + omega0)^2/2 = x^2/2 + x*omega0 + omega0^2/2\n\
                 erratum 2: printed x + x = 3*x  corrected x + x = 2*x\ndefinition 3: \"words\"\n";
-    let file = write(&folder, "one.proof", text.to_owned());
+    let file = write(&folder, "one.proof", text);
     let file = file.to_str().unwrap();
     let found = json(&palmistry(&["prove", file, "--json", "--latex"]));
     let expected = "\\frac{\\left(x + \\omega_{0}\\right)^{2}}{2} = \\frac{x^{2}}{2} + x\\omega_{0} + \\frac{\\omega_{0}^{2}}{2}";

@@ -22,7 +22,7 @@ mod views;
 mod written;
 
 pub use error::ReadError;
-pub(crate) use error::{Problem, nearest};
+pub(crate) use error::{Problem, line_and_column, nearest};
 pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statement};
 pub use model::{
     Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,

@@ -128,8 +128,6 @@ pub(crate) enum End {
 }
 
 /// Whether one of these entries begins here, and not a name that is one of their words: a quotation mark or `of` follows.
-
-/// Whether one of these entries begins here, and not a name that is one of their words.
 pub(super) fn begins(input: &mut Text<'_>) -> bool {
     let title = |word: &'static str| (keyword(word), winnow::token::literal("\"")).void();
     let reduction = (keyword("reduction"), keyword("of"), name, sign(":")).void();

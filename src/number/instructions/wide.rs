@@ -1,8 +1,8 @@
 //! Lanes in the vector registers of x86-64.
 
 use super::portable::evaluate;
-use super::{Lanes, MOST_LANES, Task, Vectorised};
-use crate::number::Function;
+use crate::number::lanes::{Lanes, MOST_LANES, Task, Vectorised};
+use crate::number::{Function, sine};
 use pulp::x86::{V3, V4};
 use pulp::{NullaryFnOnce, cast};
 use std::arch::x86_64::{__m256d, __m512d, _CMP_LT_OQ};
@@ -318,7 +318,7 @@ impl<R: Registers> Lanes for Two<R> {
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        crate::number::sine::sin_cos(self)
+        sine::sin_cos(self)
     }
     fn apart<T: Task>(self, task: T) -> T::Output {
         self.registers.vectorize(Apart(task))

@@ -1,7 +1,7 @@
 //! Lanes without help from the instruction set: eight doubles side by side, and one alone.
 
-use super::Lanes;
-use crate::number::Function;
+use crate::number::lanes::Lanes;
+use crate::number::{Function, sine};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A function of a double by the standard library; not a number outside its domain.
@@ -97,7 +97,7 @@ impl Lanes for Eight {
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        crate::number::sine::sin_cos(self)
+        sine::sin_cos(self)
     }
     #[inline(always)]
     fn apply(mut self, function: Function) -> Self {
@@ -141,7 +141,7 @@ impl Lanes for f64 {
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        crate::number::sine::sin_cos(self)
+        sine::sin_cos(self)
     }
     #[inline(always)]
     fn apply(self, function: Function) -> Self {
