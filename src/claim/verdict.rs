@@ -111,6 +111,8 @@ pub struct AtFilesValues {
 pub struct Outcome {
     /// The file's name.
     pub file: String,
+    /// The line and the column at which the claim's number or name stands in it, both counted from one.
+    pub place: (usize, usize),
     /// The claim's number or name.
     pub id: String,
     /// The statement as it stands in the file; of a fault, the right one.
