@@ -4,6 +4,7 @@
 
 mod certificate;
 mod claims;
+mod document;
 mod drawing;
 mod formula;
 mod layout;
