@@ -1,4 +1,4 @@
-//! Floor 7: what was found, as JSON, as text, as JUnit XML, and as a page with plots.
+//! What was found, as JSON, as text, as JUnit XML, and as a page with plots.
 //!
 //! Nothing is decided here.
 
