@@ -102,14 +102,15 @@ fn a_folder_is_taken_through_everything() {
     assert_eq!(pendulum.lines[0].view.from[0].0, "g");
     assert_eq!(pendulum.lines[1].view.from[0].0, "phi");
 
-    // conditions, fields, what is left out (x, v), differentials: v' = 0, phi', omega', x' = v = 0, v' = 0, d(L(f, phi))
+    // conditions, fields, what is left out (x, v), outputs, differentials: v' = 0, phi', omega', x' = v = 0, v' = 0, phi,
+    // d(L(f, phi))
     let reduction = &pendulum.reductions[0];
     assert!(
         reduction.proved(),
         "{:?}",
         reduction.claims.iter().map(|c| (&c.statement, c.ok)).collect::<Vec<_>>()
     );
-    assert_eq!((reduction.claims.len(), &reduction.left_out[..]), (6, &["x".to_owned(), "v".to_owned()][..]));
+    assert_eq!((reduction.claims.len(), &reduction.left_out[..]), (7, &["x".to_owned(), "v".to_owned()][..]));
     let saved = reduction.comparison.as_ref().unwrap();
     assert_eq!((saved.small_states, saved.large_states), (2, 4));
     // 2 times 1.5 is 3, and three digits do not explain one hundredth
@@ -131,6 +132,12 @@ fn a_false_reduction_is_not_proved() {
         let file = findings.files.into_iter().next().unwrap();
         (file.reductions, file.left_out)
     };
+    let reduction_of = |output: &str| {
+        write(&folder, "pendulum.proof", PENDULUM.replace("output phi", output));
+        let findings = found(&folder.path().join("pendulum.proof"));
+        let file = findings.files.into_iter().next().unwrap();
+        (file.reductions, file.left_out)
+    };
     // v stays 1, but omega' has a term more, and x moves
     let (found, _) = reduction("reduction of cart: v = 1");
     let wrong: Vec<&str> = found[0].claims.iter().filter(|c| !c.ok).map(|c| c.statement.as_str()).collect();
@@ -139,6 +146,23 @@ fn a_false_reduction_is_not_proved() {
     // phi = 0 does not stay so
     let (found, _) = reduction("reduction of cart: v = 0, phi = 0");
     assert!(!found[0].proved());
+    // one name, two outputs
+    write(&folder, "cart.proof", CART.replace("output phi", "let seen = phi\noutput seen"));
+    let (found, _) = reduction_of("let seen = phi + omega\noutput seen");
+    let wrong: Vec<&str> = found[0].claims.iter().filter(|c| !c.ok).map(|c| c.statement.as_str()).collect();
+    assert_eq!(
+        wrong,
+        [
+            "seen = det([1]*cart.output) where v = 0",
+            "d(L(f, seen), phi, omega) = d(L(cart.f, det([1]*cart.output)), phi, omega) where v = 0"
+        ]
+    );
+    // something seen besides that is not known
+    write(&folder, "cart.proof", CART.replace("output phi", "output phi, v + omega"));
+    let (found, _) = reduction_of("output phi");
+    let wrong: Vec<&str> = found[0].claims.iter().filter(|c| !c.ok).map(|c| c.statement.as_str()).collect();
+    assert_eq!(wrong, ["d(det([0, 1]*cart.output), phi, omega) = [0, 0] where v = 0"]);
+    write(&folder, "cart.proof", CART);
     // no state of the larger system
     write(&folder, "cart.proof", CART.replace("omega", "w"));
     let (found, left) = reduction("reduction of cart: v = 0");
@@ -206,7 +230,8 @@ fn a_bad_description_is_told() {
         ("title = \"t\"\norder = [\"cart.proof\", \"cart.proof\"]", "named twice"),
         ("title = \"t\"\nscenes = [\"none.toml\"]", "there is no file"),
         ("title = \"t\"\nequations = 1000000", "more than 100000 equations"),
-        ("title = \"t\"\nequations = -1", "data did not match"),
+        ("title = \"t\"\nequations = -1", "last equation"),
+        ("title = \"t\"\n[equations]\n4 = \"x\"", "u32"),
         ("title = ", ""),
         ("\u{0}", ""),
     ] {
@@ -217,6 +242,11 @@ fn a_bad_description_is_told() {
         assert!(error["message"].as_str().unwrap().contains(message), "{text}: {error}");
         assert_eq!(error["file"].as_str().unwrap(), file.to_str().unwrap(), "{text}");
     }
+    // parts in the order of the file
+    write(&folder, "paper.toml", "title = \"t\"\n[equations]\n10 = 2\n9 = 1\nA = 1\n");
+    let paper = Paper::read(folder.path()).unwrap();
+    let numbers: Vec<String> = paper.numbering.equations([]).into_iter().map(|e| e.number).collect();
+    assert_eq!(numbers, ["10.1", "10.2", "9.1", "A.1"]);
     std::fs::remove_file(folder.path().join("paper.toml")).unwrap();
     let paper = Paper::read(folder.path()).unwrap();
     assert_eq!((paper.files, paper.numbering.count()), (vec!["cart.proof".to_owned()], 0));

@@ -124,18 +124,37 @@ fn claims(small: &System, large: &System, reduction: &ReductionTo) -> Result<(St
     }
     let words = Codistribution::new(&mut small.clone(), &Assignment::new(), Length::UntilItStops)?;
     let columns = states.join(", ");
+    // the larger system's outputs as its own file means them: names may mean other things here
+    let of_large = |place: usize| {
+        let unit = (0..large.outputs.len()).map(|i| if i == place { "1" } else { "0" });
+        format!("det([{}]*{alias}.output)", unit.collect::<Vec<_>>().join(", "))
+    };
+    let mut pairs = Vec::new();
     for (output, _) in &small.outputs {
-        if !large.outputs.iter().any(|(other, _)| other == output) {
-            return Err(format!("{alias} has no output '{output}'"));
+        match large.outputs.iter().position(|(other, _)| other == output) {
+            Some(place) => pairs.push(of_large(place)),
+            None => return Err(format!("{alias} has no output '{output}'")),
+        }
+    }
+    for (place, (output, _)) in large.outputs.iter().enumerate() {
+        match small.outputs.iter().position(|(other, _)| other == output) {
+            Some(_) => claim("outputs", format!("{output} = {} {under}", of_large(place))),
+            // what is seen besides is known already
+            None => {
+                let zeros = vec!["0"; states.len()].join(", ");
+                claim("outputs", format!("d({}, {columns}) = [{zeros}] {under}", of_large(place)));
+            }
         }
     }
     for word in words.needed.iter().map(|index| &words.words[*index]).filter(|word| !word.fields.is_empty()) {
-        let taken = |prefix: &str| {
+        let taken = |prefix: &str, output: &str| {
             let along = word.fields.iter().map(|field| format!("{prefix}{}", small.fields[*field].name));
             let along: Vec<String> = along.collect();
-            format!("d(L({}, {}), {columns})", along.join(", "), small.outputs[word.output].0)
+            format!("d(L({}, {output}), {columns})", along.join(", "))
         };
-        claim("differentials", format!("{} = {} {under}", taken(""), taken(&format!("{alias}."))));
+        let (own, other) =
+            (taken("", &small.outputs[word.output].0), taken(&format!("{alias}."), &pairs[word.output]));
+        claim("differentials", format!("{own} = {other} {under}"));
     }
     Ok((text, left_out))
 }

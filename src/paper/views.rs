@@ -2,8 +2,8 @@
 
 use super::LeftOut;
 use crate::expression::NodeId;
-use crate::observability::{Codistribution, Length, OWN_ROWS};
-use crate::sweep::{RankAnswer, RankQuestion, answer_rank};
+use crate::observability::{Codistribution, CodistributionError, Length, OWN_ROWS};
+use crate::sweep::{RankAnswer, RankError, RankQuestion, answer_rank};
 use crate::system::{Assignment, LineView, MapView, NamedSet, System, Value};
 use crate::tradeoff::{Landscape, Map, Rows, Slope};
 use std::sync::atomic::AtomicBool;
@@ -22,7 +22,7 @@ pub struct SetRank {
     /// The set; nothing for the whole sample box.
     pub set: Option<NamedSet>,
     /// The rank there, or why there is none: a divisor that is zero at all its states.
-    pub found: Result<RankAnswer, String>,
+    pub found: Result<RankAnswer, RankError>,
 }
 
 impl SetRank {
@@ -33,7 +33,7 @@ impl SetRank {
 
     /// Whether every state is a pole.
     pub fn is_pole(&self) -> bool {
-        self.found.as_ref().is_err_and(|why| why.starts_with("every state there is a pole"))
+        matches!(self.found, Err(RankError::Codistribution(CodistributionError::Pole { .. })))
     }
 
     /// A pole where the file says so, and elsewhere a rank.

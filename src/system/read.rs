@@ -1,9 +1,10 @@
 //! From a file to a system.
 
+use super::domain::Domain;
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Item, parse_file};
-use super::model::{Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
+use super::model::{Field, FieldPlace, Kind, Matrix, Range, Role, SymbolInfo, System, Value};
 use super::written::{Scope, Written, in_one_line, places_in};
 use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Expr, Name, Relation, Span};
@@ -517,6 +518,15 @@ impl System {
         }
         for (name, value) in &other.definitions {
             self.definitions.insert(format!("{}.{name}", alias.text), value.clone());
+        }
+        if !other.outputs.is_empty() {
+            // a word of the language, so that no definition has this name
+            let name = format!("{}.output", alias.text);
+            let entries: Vec<_> = other.outputs.iter().map(|(_, output)| *output).collect();
+            let column = Matrix { rows: entries.len(), columns: 1, entries };
+            self.definition_domains
+                .insert(name.clone(), Domain::of(other.output_guards.iter().flatten().copied()));
+            self.definitions.insert(name, Value::Matrix(column));
         }
         self.calculated.extend(other.calculated.iter().map(|name| format!("{}.{name}", alias.text)));
         for (name, domain) in &other.definition_domains {

@@ -11,6 +11,11 @@ use crate::tradeoff::Trade;
 use crate::tradeoff::stress::Study;
 use maud::{Markup, PreEscaped, html};
 
+/// Whether something was found of it.
+pub(super) fn has_extremes(found: &Findings) -> bool {
+    found.files.iter().any(|file| file.trade.is_some() || file.stress.is_some() || file.certificate.is_some())
+}
+
 /// What was found of it, as a section of the page.
 pub(super) fn extremes(found: &Findings) -> Markup {
     let stress: Vec<&Study> = found.files.iter().filter_map(|file| file.stress.as_ref()).collect();
@@ -39,8 +44,18 @@ fn certified(regions: &[&RegionAnswer]) -> Markup {
             details {
                 summary { (region_text(answer).lines().take(2).collect::<Vec<_>>().join(": ")) }
                 pre { (region_text(answer)) }
-                figure { (PreEscaped(region_curve(answer, "proved"))) }
-                @if let Some(map) = &answer.map { figure { (PreEscaped(region_map(map, "the box, in two coordinates", [None, None]))) } }
+                figure {
+                    div.grid {
+                        (PreEscaped(region_curve(answer, "proved")))
+                        @if let Some(map) = &answer.map {
+                            (PreEscaped(region_map(map, "the box, in two coordinates", [None, None])))
+                        }
+                    }
+                    figcaption {
+                        "How much of the box is still open, box by box; and the boxes over two coordinates: pale where full rank is "
+                        "proved, red where a minor vanishes, black where a pole runs through, grey where nothing is decided."
+                    }
+                }
             }
         }
     }
@@ -58,7 +73,13 @@ fn stressed(studies: &[&Study]) -> Markup {
         @for study in studies {
             details {
                 summary { (study.title) }
-                @for (_, picture) in stress_pictures(study) { figure { (PreEscaped(picture)) } }
+                figure {
+                    div.grid { @for (_, picture) in stress_pictures(study) { (PreEscaped(picture)) } }
+                    figcaption {
+                        "Bars from far to near and from small to large, coloured by what a verdict is worth there; and how states are "
+                        "conditioned, before and after equilibration."
+                    }
+                }
             }
         }
     }
@@ -72,10 +93,13 @@ fn traded(trade: &Trade) -> Markup {
             "holds those that no other beats in time, in digits at the worst state, in right verdicts and in certain ones. "
             "(" code { "palmistry trade" } " measures them on a thousand states.)"
         }
-        figure { (PreEscaped(trade_plot(trade))) }
-        table {
+        figure {
+            div.grid { (PreEscaped(trade_plot(trade))) }
+            figcaption { "The line joins those of which every verdict is right and that no other one beats in time and digits." }
+        }
+        div.scroll { table {
             thead { tr { @for heading in TRADE_FRONT_HEADINGS { th { (heading) } } } }
             tbody { @for row in trade_front_table(trade) { tr { @for cell in row { td { (cell) } } } } }
-        }
+        } }
     }
 }

@@ -41,8 +41,8 @@ fn line_json(title: &str, slope: &Slope) -> Value {
 fn set_json(rank: &SetRank) -> Value {
     let mut object = match &rank.found {
         Ok(answer) => rank_json(answer),
-        Err(why) if rank.is_pole() => json!({ "pole": why }),
-        Err(why) => json!({ "not_decided": why }),
+        Err(why) if rank.is_pole() => json!({ "pole": why.to_string() }),
+        Err(why) => json!({ "not_decided": why.to_string() }),
     };
     object["set"] = json!(rank.name());
     object["conditions"] = json!(rank.set.as_ref().map(|set| &set.written).cloned().unwrap_or_default());

@@ -1,7 +1,13 @@
 //! The page that holds everything that was found.
 
+mod anchors;
+mod claims;
+pub(super) mod document;
+mod entry;
 pub(super) mod extremes;
 pub(super) mod findings;
+mod regime;
+mod source;
 pub(super) mod whole;
 
 pub use findings::{findings_json, findings_text, printed_value_json};
