@@ -1,4 +1,4 @@
-//! Floor 8: the command line. A file a verb: it reads its arguments, calls the library, and prints.
+//! The command line. A file a verb: it reads its arguments, calls the library, and prints.
 //!
 //! Results go to standard output (as JSON with `--json`), progress and words to standard error. The exit status is 0
 //! when all is as expected, 1 when something is not or the work was interrupted, 2 when the input could not be used or

@@ -1,6 +1,6 @@
 //! The sets, maps and lines of one system: ranks decided, singular values drawn.
 
-use super::LeftOut;
+use super::left_out::LeftOut;
 use crate::expression::NodeId;
 use crate::observability::{Codistribution, CodistributionError, Length, OWN_ROWS};
 use crate::sweep::{BranchAnswer, RankAnswer, RankError, RankQuestion, answer_rank};

@@ -1,4 +1,4 @@
-//! Floor 2: a system, that is its states, parameters, vector fields, outputs and sample box, and how it is read from a
+//! A system, that is its states, parameters, vector fields, outputs and sample box, and how it is read from a
 //! proof file.
 //!
 //! [`System::read`] turns a file into a [`System`], or into a [`ReadError`] that points into the text. The claims of
