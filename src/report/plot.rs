@@ -1,6 +1,6 @@
 //! Plots as SVG, to be put into a page.
 
-use crate::report::drawing::{Canvas, Hover, INK, MESH, svg};
+use crate::report::drawing::{Canvas, Hover, INK, MESH, escaped, svg};
 use crate::tradeoff::{Growth, Map, RoundingStudy, Slope};
 use plotters::prelude::{
     ChartBuilder, Circle, Color, IntoFont, IntoLogRange, LineSeries, RGBColor, Rectangle, WHITE,
@@ -39,6 +39,10 @@ fn shade(level: usize) -> RGBColor {
     RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
+/// What is said in the place of a picture without values.
+const NOTHING: &str =
+    "there is no singular value above zero to draw: poles, or nothing that remains without unit rows";
+
 /// A name along an axis, with the unit of what it means where that is known.
 pub(crate) fn axis(name: &str, unit: Option<&str>) -> String {
     unit.filter(|unit| !unit.is_empty()).map_or(name.to_owned(), |unit| format!("{name}, {unit}"))
@@ -52,7 +56,7 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
     let highest = found.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = found.iter().copied().fold(f64::INFINITY, f64::min).max(highest - 6.0);
     if found.is_empty() {
-        return "<p>there is a pole everywhere on this map</p>".to_owned();
+        return format!("<p>{}: {NOTHING}</p>", escaped(title));
     }
     let at = |step: usize| lowest + (highest - lowest) * step as f64 / SHADES as f64;
     let short = |log: f64| format!("{:.2e}", 10f64.powf(log));
@@ -127,6 +131,9 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
 /// The singular values on the way into a singularity, both axes logarithmic. Under the pointer stand all of them at a distance.
 pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
     let values: Vec<f64> = slope.values.iter().flatten().copied().filter(|v| *v > 1e-20).collect();
+    if values.is_empty() {
+        return format!("<p>{}: {NOTHING}</p>", escaped(title));
+    }
     let highest = values.iter().copied().fold(1e-20, f64::max) * 2.0;
     let lowest = values.iter().copied().fold(highest, f64::min).max(1e-18) / 2.0;
     let (near, far) =

@@ -4,6 +4,7 @@ use crate::report::drawing::{INK, MESH, svg};
 use crate::tradeoff::{Combination, Derivative, Digits, Number, Trade};
 use plotters::coord::CoordTranslate;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// All digits are drawn here.
 const ALL_DIGITS: f64 = 35.0;
@@ -84,8 +85,9 @@ pub fn trade_plot(trade: &Trade) -> String {
             mark(chart.plotting_area(), at, combination.derivative, inside, rim)?;
         }
         if timed.iter().any(|c| c.digits == Digits::Modular) {
-            let at = (fastest / 1.3, NO_DIGITS + 0.4);
-            let words = ("sans-serif", 11).into_font().color(&INK);
+            let at = (slowest * 1.3, NO_DIGITS);
+            let right = Pos::new(HPos::Right, VPos::Center);
+            let words = ("sans-serif", 12).into_font().color(&INK).pos(right);
             chart.plotting_area().draw(&Text::new("modulo a prime: no digits", at, words))?;
         }
         let key = |place: usize| (16 + 205 * (place % 2) as i32, 12 + 18 * (place / 2) as i32);
