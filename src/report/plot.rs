@@ -1,5 +1,6 @@
 //! Plots as SVG, to be put into a page.
 
+use crate::expression::notation::in_letters;
 use crate::report::drawing::{Canvas, Hover, INK, MESH, escaped, svg};
 use crate::tradeoff::{Growth, Map, RoundingStudy, Slope};
 use plotters::prelude::{
@@ -45,7 +46,8 @@ const NOTHING: &str =
 
 /// A name along an axis, with the unit of what it means where that is known.
 pub(crate) fn axis(name: &str, unit: Option<&str>) -> String {
-    unit.filter(|unit| !unit.is_empty()).map_or(name.to_owned(), |unit| format!("{name}, {unit}"))
+    let name = in_letters(name);
+    unit.filter(|unit| !unit.is_empty()).map_or(name.clone(), |unit| format!("{name}, {unit}"))
 }
 
 /// The smallest singular value over two coordinates; dark where it is small, white at poles. Under the pointer stand the

@@ -13,6 +13,7 @@ mod tests;
 pub use latex::latex;
 pub use layout::{Layout, Sign};
 pub use mathml::{mathml, mathml_in_pieces};
+pub use name::in_letters;
 
 /// A formula as it is set: what stands where, and in which kind of letter, but not in whose notation.
 #[derive(Clone, Debug, PartialEq)]

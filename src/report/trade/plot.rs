@@ -32,7 +32,7 @@ fn height(combination: &Combination) -> f64 {
 }
 
 /// Every combination by its time a state (logarithmic) and the digits of its worst state: colours are kinds of numbers,
-/// shapes ways to a derivative; filled where every verdict is right, with a dark rim where every one is certain. The line joins those that no other combination
+/// shapes ways to a derivative; filled where every verdict is right, with a rim where every one is certain. The line joins those that no other combination
 /// whose every verdict is right beats in time and digits.
 pub fn trade_plot(trade: &Trade) -> String {
     let timed: Vec<&Combination> = trade.combinations.iter().filter(|c| c.seconds.is_finite()).collect();
@@ -105,7 +105,7 @@ pub fn trade_plot(trade: &Trade) -> String {
         }
         let below = 18 * names.div_ceil(2) as i32 + 8;
         for (row, text) in
-            ["hollow: some verdicts are not right", "dark rim: all verdicts are certain"].iter().enumerate()
+            ["hollow: some verdicts are not right", "with a rim: all verdicts are certain"].iter().enumerate()
         {
             legend.draw(&Text::new(*text, (10, below + 17 * row as i32), words.clone()))?;
         }
