@@ -230,7 +230,8 @@ fn a_bad_description_is_told() {
         ("title = \"t\"\norder = [\"cart.proof\", \"cart.proof\"]", "named twice"),
         ("title = \"t\"\nscenes = [\"none.toml\"]", "there is no file"),
         ("title = \"t\"\nequations = 1000000", "more than 100000 equations"),
-        ("title = \"t\"\nequations = -1", "data did not match"),
+        ("title = \"t\"\nequations = -1", "last equation"),
+        ("title = \"t\"\n[equations]\n4 = \"x\"", "u32"),
         ("title = ", ""),
         ("\u{0}", ""),
     ] {
@@ -241,6 +242,11 @@ fn a_bad_description_is_told() {
         assert!(error["message"].as_str().unwrap().contains(message), "{text}: {error}");
         assert_eq!(error["file"].as_str().unwrap(), file.to_str().unwrap(), "{text}");
     }
+    // parts in the order of the file
+    write(&folder, "paper.toml", "title = \"t\"\n[equations]\n10 = 2\n9 = 1\nA = 1\n");
+    let paper = Paper::read(folder.path()).unwrap();
+    let numbers: Vec<String> = paper.numbering.equations([]).into_iter().map(|e| e.number).collect();
+    assert_eq!(numbers, ["10.1", "10.2", "9.1", "A.1"]);
     std::fs::remove_file(folder.path().join("paper.toml")).unwrap();
     let paper = Paper::read(folder.path()).unwrap();
     assert_eq!((paper.files, paper.numbering.count()), (vec!["cart.proof".to_owned()], 0));

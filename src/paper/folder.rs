@@ -3,8 +3,8 @@
 use super::numbering::Numbering;
 use crate::file;
 use crate::system::{Problem, ReadError, System, load, nearest};
-use serde::Deserialize;
-use std::collections::BTreeMap;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
@@ -52,25 +52,34 @@ struct Keys {
     derivatives: Option<Spanned<String>>,
 }
 
-/// `equations = 20`, or a table from parts to their last equation.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Equations {
-    All(u32),
-    Parts(BTreeMap<String, Spanned<u32>>),
-}
+/// `equations = 20`, or a table from parts to their last equation; the parts in the order in which they stand in the file.
+struct Equations(Vec<(String, u32)>);
 
-impl Equations {
-    fn numbering(self) -> Numbering {
-        match self {
-            Equations::All(last) => Numbering(vec![(String::new(), last)]),
-            Equations::Parts(parts) => {
-                // in the order in which they stand in the file
-                let mut parts: Vec<(String, Spanned<u32>)> = parts.into_iter().collect();
-                parts.sort_by_key(|(_, last)| last.span().start);
-                Numbering(parts.into_iter().map(|(part, last)| (part, last.into_inner())).collect())
+impl<'de> Deserialize<'de> for Equations {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Read;
+        impl<'de> Visitor<'de> for Read {
+            type Value = Equations;
+
+            fn expecting(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                to.write_str("the number of the last equation, or a table of such numbers")
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, last: i64) -> Result<Equations, E> {
+                let last = u32::try_from(last)
+                    .map_err(|_| E::invalid_value(serde::de::Unexpected::Signed(last), &self))?;
+                Ok(Equations(vec![(String::new(), last)]))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Equations, A::Error> {
+                let mut parts = Vec::new();
+                while let Some(part) = map.next_entry()? {
+                    parts.push(part);
+                }
+                Ok(Equations(parts))
             }
         }
+        deserializer.deserialize_any(Read)
     }
 }
 
@@ -144,7 +153,7 @@ impl Paper {
                 Problem::new(&keys.order[again].span(), message, "the second time").locate(&name, &text)
             );
         }
-        let numbering = keys.equations.map(Equations::numbering).unwrap_or_default();
+        let numbering = keys.equations.map(|Equations(parts)| Numbering(parts)).unwrap_or_default();
         if numbering.count() > MOST_EQUATIONS {
             let message = format!("more than {MOST_EQUATIONS} equations");
             return Err(Problem::new(&(0..0), message, "").locate(&name, &text));
