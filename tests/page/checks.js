@@ -11,7 +11,7 @@
     found.links = links.length;
     found.lost = links.filter(link => !by(decodeURIComponent(link.hash.slice(1)))).map(link => link.hash);
     found.outside = [...document.querySelectorAll('[src], link[href]')].filter(e => e.id !== 'checks').map(describe);
-    const line = document.querySelector('article .s');
+    const line = document.querySelector('article h4 a');
     if (line) {
       const target = by(decodeURIComponent(line.hash.slice(1)));
       found.folded = !target.closest('details').open;
@@ -113,11 +113,11 @@
       found.searches = {};
       for (const text of window.searches ?? []) {
         await choose('text', text);
-        found.searches[text] = seen().map(entry => entry.querySelector('a').textContent);
+        found.searches[text] = seen().map(entry => entry.querySelector('i').textContent);
       }
       await choose('text', '');
       await choose('sort', 'i');
-      found.sorted = [...document.querySelectorAll('article')].map(entry => entry.querySelector('a').textContent);
+      found.sorted = [...document.querySelectorAll('article')].map(entry => entry.querySelector('i').textContent);
       await choose('sort', '');
       found.again = [...document.querySelectorAll('article')].every((entry, place) => entry === entries[place]);
       // a link to an entry that is filtered out shows it
