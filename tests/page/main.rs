@@ -7,8 +7,9 @@ mod browser;
 
 use browser::{Look, browser, look};
 use common::{folder, write};
+use palmistry::experiment::{BasinStudy, Experiment, Scene, basins};
 use palmistry::paper::{Findings, Paper, VerifyOptions, verify};
-use palmistry::report::page;
+use palmistry::report::{Observed, observe_page, page};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -149,6 +150,58 @@ fn a_reader_finds_their_way() {
             assert_eq!(seen["paper"].as_f64() < Some(0.2), dark, "{place}");
             filters(&seen, &place);
         }
+    }
+}
+
+/// A body in motion, its observers and their studies: the page of a scene.
+const SCENE: &str = r#"
+title = "A small <scene>"
+model = "proofs/moll2002/general.proof"
+duration = 0.3
+samples = 61
+
+[body]
+shape = { kind = "harmonics", mean = 1.0, harmonics = [[0, 0], [0.08, 0.03]] }
+mass = 1.0
+rate = -1.0
+
+[palms]
+inertia = [0.5, 0.5]
+prescribed = [{ start = 0.6, rate = 0.3 }, { start = 1.7 }]
+
+[observer]
+methods = ["trust-region", "integration"]
+inputs = { g1 = "tau1", g2 = "tau2" }
+estimate = ["r1", "r2", "omega0"]
+guess_off = 0.1
+window = 30
+steps = 20
+"#;
+
+#[test]
+fn the_page_of_a_scene_fits_too() {
+    let Some(browser) = browser() else { return };
+    let never = false.into();
+    let scene = Scene::parse("small.toml", SCENE).unwrap();
+    let experiment = Experiment::new(scene, None).unwrap();
+    let answers = experiment.run(&never, &|_| {}).unwrap();
+    let ranges = ["r1", "r2"].map(|name| (name.to_owned(), [0.9, 1.1])).into();
+    let basins = basins(&experiment, &BasinStudy { ranges, points: 2 }, &never, &|| {}).unwrap();
+    let (experiment, answers) = (&experiment, &answers[..]);
+    let page =
+        observe_page(&Observed { experiment, answers, noise: &[], basins: &basins, interrupted: false });
+    for (width, dark) in [(400, true), (1400, false)] {
+        let seen = look(&browser, &page, &[], &Look { width, dark });
+        let place = format!("{width} pixels, dark: {dark}: {seen:#}");
+        assert!(seen.get("error").is_none(), "{place}");
+        assert_eq!((&seen["lost"], &seen["outside"]), (&json!([]), &json!([])), "{place}");
+        assert!(seen["scroll"].as_u64() <= Some(u64::from(width)), "{place}");
+        assert_eq!((&seen["wide"], &seen["untitled"]), (&json!([]), &json!([])), "{place}");
+        // twelve frames and the outline, three states with their errors, sensor errors, two basins
+        assert_eq!(seen["pictures"], 12 + 1 + 6 + 3 + 2, "{place}");
+        assert!(seen["label"].as_f64() >= Some(10.0), "{place}");
+        assert!(seen["contrast"].as_f64() >= Some(4.5), "{place}");
+        assert!(seen.get("form").is_none(), "{place}");
     }
 }
 
