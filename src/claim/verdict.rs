@@ -1,9 +1,9 @@
 //! What a claim can come to.
 
-use super::defaults::AtFilesValues;
 use crate::checker::{Refutation, VerdictRecord};
 use crate::observability::StateInWords;
 use crate::system::{Basis, Expectation, FieldRole, Flaw};
+use dashu::rational::RBig;
 
 /// A state in exact numbers at which a statement fails.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,6 +95,15 @@ impl Verdict {
             (None, None) => Verdict::undecided("nothing was claimed"),
         }
     }
+}
+
+/// What a statement comes to at the file's values, where that is another verdict than the one on all values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtFilesValues {
+    /// Name and value of the parameters that the statement depends on, in the order of the file.
+    pub values: Vec<(String, RBig)>,
+    /// `proved`, `refuted` or `undecided`.
+    pub word: &'static str,
 }
 
 /// A claim of a file and what it came to.

@@ -7,7 +7,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::claim::{Kept, Selection, decide_all_keeping};
-use palmistry::report::{ClaimsSummary, Shown, claim_json, claims_text, junit};
+use palmistry::report::{ClaimsForm, ClaimsSummary, Shown, claim_json, claims_text, junit, statement_latex};
 use palmistry::{Outcome, System};
 use serde_json::json;
 use std::collections::HashMap;
@@ -43,6 +43,9 @@ pub(crate) struct Prove {
     /// Write what the verdicts rest on to a file that 'palmistry recheck' checks alone.
     #[arg(long, value_name = "FILE")]
     verdicts: Option<PathBuf>,
+    /// Give each statement in LaTeX too: a line of its own, or 'latex' in the JSON.
+    #[arg(long)]
+    latex: bool,
     /// Seed of the random points.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -123,6 +126,18 @@ impl Prove {
         Ok(())
     }
 
+    /// An outcome as JSON, with its formulas where they are asked for.
+    fn claim(&self, outcome: &Outcome) -> serde_json::Value {
+        let mut object = claim_json(outcome);
+        if self.latex {
+            object["latex"] = json!(statement_latex(&outcome.statement));
+            if let Some((printed, _)) = &outcome.printed {
+                object["printed"]["latex"] = json!(statement_latex(printed));
+            }
+        }
+        object
+    }
+
     /// Prints and writes what is decided, in the order of the files.
     fn tell(&self, decided: &Mutex<Decided>, begin: Instant) -> miette::Result<Status> {
         let Decided { claims, places, mut outcomes } = std::mem::take(&mut *hold(decided));
@@ -143,13 +158,14 @@ impl Prove {
             "interrupted": interrupted(),
             "seed": self.seed,
             "seconds": begin.elapsed().as_secs_f64(),
-            "claims": outcomes.iter().map(claim_json).collect::<Vec<_>>(),
+            "claims": outcomes.iter().map(|outcome| self.claim(outcome)).collect::<Vec<_>>(),
         });
         let all = failed == 0 && claims > 0 && outcomes.len() == claims;
         let status = if all { Status::AsExpected } else { Status::NotAsExpected };
         let summary = ClaimsSummary { claims, seconds: begin.elapsed().as_secs_f64() };
         let shown = if self.quiet { Shown::Unexpected } else { Shown::All };
-        files.print(Form::of(self.json), object, || claims_text(&outcomes, summary, shown, &layout()), status)
+        let form = ClaimsForm { shown, latex: self.latex };
+        files.print(Form::of(self.json), object, || claims_text(&outcomes, summary, form, &layout()), status)
     }
 }
 

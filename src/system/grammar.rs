@@ -282,6 +282,14 @@ pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
     Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, span: begin..end }))
 }
 
+/// Reads a statement that is the whole text, as it stands behind the colon of a claim.
+///
+/// # Errors
+/// What was expected instead, and where.
+pub fn parse_statement(text: &str) -> Result<Statement, Expected> {
+    read_all(text, &Depth::default(), "an operator, 'where' or the end", statement).map(|found| *found)
+}
+
 fn claim(input: &mut Text<'_>) -> Read<Item> {
     keyword("claim").parse_next(input)?;
     let id = cut_err(identifier).parse_next(input)?;

@@ -24,7 +24,7 @@ mod written;
 
 pub use error::ReadError;
 pub(crate) use error::{Problem, line_and_column, nearest};
-pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement};
+pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statement};
 pub use model::{
     Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,
 };

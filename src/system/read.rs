@@ -1,15 +1,16 @@
 //! From a file to a system.
 
+use super::domain::Domain;
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Item, Statement, parse_entries};
-use super::model::{Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
+use super::model::{Field, FieldPlace, Kind, Matrix, Range, Role, SymbolInfo, System, Value};
 use super::problems::{Cause, Full, Problems, Remnant, names_of_text};
 use super::written::{Scope, Written, in_one_line, places_in};
 use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Expr, Name, Relation, Span};
 use crate::expression::{Derivation, Graph, Guard, Symbol, parse_expression};
-use crate::file::{ReadFailure, read_text};
+use crate::file::{self, ReadFailure, read_text};
 use miette::NamedSource;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -66,7 +67,7 @@ impl System {
     pub fn examine_text(name: &str, text: &str, folder: &Path, most: usize) -> Examination {
         let text = with_plain_line_ends(text);
         let mut reading = Reading::default();
-        reading.open.extend(Path::new(name).canonicalize());
+        reading.open.extend(file::identity(Path::new(name)));
         let mut problems = Problems::up_to(most);
         let built = System::build(name, &text, folder, Graph::default(), &mut reading, &mut problems);
         // what an imported file refers to is looked for where that file itself is read
@@ -495,7 +496,7 @@ impl System {
         let refuse = |message: String| Problem::new(span, message, "this file");
         reading.files.insert(path.to_owned());
         let place =
-            path.canonicalize().map_err(|e| refuse(format!("cannot read {}: {e}", path.display())))?;
+            file::identity(path).map_err(|e| refuse(format!("cannot read {}: {e}", path.display())))?;
         if let Some(begin) = reading.open.iter().position(|open| *open == place) {
             let round = reading.open[begin..].iter().chain([&place]);
             let names: Vec<String> = round.map(|file| name_of(file)).collect();
@@ -572,6 +573,15 @@ impl System {
         }
         for (name, value) in &other.definitions {
             self.definitions.insert(format!("{}.{name}", alias.text), value.clone());
+        }
+        if !other.outputs.is_empty() {
+            // a word of the language, so that no definition has this name
+            let name = format!("{}.output", alias.text);
+            let entries: Vec<_> = other.outputs.iter().map(|(_, output)| *output).collect();
+            let column = Matrix { rows: entries.len(), columns: 1, entries };
+            self.definition_domains
+                .insert(name.clone(), Domain::of(other.output_guards.iter().flatten().copied()));
+            self.definitions.insert(name, Value::Matrix(column));
         }
         self.calculated.extend(other.calculated.iter().map(|name| format!("{}.{name}", alias.text)));
         for (name, domain) in &other.definition_domains {

@@ -8,6 +8,7 @@ use super::model::System;
 use super::written::in_one_line;
 use crate::expression::parse::{Read, Text, assignments, equations, keyword, name, range, sign, stop, sum};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
+use crate::expression::{NodeId, Symbol};
 use dashu::rational::RBig;
 use winnow::combinator::{alt, cut_err, opt, peek, preceded, separated};
 use winnow::prelude::*;
@@ -50,12 +51,10 @@ pub struct MapView {
 }
 
 /// Where a line ends.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineEnd {
-    /// At a value of the coordinate.
-    Value(RBig),
-    /// Where two sides are equal; their difference is linear in the coordinate.
-    Zero(Box<Equation>),
+    /// Where an expression vanishes that is linear in the coordinate: `x to 2` is where `x - 2` does.
+    Zero(NodeId),
     /// Nowhere.
     Infinity,
 }
@@ -129,8 +128,6 @@ pub(crate) enum End {
 }
 
 /// Whether one of these entries begins here, and not a name that is one of their words: a quotation mark or `of` follows.
-
-/// Whether one of these entries begins here, and not a name that is one of their words.
 pub(super) fn begins(input: &mut Text<'_>) -> bool {
     let title = |word: &'static str| (keyword(word), winnow::token::literal("\"")).void();
     let reduction = (keyword("reduction"), keyword("of"), name, sign(":")).void();
@@ -258,12 +255,16 @@ impl System {
                 self.maps.push(MapView { title, axes: [x, y], at, order, caption, span });
             }
             View::Line { title, moving, end, from, span } => {
-                self.coordinate(&moving)?;
+                let symbol = self.coordinate(&moving)?;
                 let end = match end {
-                    End::Value(value) => LineEnd::Value(self.rational(&value)?),
+                    End::Value(value) => {
+                        let target = self.scalar(&value)?;
+                        let coordinate = self.graph.symbol(symbol);
+                        LineEnd::Zero(self.graph.sub(coordinate, target))
+                    }
                     End::Zero(equation) => {
-                        self.check_conditions(std::slice::from_ref(&equation))?;
-                        LineEnd::Zero(equation)
+                        let (left, right) = (self.scalar(&equation.left)?, self.scalar(&equation.right)?);
+                        LineEnd::Zero(self.graph.sub(left, right))
                     }
                     End::Infinity => LineEnd::Infinity,
                 };
@@ -305,11 +306,8 @@ impl System {
         Ok(written)
     }
 
-    fn coordinate(&mut self, name: &Name) -> Result<(), Problem> {
-        match self.find_symbol(&name.text) {
-            Some(_) => Ok(()),
-            None => Err(self.unknown(&name.text, &name.span, Wanted::Symbol)),
-        }
+    fn coordinate(&self, name: &Name) -> Result<Symbol, Problem> {
+        self.find_symbol(&name.text).ok_or_else(|| self.unknown(&name.text, &name.span, Wanted::Symbol))
     }
 
     fn point(&mut self, list: &[(Name, Expr)]) -> Result<Point, Problem> {

@@ -7,5 +7,5 @@ pub(super) mod words;
 
 pub use errata::errata_markdown;
 pub use outcomes::{claim_json, claim_line, junit};
-pub use text::{ClaimsSummary, Shown, claim_text, claims_text};
+pub use text::{ClaimsForm, ClaimsSummary, Shown, claim_text, claims_text};
 pub use words::counts_text;

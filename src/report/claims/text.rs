@@ -3,6 +3,7 @@
 use crate::claim::{Outcome, Verdict, Witness};
 use crate::report::claims::outcomes::{claim_line, error_bound, special_text, state_line, with_decimal};
 use crate::report::claims::words::counts_text;
+use crate::report::formula::statement_latex;
 use crate::report::layout::{Layout, Tone};
 use crate::system::Flaw;
 
@@ -13,6 +14,14 @@ pub enum Shown {
     All,
     /// Those that are not as expected.
     Unexpected,
+}
+
+/// How outcomes are shown.
+#[derive(Clone, Copy, Debug)]
+pub struct ClaimsForm {
+    pub shown: Shown,
+    /// Whether each statement is written as LaTeX too.
+    pub latex: bool,
 }
 
 /// What stands below a report.
@@ -29,7 +38,13 @@ const LABEL: usize = 9;
 const TEXT: usize = 20;
 
 /// Outcomes file by file, and a summary that adds up.
-pub fn claims_text(outcomes: &[Outcome], summary: ClaimsSummary, shown: Shown, layout: &Layout) -> String {
+pub fn claims_text(
+    outcomes: &[Outcome],
+    summary: ClaimsSummary,
+    form: ClaimsForm,
+    layout: &Layout,
+) -> String {
+    let shown = form.shown;
     let mut lines = Vec::new();
     let mut file = "";
     for outcome in outcomes.iter().filter(|outcome| shown == Shown::All || !outcome.ok) {
@@ -38,6 +53,10 @@ pub fn claims_text(outcomes: &[Outcome], summary: ClaimsSummary, shown: Shown, l
             lines.push(layout.paint(Tone::Strong, file));
         }
         lines.push(claim_text(outcome, layout));
+        if let Some(formula) = form.latex.then(|| statement_latex(&outcome.statement)).flatten() {
+            // on one line, however long: it is to be copied
+            lines.push(format!("{:LABEL$}{:<10} {formula}", "", "latex"));
+        }
     }
     let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
     let tone = if failed == 0 { Tone::Good } else { Tone::Bad };
