@@ -7,6 +7,7 @@
 //! This floor knows nothing of ranks, verdicts or palms.
 
 mod determinant;
+mod dimension;
 mod domain;
 mod elaborate;
 mod error;
@@ -20,6 +21,7 @@ mod restates;
 mod standing;
 mod written;
 
+pub use dimension::{Base, Dimension};
 pub use error::ReadError;
 pub(crate) use error::{Problem, nearest};
 pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement};

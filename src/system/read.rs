@@ -1,5 +1,6 @@
 //! From a file to a system.
 
+use super::dimension::{self, Declared};
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Item, parse_file};
@@ -45,8 +46,28 @@ impl System {
         reading.open.extend(Path::new(name).canonicalize());
         // what an imported file refers to is looked for where that file itself is read
         System::build(name, &text, folder, Graph::default(), &mut reading)
-            .and_then(|system| system.check_references(folder).map(|()| system))
+            .and_then(|(system, problems)| match problems.into_iter().next() {
+                Some(problem) => Err(problem),
+                None => system.check_references(folder).map(|()| system),
+            })
             .map_err(|problem| problem.locate(name, &text))
+    }
+
+    /// All mistakes in the dimensions of a text, in its order; [`System::parse`] stops at the first.
+    ///
+    /// # Errors
+    /// What else is wrong with the text, and where.
+    pub fn all_dimension_mistakes(
+        name: &str,
+        text: &str,
+        folder: &Path,
+    ) -> Result<Vec<ReadError>, ReadError> {
+        let text = with_plain_line_ends(text);
+        let mut reading = Reading::default();
+        reading.open.extend(Path::new(name).canonicalize());
+        let built = System::build(name, &text, folder, Graph::default(), &mut reading);
+        let (_, problems) = built.map_err(|problem| problem.locate(name, &text))?;
+        Ok(problems.into_iter().map(|problem| problem.locate(name, &text)).collect())
     }
 
     /// The value of an expression that is not in the file but asked of it from outside.
@@ -73,7 +94,7 @@ impl System {
         folder: &Path,
         graph: Graph,
         reading: &mut Reading,
-    ) -> Result<System, Problem> {
+    ) -> Result<(System, Vec<Problem>), Problem> {
         refuse_reordering(text)?;
         let items = parse_file(text).map_err(expected)?;
         let mut system = System {
@@ -100,10 +121,12 @@ impl System {
             aliases: Vec::new(),
             sampled: HashSet::new(),
             calculated: HashSet::new(),
+            dimensions: Default::default(),
+            imported_dimensions: Vec::new(),
         };
         let mut ids = HashSet::new();
-        for item in items {
-            if let Item::Claim(claim) = &item
+        for item in &items {
+            if let Item::Claim(claim) = item
                 && !ids.insert(claim.id.clone())
             {
                 let message = format!("there is a claim '{}' already", claim.id);
@@ -111,34 +134,39 @@ impl System {
             }
             system.enter(item, folder, reading)?;
         }
-        for claim in system.claims.clone() {
-            system.check(&claim)?;
+        for item in &items {
+            if let Item::Claim(claim) = item {
+                system.check(claim)?;
+            }
         }
         system.domain = Default::default();
         if system.title.is_empty() {
             return Err(Problem::new(&(0..0), "the file does not name a system", "here")
                 .help("begin with: system \"what it is\""));
         }
-        Ok(system)
+        let imports = std::mem::take(&mut system.imported_dimensions);
+        let (dimensions, problems) = dimension::check(&system, &items, &imports);
+        system.dimensions = Arc::new(dimensions);
+        Ok((system, problems))
     }
 
-    fn enter(&mut self, item: Item, folder: &Path, reading: &mut Reading) -> Result<(), Problem> {
+    fn enter(&mut self, item: &Item, folder: &Path, reading: &mut Reading) -> Result<(), Problem> {
         match item {
             Item::System { title, cite, span } => {
                 if !self.title.is_empty() {
                     let message = format!("the file describes a system already: \"{}\"", self.title);
                     return Err(
-                        Problem::new(&span, message, "the second one").help("one file holds one system")
+                        Problem::new(span, message, "the second one").help("one file holds one system")
                     );
                 }
                 if title.is_empty() {
-                    return Err(Problem::new(&span, "a system needs a title", "this is empty"));
+                    return Err(Problem::new(span, "a system needs a title", "this is empty"));
                 }
-                (self.title, self.cite) = (title, cite);
+                (self.title, self.cite) = (title.clone(), cite.clone());
             }
-            Item::Use { alias, path, span } => self.import(&alias, &folder.join(path), &span, reading)?,
-            Item::State(names) => {
-                for name in names {
+            Item::Use { alias, path, span } => self.import(alias, &folder.join(path), span, reading)?,
+            Item::State(list) => {
+                for Declared { name, .. } in list {
                     if let Some(field) = self.fields.first() {
                         let message = format!("the field '{}' above does not know of this state", field.name);
                         return Err(Problem::new(&name.span, message, "declare states before fields"));
@@ -150,14 +178,14 @@ impl System {
                         );
                         return Err(Problem::new(&name.span, message, "declare states before 'd(...)'"));
                     }
-                    let symbol = self.declare(&name, Kind::State)?;
+                    let symbol = self.declare(name, Kind::State)?;
                     self.states.push(symbol);
                 }
             }
             Item::Param(list) => {
-                for (name, value) in list {
-                    let default = value.map(|value| self.rational(&value)).transpose()?;
-                    let symbol = self.declare(&name, Kind::Parameter)?;
+                for Declared { name, value, .. } in list {
+                    let default = value.as_ref().map(|value| self.rational(value)).transpose()?;
+                    let symbol = self.declare(name, Kind::Parameter)?;
                     if let Some(info) = self.symbols.get_mut(&symbol) {
                         info.default = default;
                     }
@@ -173,15 +201,15 @@ impl System {
                     }
                 }
             }
-            Item::Let(name, expr) => {
-                self.refuse_taken(&name)?;
+            Item::Let { name, value: expr, .. } => {
+                self.refuse_taken(name)?;
                 if self.find_symbol(&name.text).is_some() {
                     let message = format!("'{}' is a symbol of an imported system", name.text);
                     return Err(Problem::new(&name.span, message, "a definition of this name would hide it")
                         .help("choose another name, or declare the symbol with 'param'"));
                 }
-                let (value, domain) = self.apart(|system| system.elaborate(&expr))?;
-                if !self.calculates_nothing(&expr) {
+                let (value, domain) = self.apart(|system| system.elaborate(expr))?;
+                if !self.calculates_nothing(expr) {
                     self.calculated.insert(name.text.clone());
                 }
                 if value == Value::CodistributionRank {
@@ -191,16 +219,16 @@ impl System {
                         "claim it as it is",
                     ));
                 }
-                self.written.insert(name.text.clone(), self.written_as(&expr.span, [&expr]));
+                self.written.insert(name.text.clone(), self.written_as(&expr.span, [expr]));
                 self.definition_domains.insert(name.text.clone(), domain);
-                self.definitions.insert(name.text, value);
+                self.definitions.insert(name.text.clone(), value);
             }
             Item::Field { role, name, components, others_are_zero } => {
-                self.enter_field(role, name, &components, others_are_zero)?
+                self.enter_field(*role, name.clone(), components, *others_are_zero)?
             }
             Item::Output(list) => {
-                for expr in list {
-                    let (value, domain) = self.apart(|system| system.scalar(&expr))?;
+                for (expr, _) in list {
+                    let (value, domain) = self.apart(|system| system.scalar(expr))?;
                     // what is seen twice is seen once: a second time it would count as a measurement of its own
                     let guards = self.guards_of(&domain);
                     match self.outputs.iter().position(|(_, known)| *known == value) {
@@ -212,8 +240,8 @@ impl System {
                     }
                 }
             }
-            Item::Sample { ranges, avoid } => self.sample(&ranges, &avoid)?,
-            Item::Claim(claim) => self.claims.push(*claim),
+            Item::Sample { ranges, avoid } => self.sample(ranges, avoid)?,
+            Item::Claim(claim) => self.claims.push((**claim).clone()),
         }
         Ok(())
     }
@@ -492,6 +520,7 @@ impl System {
                 }
             }
         }
+        self.imported_dimensions.push((alias.text.clone(), span.clone(), other.dimensions.clone()));
         for field in other.fields.iter().chain(&other.imported_fields) {
             let name = format!("{}.{}", alias.text, field.name);
             // of two of one name the first is meant
@@ -521,7 +550,12 @@ impl System {
         let text = with_plain_line_ends(&text);
         let folder = path.parent().unwrap_or(Path::new(""));
         let graph = std::mem::take(&mut self.graph);
-        let mut other = System::build(&name, &text, folder, graph, reading).map_err(|problem| {
+        let built = System::build(&name, &text, folder, graph, reading);
+        let built = built.and_then(|(other, problems)| match problems.into_iter().next() {
+            Some(problem) => Err(problem),
+            None => Ok(other),
+        });
+        let mut other = built.map_err(|problem| {
             let inner = problem.locate(&name, &text);
             let (line, column) = inner.line_and_column();
             let problem =
