@@ -7,6 +7,7 @@
 //! This floor knows nothing of ranks, verdicts or palms.
 
 mod determinant;
+mod dimension;
 mod domain;
 mod elaborate;
 mod error;
@@ -14,6 +15,7 @@ mod extent;
 mod grammar;
 mod matrices;
 mod model;
+mod problems;
 mod read;
 mod references;
 mod restates;
@@ -21,12 +23,14 @@ mod standing;
 mod views;
 mod written;
 
+pub use dimension::{Base, Dimension};
 pub use error::ReadError;
 pub(crate) use error::{Problem, line_and_column, nearest};
 pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statement};
 pub use model::{
     Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,
 };
+pub use read::Examination;
 pub(crate) use read::load;
 pub use standing::{Basis, Flaw, Reference};
 pub use views::{LineEnd, LineView, MapView, NamedSet, Point, ReductionTo};

@@ -13,6 +13,7 @@ mod tests;
 pub use latex::latex;
 pub use layout::Layout;
 pub use mathml::{mathml, mathml_in_pieces};
+pub use name::in_letters;
 
 use crate::expression::syntax::Relation;
 

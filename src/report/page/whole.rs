@@ -31,8 +31,12 @@ const SECTIONS: [&str; 12] = [
 /// The page as HTML.
 pub fn page(found: &Findings) -> String {
     let names: Vec<String> = (0..found.files.len()).map(|place| format!("file{place}")).collect();
-    let reserved: Vec<&str> =
-        SECTIONS.into_iter().chain(["shown"]).chain(names.iter().map(String::as_str)).collect();
+    let engines: Vec<String> = (0..26).map(|place| format!("by{place}")).collect();
+    let reserved: Vec<&str> = SECTIONS
+        .into_iter()
+        .chain(["shown"])
+        .chain(names.iter().chain(&engines).map(String::as_str))
+        .collect();
     let (anchors, claims) = (Anchors::new(&found.files, &reserved), placed(&found.files));
     let numbering = &found.paper.numbering;
     let experiments: Vec<Observed<'_>> =
