@@ -8,7 +8,7 @@ use palmistry::observability::{
     Branch, Codistribution, Coordinate, Defined, Length, Locus, State, customary_singular_values,
     parse_condition, solve_conditions,
 };
-use palmistry::sweep::{Certainty, Judge, Judged, StateReport};
+use palmistry::sweep::{Certainty, Judge, StateJudgement, StateReport};
 use palmistry::system::Value;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -109,8 +109,8 @@ fn decide(
         (PrimeField::random(&mut rand_chacha_rng()), wanted),
     );
     match judge.decide(state) {
-        Judged::Report(report) => report,
-        Judged::Pole(pole) => panic!("{pole}"),
+        StateJudgement::Report(report) => report,
+        StateJudgement::Pole(pole) => panic!("{pole}"),
     }
 }
 

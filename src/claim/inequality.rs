@@ -12,7 +12,7 @@ use crate::expression::{
     Guard, LOG2_ERROR, Need, NodeId, Related, Symbol, ZeroTest, expand_angles, identically_zero,
     zero_by_relations,
 };
-use crate::inequality::{Answer, Argument, Given, Open, Proposed, decide, vanishes_somewhere};
+use crate::inequality::{Argument, Given, InequalityAnswer, Open, Proposed, decide, vanishes_somewhere};
 use crate::number::{rational_from_f64, rational_to_f64};
 use crate::observability::{Coordinate, State, assumed};
 use crate::system::System;
@@ -124,8 +124,8 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
     system.graph = graph;
     let certain = |engine: String| Verdict::Proved { engine, log2_error: f64::NEG_INFINITY };
     match answer {
-        Answer::Holds(Argument::Signs) => certain(SIGNS.to_owned()),
-        Answer::Holds(Argument::Boxes { boxes, touches }) => {
+        InequalityAnswer::Holds(Argument::Signs) => certain(SIGNS.to_owned()),
+        InequalityAnswer::Holds(Argument::Boxes { boxes, touches }) => {
             let engine = match boxes {
                 1 => BOXES.replace("boxes", "the whole box"),
                 _ => BOXES.replace("boxes", &format!("{boxes} boxes")),
@@ -138,8 +138,8 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
                 },
             }
         }
-        Answer::Fails => tries.verdict(system),
-        Answer::Open(open) => {
+        InequalityAnswer::Fails => tries.verdict(system),
+        InequalityAnswer::Open(open) => {
             if solved {
                 for attempt in FIRST..LAST {
                     let point = on.draw(system, attempt, rng);

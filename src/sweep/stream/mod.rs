@@ -27,7 +27,7 @@ use dashu::rational::RBig;
 use decide::Decider;
 use draw::{Axis, Drawer, Wish, wishes};
 pub(super) use equilibrate::Equilibrium;
-pub use given::{StatesError, Verdict, Verdicts};
+pub use given::{StateVerdict, StatesError, Verdicts};
 pub use jacobi::Jacobi;
 use rayon::prelude::*;
 pub use report::{DECADES, StreamReport};

@@ -1,7 +1,7 @@
 //! Some rows of a system, evaluated at one exact state in every number type, and their true rank there.
 
 use crate::expression::{Failure, NodeId, Program, expand_angles};
-use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, PrimeField, Rationals, Real, Refusal};
+use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, PrimeField, Rationals, RealNumber, Refusal};
 use crate::observability::{
     Defined, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank, singular_values,
 };
@@ -123,7 +123,7 @@ impl Subject {
     }
 
     /// All entries in a number of fixed size, every step on the way being finite.
-    pub(super) fn entries<T: Real>(&self, state: &State) -> Result<Vec<T>, String> {
+    pub(super) fn entries<T: RealNumber>(&self, state: &State) -> Result<Vec<T>, String> {
         let (entries, registers) = self.run(state, Floats::<T>::new())?;
         match registers.iter().position(|value| !value.is_finite()) {
             None => Ok(entries),
@@ -132,7 +132,7 @@ impl Subject {
     }
 
     /// The first expression that is not zero and that a number type rounds to zero.
-    pub(super) fn rounded_to_zero<T: Real>(&self, state: &State) -> Option<String> {
+    pub(super) fn rounded_to_zero<T: RealNumber>(&self, state: &State) -> Option<String> {
         let (_, rounded) = self.run(state, Floats::<T>::new()).ok()?;
         let (_, enclosed) = self.run(state, Enclosures::new(BITS)).ok()?;
         let place = rounded
