@@ -14,6 +14,7 @@ mod check;
 mod exponents;
 mod expression;
 mod form;
+mod mistakes;
 mod problem;
 mod quantity;
 mod reading;
