@@ -30,7 +30,7 @@
 //! # Ok::<(), palmistry::ReadError>(())
 //! ```
 //!
-//! Beside these stand [`tradeoff`], speed against accuracy and the extremes, and [`verification`], the main job.
+//! Beside these stand [`tradeoff`], speed against accuracy and the extremes, and [`paper`], a folder taken through all of it.
 //! Each module is a floor and imports only from those above it here.
 
 // files: read within bounds, written whole or not at all
@@ -78,8 +78,8 @@ pub mod tradeoff;
 // bodies, sensors and observers together: scenes
 pub mod experiment;
 
-// the main job: the thesis
-pub mod verification;
+// a folder of claims, sets, pictures and scenes taken through everything below
+pub mod paper;
 
 // the page, the plots, the JSON
 pub mod report;

@@ -13,6 +13,10 @@ static BEFORE_THE_RUNTIME: extern "C" fn() = {
     look
 };
 
+/// The papers under `proofs/`; see build.rs.
+const PAPERS: &[palmistry::file::PackedFile] = include!(concat!(env!("OUT_DIR"), "/papers.rs"));
+
 fn main() -> std::process::ExitCode {
+    palmistry::file::pack(PAPERS);
     command::run()
 }

@@ -4,8 +4,8 @@
 mod common;
 
 use common::{folder, json, palmistry, write};
+use palmistry::paper::{Numbering, Paper};
 use palmistry::report::{counts_text, errata_markdown};
-use palmistry::verification::equations;
 use palmistry::{Outcome, System, decide_all};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,6 +14,10 @@ use std::path::Path;
 const HEAD: &str = "system \"s\" state x, y, phi param k, m angle phi drift f x' = y y' = -k*x phi' = 1 \
     let energy = m*y^2/2 let point = [x; y] let half = energy/2 let slope = L(f, energy) \
     let rate = -k*x let flat = det([x, y; 2*x, 2*y]) ";
+
+fn numbering() -> Numbering {
+    Numbering(vec![("4".to_owned(), 91), ("A".to_owned(), 27)])
+}
 
 fn outcomes(text: &str) -> Vec<Outcome> {
     let text = format!("{HEAD}{text}");
@@ -130,7 +134,10 @@ fn errors_that_follow_are_not_counted_twice() {
         let system = System::read(&folder.path().join(name)).unwrap();
         found.extend(decide_all(&system, 1, &false.into(), &|_| ()));
     }
-    let report = errata_markdown(&found);
+    let report = errata_markdown(
+        &Paper { title: "a paper".to_owned(), numbering: numbering(), ..Paper::default() },
+        &found,
+    );
     let line =
         "5 erratum, 2 of them on their own: 4.2 follows 4.1, 4.3 follows 4.2, 4.5 follows 4.3 in a.proof.";
     assert!(report.contains(line), "{report}");
@@ -161,7 +168,8 @@ fn an_equation_has_the_word_of_its_own_entry() {
          claim 4.5: flat = 0 claim 4.5.other expect refuted: flat = 1 \
          claim A.section2.value: flat = 0 claim A.2: flat = 0",
     );
-    let rows = equations(&found);
+    let numbering = numbering();
+    let rows = numbering.equations(&found);
     let word = |number: &str| rows.iter().find(|row| row.number == number).unwrap().word();
     let words = ["4.1", "4.2", "4.3", "4.4", "4.5", "4.6", "A.2"].map(word);
     assert_eq!(words, ["definition", "proved", "example", "print or scan", "proved", "no entry", "proved"]);
@@ -172,7 +180,7 @@ fn an_equation_has_the_word_of_its_own_entry() {
 /// text shows is never called proved.
 #[test]
 fn the_words_of_the_thesis() {
-    let found = json(&palmistry(&["prove", "proofs", "--json"]));
+    let found = json(&palmistry(&["prove", "proofs/moll2002", "--json"]));
     let claims = found["claims"].as_array().unwrap();
     let mut words: BTreeMap<&str, usize> = BTreeMap::new();
     for claim in claims {

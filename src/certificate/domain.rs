@@ -7,7 +7,7 @@
 
 use super::collector::Collector;
 use super::minors::{factors_of, half_cosines};
-use super::problem::RegionRows;
+use super::rows::RegionRows;
 use crate::expression::{Graph, Guard, Need, Node, NodeId, add_guard, expand_angles};
 use crate::number::Fraction;
 use crate::number::polynomial::{Polynomial, Ring};

@@ -53,7 +53,7 @@ impl Factor {
         let value = self.tape.gradient(&desk.slots.middle, &mut desk.doubles);
         let (gradient, radii) = (&mut desk.gradient, &desk.slots.radii);
         gradient.resize(radii.len(), 0.0);
-        chart.slots().by_coordinates(&self.tape, &desk.doubles.by_slots, &desk.slots.middle, gradient);
+        self.tape.by_coordinates(chart.slots(), &desk.doubles.by_slots, &desk.slots.middle, gradient);
         let (mut change, mut most, mut steepest) = (0.0, -1.0, None);
         for coordinate in &self.tape.coordinates {
             let part = (gradient[*coordinate] * radii[*coordinate]).abs();
@@ -104,7 +104,7 @@ impl Factor {
         desk.slopes.resize(desk.slots.radii.len(), Interval::ZERO);
         loop {
             self.tape.gradient(&desk.face, &mut desk.intervals);
-            chart.slots().by_coordinates(&self.tape, &desk.intervals.by_slots, &desk.face, &mut desk.slopes);
+            self.tape.by_coordinates(chart.slots(), &desk.intervals.by_slots, &desk.face, &mut desk.slopes);
             let mut fixed = false;
             for coordinate in &self.tape.coordinates {
                 let slope = desk.slopes[*coordinate];

@@ -28,6 +28,7 @@ mod problem;
 mod progress;
 mod proved;
 mod region;
+mod rows;
 mod search;
 mod slots;
 mod tally;
@@ -35,7 +36,7 @@ mod tape;
 
 pub use answer::{OpenBox, PartAnswer, Patch, RegionAnswer, RegionMap, RegionMinor, Standing, Vanishing};
 pub use boxes::FreeCoordinate;
-pub use problem::RegionRows;
 pub use progress::{Limits, Progress};
-pub use proved::{HeldSymbol, ProvedBox, RegionRow};
+pub use proved::ProvedBox;
 pub use region::{Region, certify_region};
+pub use rows::{HeldSymbol, RegionRow, RegionRows};

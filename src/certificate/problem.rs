@@ -7,23 +7,13 @@ use super::collector::{Collector, Ranges};
 use super::domain::{Domain, domain};
 use super::minors::minors as minors_of;
 use super::part::{Minor, Part};
-use super::proved::{HeldSymbol, RegionRow, WrittenRows};
+use super::rows::{HeldSymbol, NamedRows, RegionRows, WrittenRows, rows_by_name};
 use crate::expression::{NodeId, Symbol, Variable, expand_angles};
 use crate::number::{Interval, Real, rational_to_f64};
-use crate::observability::{Codistribution, Length, OWN_ROWS, Reduction, Stop, vanishes};
-use crate::system::{Assignment, FieldRole, Kind, System, Value};
+use crate::observability::{Reduction, vanishes};
+use crate::system::{Assignment, FieldRole, Kind, System};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap};
-
-/// Which rows are to have full rank.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RegionRows {
-    /// The full codistribution, with words of so many fields. `None` takes words one field longer than almost all
-    /// states need, if these are not too many: where the minors of the shorter ones vanish together, longer ones see.
-    Codistribution(Option<usize>),
-    /// The file's own choice of rows.
-    Own,
-}
 
 /// A box and what is to be proved on it.
 pub(super) struct Problem {
@@ -56,9 +46,6 @@ pub(super) struct Problem {
     pub written: WrittenRows,
 }
 
-/// More words than this are not taken unless they are asked for.
-const MOST_WORDS: usize = 80;
-
 impl Problem {
     /// The question whether some rows of a system have full rank on a box: its sample box, with some ranges replaced.
     ///
@@ -76,7 +63,7 @@ impl Problem {
         let angles = system.angles();
         let is_angle = |symbol: Symbol| angles.contains(&symbol);
         let dimension = system.states.len();
-        let (names, flat, order) = rows_of(system, rows, &values)?;
+        let NamedRows { names, entries: flat, order } = NamedRows::of(system, rows, &values)?;
         let as_written = rows_by_name(&names, &flat, dimension);
         let flat = system.graph.substitute(&flat, &values);
         let flat = expand_angles(&mut system.graph, &flat, is_angle);
@@ -172,12 +159,6 @@ struct RangesAndValues {
     exactly: Vec<HeldSymbol>,
 }
 
-/// The rows with their names.
-fn rows_by_name(names: &[String], entries: &[NodeId], dimension: usize) -> Vec<RegionRow> {
-    let rows = entries.chunks(dimension).zip(names);
-    rows.map(|(entries, name)| RegionRow { name: name.clone(), entries: entries.to_vec() }).collect()
-}
-
 /// The sides of the box, what the other symbols are, and which of these can be put in exactly.
 fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> Result<RangesAndValues, String> {
     let mut exactly = Vec::new();
@@ -212,35 +193,4 @@ fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> Res
 fn held_angle(value: &RBig) -> Interval {
     let slack = 8.0 * f64::EPSILON * rational_to_f64(value).abs().max(1.0);
     Interval::from_rational(value) + Interval::new(-slack, slack)
-}
-
-type Rows = (Vec<String>, Vec<NodeId>, Option<usize>);
-
-/// Names and entries of the rows, one after the other, and the length of the words.
-fn rows_of(system: &mut System, rows: RegionRows, values: &Assignment) -> Result<Rows, String> {
-    let order = match rows {
-        RegionRows::Own => {
-            return match system.definition(OWN_ROWS) {
-                Some(Value::Matrix(matrix)) if matrix.columns == system.states.len() => {
-                    let names = (1..=matrix.rows).map(|row| format!("row {row}")).collect();
-                    Ok((names, matrix.entries.clone(), None))
-                }
-                _ => Err(format!(
-                    "{} defines no matrix '{OWN_ROWS}' with a column for each state",
-                    system.name
-                )),
-            };
-        }
-        RegionRows::Codistribution(order) => order,
-    };
-    let length = order.map_or(Length::UntilItStops, Length::Exactly);
-    let mut found = Codistribution::new(system, values, length)?;
-    if order.is_none() && found.stop == Stop::Full {
-        let longer = Codistribution::new(system, values, Length::Exactly(found.order + 1))?;
-        if longer.words.len() <= MOST_WORDS {
-            found = longer;
-        }
-    }
-    let names = found.words.iter().map(|word| word.text(system)).collect();
-    Ok((names, found.entries(), Some(found.order)))
 }

@@ -1,36 +1,12 @@
-//! What was proved, to be checked by others: the rows and the guards as they were written, and the largest proved boxes,
-//! each with the rows of the minor by which it was proved.
+//! What was proved, to be checked by others: the largest proved boxes, each with the rows of the minor by which it was
+//! proved, beside rows and guards as they were written.
 
 use super::boxes::Side;
 use super::region::Region;
-use crate::expression::{Guard, NodeId, Symbol};
+use super::rows::{HeldSymbol, RegionRow};
+use crate::expression::Guard;
 use dashu::integer::UBig;
 use dashu::rational::RBig;
-
-/// A row of the matrix that is to have full rank.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RegionRow {
-    /// The word of the Lie derivative, or the number of the file's own row.
-    pub name: String,
-    /// The entries, one for each state.
-    pub entries: Vec<NodeId>,
-}
-
-/// A symbol that is held at one value.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct HeldSymbol {
-    pub symbol: Symbol,
-    pub value: RBig,
-}
-
-/// A question as it was written, before anything was put in or cancelled.
-pub(super) struct WrittenRows {
-    pub rows: Vec<RegionRow>,
-    /// Rows with one entry only, a constant: every minor has these.
-    pub unit_rows: Vec<usize>,
-    pub guards: Vec<Guard>,
-    pub held: Vec<HeldSymbol>,
-}
 
 /// A box on which full rank is proved.
 #[derive(Clone, Debug, PartialEq, Eq)]

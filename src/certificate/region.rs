@@ -2,8 +2,9 @@
 
 use super::answer::RegionAnswer;
 use super::boxes::FreeCoordinate;
-use super::problem::{Problem, RegionRows};
+use super::problem::Problem;
 use super::progress::{Limits, Progress, Searches};
+use super::rows::RegionRows;
 use super::search::Plane;
 use crate::expression::Symbol;
 use crate::system::System;

@@ -1,8 +1,5 @@
 //! What tapes are given: the coordinates of a box, and their sines and cosines.
 
-use super::tape::Tape;
-use crate::number::Real;
-
 /// A function of one coordinate that is given to a tape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Wave {
@@ -69,19 +66,9 @@ impl Slots {
         find(&self.slots, wave).unwrap_or(first)
     }
 
-    /// What a tape's derivatives by its slots say of the derivatives by the coordinates.
-    pub fn by_coordinates<T: Real>(&self, tape: &Tape, by_slots: &[T], values: &[T], found: &mut [T]) {
-        let zero = T::from_f64(0.0);
-        for coordinate in &tape.coordinates {
-            found[*coordinate] = zero;
-        }
-        for place in &tape.slots {
-            let slope = match self.slopes[*place] {
-                None => by_slots[*place],
-                Some((other, factor)) => by_slots[*place] * values[other] * T::from_f64(factor),
-            };
-            let sum = &mut found[self.slots[*place].coordinate];
-            *sum = *sum + slope;
-        }
+    /// What the derivative of a slot by its coordinate is a multiple of: another slot, and the factor; `None` of the
+    /// coordinate itself, whose derivative is one.
+    pub fn slope(&self, place: usize) -> Option<(usize, f64)> {
+        self.slopes[place]
     }
 }

@@ -252,6 +252,23 @@ impl Tape {
         }
         value
     }
+
+    /// What the derivatives by its slots say of the derivatives by the coordinates that it depends on. `inputs` are the
+    /// values of the slots.
+    pub fn by_coordinates<T: Real>(&self, slots: &Slots, by_slots: &[T], inputs: &[T], found: &mut [T]) {
+        let zero = T::from_f64(0.0);
+        for coordinate in &self.coordinates {
+            found[*coordinate] = zero;
+        }
+        for place in &self.slots {
+            let slope = match slots.slope(*place) {
+                None => by_slots[*place],
+                Some((other, factor)) => by_slots[*place] * inputs[other] * T::from_f64(factor),
+            };
+            let sum = &mut found[slots.at(*place).coordinate];
+            *sum = *sum + slope;
+        }
+    }
 }
 
 fn operation(node: Node, place: &HashMap<NodeId, u32>) -> Operation {

@@ -15,7 +15,9 @@ use crate::checker::{Evidence, VerdictRecord};
 use crate::expression::syntax::{Equation, Relation};
 use crate::expression::{Symbol, add_guard};
 use crate::observability::{Branch, solve};
-use crate::system::{Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line};
+use crate::system::{
+    Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line, line_and_column,
+};
 use dashu::rational::RBig;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -143,6 +145,7 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
         definitions: explanations.definitions,
         differentiated_along: explanations.fields,
         file: system.name.clone(),
+        place: line_and_column(&system.source, claim.span.start),
         id: claim.id.clone(),
         ok: expected.is_none_or(|expected| verdict.meets(expected)) && print_is_wrong,
         statement,

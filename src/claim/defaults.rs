@@ -4,20 +4,11 @@
 //! is proved of `k` need not hold at `param k = 0`, since a rank is that of almost all values and an identity holds where
 //! both sides exist. Where the two verdicts differ the outcome says so.
 
-use super::verdict::Verdict;
+use super::verdict::{AtFilesValues, Verdict};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Relation};
 use crate::expression::{NodeId, Symbol};
 use crate::system::{Kind, Statement, System, Value};
 use dashu::rational::RBig;
-
-/// What a statement comes to at the file's values, where that is another verdict than the one on all values.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AtFilesValues {
-    /// Name and value of the parameters that the statement depends on, in the order of the file.
-    pub values: Vec<(String, RBig)>,
-    /// `proved`, `refuted` or `undecided`.
-    pub word: &'static str,
-}
 
 /// Decides a statement once more with the file's values as conditions in front of its own. `None` where it depends on no
 /// such value, or where the verdict is the same.

@@ -16,14 +16,15 @@ mod pole;
 mod question;
 mod rank_witness;
 mod ranks;
+mod selection;
 mod terms;
 mod value;
 mod verdict;
 mod witness;
 
 pub use decide::{decide, decide_all, decide_all_keeping};
-pub use defaults::AtFilesValues;
 pub use evidence::Kept;
 pub use pole::{PoleOrder, pole_order};
+pub use selection::{Selection, UnmetPattern};
 pub use value::{PointValue, ValueError, certified_value, computed_value, exists_at};
-pub use verdict::{Outcome, Verdict, Witness};
+pub use verdict::{AtFilesValues, Outcome, Verdict, Witness};

@@ -1,9 +1,9 @@
 //! What a claim can come to.
 
-use super::defaults::AtFilesValues;
 use crate::checker::{Refutation, VerdictRecord};
 use crate::observability::StateInWords;
 use crate::system::{Basis, Expectation, FieldRole, Flaw};
+use dashu::rational::RBig;
 
 /// A state in exact numbers at which a statement fails.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,11 +97,22 @@ impl Verdict {
     }
 }
 
+/// What a statement comes to at the file's values, where that is another verdict than the one on all values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtFilesValues {
+    /// Name and value of the parameters that the statement depends on, in the order of the file.
+    pub values: Vec<(String, RBig)>,
+    /// `proved`, `refuted` or `undecided`.
+    pub word: &'static str,
+}
+
 /// A claim of a file and what it came to.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The file's name.
     pub file: String,
+    /// The line and the column at which the claim's number or name stands in it, both counted from one.
+    pub place: (usize, usize),
     /// The claim's number or name.
     pub id: String,
     /// The statement as it stands in the file; of a fault, the right one.

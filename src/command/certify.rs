@@ -217,7 +217,7 @@ fn show(bar: &ProgressBar, now: Progress) {
 fn pictures(answer: &RegionAnswer, folder: &Path, files: &mut Files) {
     files.text(&folder.join("curve.svg"), &region_curve(answer, &answer.title));
     if let Some(map) = &answer.map {
-        files.text(&folder.join("map.svg"), &region_map(map, &answer.title));
+        files.text(&folder.join("map.svg"), &region_map(map, &answer.title, [None, None]));
     }
 }
 

@@ -8,6 +8,7 @@ use clap::Args;
 use dashu::rational::RBig;
 use palmistry::claim::{PointValue, computed_value, exists_at};
 use palmistry::expression::{NodeId, Symbol};
+use palmistry::report::expression_latex;
 use palmistry::sweep::Certainty;
 use palmistry::{System, ValueError, certified_value, system::Value};
 use serde_json::{Value as Json, json};
@@ -38,6 +39,9 @@ pub(crate) struct Eval {
     /// Print one JSON object with 'value' (a string), 'exact' where the value is rational, 'numbers' and 'at'.
     #[arg(long)]
     pub json: bool,
+    /// Give the expression in LaTeX too: a line before the value, or 'latex' in the JSON.
+    #[arg(long)]
+    latex: bool,
 }
 
 impl Eval {
@@ -90,13 +94,18 @@ impl Eval {
             let mut object = shown;
             object["expression"] = json!(self.expression);
             object["digits"] = json!(digits);
+            if self.latex {
+                object["latex"] = json!(expression_latex(&self.expression));
+            }
             let mut at: Vec<(String, String)> =
                 given.iter().map(|(s, v)| (system.symbol_name(*s).to_owned(), v.to_string())).collect();
             at.sort();
             object["at"] = at.into_iter().map(|(name, value)| (name, json!(value))).collect();
             print_json(&object)?;
         } else {
-            print_text(&in_lines(&shown["value"]))?;
+            let formula = self.latex.then(|| expression_latex(&self.expression)).flatten();
+            let formula = formula.map_or(String::new(), |latex| format!("{latex}\n"));
+            print_text(&format!("{formula}{}", in_lines(&shown["value"])))?;
         }
         Ok(Status::AsExpected)
     }

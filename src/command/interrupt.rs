@@ -24,8 +24,8 @@ const GRACE: Duration = Duration::from_millis(600);
 /// How often the interrupt is looked at.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// The stack of the thread that works: that of a main thread on most systems, twice.
-const STACK: usize = 16 << 20;
+/// The stack of each thread that works: that of a main thread on most systems, twice.
+pub(super) const STACK: usize = 16 << 20;
 
 /// From now on an interrupt (and the system's request to end, and the end of the terminal) asks long work to stop and
 /// keep what it has; a second one ends the program.

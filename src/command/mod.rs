@@ -14,6 +14,7 @@ mod prove;
 mod rank;
 mod recheck;
 mod stress;
+mod terminal;
 mod threads;
 mod trade;
 mod verify;

@@ -24,7 +24,7 @@ use std::path::PathBuf;
 /// faulty rows are reported by number and handled as the scene says. With --studies the scene's studies run as well: the
 /// error over many seeds at several levels of noise beside the bound, and the first guesses from which each method arrives.
 ///
-/// Example: palmistry observe scenes/section_4_6.toml --out observed
+/// Example: palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed
 #[derive(Args)]
 pub(crate) struct Observe {
     /// The scene.

@@ -2,17 +2,18 @@
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
 use super::output::{Files, Form, progress, proof_files};
+use super::terminal::layout;
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
-use palmistry::claim::{Kept, decide_all_keeping};
-use palmistry::report::{claim_json, claim_line, counts_text, junit};
+use palmistry::claim::{Kept, Selection, decide_all_keeping};
+use palmistry::report::{ClaimsForm, ClaimsSummary, Shown, claim_json, claims_text, junit, statement_latex};
 use palmistry::{Outcome, System};
 use serde_json::json;
 use std::collections::HashMap;
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// Decides every claim of proof files.
 ///
@@ -25,7 +26,15 @@ pub(crate) struct Prove {
     /// Proof files, or folders in which every .proof file is taken.
     #[arg(required = true, value_name = "FILE-OR-FOLDER")]
     paths: Vec<PathBuf>,
-    /// Print one JSON object: 'claims' with id, verdict, expected, ok, engine, and error_bound or witness.
+    /// Decide only these claims: by id, by the part of ids before a dot ('4.44' is '4.44.r1' too), or with '*' for any
+    /// characters (may be repeated).
+    #[arg(long, value_name = "ID")]
+    only: Vec<String>,
+    /// Print only what is not as expected, and the summary.
+    #[arg(short, long)]
+    quiet: bool,
+    /// Print one JSON object: 'claims' with id, file, line, column, statement, verdict, expected, ok, engine, and error_bound
+    /// or witness.
     #[arg(long)]
     pub json: bool,
     /// Write the outcomes as JUnit XML, for a CI system.
@@ -34,6 +43,9 @@ pub(crate) struct Prove {
     /// Write what the verdicts rest on to a file that 'palmistry recheck' checks alone.
     #[arg(long, value_name = "FILE")]
     verdicts: Option<PathBuf>,
+    /// Give each statement in LaTeX too: a line of its own, or 'latex' in the JSON.
+    #[arg(long)]
+    latex: bool,
     /// Seed of the random points.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -54,21 +66,37 @@ impl Prove {
     pub fn run(self) -> miette::Result<Status> {
         let decided = Arc::new(Mutex::new(Decided::default()));
         let (worker, filled) = (self.clone(), decided.clone());
+        let begin = Instant::now();
         let work = move || {
             worker.decide(&filled)?;
             begin_to_tell();
-            worker.tell(&filled)
+            worker.tell(&filled, begin)
         };
-        watched(work, || self.tell(&decided))
+        watched(work, || self.tell(&decided, begin))
+    }
+
+    /// Reads all files, and keeps the claims that are asked for.
+    fn read(&self) -> miette::Result<Vec<System>> {
+        // read everything before deciding anything: a mistake in the last file should not cost the first ones' time
+        let mut systems: Vec<System> = proof_files(&self.paths)?
+            .iter()
+            .map(|file| System::read(file).map_err(miette::Report::new))
+            .collect::<Result<_, _>>()?;
+        let selection = Selection::new(&self.only);
+        let ids = systems.iter().flat_map(|system| &system.claims).map(|claim| claim.id.as_str());
+        if let Some(unmet) = selection.unmet(ids) {
+            let help = unmet.nearest.as_ref().map(|near| format!("perhaps you meant '{near}'"));
+            return Err(Unusable::report(unmet.to_string(), help.unwrap_or_default()));
+        }
+        for system in &mut systems {
+            system.claims.retain(|claim| selection.keeps(&claim.id));
+        }
+        Ok(systems)
     }
 
     /// Decides all claims.
     fn decide(&self, decided: &Mutex<Decided>) -> miette::Result<()> {
-        // read everything before deciding anything: a mistake in the last file should not cost the first ones' time
-        let systems: Vec<System> = proof_files(&self.paths)?
-            .iter()
-            .map(|file| System::read(file).map_err(miette::Report::new))
-            .collect::<Result<_, _>>()?;
+        let systems = self.read()?;
         let names: Vec<(String, String)> = systems
             .iter()
             .flat_map(|system| system.claims.iter().map(|claim| (system.name.clone(), claim.id.clone())))
@@ -98,8 +126,20 @@ impl Prove {
         Ok(())
     }
 
+    /// An outcome as JSON, with its formulas where they are asked for.
+    fn claim(&self, outcome: &Outcome) -> serde_json::Value {
+        let mut object = claim_json(outcome);
+        if self.latex {
+            object["latex"] = json!(statement_latex(&outcome.statement));
+            if let Some((printed, _)) = &outcome.printed {
+                object["printed"]["latex"] = json!(statement_latex(printed));
+            }
+        }
+        object
+    }
+
     /// Prints and writes what is decided, in the order of the files.
-    fn tell(&self, decided: &Mutex<Decided>) -> miette::Result<Status> {
+    fn tell(&self, decided: &Mutex<Decided>, begin: Instant) -> miette::Result<Status> {
         let Decided { claims, places, mut outcomes } = std::mem::take(&mut *hold(decided));
         outcomes
             .sort_by_cached_key(|outcome| places.get(&(outcome.file.clone(), outcome.id.clone())).copied());
@@ -117,35 +157,18 @@ impl Prove {
             "ok": failed == 0 && !interrupted(),
             "interrupted": interrupted(),
             "seed": self.seed,
-            "claims": outcomes.iter().map(claim_json).collect::<Vec<_>>(),
+            "seconds": begin.elapsed().as_secs_f64(),
+            "claims": outcomes.iter().map(|outcome| self.claim(outcome)).collect::<Vec<_>>(),
         });
         let all = failed == 0 && claims > 0 && outcomes.len() == claims;
         let status = if all { Status::AsExpected } else { Status::NotAsExpected };
-        files.print(Form::of(self.json), object, || in_words(&outcomes, claims), status)
+        let summary = ClaimsSummary { claims, seconds: begin.elapsed().as_secs_f64() };
+        let shown = if self.quiet { Shown::Unexpected } else { Shown::All };
+        let form = ClaimsForm { shown, latex: self.latex };
+        files.print(Form::of(self.json), object, || claims_text(&outcomes, summary, form, &layout()), status)
     }
 }
 
 fn hold(decided: &Mutex<Decided>) -> std::sync::MutexGuard<'_, Decided> {
     decided.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The outcomes, a line each, and their number.
-fn in_words(outcomes: &[Outcome], claims: usize) -> String {
-    let mut text = String::new();
-    let mut file = "";
-    for outcome in outcomes {
-        if outcome.file != file {
-            file = &outcome.file;
-            let _ = writeln!(text, "{file}");
-        }
-        let _ = writeln!(text, "{}", claim_line(outcome));
-    }
-    let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
-    let _ = write!(text, "{} claims: {}; {failed} not as expected", outcomes.len(), counts_text(outcomes));
-    if outcomes.len() < claims {
-        let _ = write!(text, "\ninterrupted: {} claims are not decided", claims - outcomes.len());
-    } else if claims == 0 {
-        let _ = write!(text, "\ninterrupted while the files were read");
-    }
-    text
 }

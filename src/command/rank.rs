@@ -80,7 +80,7 @@ impl Rank {
             },
         );
         bar.finish_and_clear();
-        let answer = answer.map_err(|why| Unusable::report(why, ""))?;
+        let answer = answer.map_err(|why| Unusable::report(why.to_string(), ""))?;
         begin_to_tell();
         let mut files = Files::default();
         if let Some(path) = &self.verdicts {

@@ -2,13 +2,14 @@
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
 use super::output::{Files, Form, progress};
+use super::verify::packed_paper;
 use super::{Status, Unusable};
 use clap::{Args, ValueEnum};
 use palmistry::System;
+use palmistry::paper::Paper;
 use palmistry::report::{stress_json, stress_pictures, stress_text};
 use palmistry::tradeoff::Rows;
 use palmistry::tradeoff::stress::{Stress as Prepared, StressOptions, Study};
-use palmistry::verification::{REGIMES, prepare_regimes};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,8 +17,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Takes numbers to the extremes: how near to a singular set, and how large, before a rank is misreported.
 ///
-/// Lines approach every singular set down to a distance of 1e-15 (two rates equal, a rate at zero, the palms in line, a
-/// contact at the joint, a determinant's zero). At each point, an exact rational state, the rank is decided in single
+/// Lines approach every singular set down to a distance of 1e-15. At each point, an exact rational state, the rank is decided in single
 /// precision, in doubles by numpy's rule, in doubles after equilibration, with the errors that intervals
 /// know, by intervals alone, in double-doubles, and by the ladder that 'palmistry rank' climbs; beside them stands the
 /// certified rank. For each the table has the
@@ -28,13 +28,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Then every quantity is scaled from 1e-150 to 1e150, and the states are looked at in other units, which should change
 /// no verdict. Where numbers overflow or are divided by zero, what did so is named.
 ///
-/// Without FILE these are the thesis's regimes. With it, the sets are what the file says to avoid, the divisors of its
-/// rows, and each quantity of its sample at zero.
+/// The sets are those that a file names ('set', 'pole', and lines to infinity); where it names none, what it says to avoid,
+/// the divisors of its rows, and each quantity of its sample at zero. Without FILE these are the systems with named sets of a
+/// paper that came with the program.
 ///
 /// Example: palmistry stress --out stress
 #[derive(Args, Clone)]
 pub(crate) struct Stress {
-    /// A proof file; without one, the thesis's regimes.
+    /// A proof file; without one, a paper that came with the program.
     file: Option<PathBuf>,
     /// Which rows: the file's own matrix 'rows' where it defines one, or the full codistribution.
     #[arg(long, value_enum, default_value_t = Which::Own, value_name = "WHICH")]
@@ -51,9 +52,9 @@ pub(crate) struct Stress {
     /// Write the pictures (SVG) and stress.json into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// The folder that holds the thesis's proof files.
-    #[arg(long, value_name = "DIR", default_value = "proofs/moll2002")]
-    proofs: PathBuf,
+    /// A paper that came with the program, by the name of its folder.
+    #[arg(long, value_name = "NAME", conflicts_with = "file")]
+    paper: Option<String>,
     /// Print one JSON object with 'studies': for each its 'lines', 'scalings', 'units' and 'conditioning'.
     #[arg(long)]
     pub json: bool,
@@ -98,20 +99,19 @@ impl Stress {
             Which::Own => Rows::Own,
             Which::Full => Rows::Full,
         };
-        let prepared: Result<Vec<Prepared>, String> = match &self.file {
-            Some(file) => {
-                let mut system = System::read(file)?;
-                Prepared::of_file(&mut system, rows, &options).map(|one| vec![one])
-            }
-            None => {
-                let folder = super::verify::folder_of(&self.proofs)?;
-                let read = |file: &str| System::read(&folder.join(file));
-                let systems =
-                    REGIMES.iter().map(|regime| read(regime.file)).collect::<Result<Vec<_>, _>>()?;
-                prepare_regimes(&systems, rows, &options)
-            }
+        let mut systems = match &self.file {
+            Some(file) => vec![System::read(file)?],
+            None => Paper::read(&packed_paper(self.paper.as_deref())?)?.systems()?,
         };
-        let prepared = prepared.map_err(|why| Unusable::report(why, ""))?;
+        if self.file.is_none() {
+            systems.retain(|system| !system.sets.is_empty());
+        }
+        let mut prepared = Vec::new();
+        for system in &mut systems {
+            let one = Prepared::of_file(system, rows, &options);
+            let named = |why: String| Unusable::report(format!("{}: {why}", system.name), "");
+            prepared.push(one.map_err(named)?);
+        }
         bar.set_length(prepared.iter().map(|one| one.steps(&options)).sum());
         for one in &prepared {
             let study = one.run(&options);

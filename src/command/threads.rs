@@ -1,6 +1,7 @@
 //! How many threads work.
 
 use super::Unusable;
+use super::interrupt::STACK;
 
 /// The variable that says how many.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
@@ -12,7 +13,7 @@ const MOST: usize = 1024;
 /// Makes the threads that share the work: as many as there are processors, or as many as are asked for.
 pub(crate) fn prepare() -> miette::Result<()> {
     let asked = std::env::var(VARIABLE).ok().and_then(|text| text.trim().parse::<u128>().ok());
-    let mut pool = rayon::ThreadPoolBuilder::new();
+    let mut pool = rayon::ThreadPoolBuilder::new().stack_size(STACK);
     if let Some(asked) = asked {
         // none means as many as there are processors
         pool = pool.num_threads(usize::try_from(asked).unwrap_or(MOST).min(MOST));

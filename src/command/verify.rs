@@ -1,28 +1,36 @@
-//! `palmistry verify`: the main job.
+//! `palmistry verify`: a paper taken through everything.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
-use palmistry::report::{errata_markdown, page, verification_json, verification_text};
-use palmistry::verification::{Options, Verification, VerifyError, verify_into};
+use palmistry::file;
+use palmistry::paper::{Findings, Paper, VerifyOptions, verify_into};
+use palmistry::report::{errata_markdown, findings_json, findings_text, page};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Checks chapter 4 and appendix A.2 of the thesis: claims, ranks, determinants; writes a page with pictures.
+/// Takes a paper through everything: claims, ranks on named sets, maps, lines, numbers in print, reductions, speed against
+/// accuracy, the extremes, certificates, scenes; and writes a page with pictures.
 ///
-/// Exit status 0 only when every claim has the verdict that its file expects and every rank is certified.
+/// A paper is a folder of proof files, with a paper.toml that gives its title, its numbered equations and the scenes to run; or
+/// one proof file. Without one it is a paper that came with the program.
+///
+/// Exit status 0 only when every claim has the verdict that its file expects, every named set has a rank or is the pole that it
+/// is said to be, and every reduction is proved.
+///
+/// Example: palmistry verify mypaper --out report
 #[derive(Args, Clone)]
 pub(crate) struct Verify {
+    /// A folder of proof files, or one proof file.
+    #[arg(value_name = "FOLDER-OR-FILE", conflicts_with = "paper")]
+    path: Option<PathBuf>,
+    /// A paper that came with the program, by the name of its folder.
+    #[arg(long, value_name = "NAME")]
+    paper: Option<String>,
     /// Where to write index.html, verify.json and errata.md.
     #[arg(long, value_name = "DIR", default_value = "verify")]
     out: PathBuf,
-    /// The folder that holds the thesis's proof files.
-    #[arg(long, value_name = "DIR", default_value = "proofs/moll2002")]
-    proofs: PathBuf,
-    /// The folder that holds the scenes.
-    #[arg(long, value_name = "DIR", default_value = "scenes")]
-    scenes: PathBuf,
     /// Seed of the random points and the sampled states.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -33,19 +41,13 @@ pub(crate) struct Verify {
 
 impl Default for Verify {
     fn default() -> Self {
-        Verify {
-            out: "verify".into(),
-            proofs: "proofs/moll2002".into(),
-            scenes: "scenes".into(),
-            seed: 1,
-            json: false,
-        }
+        Verify { path: None, paper: None, out: "verify".into(), seed: 1, json: false }
     }
 }
 
 impl Verify {
     pub fn run(self) -> miette::Result<Status> {
-        let found = Arc::new(Mutex::new(Verification::begun(self.seed)));
+        let found = Arc::new(Mutex::new(Findings::begun(self.seed)));
         let (worker, filled) = (self.clone(), found.clone());
         let work = move || {
             worker.work(&filled)?;
@@ -56,13 +58,14 @@ impl Verify {
     }
 
     /// Finds out everything.
-    fn work(&self, found: &Mutex<Verification>) -> miette::Result<()> {
-        let folder = folder_of(&self.proofs)?;
-        let scenes = folder_of(&self.scenes)?;
+    fn work(&self, found: &Mutex<Findings>) -> miette::Result<()> {
+        let path = match &self.path {
+            Some(path) => path.clone(),
+            None => packed_paper(self.paper.as_deref())?,
+        };
+        let paper = Paper::read(&path)?;
         let bar = progress(1, "verifying");
-        let options = Options {
-            folder: &folder,
-            scenes: &scenes,
+        let options = VerifyOptions {
             seed: self.seed,
             interrupt: &INTERRUPTED,
             progress: &|what, done, all| {
@@ -71,39 +74,40 @@ impl Verify {
                 bar.set_message(what.chars().take(28).collect::<String>());
             },
         };
-        let result = verify_into(&options, found);
+        let result = verify_into(&paper, &options, found);
         bar.finish_and_clear();
-        result.map_err(|error| match error {
-            VerifyError::Read(error) => miette::Report::new(*error),
-            other => Unusable::report(other.to_string(), ""),
-        })
+        Ok(result?)
     }
 
     /// Prints and writes what was found.
-    fn tell(&self, found: &Mutex<Verification>) -> miette::Result<Status> {
+    fn tell(&self, found: &Mutex<Findings>) -> miette::Result<Status> {
         let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
         found.interrupted |= interrupted();
-        let json = verification_json(&found);
+        let json = findings_json(&found);
         let (html_file, json_file) = (self.out.join("index.html"), self.out.join("verify.json"));
         let mut files = Files::default();
         files.text(&html_file, &page(&found));
         files.text(&json_file, &format!("{}\n", serde_json::to_string(&json).unwrap_or_default()));
-        files.text(&self.out.join("errata.md"), &errata_markdown(&found.outcomes));
+        files.text(&self.out.join("errata.md"), &errata_markdown(&found.paper, found.outcomes()));
         files.announce(&html_file);
         files.announce(&json_file);
         let status = if found.ok() { Status::AsExpected } else { Status::NotAsExpected };
-        files.print(Form::of(self.json), json, || verification_text(&found), status)
+        files.print(Form::of(self.json), json, || findings_text(&found), status)
     }
 }
 
-/// The files are beside the place where the program is run, or beside its source.
-pub(crate) fn folder_of(proofs: &Path) -> miette::Result<PathBuf> {
-    let beside_source = Path::new(env!("CARGO_MANIFEST_DIR")).join(proofs);
-    for folder in [proofs.to_path_buf(), beside_source] {
-        if folder.is_dir() {
-            return Ok(folder);
+/// The folder of a paper that came with the program; the first one where none is named.
+pub(crate) fn packed_paper(name: Option<&str>) -> miette::Result<PathBuf> {
+    let all = file::packed_folders();
+    let found = match name {
+        None => all.first(),
+        Some(name) => all.iter().find(|known| **known == name),
+    };
+    match found {
+        Some(found) => Ok(Path::new(&format!("{}{found}", file::PACKED)).to_owned()),
+        None => {
+            let message = format!("no paper '{}' came with this program", name.unwrap_or_default());
+            Err(Unusable::report(message, format!("there are: {}", all.join(", "))))
         }
     }
-    let message = format!("there is no folder {}", proofs.display());
-    Err(Unusable::report(message, "run it where the folder is, or name it with --proofs or --scenes"))
 }

@@ -15,6 +15,7 @@ mod expansion;
 mod gradient;
 mod graph;
 mod nodes;
+pub mod notation;
 mod print;
 mod products;
 mod program;

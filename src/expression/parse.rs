@@ -256,7 +256,7 @@ fn name_or_call(input: &mut Text<'_>) -> Read<Expr> {
 }
 
 /// `name = value, ...` in braces, and where they end
-fn assignments(input: &mut Text<'_>) -> Read<(Vec<(Name, Expr)>, usize)> {
+pub(crate) fn assignments(input: &mut Text<'_>) -> Read<(Vec<(Name, Expr)>, usize)> {
     let one = |input: &mut Text<'_>| -> Read<(Name, Expr)> {
         let name = name.context("a name to give a value to").parse_next(input)?;
         cut_err(sign("=")).context("'=' and a value").parse_next(input)?;

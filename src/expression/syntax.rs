@@ -21,6 +21,17 @@ pub struct Expr {
     pub span: Span,
 }
 
+impl Expr {
+    /// Whether it is a number as it is written, perhaps with a sign.
+    pub fn is_literal(&self) -> bool {
+        match &self.kind {
+            ExprKind::Number(_) => true,
+            ExprKind::Sum(terms) => matches!(&terms[..], [(_, Expr { kind: ExprKind::Number(_), .. })]),
+            _ => false,
+        }
+    }
+}
+
 /// The forms of an expression.
 ///
 /// Sums and products are flat lists, however long: the depth of the tree is the depth of the brackets, and that is

@@ -3,10 +3,12 @@
 //!
 //! This floor knows nothing of what stands in a file.
 
+mod packed;
 mod read;
 mod standard;
 mod write;
 
+pub use packed::{PACKED, PackedFile, files_in, identity, is_file, is_folder, pack, packed_folders};
 pub use read::{ReadFailure, read_bytes, read_text};
 pub use standard::{look_at_standard_output, note, print};
 pub use write::{remove_unfinished, write_whole};

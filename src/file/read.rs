@@ -35,6 +35,14 @@ pub enum ReadFailure {
 /// # Errors
 /// It cannot be opened or read, is a folder, is longer, or is a pipe without a writer.
 pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, ReadFailure> {
+    if let Some(packed) = super::packed::bytes(path) {
+        let packed = packed?;
+        return if packed.len() as u64 > most {
+            Err(ReadFailure::TooLong(most))
+        } else {
+            Ok(packed.to_vec())
+        };
+    }
     let known = std::fs::metadata(path)?;
     if known.is_dir() {
         return Err(ReadFailure::Folder);

@@ -113,8 +113,8 @@ fn polynomial<L: Lanes>(z: L, coefficients: &[f64; 6]) -> L {
 
 #[cfg(test)]
 mod tests {
-    use super::super::lanes::{Instructions, MOST_LANES, Vectorised};
-    use super::super::{Arithmetic, Enclosures, rational_from_f64};
+    use super::super::lanes::{MOST_LANES, Vectorised};
+    use super::super::{Arithmetic, Enclosures, Instructions, rational_from_f64};
     use super::*;
 
     struct All<'a>(&'a [f64]);

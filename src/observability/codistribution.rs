@@ -35,6 +35,32 @@ impl Word {
     }
 }
 
+/// Why there is no codistribution.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CodistributionError {
+    /// No field is a drift or an input.
+    #[error("{0}")]
+    NoMotion(String),
+    /// Every state is a pole: a divisor is zero at all of them.
+    #[error("every state there is a pole: {divisor} = 0 is divided by")]
+    Pole {
+        /// As the file writes it.
+        divisor: String,
+    },
+    /// A symbol that is declared as an angle is met as a number.
+    #[error("'{0}' is declared as an angle but stands outside sin, cos and tan")]
+    AngleOutside(String),
+    /// Nothing could be evaluated, and why.
+    #[error("{0}")]
+    NotEvaluated(String),
+}
+
+impl From<CodistributionError> for String {
+    fn from(error: CodistributionError) -> String {
+        error.to_string()
+    }
+}
+
 /// How long the words may become.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
@@ -95,14 +121,13 @@ impl Codistribution {
     /// the dimension, or until they are long enough.
     ///
     /// # Errors
-    /// In words, where no field is a drift or an input, every state of the locus is a pole or an angle is met outside sines
-    /// and cosines.
+    /// Where no field is a drift or an input, every state of the locus is a pole or an angle is met outside sines and cosines.
     pub fn new(
         system: &mut System,
         conditions: &Assignment,
         length: Length,
-    ) -> Result<Codistribution, String> {
-        system.require_motion()?;
+    ) -> Result<Codistribution, CodistributionError> {
+        system.require_motion().map_err(CodistributionError::NoMotion)?;
         let fields = system.moving_fields();
         let dimension = system.states.len();
         let invariant = is_invariant(system, conditions);
@@ -187,7 +212,11 @@ impl Codistribution {
 
 /// The rank at almost all states, with only those conditions kept that concern parameters; the dimension, where that
 /// rank is not known for good. A rank falls on a special set, and never rises.
-fn rank_around(system: &mut System, conditions: &Assignment, length: Length) -> Result<usize, String> {
+fn rank_around(
+    system: &mut System,
+    conditions: &Assignment,
+    length: Length,
+) -> Result<usize, CodistributionError> {
     let states = system.states.clone();
     let kept: Assignment = conditions
         .iter()
@@ -254,7 +283,7 @@ fn needed(
     system: &mut System,
     rows: &[Vec<NodeId>],
     conditions: &Assignment,
-) -> Result<(Vec<usize>, bool), String> {
+) -> Result<(Vec<usize>, bool), CodistributionError> {
     let angles = system.angles();
     let is_angle = |symbol| angles.contains(&symbol);
     let as_written: Vec<NodeId> = rows.iter().flatten().copied().collect();
@@ -263,7 +292,7 @@ fn needed(
     let program = Program::new(&system.graph, &entries, is_angle, true);
     if let Some(angle) = program.bare_angle() {
         let name = system.symbol_name(angle);
-        return Err(format!("'{name}' is declared as an angle but stands outside sin, cos and tan"));
+        return Err(CodistributionError::AngleOutside(name.to_owned()));
     }
     let mut rng = ChaCha8Rng::seed_from_u64(0x0077_6f72_6473); // any fixed seed: the words do not depend on the user's
     let (mut registers, mut divisor, mut best) = (Vec::new(), None, None::<Vec<usize>>);
@@ -276,7 +305,8 @@ fn needed(
             Ok(values) => {
                 let matrix: Vec<Vec<u64>> =
                     values.chunks(system.states.len().max(1)).map(<[u64]>::to_vec).collect();
-                let kept = independent_rows(&field, &matrix).map_err(|refusal| refusal.to_string())?;
+                let kept = independent_rows(&field, &matrix)
+                    .map_err(|refusal| CodistributionError::NotEvaluated(refusal.to_string()))?;
                 if best.as_ref().is_none_or(|b| kept.len() > b.len()) {
                     best = Some(kept);
                 }
@@ -293,8 +323,8 @@ fn needed(
         Some(divisor) => {
             // what has become the constant zero is named as it was written
             let named = system.graph.vanishing_divisor(&as_written, conditions).unwrap_or(divisor);
-            format!("every state there is a pole: {} = 0 is divided by", system.graph.text(named))
+            CodistributionError::Pole { divisor: system.graph.text(named) }
         }
-        None => "no random point could be evaluated".to_owned(),
+        None => CodistributionError::NotEvaluated("no random point could be evaluated".to_owned()),
     })
 }

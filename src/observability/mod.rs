@@ -20,7 +20,7 @@ mod series;
 mod singular;
 mod state;
 
-pub use codistribution::{Codistribution, Length, OWN_ROWS, Stop, Word};
+pub use codistribution::{Codistribution, CodistributionError, Length, OWN_ROWS, Stop, Word};
 pub(crate) use conditions::vanishes;
 pub use conditions::{
     Branch, Solution, Unsolved, also_met_otherwise, assumed, linear_solution, parse_condition, solve,

@@ -4,6 +4,9 @@
 
 mod certificate;
 mod claims;
+mod drawing;
+mod formula;
+mod layout;
 mod motion;
 mod page;
 mod plot;
@@ -12,11 +15,16 @@ mod stress;
 mod trade;
 
 pub use certificate::{percent, region_curve, region_json, region_map, region_text};
-pub use claims::{claim_json, claim_line, counts_text, errata_markdown, junit};
+pub use claims::{
+    ClaimsForm, ClaimsSummary, Shown, claim_json, claim_line, claim_text, claims_text, counts_text,
+    errata_markdown, junit,
+};
+pub use formula::{conditions_mathml, definition_mathml, expression_latex, formula_mathml, statement_latex};
+pub use layout::{Colour, Layout, Tone};
 pub use motion::{
     Observed, ended_in_words, fault_lines, method_name, observe_json, observe_page, observe_text,
 };
-pub use page::{page, printed_value_json, verification_json, verification_text};
+pub use page::{findings_json, findings_text, page, printed_value_json};
 pub use ranks::{rank_json, rank_text};
 pub use stress::{
     conditioning_picture, lines_picture, scalings_picture, stress_json, stress_pictures, stress_text,

@@ -1,8 +1,10 @@
 //! Plots as SVG, to be put into a page.
 
+use crate::report::drawing::{Canvas, Hover, INK, MESH, svg};
 use crate::tradeoff::{Growth, Map, RoundingStudy, Slope};
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use plotters::prelude::{
+    ChartBuilder, Circle, Color, IntoFont, IntoLogRange, LineSeries, RGBColor, Rectangle, WHITE,
+};
 
 /// Colours of singular values, from small (dark) to large (light).
 const SCALE: [(u8, u8, u8); 8] = [
@@ -15,32 +17,11 @@ const SCALE: [(u8, u8, u8); 8] = [
     (253, 166, 104),
     (252, 222, 156),
 ];
-/// Where a pole is.
-const POLE: RGBColor = RGBColor(255, 255, 255);
-pub(super) const INK: RGBColor = RGBColor(40, 44, 52);
-
-pub(super) type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-/// Draws into a string. What cannot be drawn is said in its place.
-pub(super) fn svg(
-    size: (u32, u32),
-    draw: impl FnOnce(&Drawing<'_>) -> Result<(), Box<dyn std::error::Error>>,
-) -> String {
-    let mut text = String::new();
-    let result = {
-        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        draw(&area).and_then(|()| area.present().map_err(Into::into))
-    };
-    match result {
-        Ok(()) => {
-            // what every shape says and nobody needs
-            let text =
-                text.replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", "").replace(">\n<", "><");
-            text.replacen("<svg ", "<svg role=\"img\" ", 1)
-        }
-        Err(error) => format!("<p>this plot could not be drawn: {error}</p>"),
-    }
-}
+/// Where a pole is: nearly white, on light and on dark pages.
+const POLE: RGBColor = RGBColor(250, 250, 250);
+/// What is counted or measured.
+const BAR: RGBColor = RGBColor(0, 114, 178);
+const RED: RGBColor = RGBColor(200, 40, 60);
 
 /// The steps of the colour scale: levels of the logarithm, two a decade.
 fn level(value: f64, lowest: f64, highest: f64) -> usize {
@@ -58,8 +39,14 @@ fn shade(level: usize) -> RGBColor {
     RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
-/// The smallest singular value over two coordinates; dark where it is small, white at poles.
-pub(crate) fn map(map: &Map, title: &str) -> String {
+/// A name along an axis, with the unit of what it means where that is known.
+pub(crate) fn axis(name: &str, unit: Option<&str>) -> String {
+    unit.filter(|unit| !unit.is_empty()).map_or(name.to_owned(), |unit| format!("{name}, {unit}"))
+}
+
+/// The smallest singular value over two coordinates; dark where it is small, white at poles. Under the pointer stand the
+/// values between which a cell's lies. `units` are those of the two coordinates.
+pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
     let found: Vec<f64> =
         map.smallest.iter().flatten().copied().filter(|v| *v > 0.0).map(f64::log10).collect();
     let highest = found.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -67,48 +54,59 @@ pub(crate) fn map(map: &Map, title: &str) -> String {
     if found.is_empty() {
         return "<p>there is a pole everywhere on this map</p>".to_owned();
     }
-    // without smoothing of edges no gaps show between the rectangles
-    let drawn = svg((580, 400), |area| {
-        let (plot, legend) = area.split_horizontally(490);
+    let at = |step: usize| lowest + (highest - lowest) * step as f64 / SHADES as f64;
+    let short = |log: f64| format!("{:.2e}", 10f64.powf(log));
+    let values = |step: usize| match step {
+        0 => format!("smallest singular value below {}", short(at(1))),
+        _ => format!("smallest singular value {} to {}", short(at(step)), short(at(step + 1))),
+    };
+    let mut by_colour: Vec<(RGBColor, String)> =
+        (0..SHADES).map(|step| (shade(step), values(step))).collect();
+    by_colour.push((POLE, "a pole".to_owned()));
+    let canvas = Canvas { size: (420, 330), title, by_colour: &by_colour, is_crisp: true };
+    canvas.draw(|area, _| {
+        let (plot, legend) = area.split_horizontally(345);
         let mut chart = ChartBuilder::on(&plot)
-            .caption(title, ("sans-serif", 15).into_font().color(&INK))
+            .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
-            .x_label_area_size(36)
-            .y_label_area_size(46)
+            .x_label_area_size(38)
+            .y_label_area_size(48)
             .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
         let (dx, dy) = ((map.x.2 - map.x.1) / map.width as f64, (map.y.2 - map.y.1) / map.height as f64);
         let colour =
             |cell: &Option<f64>| cell.map(|value| level(value.max(f64::MIN_POSITIVE), lowest, highest));
-        for (row, cells) in map.smallest.chunks(map.width).enumerate() {
-            // neighbours of one colour are one rectangle
-            let mut start = 0;
-            while start < cells.len() {
-                let this = colour(&cells[start]);
-                let length = cells[start..].iter().take_while(|cell| colour(cell) == this).count();
-                let corner = |i: usize, j: usize| (map.x.1 + dx * i as f64, map.y.1 + dy * j as f64);
-                let style = this.map_or(POLE, shade).filled();
-                chart.draw_series([Rectangle::new(
-                    [corner(start, row), corner(start + length, row + 1)],
-                    style,
-                )])?;
-                start += length;
+        // all of one colour together, so that they are one path
+        for this in [None].into_iter().chain((0..SHADES).map(Some)) {
+            let style = this.map_or(POLE, shade).filled();
+            for (row, cells) in map.smallest.chunks(map.width).enumerate() {
+                let mut start = 0;
+                for run in cells.chunk_by(|a, b| colour(a) == colour(b)) {
+                    let corner = |i: usize, j: usize| (map.x.1 + dx * i as f64, map.y.1 + dy * j as f64);
+                    if colour(&run[0]) == this {
+                        let corners = [corner(start, row), corner(start + run.len(), row + 1)];
+                        chart.draw_series([Rectangle::new(corners, style)])?;
+                    }
+                    start += run.len();
+                }
             }
         }
         chart
             .configure_mesh()
             .disable_mesh()
-            .x_desc(&map.x.0)
-            .y_desc(&map.y.0)
+            .x_labels(6)
+            .y_labels(6)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
+            .x_desc(axis(&map.x.0, units[0]))
+            .y_desc(axis(&map.y.0, units[1]))
             .axis_desc_style(("sans-serif", 13))
             .draw()?;
         let mut scale = ChartBuilder::on(&legend)
             .margin_top(34)
-            .margin_bottom(44)
-            .margin_right(4)
-            .y_label_area_size(50)
+            .margin_bottom(46)
+            .margin_right(8)
+            .y_label_area_size(44)
             .build_cartesian_2d(0.0..1.0, lowest..highest)?;
         for step in 0..SHADES {
-            let at = |i: usize| lowest + (highest - lowest) * i as f64 / SHADES as f64;
             scale.draw_series([Rectangle::new(
                 [(0.0, at(step)), (1.0, at(step + 1))],
                 shade(step).filled(),
@@ -119,37 +117,38 @@ pub(crate) fn map(map: &Map, title: &str) -> String {
             .disable_mesh()
             .disable_x_axis()
             .y_labels(7)
-            .y_label_style(("sans-serif", 12))
+            .y_label_style(("sans-serif", 12).into_font().color(&INK))
             .y_label_formatter(&|v| format!("{:.0e}", 10f64.powf(*v)))
             .draw()?;
         Ok(())
-    });
-    drawn.replacen("<svg ", "<svg shape-rendering=\"crispEdges\" ", 1)
+    })
 }
 
-/// The singular values on the way into a singularity, both axes logarithmic.
-pub(crate) fn slope(slope: &Slope, title: &str) -> String {
+/// The singular values on the way into a singularity, both axes logarithmic. Under the pointer stand all of them at a distance.
+pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
     let values: Vec<f64> = slope.values.iter().flatten().copied().filter(|v| *v > 1e-20).collect();
     let highest = values.iter().copied().fold(1e-20, f64::max) * 2.0;
     let lowest = values.iter().copied().fold(highest, f64::min).max(1e-18) / 2.0;
     let (near, far) =
         (slope.distance.last().copied().unwrap_or(1e-14), slope.distance.first().copied().unwrap_or(1.0));
-    svg((420, 300), |area| {
+    Canvas { size: (420, 300), title, by_colour: &[], is_crisp: false }.draw(|area, hovers| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
-            .x_label_area_size(34)
-            .y_label_area_size(52)
+            .x_label_area_size(36)
+            .y_label_area_size(62)
             .build_cartesian_2d((near..far).log_scale(), (lowest..highest).log_scale())?;
         chart
             .configure_mesh()
             .light_line_style(WHITE)
-            .bold_line_style(RGBColor(225, 228, 232))
+            .bold_line_style(MESH)
             .x_labels(6)
             .y_labels(7)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_label_formatter(&|v| format!("{v:.0e}"))
             .y_label_formatter(&|v| format!("{v:.0e}"))
-            .x_desc("distance")
+            .x_desc(axis("distance", unit))
+            .y_desc("singular values")
             .axis_desc_style(("sans-serif", 12))
             .draw()?;
         let count = slope.values.iter().map(Vec::len).max().unwrap_or(0);
@@ -160,12 +159,37 @@ pub(crate) fn slope(slope: &Slope, title: &str) -> String {
                 .zip(&slope.values)
                 .filter_map(|(d, v)| v.get(index).filter(|v| **v >= lowest).map(|v| (*d, *v)));
             let last = index + 1 == count;
-            let colour =
-                if last { RGBColor(200, 40, 60) } else { shade(index * (SHADES - 8) / count.max(1)) };
+            let colour = if last { RED } else { LINES[index % LINES.len()] };
             chart.draw_series(LineSeries::new(points, colour.stroke_width(if last { 2 } else { 1 })))?;
         }
+        let place = |distance: f64, value: f64| chart.backend_coord(&(distance, value));
+        let (top, bottom) = (place(far, highest).1, place(far, lowest).1);
+        hovers.extend(columns(slope, |distance| place(distance, lowest).0, [top, bottom]));
         Ok(())
     })
+}
+
+/// Colours of the singular values above the smallest, that are seen on light and dark pages.
+const LINES: [RGBColor; 4] =
+    [RGBColor(112, 90, 200), RGBColor(0, 135, 190), RGBColor(0, 150, 110), RGBColor(150, 130, 60)];
+
+/// A stripe around each distance, and what stands there.
+fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -> Vec<Hover> {
+    let places: Vec<i32> = slope.distance.iter().map(|distance| place(*distance)).collect();
+    let found = slope.distance.iter().zip(&slope.values).enumerate();
+    let stripe = |(i, (distance, values)): (usize, (&f64, &Vec<f64>))| {
+        let here = places[i];
+        let half = |other: Option<&i32>| other.map_or(here, |other| (other + here) / 2);
+        let ends = [half(i.checked_sub(1).and_then(|i| places.get(i))), half(places.get(i + 1))];
+        let values: Vec<String> = values.iter().map(|value| format!("{value:.2e}")).collect();
+        let text = match values.is_empty() {
+            true => format!("{distance:.0e}: a pole"),
+            false => format!("{distance:.0e}: {}", values.join(", ")),
+        };
+        let corners = [ends[0].min(ends[1]), top, ends[0].max(ends[1]), bottom];
+        (corners[2] > corners[0]).then_some(Hover { corners, text })
+    };
+    found.filter_map(stripe).collect()
 }
 
 /// The errors of a sum in few digits, as a histogram, with the error of the printed number as a line.
@@ -178,28 +202,30 @@ pub(crate) fn rounding(study: &RoundingStudy, printed_error: f64, title: &str) -
         bins[place.min(BINS - 1)] += 1;
     }
     let tallest = f64::from(bins.iter().copied().max().unwrap_or(1)) * 1.1;
-    svg((420, 260), |area| {
+    svg((420, 260), title, |area| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
-            .x_label_area_size(34)
-            .y_label_area_size(36)
+            .x_label_area_size(38)
+            .y_label_area_size(50)
             .build_cartesian_2d(-reach..reach, 0.0..tallest)?;
         chart
             .configure_mesh()
             .disable_mesh()
             .x_labels(5)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_label_formatter(&|v| format!("{v:.1e}"))
             .x_desc("error of the sum")
+            .y_desc("orders")
             .axis_desc_style(("sans-serif", 12))
             .draw()?;
         let width = 2.0 * reach / BINS as f64;
         chart.draw_series(bins.iter().enumerate().map(|(i, count)| {
             let left = -reach + width * i as f64;
-            Rectangle::new([(left, 0.0), (left + width, f64::from(*count))], shade(6).filled())
+            Rectangle::new([(left, 0.0), (left + width, f64::from(*count))], BAR.filled())
         }))?;
         let line = [(printed_error, 0.0), (printed_error, tallest)];
-        chart.draw_series(LineSeries::new(line, RGBColor(200, 40, 60).stroke_width(2)))?;
+        chart.draw_series(LineSeries::new(line, RED.stroke_width(2)))?;
         Ok(())
     })
 }
@@ -210,17 +236,20 @@ pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
     let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
         return String::new();
     };
-    svg((420, 300), |area| {
+    svg((420, 300), title, |area| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
-            .x_label_area_size(34)
+            .x_label_area_size(38)
             .y_label_area_size(56)
             .build_cartesian_2d((1.0..last.0 * 1.1).log_scale(), (first.1 / 2.0..last.1 * 4.0).log_scale())?;
         chart
             .configure_mesh()
             .light_line_style(WHITE)
-            .bold_line_style(RGBColor(225, 228, 232))
+            .bold_line_style(MESH)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
+            .x_labels(6)
+            .y_labels(6)
             .x_label_formatter(&|v| format!("{v:.0}"))
             .y_label_formatter(&|v| format!("{v:.0}"))
             .x_desc("order of the Lie derivative")
@@ -231,9 +260,9 @@ pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
             .iter()
             .map(|(k, _)| (*k, last.1 * (k / last.0).powi(3)))
             .filter(|(_, v)| *v >= first.1 / 2.0);
-        chart.draw_series(LineSeries::new(cubic, RGBColor(170, 175, 182).stroke_width(1)))?;
-        chart.draw_series(LineSeries::new(points.iter().copied(), shade(6).stroke_width(2)))?;
-        chart.draw_series(points.iter().map(|point| Circle::new(*point, 3, shade(6).filled())))?;
+        chart.draw_series(LineSeries::new(cubic, RGBColor(150, 155, 162).stroke_width(1)))?;
+        chart.draw_series(LineSeries::new(points.iter().copied(), BAR.stroke_width(2)))?;
+        chart.draw_series(points.iter().map(|point| Circle::new(*point, 3, BAR.filled())))?;
         Ok(())
     })
 }

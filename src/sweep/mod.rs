@@ -17,7 +17,7 @@ mod stream;
 pub use certainty::Certainty;
 pub use digits::{Digits, MOST_DIGITS, NoDigits};
 pub use ladder::{Judge, Judged, StateReport};
-pub use question::{BranchAnswer, RankAnswer, RankQuestion, TakenRow, answer_rank};
+pub use question::{BranchAnswer, RankAnswer, RankError, RankQuestion, TakenRow, answer_rank};
 pub use states::{RecordedState, SweepOptions, SweepReport, UnseenDirection, sweep};
 pub use stream::{
     DECADES, Elimination, Jacobi, StatesError, Stream, StreamOptions, StreamReport, Verdict, Verdicts,

@@ -3,7 +3,8 @@
 use super::states::{SweepOptions, SweepReport, sweep};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
-    Codistribution, Length, Locus, OWN_ROWS, Stop, parse_condition, solve_conditions,
+    Codistribution, CodistributionError, Length, Locus, LocusError, OWN_ROWS, Stop, Unsolved,
+    parse_condition, solve_conditions,
 };
 use crate::sweep::certainty::Certainty;
 use crate::system::{Assignment, FieldRole, Kind, SymbolInfo, System, Value};
@@ -109,6 +110,29 @@ impl RankAnswer {
     }
 }
 
+/// Why there is no answer.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum RankError {
+    /// The file declares no states or no outputs.
+    #[error("{0} declares no states or no outputs")]
+    NothingToSee(String),
+    /// A condition that cannot be read, or that fixes an angle up to whole turns where these matter.
+    #[error("{0}")]
+    Condition(String),
+    /// A condition that cannot be solved.
+    #[error(transparent)]
+    Unsolved(#[from] Unsolved),
+    /// A symbol that is both held and solved for.
+    #[error("'{0}' is fixed with --at and solved for in a condition; choose one")]
+    HeldAndSolved(String),
+    /// No field moves the states, or every state is a pole.
+    #[error(transparent)]
+    Codistribution(#[from] CodistributionError),
+    /// No state can be drawn.
+    #[error(transparent)]
+    Locus(#[from] LocusError),
+}
+
 /// Symbols that every drawn state has the same value of: parameters with a value and no range, and ranges of no width.
 fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol, RBig)> {
     let held = |(symbol, info): (Symbol, &SymbolInfo)| {
@@ -146,22 +170,21 @@ fn held_parameters<'a>(
 /// Answers a question about the rank of a system's observability codistribution.
 ///
 /// # Errors
-/// In words: no states or outputs, no drift or input, conditions that cannot be solved, a pole everywhere, an empty sample box.
-pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<RankAnswer, String> {
+/// No states or outputs, no drift or input, conditions that cannot be solved, a pole everywhere, an empty sample box.
+pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<RankAnswer, RankError> {
     if system.states.is_empty() || system.outputs.is_empty() {
-        return Err(format!("{} declares no states or no outputs", system.name));
+        return Err(RankError::NothingToSee(system.name.clone()));
     }
-    system.require_motion()?;
+    system.require_motion().map_err(CodistributionError::NoMotion)?;
     let mut equations = Vec::new();
     for text in &question.conditions {
-        equations.extend(parse_condition(text)?);
+        equations.extend(parse_condition(text).map_err(RankError::Condition)?);
     }
-    let mut branches = solve_conditions(system, &equations).map_err(|unsolved| unsolved.to_string())?;
+    let mut branches = solve_conditions(system, &equations)?;
     for branch in &mut branches {
         for symbol in question.fixed.keys() {
             if branch.values.contains_key(symbol) {
-                let name = system.symbol_name(*symbol);
-                return Err(format!("'{name}' is fixed with --at and solved for in a condition; choose one"));
+                return Err(RankError::HeldAndSolved(system.symbol_name(*symbol).to_owned()));
             }
         }
     }
@@ -172,7 +195,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
     let own_guards = system.definition_guards(OWN_ROWS);
     let mut answers = Vec::new();
     for branch in branches {
-        branch.check_codistribution(system)?;
+        branch.check_codistribution(system).map_err(RankError::Condition)?;
         // values that are held fixed are conditions too, but for angles, whose values are no rational half turns
         let mut conditions = branch.values.clone();
         for (symbol, value) in &question.fixed {
@@ -195,8 +218,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         let all = codistribution.entries();
         let mut mentioned: Vec<NodeId> = all.clone();
         mentioned.extend(own.iter().flatten());
-        let locus =
-            Locus::new(system, &branch, &question.fixed, &mentioned).map_err(|error| error.to_string())?;
+        let locus = Locus::new(system, &branch, &question.fixed, &mentioned)?;
         let options = SweepOptions {
             samples: question.samples,
             seed: question.seed,
@@ -207,11 +229,11 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             interrupt: question.interrupt,
             progress: question.progress,
         };
-        let full = codistribution.sweep(system, &locus, options).map_err(|error| error.to_string())?;
+        let full = codistribution.sweep(system, &locus, options)?;
         let rows = match &own {
             Some(own) => {
                 let silent = SweepOptions { guards: &own_guards, progress: &|_| (), ..options };
-                Some(sweep(system, &locus, own, own, silent).map_err(|error| error.to_string())?)
+                Some(sweep(system, &locus, own, own, silent)?)
             }
             None => None,
         };

@@ -17,6 +17,11 @@ pub(crate) struct Domain {
 }
 
 impl Domain {
+    /// Some guards together.
+    pub(super) fn of(guards: impl IntoIterator<Item = Guard>) -> Domain {
+        Domain { own: guards.into_iter().collect(), used: BTreeSet::new() }
+    }
+
     /// The same where the definitions are known under an alias.
     pub(super) fn under(self, alias: &str) -> Domain {
         let used = self.used.into_iter().map(|name| format!("{alias}.{name}")).collect();

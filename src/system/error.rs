@@ -25,13 +25,17 @@ pub struct ReadError {
 impl ReadError {
     /// The line and the column of the place, in characters, both counted from one.
     pub fn line_and_column(&self) -> (usize, usize) {
-        let text = self.source_code.inner();
-        // the place is on the boundary of a character, or at the end
-        let before = text.get(..self.span.offset()).unwrap_or(text);
-        let line = before.matches('\n').count() + 1;
-        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-        (line, column)
+        line_and_column(self.source_code.inner(), self.span.offset())
     }
+}
+
+/// The line and the column of a place in a text, in characters, both counted from one.
+pub(crate) fn line_and_column(text: &str, at: usize) -> (usize, usize) {
+    // the place is on the boundary of a character, or at the end
+    let before = text.get(..at).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    (line, column)
 }
 
 /// An error without its text: what the elaborator knows.

@@ -3,6 +3,7 @@
 use super::dimension::{Declared, DeclaredDimension, annotation, declared};
 use super::model::Role;
 use super::standing::{Basis, Flaw, Reference, basis, fault};
+use super::views::{View, begins, view};
 use crate::expression::Expected;
 use crate::expression::parse::{
     Depth, Read, Text, blank, ends_a_line, equations, keyword, name, range, read_all, sign, stop, sum,
@@ -27,6 +28,7 @@ pub(crate) enum Item {
     Output(Vec<(Expr, Option<DeclaredDimension>)>),
     Sample { ranges: Vec<(Name, Expr, Expr)>, avoid: Vec<Expr> },
     Claim(Box<ClaimSyntax>),
+    View(Box<View>),
 }
 
 /// Equations or other relations, and the conditions under which they are claimed.
@@ -36,6 +38,8 @@ pub struct Statement {
     pub equation: Equation,
     /// The others of a chain.
     pub further: Vec<Equation>,
+    /// `carrying 10 digits`: the right side is a number in print, from a system that carries so many.
+    pub carried: Option<usize>,
     /// Whether it is claimed `on sample`, that is for states in the sample box.
     pub on_sample: bool,
     /// `where a = b, c > d, ...`
@@ -190,7 +194,9 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     };
     let mut components = Vec::new();
     let mut others_are_zero = false;
-    while let Some((state, value)) = opt(component).parse_next(input)? {
+    while !begins(input)
+        && let Some((state, value)) = opt(component).parse_next(input)?
+    {
         if state.text == "others" {
             match value.kind {
                 ExprKind::Number(ref zero) if zero.is_zero() => others_are_zero = true,
@@ -219,7 +225,9 @@ fn sample(input: &mut Text<'_>) -> Read<Item> {
         Ok((name, low, high))
     };
     let mut ranges = Vec::new();
-    while let Some(found) = opt(ranged).parse_next(input)? {
+    while !begins(input)
+        && let Some(found) = opt(ranged).parse_next(input)?
+    {
         ranges.push(found);
     }
     let avoid = opt(preceded(keyword("avoid"), cut_err(separated(1.., sum, sign(","))))).parse_next(input)?;
@@ -237,11 +245,38 @@ pub(super) fn identifier(input: &mut Text<'_>) -> Read<Name> {
     Ok(Name { text, span })
 }
 
+/// Digits that a computer-algebra system carried: `10 digits`, and where that ends.
+fn carried_digits(input: &mut Text<'_>) -> Read<(usize, usize)> {
+    let at = input.current_token_start();
+    let count = cut_err(sum).context("the number of digits").parse_next(input)?;
+    let end =
+        cut_err(keyword("digits")).context("'digits', as in 'carrying 10 digits'").parse_next(input)?.end;
+    let digits = match &count.kind {
+        ExprKind::Number(number) if number.is_int() => usize::try_from(number.numerator().clone()).ok(),
+        _ => None,
+    };
+    match digits.filter(|digits| (1..=MOST_CARRIED_DIGITS).contains(digits)) {
+        Some(digits) => Ok((digits, end)),
+        None => stop(at, format!("a number of digits from 1 to {MOST_CARRIED_DIGITS}"), None),
+    }
+}
+
+/// More digits than these explain no rounding: a value is certified to forty.
+const MOST_CARRIED_DIGITS: usize = 30;
+
 pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
     let begin = input.current_token_start();
     let mut further = cut_err(equations).parse_next(input)?;
     let equation = further.remove(0);
     let mut end = equation.span.end;
+    let carried = match opt(keyword("carrying")).parse_next(input)? {
+        None => None,
+        Some(_) => {
+            let (digits, ends) = carried_digits(input)?;
+            end = ends;
+            Some(digits)
+        }
+    };
     let on_sample = match opt(keyword("on")).parse_next(input)? {
         None => false,
         Some(_) => {
@@ -253,7 +288,15 @@ pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
         opt(preceded(keyword("where"), cut_err(separated(1.., equations, sign(","))))).parse_next(input)?;
     let conditions: Vec<Equation> = conditions.unwrap_or_default().into_iter().flatten().collect();
     end = conditions.last().map_or(end, |last| last.span.end);
-    Ok(Box::new(Statement { equation, further, on_sample, conditions, span: begin..end }))
+    Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, span: begin..end }))
+}
+
+/// Reads a statement that is the whole text, as it stands behind the colon of a claim.
+///
+/// # Errors
+/// What was expected instead, and where.
+pub fn parse_statement(text: &str) -> Result<Statement, Expected> {
+    read_all(text, &Depth::default(), "an operator, 'where' or the end", statement).map(|found| *found)
 }
 
 fn claim(input: &mut Text<'_>) -> Read<Item> {
@@ -306,7 +349,7 @@ fn remark_only(input: &mut Text<'_>) -> Read<Item> {
 }
 
 const ENTRY: &str = "one of: system, use, state, param, angle, let, drift, input, field, output, sample, claim, erratum, \
-                     damaged, scan, convention, loose, definition, undecided";
+                     damaged, scan, convention, loose, definition, undecided, set, pole, map, line, reduction";
 
 fn item(input: &mut Text<'_>) -> Read<Item> {
     alt((
@@ -318,13 +361,13 @@ fn item(input: &mut Text<'_>) -> Read<Item> {
         definition,
         field,
         outputs,
-        alt((sample, claim, faulty, remark_only)),
+        alt((sample, claim, faulty, remark_only, view)),
     ))
     .parse_next(input)
 }
 
 /// The words that begin an entry.
-const ENTRIES: [&str; 19] = [
+const ENTRIES: [&str; 24] = [
     "system",
     "use",
     "state",
@@ -344,6 +387,11 @@ const ENTRIES: [&str; 19] = [
     "loose",
     "definition",
     "undecided",
+    "set",
+    "pole",
+    "map",
+    "line",
+    "reduction",
 ];
 
 /// What to say where no entry begins.

@@ -19,15 +19,17 @@ mod read;
 mod references;
 mod restates;
 mod standing;
+mod views;
 mod written;
 
 pub use dimension::{Base, Dimension};
 pub use error::ReadError;
-pub(crate) use error::{Problem, nearest};
-pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement};
+pub(crate) use error::{Problem, line_and_column, nearest};
+pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statement};
 pub use model::{
     Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,
 };
 pub(crate) use read::load;
 pub use standing::{Basis, Flaw, Reference};
+pub use views::{LineEnd, LineView, MapView, NamedSet, Point, ReductionTo};
 pub(crate) use written::in_one_line;

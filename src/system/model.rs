@@ -4,11 +4,13 @@ use super::dimension::{Dimensions, Import};
 use super::domain::Domain;
 use super::error::Problem;
 use super::grammar::{ClaimBody, ClaimSyntax};
+use super::views::{LineView, MapView, NamedSet, ReductionTo};
 use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};
 use crate::expression::syntax::Span;
 use crate::expression::{Derivation, Graph, Guard, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What a symbol is in its system.
@@ -174,6 +176,14 @@ pub struct System {
     pub avoid: Vec<(String, NodeId)>,
     /// The claims, as syntax.
     pub claims: Vec<ClaimSyntax>,
+    /// Sets of states that deserve a look of their own, in the order of the file.
+    pub sets: Vec<NamedSet>,
+    /// Planes over which singular values are looked at.
+    pub maps: Vec<MapView>,
+    /// Lines along which they are.
+    pub lines: Vec<LineView>,
+    /// The systems that this one is under conditions.
+    pub reductions: Vec<ReductionTo>,
     pub(crate) symbols: BTreeMap<Symbol, SymbolInfo>,
     pub(crate) definitions: BTreeMap<String, Value>,
     /// Where each definition exists, imported ones included.
@@ -189,8 +199,8 @@ pub struct System {
     pub(crate) partials: HashMap<Symbol, Derivation>,
     /// Whether something has been differentiated by all states: then these are all that there are.
     pub(crate) states_are_final: bool,
-    /// The names that this file gives to imported systems.
-    pub(crate) aliases: Vec<String>,
+    /// The names that this file gives to imported systems, and their files.
+    pub(crate) aliases: Vec<(String, PathBuf)>,
     /// The symbols that this file gives a range to.
     pub(crate) sampled: HashSet<Symbol>,
     /// The definitions that stand for the result of a calculation, and not for a formula; imported ones included.

@@ -1,15 +1,16 @@
 //! From a file to a system.
 
 use super::dimension::{self, Declared};
+use super::domain::Domain;
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Item, parse_file};
-use super::model::{Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
+use super::model::{Field, FieldPlace, Kind, Matrix, Range, Role, SymbolInfo, System, Value};
 use super::written::{Scope, Written, in_one_line, places_in};
 use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Expr, Name, Relation, Span};
 use crate::expression::{Derivation, Graph, Guard, Symbol, parse_expression};
-use crate::file::{ReadFailure, read_text};
+use crate::file::{self, ReadFailure, read_text};
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -43,7 +44,7 @@ impl System {
     pub fn parse(name: &str, text: &str, folder: &Path) -> Result<System, ReadError> {
         let text = with_plain_line_ends(text);
         let mut reading = Reading::default();
-        reading.open.extend(Path::new(name).canonicalize());
+        reading.open.extend(file::identity(Path::new(name)));
         // what an imported file refers to is looked for where that file itself is read
         System::build(name, &text, folder, Graph::default(), &mut reading)
             .and_then(|(system, problems)| match problems.into_iter().next() {
@@ -109,6 +110,10 @@ impl System {
             output_guards: Vec::new(),
             avoid: Vec::new(),
             claims: Vec::new(),
+            sets: Vec::new(),
+            maps: Vec::new(),
+            lines: Vec::new(),
+            reductions: Vec::new(),
             symbols: BTreeMap::new(),
             definitions: BTreeMap::new(),
             definition_domains: HashMap::new(),
@@ -242,6 +247,7 @@ impl System {
             }
             Item::Sample { ranges, avoid } => self.sample(ranges, avoid)?,
             Item::Claim(claim) => self.claims.push((**claim).clone()),
+            Item::View(view) => self.enter_view(view)?,
         }
         Ok(())
     }
@@ -297,6 +303,13 @@ impl System {
             }
             if let Some(within) = &statement.equation.within {
                 self.scalar(within)?;
+            }
+            if statement.carried.is_some() {
+                let is_print = statement.equation.right.is_literal();
+                if !is_print || !of_numbers || relation != Relation::Equal {
+                    let message = "'carrying ... digits' is said of a number in print, as in e at {x = 1} = 2.718 carrying 10 digits";
+                    return Err(Problem::new(&statement.span, message, "this claim"));
+                }
             }
         }
         Ok(())
@@ -456,7 +469,7 @@ impl System {
     ) -> Result<(), Problem> {
         let refuse = |message: String| Problem::new(span, message, "this file");
         let place =
-            path.canonicalize().map_err(|e| refuse(format!("cannot read {}: {e}", path.display())))?;
+            file::identity(path).map_err(|e| refuse(format!("cannot read {}: {e}", path.display())))?;
         if let Some(begin) = reading.open.iter().position(|open| *open == place) {
             let round = reading.open[begin..].iter().chain([&place]);
             let names: Vec<String> = round.map(|file| name_of(file)).collect();
@@ -467,13 +480,13 @@ impl System {
             let message = "a name with a dot belongs to what an imported system imports";
             return Err(Problem::new(&alias.span, message, "choose one without"));
         }
-        if self.aliases.contains(&alias.text) {
+        if self.aliases.iter().any(|(known, _)| *known == alias.text) {
             let message = format!("'{}' is the name of an imported system already", alias.text);
             return Err(
                 Problem::new(&alias.span, message, "the second one").help("choose another name for this one")
             );
         }
-        self.aliases.push(alias.text.clone());
+        self.aliases.push((alias.text.clone(), path.to_owned()));
         let other = match reading.done.get(&place) {
             Some(known) => known.clone(),
             None if reading.open.len() > DEEPEST_IMPORT => {
@@ -534,6 +547,15 @@ impl System {
         }
         for (name, value) in &other.definitions {
             self.definitions.insert(format!("{}.{name}", alias.text), value.clone());
+        }
+        if !other.outputs.is_empty() {
+            // a word of the language, so that no definition has this name
+            let name = format!("{}.output", alias.text);
+            let entries: Vec<_> = other.outputs.iter().map(|(_, output)| *output).collect();
+            let column = Matrix { rows: entries.len(), columns: 1, entries };
+            self.definition_domains
+                .insert(name.clone(), Domain::of(other.output_guards.iter().flatten().copied()));
+            self.definitions.insert(name, Value::Matrix(column));
         }
         self.calculated.extend(other.calculated.iter().map(|name| format!("{}.{name}", alias.text)));
         for (name, domain) in &other.definition_domains {

@@ -14,20 +14,24 @@ pub struct Growth {
     pub seconds: f64,
 }
 
-/// Takes the Lie derivative of an output along one field again and again, and counts.
+/// Takes the Lie derivative of an output along one field again and again, and counts: up to an order, or until there are more
+/// than a hundred thousand operations. `field` and `output` are places in the system.
 pub fn growth_of_lie_derivatives(system: &System, field: usize, output: usize, orders: usize) -> Vec<Growth> {
     let mut system = system.clone();
     let mut value = system.outputs[output].1;
-    (1..=orders)
-        .map(|order| {
-            let begin = Instant::now();
-            value = system.lie_derivative(field, value);
-            let seconds = begin.elapsed().as_secs_f64();
-            Growth {
-                order,
-                operations: Program::new(&system.graph, &[value], |_| false, false).len(),
-                seconds,
-            }
-        })
-        .collect()
+    let mut found = Vec::new();
+    for order in 1..=orders {
+        let begin = Instant::now();
+        value = system.lie_derivative(field, value);
+        let seconds = begin.elapsed().as_secs_f64();
+        let operations = Program::new(&system.graph, &[value], |_| false, false).len();
+        found.push(Growth { order, operations, seconds });
+        if operations > MOST_OPERATIONS {
+            break;
+        }
+    }
+    found
 }
+
+/// Beyond so many operations the next order is not taken.
+pub(super) const MOST_OPERATIONS: usize = 100_000;

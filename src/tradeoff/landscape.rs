@@ -3,7 +3,7 @@
 use crate::expression::{NodeId, Program, Symbol};
 use crate::number::Floats;
 use crate::observability::{Reduction, float_inputs, linear_solution, singular_values};
-use crate::system::System;
+use crate::system::{LineEnd, Point, System};
 use dashu::rational::RBig;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -31,19 +31,10 @@ pub struct Map {
 /// All singular values along a line.
 #[derive(Clone, Debug)]
 pub struct Slope {
-    /// Distance from the singularity, in the coordinate that moves.
+    /// Distance from the end, in the coordinate that moves; from infinity, the reciprocal of the coordinate.
     pub distance: Vec<f64>,
     /// The singular values at each distance, in descending order; empty at a pole.
     pub values: Vec<Vec<f64>>,
-}
-
-/// Where a line ends.
-#[derive(Clone, Copy, Debug)]
-pub enum Target<'a> {
-    /// At a value of the coordinate.
-    Value(f64),
-    /// Where an expression of the language vanishes, if it is linear in the coordinate.
-    Zero(&'a str),
 }
 
 /// Some rows of a system as a function of its symbols, less the unit rows and their columns.
@@ -59,7 +50,7 @@ impl<'s> Landscape<'s> {
     ///
     /// # Errors
     /// A name that is not known.
-    pub fn new(system: &'s mut System, rows: &[NodeId], at: &[(&str, f64)]) -> Result<Self, String> {
+    pub fn new(system: &'s mut System, rows: &[NodeId], at: &Point) -> Result<Self, String> {
         let mut values: HashMap<Symbol, f64> = system
             .symbols()
             .filter_map(|(symbol, info)| {
@@ -68,7 +59,7 @@ impl<'s> Landscape<'s> {
             })
             .collect();
         for (name, value) in at {
-            values.insert(known(system, name)?, *value);
+            values.insert(known(system, name)?, value.to_f64().value());
         }
         // angles stay plain numbers here: a line into phi = 0 has to be exact in phi, not in its sine
         let reduced = Reduction::new(&system.graph, rows, system.states.len());
@@ -116,14 +107,14 @@ impl<'s> Landscape<'s> {
     pub fn line(
         &mut self,
         moving: &str,
-        target: Target<'_>,
+        target: LineEnd,
         least: f64,
         points: usize,
     ) -> Result<Slope, String> {
         let symbol = known(self.system, moving)?;
         let end = match target {
-            Target::Value(value) => value,
-            Target::Zero(expression) => self.zero(expression, symbol)?,
+            LineEnd::Zero(expression) => Some(self.zero(expression, symbol)?),
+            LineEnd::Infinity => None,
         };
         let distance: Vec<f64> =
             (0..points).map(|i| least.powf(i as f64 / (points.max(2) - 1) as f64)).collect();
@@ -131,7 +122,7 @@ impl<'s> Landscape<'s> {
             .iter()
             .map(|d| {
                 let mut values = self.values.clone();
-                values.insert(symbol, end + d);
+                values.insert(symbol, end.map_or(1.0 / d, |end| end + d));
                 self.spectrum(&values).unwrap_or_default()
             })
             .collect();
@@ -139,13 +130,11 @@ impl<'s> Landscape<'s> {
     }
 
     /// The value of a symbol at which an expression that is linear in it vanishes.
-    fn zero(&mut self, expression: &str, symbol: Symbol) -> Result<f64, String> {
-        let value = self.system.evaluate_text(expression).map_err(|error| error.to_string())?;
-        let crate::system::Value::Scalar(node) = value else {
-            return Err(format!("'{expression}' is not a number"));
-        };
-        let root = linear_solution(self.system, node, symbol)
-            .ok_or_else(|| format!("'{expression}' is not linear in {}", self.system.symbol_name(symbol)))?;
+    fn zero(&mut self, expression: NodeId, symbol: Symbol) -> Result<f64, String> {
+        let root = linear_solution(self.system, expression, symbol).ok_or_else(|| {
+            let text = self.system.graph.text(expression);
+            format!("'{text}' is not linear in {}", self.system.symbol_name(symbol))
+        })?;
         let program = Program::new(&self.system.graph, &[root], |_| false, false);
         let inputs = float_inputs(&program, |s| self.values.get(&s).copied().unwrap_or(f64::NAN));
         let run = program.load(Floats).map_err(|r| r.to_string())?.run(&inputs, &mut Vec::new());

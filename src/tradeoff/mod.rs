@@ -6,17 +6,21 @@ mod growth;
 mod landscape;
 mod models;
 mod point_programs;
+mod printed;
 mod rounding;
+mod routes;
 pub mod stress;
 mod term_by_term;
 mod trade;
 
 pub use differences::{Difference, Differences};
 pub use growth::{Growth, growth_of_lie_derivatives};
-pub use landscape::{Landscape, Map, Rows, Slope, Target};
+pub use landscape::{Landscape, Map, Rows, Slope};
 pub use models::{ModelComparison, compare_models};
 pub use point_programs::{LoadedPoints, PointPrograms};
+pub use printed::{ExpandedText, PrintedExpression, PrintedValue, printed_values};
 pub use rounding::{RoundingStudy, study_rounding};
+pub use routes::{RouteAgreement, compare_routes};
 pub use term_by_term::term_by_term;
 pub use trade::{
     Combination, DIGITS_TOLERANCE, Derivative, DerivativeResult, Digits, LeftOut, Number, RankMethod,

@@ -229,7 +229,7 @@ fn scene() {
             let _ = Scene::parse("damaged.toml", text);
         }
     });
-    reader.try_all(&shipped("scenes", "toml"));
+    reader.try_all(&shipped("proofs/moll2002/scenes", "toml"));
 }
 
 /// Reads a record in every way.

@@ -30,7 +30,8 @@ const REGIMES: [&str; 4] = ["same_rate", "one_palm_fixed", "fixed_palms", "gener
 /// The text of a scene of the project, without its studies, that can be read from anywhere.
 fn text(name: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(root.join("scenes").join(format!("{name}.toml"))).unwrap();
+    let text =
+        std::fs::read_to_string(root.join("proofs/moll2002/scenes").join(format!("{name}.toml"))).unwrap();
     let proofs = format!("\"{}/", root.join("proofs").display());
     let whole = text.replace("\"../proofs/", &proofs);
     whole.split("[study.").next().unwrap().to_owned()

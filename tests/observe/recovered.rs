@@ -26,7 +26,7 @@ fn rounded(value: &Value) -> Value {
 #[test]
 fn the_scenes_are_as_they_were() {
     for name in ["same_rate", "one_palm_fixed", "fixed_palms", "general", "section_4_6", "turning_point"] {
-        let (output, found) = observe(Path::new(&format!("scenes/{name}.toml")), &[]);
+        let (output, found) = observe(Path::new(&format!("proofs/moll2002/scenes/{name}.toml")), &[]);
         assert_eq!(output.status.code(), Some(0), "{name}");
         let mut methods = serde_json::Map::new();
         for observer in found["observers"].as_array().unwrap() {

@@ -19,7 +19,7 @@ fn what_is_no_file_is_refused_in_words() {
         std::os::unix::fs::symlink("/dev/zero", place(name)).unwrap();
     }
     std::fs::create_dir(place("folder.csv")).unwrap();
-    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/same_rate.toml");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/proofs/moll2002/scenes/same_rate.toml");
     for (run, why) in [
         (vec!["prove", "/dev/zero"], "longer than"),
         (vec!["rank", "/dev/zero"], "longer than"),
@@ -73,7 +73,7 @@ fn a_byte_order_mark_is_accepted_everywhere() {
     assert_eq!(output.status.code(), Some(0), "{}", words(&output));
 
     let root = env!("CARGO_MANIFEST_DIR");
-    let scene = std::fs::read_to_string(format!("{root}/scenes/same_rate.toml")).unwrap();
+    let scene = std::fs::read_to_string(format!("{root}/proofs/moll2002/scenes/same_rate.toml")).unwrap();
     let scene = scene.replace("\"../proofs/", &format!("\"{root}/proofs/"));
     let (plain, marked_scene) = (write(&folder, "a.toml", &scene), write(&folder, "b.toml", marked(&scene)));
     let table = folder.path().join("table.csv");

@@ -10,6 +10,7 @@ mod common;
 mod cost;
 mod inputs;
 mod interrupts;
+mod prove;
 mod values;
 mod writes;
 

@@ -82,7 +82,7 @@ fn results_that_cannot_be_kept_are_still_printed() {
     let file = file.to_str().unwrap();
     let taken = write(&folder, "taken", "a file, where a folder is asked for");
     let (taken, inside) = (taken.to_str().unwrap(), taken.join("claims.xml"));
-    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/same_rate.toml");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/proofs/moll2002/scenes/same_rate.toml");
     let all: [(&[&str], &str); 8] = [
         (&["prove", file, "--junit", "/dev/full"], "claims"),
         (&["prove", file, "--junit", inside.to_str().unwrap()], "claims"),
@@ -158,7 +158,7 @@ fn only_files_are_replaced() {
 /// A record goes to standard output as comma-separated values.
 #[test]
 fn a_record_can_be_printed() {
-    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/same_rate.toml");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/proofs/moll2002/scenes/same_rate.toml");
     let output = finish(&mut program(&["observe", scene, "--record", "-"]));
     assert_eq!(output.status.code(), Some(0), "{}", words(&output));
     let text = String::from_utf8_lossy(&output.stdout).into_owned();

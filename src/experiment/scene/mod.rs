@@ -54,7 +54,7 @@ impl Scene {
         let scene = Scene::parse(&name, &text)?;
         let named = [("model", Some(&scene.model)), ("data.record", scene.data.record.as_ref())];
         for (place, file) in named.into_iter().filter_map(|(place, file)| Some((place, file?))) {
-            if !file.is_file() {
+            if !crate::file::is_file(file) {
                 let message = format!("there is no file {}", file.display());
                 let help = "a file is looked for from the folder in which the scene lies";
                 return Err(scene.error_at(place, message, "named here", help));

@@ -22,7 +22,7 @@
 
 use super::Interval;
 use super::arithmetic::{above, below};
-use super::functions::around;
+use super::rounding::around;
 use crate::number::double_double::{DoubleDouble, SINE};
 use crate::number::error_free::{fast_two_sum, two_sum};
 

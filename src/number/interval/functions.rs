@@ -7,7 +7,7 @@
 
 use super::Interval;
 use super::circular::circular;
-use super::rounding::{sqrt_down, sqrt_up};
+use super::rounding::{around, sqrt_down, sqrt_up};
 use crate::number::{DoubleDouble, Function, Real};
 
 impl Interval {
@@ -65,23 +65,5 @@ impl Interval {
             hi: if meets(crest) { 1.0 } else { ends.hi },
         };
         (wave(low.sin.hull(high.sin), 1, 3), wave(low.cos.hull(high.cos), 0, 2))
-    }
-}
-
-/// The doubles around the number of which this is the value of a function, right to `2^-100` of itself.
-pub(super) fn around(value: DoubleDouble) -> Interval {
-    let (hi, lo) = (value.hi(), value.lo());
-    if hi.abs() < 1e-270 {
-        // here a double-double may have no low part; it is right to a unit in the last place of a double
-        return Interval { lo: hi.next_down().next_down(), hi: hi.next_up().next_up() };
-    }
-    if hi.is_infinite() {
-        return Interval::point(hi);
-    }
-    // |lo| is at most half a step from hi in either direction, and the error far below the other half
-    let error = hi.abs() * f64::from_bits((1023 - 99) << 52);
-    Interval {
-        lo: if lo >= error { hi } else { hi.next_down() },
-        hi: if lo <= -error { hi } else { hi.next_up() },
     }
 }

@@ -5,6 +5,8 @@
 //! An infinite argument is an end that does not exist, and so 0 * inf = 0. Downwards the result is never +inf: what
 //! overflowed is a number above the greatest double.
 
+use super::Interval;
+use crate::number::DoubleDouble;
 use crate::number::error_free::sum_error;
 
 /// The fraction bits of a double.
@@ -96,4 +98,22 @@ pub(super) fn sqrt_up(x: f64) -> f64 {
 
 fn is_exact_root(x: f64, root: f64) -> bool {
     x == 0.0 || x >= SAFE && root.to_bits() & LOWER_HALF == 0 && root * root == x
+}
+
+/// The doubles around the number of which this is the value of a function, right to `2^-100` of itself.
+pub(super) fn around(value: DoubleDouble) -> Interval {
+    let (hi, lo) = (value.hi(), value.lo());
+    if hi.abs() < 1e-270 {
+        // here a double-double may have no low part; it is right to a unit in the last place of a double
+        return Interval { lo: hi.next_down().next_down(), hi: hi.next_up().next_up() };
+    }
+    if hi.is_infinite() {
+        return Interval::point(hi);
+    }
+    // |lo| is at most half a step from hi in either direction, and the error far below the other half
+    let error = hi.abs() * f64::from_bits((1023 - 99) << 52);
+    Interval {
+        lo: if lo >= error { hi } else { hi.next_down() },
+        hi: if lo <= -error { hi } else { hi.next_up() },
+    }
 }

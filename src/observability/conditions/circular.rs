@@ -1,10 +1,10 @@
 //! Conditions on one sine or cosine, `a sin(u)^2 + b sin(u) + c = 0` with constants `a`, `b` and `c`, solved for an angle.
 
-use super::single::{
-    Way, enclosed_constant, inside_no_function, is_a_constant_but_zero, vanishes_as_numbers,
-};
 use super::turns::turns_do_not_matter;
-use super::{all_vanish, vanishes};
+use super::vanishing::{
+    all_vanish, enclosed_constant, inside_no_function, is_a_constant_but_zero, vanishes, vanishes_as_numbers,
+};
+use super::way::Way;
 use crate::expression::{Node, NodeId, Symbol};
 use crate::number::{Arithmetic, Enclosures, Function};
 use crate::system::{Assignment, System};

@@ -11,21 +11,21 @@
 mod circular;
 mod single;
 mod turns;
+mod vanishing;
+mod way;
 mod written;
 
 pub use single::{also_met_otherwise, linear_solution};
+pub(crate) use vanishing::{all_vanish, vanishes};
 pub use written::parse_condition;
 
 use crate::expression::syntax::{Equation, Relation};
-use crate::expression::{
-    Graph, Guard, Need, NodeId, Related, Symbol, ZeroTest, add_guard, expand_angles, identically_zero, sign,
-    zero_by_relations,
-};
+use crate::expression::{Graph, Guard, Need, NodeId, Symbol, add_guard, sign};
 use crate::system::{Assignment, System, Value};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use single::{Apart, Way, is_a_constant_but_zero, way, way_apart_from_turns};
+use single::{way, way_apart_from_turns};
 use turns::turns_do_not_matter;
+use vanishing::{is_a_constant_but_zero, vanish_where};
+use way::{Apart, Way};
 
 /// One way to meet all conditions: values for some symbols in terms of the others.
 #[derive(Clone, Debug, Default)]
@@ -390,40 +390,5 @@ fn finish(system: &mut System, partial: Partial) -> Branch {
         guards: partial.guards,
         assumed: partial.assumed,
         steps: partial.steps,
-    }
-}
-
-/// Whether an expression is identically zero, by exact arithmetic at random points.
-pub(crate) fn vanishes(system: &mut System, expression: NodeId) -> bool {
-    all_vanish(system, &[expression])
-}
-
-/// Whether all of some expressions are.
-pub(crate) fn all_vanish(system: &mut System, expressions: &[NodeId]) -> bool {
-    vanish_where(system, expressions, &[])
-}
-
-/// Whether all of some expressions are zero wherever they exist and the guards hold.
-fn vanish_where(system: &mut System, expressions: &[NodeId], guards: &[Guard]) -> bool {
-    matches!(test_where(system, expressions, guards), ZeroTest::Zero { .. })
-}
-
-fn test(system: &mut System, expressions: &[NodeId]) -> ZeroTest {
-    test_where(system, expressions, &[])
-}
-
-/// The test for zero: functions as unknowns, and if these do not cancel, by what the functions satisfy.
-fn test_where(system: &mut System, expressions: &[NodeId], guards: &[Guard]) -> ZeroTest {
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
-    let expanded = expand_angles(&mut system.graph, expressions, is_angle);
-    let mut rng = ChaCha8Rng::seed_from_u64(0x7a65_726f); // any fixed seed: the same file gives the same answer
-    let found = identically_zero(&system.graph, &expanded, is_angle, &mut rng);
-    if matches!(found, ZeroTest::Zero { .. } | ZeroTest::Pole(_)) {
-        return found;
-    }
-    match zero_by_relations(&mut system.graph, &expanded, guards, is_angle, &mut rng) {
-        Related::Zero { log2_error, points, degree, .. } => ZeroTest::Zero { log2_error, points, degree },
-        Related::NotShown(_) | Related::NoFunctions => found,
     }
 }

@@ -2,68 +2,16 @@
 //! taken apart into its factors.
 
 use super::circular::circular;
-use super::{all_vanish, test, vanishes};
+use super::vanishing::{
+    all_vanish, enclosed_constant, inside_no_function, is_a_constant_but_zero, test, vanishes,
+};
+use super::way::{Apart, Way};
 use crate::expression::{Node, NodeId, Program, Sign, Symbol, ZeroTest, expand_angles, share_a_factor, sign};
-use crate::number::{Enclosure, Enclosures, Function};
+use crate::number::Function;
 use crate::system::{Assignment, Kind, System};
 use dashu::rational::RBig;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-
-/// The precision at which a constant is told from zero.
-const CONSTANT_BITS: usize = 512;
-
-/// How a condition `expression = 0` is met. The order is that in which conditions are taken: those first that leave
-/// nothing open.
-#[derive(Clone, Debug)]
-pub(super) enum Way {
-    /// One of these vanishes.
-    Factors(Vec<NodeId>),
-    /// `symbol = value`, and nothing else.
-    Value(Symbol, NodeId),
-    /// The angle has one of these values, up to whole turns.
-    Turns(Symbol, Vec<NodeId>),
-    /// `slope symbol + rest = 0`: the value where the slope is not zero, and any where both vanish.
-    Linear { symbol: Symbol, value: NodeId, slope: NodeId, rest: NodeId, apart: Apart },
-    /// By no way that is known.
-    Unknown,
-}
-
-/// What is known of the states at which slope and rest of a linear condition vanish together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Apart {
-    /// They have no common factor: these states have two dimensions less.
-    Coprime,
-    /// They may have one.
-    Shared,
-    /// Functions are met of which nothing is known but their names: either may be zero everywhere.
-    NotKnown,
-}
-
-impl Apart {
-    /// How many dimensions less these states have, at the least.
-    pub(super) fn dimensions(self) -> usize {
-        match self {
-            Apart::Coprime => 2,
-            Apart::Shared => 1,
-            Apart::NotKnown => 0,
-        }
-    }
-}
-
-impl Way {
-    /// Ways of a lower rank are taken first.
-    pub(super) fn rank(&self) -> u8 {
-        match self {
-            Way::Value(..) => 0,
-            Way::Turns(..) => 1,
-            Way::Linear { apart: Apart::Coprime, .. } => 2,
-            Way::Factors(_) => 3,
-            Way::Linear { .. } => 4,
-            Way::Unknown => 5,
-        }
-    }
-}
 
 /// The way to meet `left = right`.
 pub(super) fn way(system: &mut System, left: NodeId, right: NodeId) -> Way {
@@ -142,21 +90,6 @@ fn is_positive(system: &System, expression: NodeId) -> bool {
         || constant.is_some_and(|value| value.low() > RBig::ZERO)
 }
 
-/// The value of an expression that mentions no symbol.
-pub(super) fn enclosed_constant(system: &System, expression: NodeId) -> Option<Enclosure> {
-    if !system.graph.symbols_of([expression]).is_empty() {
-        return None;
-    }
-    let program = Program::new(&system.graph, &[expression], |_| false, false);
-    let loaded = program.load(Enclosures::new(CONSTANT_BITS)).ok()?;
-    loaded.run(&[], &mut Vec::new()).ok()?.pop()
-}
-
-/// Whether an expression mentions no symbol and is certainly not zero.
-pub(super) fn is_a_constant_but_zero(system: &System, expression: NodeId) -> bool {
-    enclosed_constant(system, expression).is_some_and(|value| !value.contains_zero())
-}
-
 /// Whether a function other than the sine or cosine of an angle is met.
 fn has_unknown_function(system: &mut System, expressions: &[NodeId]) -> bool {
     let angles = system.angles();
@@ -199,27 +132,6 @@ pub fn also_met_otherwise(system: &mut System, expression: NodeId, symbol: Symbo
     let both = expand_angles(&mut system.graph, &both, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(0x6c69_6e65);
     share_a_factor(&system.graph, both[0], both[1], is_angle, &mut rng) != Some(false)
-}
-
-/// Whether a combination of angles, taken as numbers, is zero whatever they are.
-pub(super) fn vanishes_as_numbers(system: &System, expression: NodeId) -> bool {
-    let mut rng = ChaCha8Rng::seed_from_u64(0x6e75_6d62);
-    let test = crate::expression::identically_zero(&system.graph, &[expression], |_| false, &mut rng);
-    matches!(test, ZeroTest::Zero { .. })
-}
-
-/// Whether a symbol stands inside no function's argument, so that derivatives by it tell all of it.
-pub(super) fn inside_no_function(system: &System, expression: NodeId, symbol: Symbol) -> bool {
-    let arguments: Vec<NodeId> = system
-        .graph
-        .reachable([expression])
-        .into_iter()
-        .filter_map(|id| match system.graph.node(id) {
-            Node::Apply(_, argument) => Some(argument),
-            _ => None,
-        })
-        .collect();
-    !system.graph.symbols_of(arguments).contains(&symbol)
 }
 
 /// An expression that is `slope symbol + rest`, the slope not zero identically.

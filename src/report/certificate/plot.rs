@@ -1,7 +1,8 @@
 //! Certificates on regions, as pictures.
 
 use crate::certificate::{RegionAnswer, RegionMap, Standing};
-use crate::report::plot::{INK, svg};
+use crate::report::drawing::{Canvas, INK, MESH, svg};
+use crate::report::plot::axis;
 use plotters::prelude::*;
 
 const LINE: RGBColor = RGBColor(0, 114, 178);
@@ -14,12 +15,12 @@ pub fn region_curve(answer: &RegionAnswer, title: &str) -> String {
     let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
         return "<p>no box was looked at</p>".to_owned();
     };
-    svg((420, 300), |area| {
+    svg((420, 300), title, |area| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
             .x_label_area_size(34)
-            .y_label_area_size(58)
+            .y_label_area_size(62)
             .build_cartesian_2d(
                 (first.0..last.0.max(first.0 * 10.0)).log_scale(),
                 (last.1.min(0.1) / 1.5..1.2).log_scale(),
@@ -27,11 +28,12 @@ pub fn region_curve(answer: &RegionAnswer, title: &str) -> String {
         chart
             .configure_mesh()
             .light_line_style(WHITE)
-            .bold_line_style(RGBColor(225, 228, 232))
+            .bold_line_style(MESH)
             .x_label_formatter(&|v| format!("{v:.0e}"))
             .y_label_formatter(&|v| format!("{v:.0e}"))
             .x_labels(6)
             .y_labels(7)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_desc("boxes")
             .y_desc("part of the volume that is open")
             .axis_desc_style(("sans-serif", 12))
@@ -48,39 +50,57 @@ fn colour(standing: Standing) -> RGBColor {
     match standing {
         Standing::Proved => RGBColor(205, 228, 240),
         Standing::MinorVanishes => RGBColor(213, 94, 0),
-        Standing::Pole => RGBColor(40, 44, 52),
+        Standing::Pole => RGBColor(20, 24, 32),
         Standing::Undecided => RGBColor(150, 150, 150),
+    }
+}
+
+/// What a box of a colour is.
+fn meaning(standing: Standing) -> &'static str {
+    match standing {
+        Standing::Proved => "full rank is proved",
+        Standing::MinorVanishes => "a minor vanishes somewhere in here",
+        Standing::Pole => "a pole runs through",
+        Standing::Undecided => "not decided",
     }
 }
 
 /// The boxes in a plane, each with its border: pale where full rank is proved, red where a minor is proved to vanish
 /// somewhere in the box, black where a pole runs through it, grey where nothing is known.
-pub fn region_map(map: &RegionMap, title: &str) -> String {
-    let drawn = svg((580, 400), |area| {
+pub fn region_map(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> String {
+    let meanings = [Standing::Proved, Standing::MinorVanishes, Standing::Pole, Standing::Undecided];
+    let by_colour = meanings.map(|standing| (colour(standing), meaning(standing).to_owned()));
+    Canvas { size: (420, 320), title, by_colour: &by_colour, is_crisp: true }.draw(|area, _| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
-            .x_label_area_size(36)
-            .y_label_area_size(46)
+            .x_label_area_size(38)
+            .y_label_area_size(50)
             .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
         let smallest = ((map.x.2 - map.x.1) / 300.0, (map.y.2 - map.y.1) / 200.0);
+        // all of one standing together, so that they are one path, and then their borders
+        for standing in meanings {
+            for patch in map.patches.iter().filter(|patch| patch.standing == standing) {
+                let corners = [(patch.x.0, patch.y.0), (patch.x.1, patch.y.1)];
+                chart.draw_series([Rectangle::new(corners, colour(standing).filled())])?;
+            }
+        }
         for patch in &map.patches {
-            let corners = [(patch.x.0, patch.y.0), (patch.x.1, patch.y.1)];
-            chart.draw_series([Rectangle::new(corners, colour(patch.standing).filled())])?;
-            let wide = patch.x.1 - patch.x.0 > smallest.0 && patch.y.1 - patch.y.0 > smallest.1;
-            if wide {
-                let border = RGBColor(255, 255, 255).stroke_width(1);
-                chart.draw_series([Rectangle::new(corners, border)])?;
+            if patch.x.1 - patch.x.0 > smallest.0 && patch.y.1 - patch.y.0 > smallest.1 {
+                let corners = [(patch.x.0, patch.y.0), (patch.x.1, patch.y.1)];
+                chart.draw_series([Rectangle::new(corners, RGBColor(254, 254, 254).stroke_width(1))])?;
             }
         }
         chart
             .configure_mesh()
             .disable_mesh()
-            .x_desc(&map.x.0)
-            .y_desc(&map.y.0)
+            .x_labels(6)
+            .y_labels(6)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
+            .x_desc(axis(&map.x.0, units[0]))
+            .y_desc(axis(&map.y.0, units[1]))
             .axis_desc_style(("sans-serif", 13))
             .draw()?;
         Ok(())
-    });
-    drawn.replacen("<svg ", "<svg shape-rendering=\"crispEdges\" ", 1)
+    })
 }

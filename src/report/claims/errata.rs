@@ -2,24 +2,26 @@
 //! numbers with both values.
 
 use crate::claim::{Outcome, Verdict, Witness};
+use crate::paper::{Equation, Paper};
 use crate::report::claims::outcomes::{error_bound, explanations, special_text, with_decimal};
 use crate::report::claims::words::{meaning, words_markdown};
 use crate::system::{Basis, Flaw};
-use crate::verification::{Equation, equations, in_order_of_the_thesis};
 use std::fmt::Write;
 
 /// What is the matter with forms in the text, by kinds, and a table of all numbered equations, in Markdown.
-pub fn errata_markdown(outcomes: &[Outcome]) -> String {
-    let mut out = String::from(
-        "# Errata to M. Moll, *Shape Reconstruction Using Active Tactile Sensors* (2002)\n\n\
+pub fn errata_markdown<'o>(paper: &Paper, outcomes: impl IntoIterator<Item = &'o Outcome>) -> String {
+    let outcomes: Vec<&Outcome> = outcomes.into_iter().collect();
+    let mut out = format!(
+        "# Errata to {}\n\n\
          Written by `palmistry verify`; every statement below is checked each time it runs. A form of the text that is \
          called wrong is refuted by a state in exact numbers at which its two sides differ, wherever it can be stated; the \
          right form is proved.\n\n",
+        paper.reference(|title| format!("*{title}*")),
     );
-    words_markdown(outcomes, &mut out);
+    words_markdown(&paper.numbering, &outcomes, &mut out);
     for fault in Flaw::ALL {
-        let of_kind = outcomes.iter().filter(|outcome| outcome.fault == Some(fault) && outcome.ok);
-        let of_kind = in_order_of_the_thesis(of_kind);
+        let of_kind = outcomes.iter().copied().filter(|outcome| outcome.fault == Some(fault) && outcome.ok);
+        let of_kind = paper.numbering.in_order(of_kind);
         if of_kind.is_empty() {
             continue;
         }
@@ -28,7 +30,10 @@ pub fn errata_markdown(outcomes: &[Outcome]) -> String {
             entry(outcome, fault, &mut out);
         }
     }
-    table(&equations(outcomes), &mut out);
+    let equations = paper.numbering.equations(outcomes);
+    if !equations.is_empty() {
+        table(&equations, &mut out);
+    }
     out
 }
 

@@ -2,8 +2,10 @@
 
 pub(super) mod errata;
 pub(super) mod outcomes;
+pub(super) mod text;
 pub(super) mod words;
 
 pub use errata::errata_markdown;
 pub use outcomes::{claim_json, claim_line, junit};
+pub use text::{ClaimsForm, ClaimsSummary, Shown, claim_text, claims_text};
 pub use words::counts_text;

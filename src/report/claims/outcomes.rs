@@ -2,6 +2,8 @@
 
 use crate::claim::{AtFilesValues, Outcome, Verdict, Witness};
 use crate::number::{parse_decimal, rational_to_f64, round_to_decimal};
+use crate::report::claims::text::claim_text;
+use crate::report::layout::Layout;
 use crate::report::ranks::answer::{fields_json, fields_text};
 use crate::system::{Basis, Flaw};
 use dashu::rational::RBig;
@@ -40,6 +42,8 @@ pub fn claim_json(outcome: &Outcome) -> Value {
     let mut object = verdict_json(&outcome.verdict);
     object["id"] = json!(outcome.id);
     object["file"] = json!(outcome.file);
+    object["line"] = json!(outcome.place.0);
+    object["column"] = json!(outcome.place.1);
     object["statement"] = json!(outcome.statement);
     object["verdict"] = json!(outcome.word());
     object["expected"] = json!(outcome.expected_word());
@@ -86,8 +90,8 @@ pub fn claim_json(outcome: &Outcome) -> Value {
     object
 }
 
-/// A witness as one line.
-pub(crate) fn witness_line(witness: &Witness) -> String {
+/// The state of a witness: `x = 1/2, y = 3`.
+pub(crate) fn state_line(witness: &Witness) -> String {
     let state: Vec<String> = witness
         .state
         .iter()
@@ -99,7 +103,13 @@ pub(crate) fn witness_line(witness: &Witness) -> String {
             }
         })
         .collect();
-    let place = if state.is_empty() { String::new() } else { format!("at {}: ", state.join(", ")) };
+    state.join(", ")
+}
+
+/// A witness as one line.
+pub(crate) fn witness_line(witness: &Witness) -> String {
+    let state = state_line(witness);
+    let place = if state.is_empty() { String::new() } else { format!("at {state}: ") };
     let entry = witness.entry.map_or(String::new(), |(row, column)| format!("entry {row},{column}: "));
     format!("{place}{entry}left = {}, right = {}", with_decimal(&witness.left), with_decimal(&witness.right))
 }
@@ -232,12 +242,21 @@ pub fn junit(outcomes: &[Outcome]) -> miette::Result<String> {
         } else {
             let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
             status.set_message(format!("{} instead of {}", outcome.word(), outcome.expected_word()));
-            status.set_description(claim_line(outcome));
+            status.set_description(claim_text(outcome, &Layout::default()));
             status
         };
         let mut case = TestCase::new(outcome.id.as_str(), status);
         case.set_classname(outcome.file.as_str());
         case.set_time(std::time::Duration::from_secs_f64(outcome.seconds));
+        // attributes that continuous integration shows beside the name of a case
+        let (line, column) = outcome.place;
+        let place =
+            [("file", outcome.file.clone()), ("line", line.to_string()), ("column", column.to_string())];
+        case.extra.extend(place.map(|(name, value)| (name.into(), value.into())));
+        case.add_property(("statement", outcome.statement.as_str()));
+        if let Some((printed, _)) = &outcome.printed {
+            case.add_property(("printed", printed.as_str()));
+        }
         match suites.last_mut() {
             Some(suite) if suite.name.as_str() == outcome.file => {
                 suite.add_test_case(case);

@@ -1,8 +1,8 @@
 //! The words of outcomes: what each one says, how many entries have it, and which errors are errors of their own.
 
 use crate::claim::Outcome;
+use crate::paper::Numbering;
 use crate::system::Flaw;
-use crate::verification::{equations, in_order_of_the_thesis};
 use std::fmt::Write as _;
 
 /// The rule by which a damage is given to the author, to the scanner or to neither; shown wherever words are explained.
@@ -47,19 +47,20 @@ pub(crate) fn meaning(word: &str) -> &'static str {
 }
 
 /// How many outcomes have each word, in the order of [`Outcome::WORDS`]; words that none has are left out.
-pub(crate) fn counts(outcomes: &[Outcome]) -> Vec<(&'static str, usize)> {
-    let count = |word: &str| outcomes.iter().filter(|outcome| outcome.word() == word).count();
+pub(crate) fn counts<'o>(outcomes: impl IntoIterator<Item = &'o Outcome>) -> Vec<(&'static str, usize)> {
+    let words: Vec<&str> = outcomes.into_iter().map(Outcome::word).collect();
+    let count = |word: &str| words.iter().filter(|known| **known == word).count();
     Outcome::WORDS.into_iter().map(|word| (word, count(word))).filter(|(_, count)| *count > 0).collect()
 }
 
 /// The same in words: `12 proved, 1 erratum`.
-pub fn counts_text(outcomes: &[Outcome]) -> String {
+pub fn counts_text<'o>(outcomes: impl IntoIterator<Item = &'o Outcome>) -> String {
     let each: Vec<String> =
         counts(outcomes).into_iter().map(|(word, count)| format!("{count} {word}")).collect();
     each.join(", ")
 }
 
-/// Faults of one kind, in the order of the thesis: those that follow from no other, and the others with what they follow
+/// Faults of one kind, in the order of the paper: those that follow from no other, and the others with what they follow
 /// from.
 pub(crate) struct Errors<'o> {
     pub independent: Vec<&'o Outcome>,
@@ -67,10 +68,14 @@ pub(crate) struct Errors<'o> {
 }
 
 /// The errors of one kind.
-pub(crate) fn errors(outcomes: &[Outcome], fault: Flaw) -> Errors<'_> {
-    let of_kind = outcomes.iter().filter(|outcome| outcome.fault == Some(fault) && outcome.ok);
+pub(crate) fn errors<'o>(
+    numbering: &Numbering,
+    outcomes: impl IntoIterator<Item = &'o Outcome>,
+    fault: Flaw,
+) -> Errors<'o> {
+    let of_kind = outcomes.into_iter().filter(|outcome| outcome.fault == Some(fault) && outcome.ok);
     let mut found = Errors { independent: Vec::new(), following: Vec::new() };
-    for outcome in in_order_of_the_thesis(of_kind) {
+    for outcome in numbering.in_order(of_kind) {
         match &outcome.follows {
             None => found.independent.push(outcome),
             Some(from) => found.following.push((outcome, from)),
@@ -96,16 +101,16 @@ impl Errors<'_> {
 }
 
 /// A table of all words that occur: what they say, and how many entries and numbered equations have them.
-pub(crate) fn words_markdown(outcomes: &[Outcome], out: &mut String) {
-    let rows = equations(outcomes);
+pub(crate) fn words_markdown(numbering: &Numbering, outcomes: &[&Outcome], out: &mut String) {
+    let rows = numbering.equations(outcomes.iter().copied());
     let _ = writeln!(out, "| word | entries | equations | what it says |\n|---|---:|---:|---|");
-    for (word, count) in counts(outcomes) {
+    for (word, count) in counts(outcomes.iter().copied()) {
         let of_equations = rows.iter().filter(|equation| equation.word() == word).count();
         let _ = writeln!(out, "| {word} | {count} | {of_equations} | {} |", meaning(word));
     }
     let _ = writeln!(out, "\n{RULE_OF_DAMAGE}\n");
     for fault in Flaw::ALL {
-        let found = errors(outcomes, fault);
+        let found = errors(numbering, outcomes.iter().copied(), fault);
         if !(found.independent.is_empty() && found.following.is_empty()) {
             let _ = writeln!(out, "- {}.", found.text(fault.word()));
         }

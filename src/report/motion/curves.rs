@@ -1,16 +1,17 @@
 //! Curves of several observers in one frame: their looks, the axes, and what of a curve fits between these.
 
 use crate::experiment::Method;
+use crate::report::drawing::{Drawing, INK, MESH, svg};
 use crate::report::motion::answers::method_name;
-use crate::report::plot::{INK, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-const MESH: RGBColor = RGBColor(225, 228, 232);
 const TRUTH: RGBColor = RGBColor(190, 196, 206);
 /// Where a window ends and the next begins.
 const LIMIT: RGBColor = RGBColor(200, 204, 210);
-const SIZE: (u32, u32) = (640, 330);
+/// Twice the size in which they are shown: places are whole pixels.
+const WIDTH: i32 = 800;
+const CHART: i32 = 500;
 /// No picture needs more places along its axis.
 const PLACES: usize = 220;
 
@@ -61,11 +62,11 @@ pub(super) fn colour(shown: Shown) -> RGBColor {
 /// The corners of a mark about a point, in pixels.
 fn corners(mark: usize) -> Vec<(i32, i32)> {
     match mark {
-        0 => vec![(-2, -4), (2, -4), (4, -2), (4, 2), (2, 4), (-2, 4), (-4, 2), (-4, -2)],
-        1 => vec![(-4, -4), (4, -4), (4, 4), (-4, 4)],
-        2 => vec![(-5, 4), (5, 4), (0, -5)],
-        3 => vec![(0, -6), (5, 0), (0, 6), (-5, 0)],
-        _ => vec![(-5, -4), (5, -4), (0, 5)],
+        0 => vec![(-4, -8), (4, -8), (8, -4), (8, 4), (4, 8), (-4, 8), (-8, 4), (-8, -4)],
+        1 => vec![(-8, -8), (8, -8), (8, 8), (-8, 8)],
+        2 => vec![(-10, 8), (10, 8), (0, -10)],
+        3 => vec![(0, -12), (10, 0), (0, 12), (-10, 0)],
+        _ => vec![(-10, -8), (10, -8), (0, 10)],
     }
 }
 
@@ -111,33 +112,18 @@ impl Default for Frame<'_> {
 pub(super) fn draw(frame: &Frame<'_>, curves: &[Curve]) -> String {
     let (low, high) = frame.range;
     let inside = |y: f64| (low..=high).contains(&y);
-    svg(SIZE, |area| {
-        let (head, plot) = area.split_vertically(48);
-        head.draw(&Text::new(frame.title.clone(), (10, 6), ("sans-serif", 15).into_font().color(&INK)))?;
-        let words = ("sans-serif", 11).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-        let mut x = 12;
-        for curve in curves {
-            let (colour, width, mark) = look(curve.shown);
-            head.draw(&PathElement::new([(x, 36), (x + 24, 36)], colour.stroke_width(width)))?;
-            if let Some(mark) = mark {
-                head.draw(&(EmptyElement::at((x + 12, 36)) + Polygon::new(corners(mark), colour.filled())))?;
-            }
-            head.draw(&Text::new(curve.name.clone(), (x + 29, 36), words.clone()))?;
-            x += 46 + 7 * curve.name.len() as i32;
-        }
-        if let Some((_, name)) = frame.band {
-            head.draw(&Rectangle::new([(x, 30), (x + 22, 42)], BAND.filled()))?;
-            head.draw(&Text::new(name, (x + 29, 36), words.clone()))?;
-            x += 46 + 6 * name.len() as i32;
-        }
-        if !frame.dots.is_empty() {
-            head.draw(&Circle::new((x + 4, 36), 4, INK))?;
-            head.draw(&Text::new(frame.dots_are, (x + 14, 36), words))?;
+    let legend = legend(frame, curves);
+    let head = 44 + LINE * legend.last().map_or(0, |entry| entry.0.1 + 1);
+    svg((WIDTH as u32, (head + CHART) as u32), &frame.title, |area| {
+        let (top, plot) = area.split_vertically(head);
+        top.draw(&Text::new(frame.title.clone(), (16, 10), ("sans-serif", 27).into_font().color(&INK)))?;
+        for ((x, row), name, sign) in &legend {
+            entry(&top, (*x, 60 + LINE * row), name, *sign)?;
         }
         let mut chart = ChartBuilder::on(&plot)
-            .margin(8)
-            .x_label_area_size(34)
-            .y_label_area_size(62)
+            .margin(16)
+            .x_label_area_size(70)
+            .y_label_area_size(120)
             .build_cartesian_2d(frame.times.0..frame.times.1, low..high)?;
         let span = high - low;
         let label = |value: f64| {
@@ -151,22 +137,23 @@ pub(super) fn draw(frame: &Frame<'_>, curves: &[Curve]) -> String {
             .configure_mesh()
             .light_line_style(TRANSPARENT)
             .bold_line_style(MESH)
-            .x_labels(8)
+            .x_labels(7)
             .y_labels(7)
+            .label_style(("sans-serif", 24).into_font().color(&INK))
             .x_label_formatter(&|v| number(*v, frame.times.1 - frame.times.0))
             .y_label_formatter(&|v| label(*v))
             .x_desc("time, s")
             .y_desc(&frame.vertical)
-            .axis_desc_style(("sans-serif", 12))
+            .axis_desc_style(("sans-serif", 24))
             .draw()?;
         for limit in frame.limits {
-            chart.draw_series(LineSeries::new([(*limit, low), (*limit, high)], LIMIT.stroke_width(1)))?;
+            chart.draw_series(LineSeries::new([(*limit, low), (*limit, high)], LIMIT.stroke_width(2)))?;
         }
         for (place, curve) in curves.iter().enumerate() {
             let (colour, width, mark) = look(curve.shown);
             let points = thinned(&curve.points, frame.times);
             for run in cut(&points, frame.range) {
-                chart.draw_series(LineSeries::new(run, colour.stroke_width(width)))?;
+                chart.draw_series(LineSeries::new(run, colour.stroke_width(2 * width)))?;
             }
             // marks of different curves stand at different times: one curve hides the other, but not its marks
             let Some(mark) = mark else { continue };
@@ -183,21 +170,72 @@ pub(super) fn draw(frame: &Frame<'_>, curves: &[Curve]) -> String {
         for (shown, time, from, to) in frame.bars {
             let (from, to) = (from.max(low), to.min(high));
             if (to - from) / span > 0.01 {
-                let style = colour(*shown).stroke_width(1);
+                let style = colour(*shown).stroke_width(2);
                 chart.draw_series(LineSeries::new([(*time, from), (*time, to)], style))?;
                 let cap =
-                    |end: f64| EmptyElement::at((*time, end)) + PathElement::new([(-4, 0), (4, 0)], style);
+                    |end: f64| EmptyElement::at((*time, end)) + PathElement::new([(-8, 0), (8, 0)], style);
                 chart.draw_series([cap(from), cap(to)])?;
             }
         }
         for (shown, time, height) in frame.dots.iter().filter(|dot| inside(dot.2)) {
-            chart.draw_series([Circle::new((*time, *height), 4, colour(*shown).stroke_width(2))])?;
+            chart.draw_series([Circle::new((*time, *height), 8, colour(*shown).stroke_width(4))])?;
         }
         Ok(())
     })
 }
 
-const BAND: RGBColor = RGBColor(240, 234, 214);
+/// The sign before a name of the legend.
+#[derive(Clone, Copy)]
+enum LegendSign {
+    Curve(Shown),
+    Band,
+    Dot,
+}
+
+/// The height of a row of the legend.
+const LINE: i32 = 30;
+
+/// The entries of the legend, each with its place from the left and its row.
+fn legend<'a>(frame: &Frame<'a>, curves: &'a [Curve]) -> Vec<((i32, i32), &'a str, LegendSign)> {
+    let curves = curves.iter().map(|curve| (curve.name.as_str(), LegendSign::Curve(curve.shown)));
+    let band = frame.band.map(|(_, name)| (name, LegendSign::Band));
+    let dots = (!frame.dots.is_empty()).then_some((frame.dots_are, LegendSign::Dot));
+    let (mut x, mut row) = (20, 0);
+    let mut place = |(name, sign): (&'a str, LegendSign)| {
+        let width = 84 + 12 * name.chars().count() as i32;
+        if x > 20 && x + width > WIDTH {
+            (x, row) = (20, row + 1);
+        }
+        x += width;
+        ((x - width, row), name, sign)
+    };
+    curves.chain(band).chain(dots).map(&mut place).collect()
+}
+
+fn entry(
+    area: &Drawing<'_>,
+    (x, y): (i32, i32),
+    name: &str,
+    sign: LegendSign,
+) -> Result<(), Box<dyn std::error::Error>> {
+    match sign {
+        LegendSign::Curve(shown) => {
+            let (colour, width, mark) = look(shown);
+            area.draw(&PathElement::new([(x, y), (x + 48, y)], colour.stroke_width(2 * width)))?;
+            if let Some(mark) = mark {
+                area.draw(&(EmptyElement::at((x + 24, y)) + Polygon::new(corners(mark), colour.filled())))?;
+            }
+        }
+        LegendSign::Band => area.draw(&Rectangle::new([(x, y - 12), (x + 48, y + 12)], BAND.filled()))?,
+        LegendSign::Dot => area.draw(&Circle::new((x + 24, y), 8, INK.stroke_width(4)))?,
+    }
+    let words = ("sans-serif", 24).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
+    area.draw(&Text::new(name.to_owned(), (x + 56, y), words))?;
+    Ok(())
+}
+
+/// Half transparent, so that it is seen on light and on dark pages.
+const BAND: RGBAColor = RGBAColor(200, 170, 80, 0.25);
 
 /// Fewer points that draw the same picture: of each piece of time the first, the lowest, the highest and the last.
 fn thinned(points: &[(f64, f64)], times: (f64, f64)) -> Vec<(f64, f64)> {

@@ -1,9 +1,9 @@
 //! Pictures of the body between its palms, and of the outline that was recovered.
 
 use crate::mechanics::moving::Shape;
+use crate::report::drawing::{Drawing, INK, svg};
 use crate::report::motion::answers::Observed;
 use crate::report::motion::shape::{Instant, Outline, turned};
-use crate::report::plot::{Drawing, INK, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -12,10 +12,9 @@ pub(super) const PALM_COLOURS: [RGBColor; 2] = [RGBColor(0, 114, 178), RGBColor(
 const TRUE_OUTLINE: RGBColor = RGBColor(150, 156, 165);
 /// Recovered where the observer could not see.
 const UNSEEN: RGBColor = RGBColor(205, 209, 215);
-const COLUMNS: usize = 4;
 const FRAMES: usize = 12;
 /// Twice the size in which they are shown: places are whole pixels, and a curve of few pixels is not smooth.
-const CELL: (u32, u32) = (480, 400);
+const CELL: (u32, u32) = (400, 336);
 
 /// A place in the world or the body's frame as a pixel.
 struct View {
@@ -87,8 +86,8 @@ fn dots(
 }
 
 /// As figure 4.3: the palms, the true outline, the contacts and the centre of mass at some samples, the last among them, and
-/// the part of the outline that is recovered by then.
-pub(super) fn frames(observed: &Observed<'_>, outline: &Outline) -> String {
+/// the part of the outline that is recovered by then, a picture each.
+pub(super) fn frames(observed: &Observed<'_>, outline: &Outline) -> Vec<String> {
     let instants = &outline.instants;
     let count = FRAMES.min(instants.len());
     let rows: Vec<usize> = (1..=count).map(|frame| frame * instants.len() / count - 1).collect();
@@ -104,28 +103,27 @@ pub(super) fn frames(observed: &Observed<'_>, outline: &Outline) -> String {
         palms.into_iter().chain([[0.0; 2]]).chain(points.map(move |point| placed(point, pose)))
     });
     let view = View::of(everywhere, (f64::from(CELL.0) - 48.0, f64::from(CELL.1) - 80.0));
-    let height = CELL.1 * (count.div_ceil(COLUMNS)) as u32;
-    svg((CELL.0 * COLUMNS as u32, height), |area| {
-        for (frame, row) in rows.iter().enumerate() {
-            let instant = &instants[*row];
-            let left = CELL.0 as i32 * (frame % COLUMNS) as i32;
-            let top = CELL.1 as i32 * (frame / COLUMNS) as i32;
-            let pixel = |place: [f64; 2]| view.pixel(place, (f64::from(left) + 24.0, f64::from(top) + 56.0));
+    let frame = |row: &usize| {
+        let instant = &instants[*row];
+        let time = format!("{:.3} s", instant.time);
+        svg(CELL, &format!("the body between its palms at {time}"), |area| {
+            let pixel = |place: [f64; 2]| view.pixel(place, (24.0, 56.0));
             let pose = pose(observed, instant);
             let style = ("sans-serif", 26).into_font().color(&INK);
-            area.draw(&Text::new(format!("{:.3} s", instant.time), (left + 24, top + 12), style))?;
+            area.draw(&Text::new(time.clone(), (20, 10), style))?;
             for angle in instant.palms {
                 let ends = [pixel([0.0; 2]), pixel(tip(angle))];
-                area.draw(&PathElement::new(ends, INK.stroke_width(6)))?;
+                area.draw(&PathElement::new(ends, INK.stroke_width(5)))?;
             }
             closed(area, sides.iter().map(|point| pixel(placed(*point, pose))), 2)?;
-            dots(area, &instants[..=*row], 4, |point| pixel(placed(point, pose)))?;
+            dots(area, &instants[..=*row], 3, |point| pixel(placed(point, pose)))?;
             for place in [pose.0, instant.contacts[0], instant.contacts[1]] {
-                area.draw(&Circle::new(pixel(place), 10, INK.filled()))?;
+                area.draw(&Circle::new(pixel(place), 8, INK.filled()))?;
             }
-        }
-        Ok(())
-    })
+            Ok(())
+        })
+    };
+    rows.iter().map(frame).collect()
 }
 
 fn closed(
@@ -143,29 +141,30 @@ fn closed(
 
 /// The true outline, where it is known, and the recovered points, in the frame of the body.
 pub(super) fn recovered_outline(shape: Option<&Shape>, outline: &Outline) -> String {
-    const SIZE: (u32, u32) = (1120, 840);
+    const SIZE: (u32, u32) = (800, 720);
     let sides: Vec<[f64; 2]> = shape.map(|shape| shape.outline(360)).unwrap_or_default();
     let everywhere = sides.iter().copied().chain(outline.instants.iter().flat_map(|i| i.points));
-    let view = View::of(everywhere.chain([[0.0; 2]]), (f64::from(SIZE.0) - 120.0, f64::from(SIZE.1) - 220.0));
-    let pixel = |place: [f64; 2]| view.pixel(place, (60.0, 100.0));
-    svg(SIZE, |area| {
+    let view = View::of(everywhere.chain([[0.0; 2]]), (f64::from(SIZE.0) - 120.0, f64::from(SIZE.1) - 250.0));
+    let pixel = |place: [f64; 2]| view.pixel(place, (60.0, 150.0));
+    svg(SIZE, "the outline in the body's frame", |area| {
         let words = |size: i32| ("sans-serif", size).into_font().color(&INK);
         let left = |size: i32| words(size).pos(Pos::new(HPos::Left, VPos::Center));
-        area.draw(&Text::new("outline in the body's frame", (24, 16), words(30)))?;
+        area.draw(&Text::new("outline in the body's frame", (20, 10), words(28)))?;
         let mut x = 28;
         for (text, colour) in [("touched by palm 1", PALM_COLOURS[0]), ("touched by palm 2", PALM_COLOURS[1])]
         {
-            area.draw(&Circle::new((x, 76), 6, colour.filled()))?;
-            area.draw(&Text::new(text, (x + 20, 76), left(24)))?;
+            area.draw(&Circle::new((x, 68), 6, colour.filled()))?;
+            area.draw(&Text::new(text, (x + 16, 68), left(24)))?;
             x += 280;
         }
+        let x = 28;
         if shape.is_some() {
-            area.draw(&PathElement::new([(x, 76), (x + 44, 76)], TRUE_OUTLINE.stroke_width(6)))?;
-            area.draw(&Text::new("true", (x + 60, 76), left(24)))?;
+            area.draw(&PathElement::new([(x, 104), (x + 44, 104)], TRUE_OUTLINE.stroke_width(6)))?;
+            area.draw(&Text::new("true", (x + 56, 104), left(24)))?;
         }
         if !outline.instants.iter().all(|instant| instant.seen) {
-            area.draw(&Circle::new((x + 160, 76), 6, UNSEEN.filled()))?;
-            area.draw(&Text::new("while it could not see", (x + 180, 76), left(24)))?;
+            area.draw(&Circle::new((x + 160, 104), 6, UNSEEN.filled()))?;
+            area.draw(&Text::new("while it could not see", (x + 178, 104), left(24)))?;
         }
         closed(area, sides.iter().map(|point| pixel(*point)), 6)?;
         dots(area, &outline.instants, 4, pixel)?;

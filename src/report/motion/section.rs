@@ -157,7 +157,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>) -> Markup {
     let shape = observed.experiment.simulation.as_ref().map(|simulation| &simulation.shape);
     html! {
         figure {
-            (PreEscaped(frames(observed, &outline)))
+            div.frames { @for picture in frames(observed, &outline) { (PreEscaped(picture)) } }
             figcaption {
                 "As figure 4.3: the palms about their joint at " (outline.instants.len().min(12)) " samples. Large dots are the "
                 "centre of mass and the two contacts. Small dots are the part of the outline that " b { (method_name(outline.method)) }

@@ -1,10 +1,10 @@
 //! Studies of observers as pictures: the error over noise beside its bound, and the first guesses from which a method arrives.
 
 use crate::experiment::Basin;
+use crate::report::drawing::{Canvas, INK, MESH, svg};
 use crate::report::motion::answers::{Observed, method_name};
 use crate::report::motion::curves::number;
 use crate::report::motion::plot::unit_of;
-use crate::report::plot::{INK, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -36,7 +36,7 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
     if all().next().is_none() {
         return format!("<p>{name}: no estimate converged at any level of noise, and nothing bounds it</p>");
     }
-    svg((420, 330), |area| {
+    svg((420, 330), &format!("{name} at the first sample: error over noise"), |area| {
         let (head, plot) = area.split_vertically(48);
         let words = |size: i32| ("sans-serif", size).into_font().color(&INK);
         let anchored = words(12).pos(Pos::new(HPos::Left, VPos::Center));
@@ -48,15 +48,16 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
         let mut chart = ChartBuilder::on(&plot)
             .margin(8)
             .x_label_area_size(36)
-            .y_label_area_size(58)
+            .y_label_area_size(64)
             .build_cartesian_2d((left..right).log_scale(), (low..high).log_scale())?;
         let unit = unit_of(name);
         chart
             .configure_mesh()
             .light_line_style(WHITE)
-            .bold_line_style(RGBColor(225, 228, 232))
+            .bold_line_style(MESH)
             .x_labels(5)
             .y_labels(6)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_label_formatter(&|v| format!("{v:.0e}"))
             .y_label_formatter(&|v| format!("{v:.0e}"))
             .x_desc("standard deviation of a reading, m")
@@ -88,12 +89,13 @@ pub(super) fn basin(observed: &Observed<'_>, basin: &Basin) -> String {
         let of = |name: &String| names.iter().position(|other| other == name).map(|place| truth[place]);
         Some((of(&basin.names[0])?, of(&basin.names[1])?))
     });
-    let drawn = svg((360, 380), |area| {
+    let title = format!("{}: {:.0}% arrive", method_name(basin.method), 100.0 * basin.fraction());
+    let by_colour = [(ARRIVES, "arrives".to_owned()), (FAILS, "does not arrive".to_owned())];
+    Canvas { size: (380, 390), title: &title, by_colour: &by_colour, is_crisp: true }.draw(|area, _| {
         let (head, plot) = area.split_vertically(48);
         let words = |size: i32| ("sans-serif", size).into_font().color(&INK);
         let anchored = words(12).pos(Pos::new(HPos::Left, VPos::Center));
-        let title = format!("{}: {:.0}% arrive", method_name(basin.method), 100.0 * basin.fraction());
-        head.draw(&Text::new(title, (10, 6), words(15)))?;
+        head.draw(&Text::new(title.clone(), (10, 6), words(15)))?;
         for (at, colour, text) in
             [(14, ARRIVES, "arrives"), (94, FAILS, "does not"), (184, WHITE, "not tried")]
         {
@@ -106,15 +108,15 @@ pub(super) fn basin(observed: &Observed<'_>, basin: &Basin) -> String {
         let mut chart = ChartBuilder::on(&plot)
             .margin(8)
             .x_label_area_size(36)
-            .y_label_area_size(46)
+            .y_label_area_size(54)
             .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
         for (index, arrives) in basin.arrives.iter().enumerate() {
+            let Some(arrives) = arrives else { continue };
             let corner = |i: usize, j: usize| (x.0 + x.2 * i as f64, y.0 + y.2 * j as f64);
             let (i, j) = (index % columns, index / columns);
             let colour = match arrives {
-                Some(true) => ARRIVES,
-                Some(false) => FAILS,
-                None => WHITE,
+                true => ARRIVES,
+                false => FAILS,
             };
             chart.draw_series([Rectangle::new([corner(i, j), corner(i + 1, j + 1)], colour.filled())])?;
         }
@@ -123,6 +125,7 @@ pub(super) fn basin(observed: &Observed<'_>, basin: &Basin) -> String {
             .disable_mesh()
             .x_labels(6)
             .y_labels(6)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_label_formatter(&|v| number(*v, x.1 - x.0))
             .y_label_formatter(&|v| number(*v, y.1 - y.0))
             .x_desc(format!("first guess of {}", basin.names[0]))
@@ -136,7 +139,5 @@ pub(super) fn basin(observed: &Observed<'_>, basin: &Basin) -> String {
             chart.draw_series([Cross::new((a, b), 8, INK.stroke_width(3))])?;
         }
         Ok(())
-    });
-    // without smoothing of edges no gaps show between the rectangles
-    drawn.replacen("<svg ", "<svg shape-rendering=\"crispEdges\" ", 1)
+    })
 }

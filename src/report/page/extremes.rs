@@ -1,6 +1,7 @@
 //! The part of the page that is about speed, accuracy and the extremes.
 
 use crate::certificate::RegionAnswer;
+use crate::paper::Findings;
 use crate::report::certificate::answer::region_text;
 use crate::report::certificate::plot::{region_curve, region_map};
 use crate::report::stress::answer::stress_pictures;
@@ -8,22 +9,31 @@ use crate::report::trade::answer::{TRADE_FRONT_HEADINGS, trade_front_table};
 use crate::report::trade::plot::trade_plot;
 use crate::tradeoff::Trade;
 use crate::tradeoff::stress::Study;
-use crate::verification::Verification;
 use maud::{Markup, PreEscaped, html};
 
+/// Whether something was found of it.
+pub(super) fn has_extremes(found: &Findings) -> bool {
+    found.files.iter().any(|file| file.trade.is_some() || file.stress.is_some() || file.certificate.is_some())
+}
+
 /// What was found of it, as a section of the page.
-pub(super) fn extremes(found: &Verification) -> Markup {
+pub(super) fn extremes(found: &Findings) -> Markup {
+    let stress: Vec<&Study> = found.files.iter().filter_map(|file| file.stress.as_ref()).collect();
+    let regions: Vec<&RegionAnswer> =
+        found.files.iter().filter_map(|file| file.certificate.as_ref()).collect();
     html! {
         section #extremes {
             h2 { "Speed against accuracy" }
-            @if let Some(trade) = &found.trade { (traded(trade)) }
-            @if !found.stress.is_empty() { (stressed(&found.stress)) }
-            @if !found.regions.is_empty() { (certified(&found.regions)) }
+            @for file in &found.files {
+                @if let Some(trade) = &file.trade { (traded(trade)) }
+            }
+            @if !stress.is_empty() { (stressed(&stress)) }
+            @if !regions.is_empty() { (certified(&regions)) }
         }
     }
 }
 
-fn certified(regions: &[RegionAnswer]) -> Markup {
+fn certified(regions: &[&RegionAnswer]) -> Markup {
     html! {
         h3 { "Between the samples" }
         p {
@@ -34,26 +44,42 @@ fn certified(regions: &[RegionAnswer]) -> Markup {
             details {
                 summary { (region_text(answer).lines().take(2).collect::<Vec<_>>().join(": ")) }
                 pre { (region_text(answer)) }
-                figure { (PreEscaped(region_curve(answer, "proved"))) }
-                @if let Some(map) = &answer.map { figure { (PreEscaped(region_map(map, "the box, in two coordinates"))) } }
+                figure {
+                    div.grid {
+                        (PreEscaped(region_curve(answer, "proved")))
+                        @if let Some(map) = &answer.map {
+                            (PreEscaped(region_map(map, "the box, in two coordinates", [None, None])))
+                        }
+                    }
+                    figcaption {
+                        "How much of the box is still open, box by box; and the boxes over two coordinates: pale where full rank is "
+                        "proved, red where a minor vanishes, black where a pole runs through, grey where nothing is decided."
+                    }
+                }
             }
         }
     }
 }
 
-fn stressed(studies: &[Study]) -> Markup {
+fn stressed(studies: &[&Study]) -> Markup {
     html! {
         h3 { "The extremes" }
         p {
-            "Lines into every singular set of every regime down to a distance of 1e-15, and every quantity scaled from 1e-150 to "
-            "1e150: where each kind of number first misreports the rank of the thesis's own rows, loses more than half of its "
+            "Lines into every singular set of every system down to a distance of 1e-15, and every quantity scaled from 1e-150 to "
+            "1e150: where each kind of number first misreports the rank of the file's own rows, loses more than half of its "
             "digits, or refuses, beside the certified rank at the very state. A short version; " code { "palmistry stress" }
             " has more states and prints every distance."
         }
         @for study in studies {
-            details open[study.file.ends_with("general.proof")] {
+            details {
                 summary { (study.title) }
-                @for (_, picture) in stress_pictures(study) { figure { (PreEscaped(picture)) } }
+                figure {
+                    div.grid { @for (_, picture) in stress_pictures(study) { (PreEscaped(picture)) } }
+                    figcaption {
+                        "Bars from far to near and from small to large, coloured by what a verdict is worth there; and how states are "
+                        "conditioned, before and after equilibration."
+                    }
+                }
             }
         }
     }
@@ -63,14 +89,17 @@ fn traded(trade: &Trade) -> Markup {
     html! {
         p {
             "Every sensible combination of a kind of number, a way to a derivative and a way to a rank, on the same "
-            (trade.states) " states of the general regime's sample box: " (trade.combinations.len()) " combinations; the table "
+            (trade.states) " states of the sample box of " (trade.title) ": " (trade.combinations.len()) " combinations; the table "
             "holds those that no other beats in time, in digits at the worst state, in right verdicts and in certain ones. "
             "(" code { "palmistry trade" } " measures them on a thousand states.)"
         }
-        figure { (PreEscaped(trade_plot(trade))) }
-        table {
+        figure {
+            div.grid { (PreEscaped(trade_plot(trade))) }
+            figcaption { "The line joins those of which every verdict is right and that no other one beats in time and digits." }
+        }
+        div.scroll { table {
             thead { tr { @for heading in TRADE_FRONT_HEADINGS { th { (heading) } } } }
             tbody { @for row in trade_front_table(trade) { tr { @for cell in row { td { (cell) } } } } }
-        }
+        } }
     }
 }

@@ -1,5 +1,6 @@
 //! The main job's findings as JSON and as lines for the terminal.
 
+use crate::paper::{FileFindings, Findings, ReductionFound, SetRank};
 use crate::report::certificate::answer::region_json;
 use crate::report::claims::outcomes::{claim_json, claim_line};
 use crate::report::claims::words::{counts, counts_text, errors};
@@ -9,10 +10,8 @@ use crate::report::stress::answer::stress_json;
 use crate::report::trade::answer::trade_json;
 use crate::sweep::RankAnswer;
 use crate::system::Flaw;
-use crate::tradeoff::{Map, Rows, Slope};
-use crate::verification::{
-    DETERMINANT, PrintedValue, RegimeResult, Verification, equations, in_order_of_the_thesis,
-};
+use crate::tradeoff::stress::Study;
+use crate::tradeoff::{Map, PrintedExpression, PrintedValue, Rows, Slope};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -39,31 +38,82 @@ fn line_json(title: &str, slope: &Slope) -> Value {
     })
 }
 
-fn regime_json(result: &RegimeResult) -> Value {
+fn set_json(rank: &SetRank) -> Value {
+    let mut object = match &rank.found {
+        Ok(answer) => rank_json(answer),
+        Err(why) if rank.is_pole() => json!({ "pole": why.to_string() }),
+        Err(why) => json!({ "not_decided": why.to_string() }),
+    };
+    object["set"] = json!(rank.name());
+    object["conditions"] = json!(rank.set.as_ref().map(|set| &set.written).cloned().unwrap_or_default());
+    object["as_expected"] = json!(rank.as_expected());
+    object
+}
+
+fn reduction_json(found: &ReductionFound) -> Value {
     json!({
-        "file": result.regime.file,
-        "title": result.title,
-        "left_out": result.regime.left_out,
-        "ranks": result.ranks.iter().map(|(set, found)| {
-            let mut object = match found {
-                Ok(answer) => rank_json(answer),
-                Err(pole) => json!({ "pole": pole }),
-            };
-            object["set"] = json!(set.title);
-            object["conditions"] = json!(set.conditions);
-            object
-        }).collect::<Vec<_>>(),
-        "maps": result.maps.iter().map(|(kind, map)| map_json(*kind, map)).collect::<Vec<_>>(),
-        "lines": result.lines.iter().map(|(title, slope)| line_json(title, slope)).collect::<Vec<_>>(),
-        "smallest_model": result.comparison.as_ref().map(|c| json!({
-            "states": c.small_states,
-            "operations": c.small_operations,
-            "operations_of_the_ten_state_model": c.large_operations,
-            "largest_relative_difference": c.largest_difference,
-            "seconds_a_state": c.small_seconds,
-            "ten_state_seconds_a_state": c.large_seconds,
-            "seconds_ratio": c.large_seconds / c.small_seconds,
+        "of": found.of,
+        "conditions": found.reduction.written,
+        "left_out": found.left_out,
+        "proved": found.proved(),
+        "claims": found.claims.iter().map(claim_json).collect::<Vec<_>>(),
+        "saved": match &found.comparison {
+            Ok(c) => json!({
+                "states": c.small_states,
+                "states_of_the_larger": c.large_states,
+                "operations": c.small_operations,
+                "operations_of_the_larger": c.large_operations,
+                "largest_relative_difference": c.largest_difference,
+                "seconds_a_state": c.small_seconds,
+                "seconds_a_state_of_the_larger": c.large_seconds,
+                "seconds_ratio": c.large_seconds / c.small_seconds,
+            }),
+            Err(why) => json!({ "not_counted": why }),
+        },
+    })
+}
+
+fn file_json(file: &FileFindings) -> Value {
+    json!({
+        "file": file.system.name,
+        "title": file.system.title,
+        "ok": file.ok(),
+        "claims": file.outcomes.iter().map(claim_json).collect::<Vec<_>>(),
+        "ranks": file.ranks.iter().map(set_json).collect::<Vec<_>>(),
+        "maps": file.maps.iter().map(|found| json!({
+            "title": found.view.title,
+            "maps": found.maps.iter().map(|(kind, map)| map_json(*kind, map)).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
+        "lines": file.lines.iter().map(|line| line_json(&line.view.title, &line.slope)).collect::<Vec<_>>(),
+        "printed": file.printed.iter().map(printed_json).collect::<Vec<_>>(),
+        "reductions": file.reductions.iter().map(reduction_json).collect::<Vec<_>>(),
+        "lie_derivatives": file.derivatives.as_ref().map(|found| json!({
+            "field": found.field,
+            "output": found.output,
+            "routes": found.routes.iter().map(|r| json!({
+                "order": r.order,
+                "states": r.states,
+                "largest_relative_difference": r.largest_difference,
+            })).collect::<Vec<_>>(),
+            "growth": found.growth.iter().map(|g| json!({
+                "order": g.order, "operations": g.operations, "seconds": g.seconds,
+            })).collect::<Vec<_>>(),
         })),
+        "trade": file.trade.as_ref().map(trade_json),
+        "certificate": file.certificate.as_ref().map(region_json),
+        "left_out": file.left_out.iter().map(|left| json!({ "what": left.what, "why": left.why })).collect::<Vec<_>>(),
+    })
+}
+
+fn printed_json(found: &PrintedExpression) -> Value {
+    json!({
+        "formula": found.text,
+        "expanded": found.expanded.as_ref().map(|expanded| json!({
+            "monomials": expanded.monomials,
+            "front": expanded.front,
+            "denominator": expanded.denominator,
+        })),
+        "values": found.values.iter().map(printed_value_json).collect::<Vec<_>>(),
     })
 }
 
@@ -76,55 +126,49 @@ pub fn printed_value_json(value: &PrintedValue) -> Value {
         "certified": value.certified.decimal,
         "digits_that_agree": value.digits_that_agree,
         "printed_error": value.error,
-        "rounding": {
-            "digits": value.study.digits,
-            "monomials": value.study.monomials,
-            "orders": value.study.errors.len(),
-            "least_error": value.study.errors.first(),
-            "greatest_error": value.study.errors.last(),
-            "root_mean_square_error": value.study.deviation(),
-            "largest_monomial_over_sum": value.study.cancellation,
-            "printed_error_is_inside": value.study.contains(value.error),
+        "carried": value.carried,
+        "rounding": match &value.study {
+            Ok(study) => json!({
+                "digits": study.digits,
+                "monomials": study.monomials,
+                "orders": study.errors.len(),
+                "least_error": study.errors.first(),
+                "greatest_error": study.errors.last(),
+                "root_mean_square_error": study.deviation(),
+                "largest_monomial_over_sum": study.cancellation,
+                "printed_error_is_inside": study.contains(value.error),
+            }),
+            Err(why) => json!({ "not_known": why }),
         },
     })
 }
 
 /// Everything as one object.
-pub fn verification_json(found: &Verification) -> Value {
+pub fn findings_json(found: &Findings) -> Value {
+    let paper = &found.paper;
+    let words = counts(found.outcomes()).into_iter().collect::<std::collections::BTreeMap<_, _>>();
+    let stress: Vec<Study> = found.files.iter().filter_map(|file| file.stress.clone()).collect();
     json!({
         "ok": found.ok(),
         "interrupted": found.interrupted,
         "seed": found.seed,
-        "claims": found.outcomes.iter().map(claim_json).collect::<Vec<_>>(),
-        "words": counts(&found.outcomes).into_iter().collect::<std::collections::BTreeMap<_, _>>(),
-        "errata": found.outcomes.iter().filter(|o| o.word() == "erratum").map(|o| &o.id).collect::<Vec<_>>(),
-        "independent_errata":
-            errors(&found.outcomes, Flaw::Erratum).independent.iter().map(|o| &o.id).collect::<Vec<_>>(),
-        "equations": equations(&found.outcomes).iter().map(|equation| json!({
+        "paper": {
+            "title": paper.title,
+            "authors": paper.authors,
+            "year": paper.year,
+            "source": paper.source,
+        },
+        "words": words,
+        "errata": found.outcomes().filter(|o| o.word() == "erratum").map(|o| &o.id).collect::<Vec<_>>(),
+        "independent_errata": errors(&paper.numbering, found.outcomes(), Flaw::Erratum)
+            .independent.iter().map(|o| &o.id).collect::<Vec<_>>(),
+        "equations": paper.numbering.equations(found.outcomes()).iter().map(|equation| json!({
             "number": equation.number,
             "verdict": equation.word(),
             "entries": equation.entries.iter().map(|outcome| &outcome.id).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
-        "regimes": found.regimes.iter().map(regime_json).collect::<Vec<_>>(),
-        "appendix": found.appendix.as_ref().map(|a| json!({
-            "monomials": a.monomials,
-            "front": a.front,
-            "denominator": a.denominator,
-            "values": a.values.iter().map(printed_value_json).collect::<Vec<_>>(),
-        })),
-        "lie_derivatives": {
-            "routes": found.routes.iter().map(|r| json!({
-                "order": r.order,
-                "states": r.states,
-                "largest_relative_difference": r.largest_difference,
-            })).collect::<Vec<_>>(),
-            "growth": found.growth.iter().map(|g| json!({
-                "order": g.order, "operations": g.operations, "seconds": g.seconds,
-            })).collect::<Vec<_>>(),
-        },
-        "trade": found.trade.as_ref().map(trade_json),
-        "stress": stress_json(&found.stress, found.seed),
-        "certificates": found.regions.iter().map(region_json).collect::<Vec<_>>(),
+        "files": found.files.iter().map(file_json).collect::<Vec<_>>(),
+        "stress": stress_json(&stress, found.seed),
         "experiments": found.experiments.iter().map(|(experiment, answers)| {
             observe_json(&Observed::of(experiment, answers))
         }).collect::<Vec<_>>(),
@@ -153,24 +197,41 @@ pub(crate) fn ranks_in_words(answer: &RankAnswer, own: bool) -> String {
     }
 }
 
-/// Everything that a reader of the terminal wants to see: what does not hold, the errata, and a line for the rest.
-pub fn verification_text(found: &Verification) -> String {
-    let mut out = String::new();
-    let notable = found.outcomes.iter().filter(|outcome| !outcome.ok || outcome.printed.is_some());
-    for outcome in in_order_of_the_thesis(notable) {
-        let _ = writeln!(out, "{}", claim_line(outcome));
+/// The ranks, reductions and printed numbers of one file, as lines.
+fn file_text(file: &FileFindings, out: &mut String) {
+    let system = &file.system;
+    if !(file.ranks.is_empty() && file.printed.is_empty() && file.left_out.is_empty()) {
+        let _ = writeln!(out, "{}: {}", system.name, system.title);
     }
-    for result in &found.regimes {
-        let _ = writeln!(out, "{}", result.title);
-        let _ = writeln!(out, "  {:<48} {:>16} {:>16}", "rank on", "full", "thesis's rows");
-        for (set, found) in &result.ranks {
-            let (full, own) = match found {
+    if !file.ranks.is_empty() {
+        let own = file.ranks.iter().filter_map(|rank| rank.found.as_ref().ok());
+        let has_own = own.flat_map(|answer| &answer.branches).any(|branch| branch.rows.is_some());
+        let heading = if has_own { "the file's rows" } else { "" };
+        let _ = writeln!(out, "  {:<48} {:>16} {heading:>16}", "rank on", "full");
+        for rank in &file.ranks {
+            let (full, own) = match &rank.found {
                 Ok(answer) => (ranks_in_words(answer, false), ranks_in_words(answer, true)),
-                Err(_) => ("a pole".to_owned(), "a pole".to_owned()),
+                Err(_) if rank.is_pole() => ("a pole".to_owned(), "-".to_owned()),
+                Err(why) => (format!("not decided: {why}"), String::new()),
             };
-            let _ = writeln!(out, "  {:<48} {full:>16} {own:>16}", set.title);
+            let own = if has_own { own } else { String::new() };
+            let unexpected = if rank.as_expected() { "" } else { "   not as expected" };
+            let _ = writeln!(out, "  {:<48} {full:>16} {own:>16}{unexpected}", rank.name());
         }
-        if let Some(c) = &result.comparison {
+    }
+    for found in &file.reductions {
+        let proved = found.claims.iter().filter(|outcome| outcome.ok).count();
+        let _ = writeln!(
+            out,
+            "  is {} where {}: {proved} of {} statements proved",
+            found.reduction.alias.text,
+            found.reduction.written.join(", "),
+            found.claims.len()
+        );
+        for outcome in found.claims.iter().filter(|outcome| !outcome.ok) {
+            let _ = writeln!(out, "    {}: {}", outcome.verdict.word(), outcome.statement);
+        }
+        if let Ok(c) = &found.comparison {
             let _ = writeln!(
                 out,
                 "  {} states instead of {}: {:.1} times faster a state, entries equal to {:.0e}",
@@ -181,39 +242,65 @@ pub fn verification_text(found: &Verification) -> String {
             );
         }
     }
-    if let Some(appendix) = &found.appendix {
-        let _ = writeln!(
-            out,
-            "Appendix A.2: the determinant has {} monomials when multiplied out",
-            appendix.monomials
-        );
-        for value in &appendix.values {
-            let place = if value.study.contains(value.error) { "inside" } else { "outside" };
+    for printed in &file.printed {
+        if let Some(expanded) = &printed.expanded {
+            let _ =
+                writeln!(out, "  {} has {} monomials when multiplied out", printed.text, expanded.monomials);
+        }
+        for value in &printed.values {
+            let why = match &value.study {
+                Ok(study) => format!(
+                    "its error {:+.1e} lies {} what {} digits do ({:.1e} to {:.1e})",
+                    value.error,
+                    if study.contains(value.error) { "inside" } else { "outside" },
+                    study.digits,
+                    study.errors.first().copied().unwrap_or(0.0),
+                    study.errors.last().copied().unwrap_or(0.0)
+                ),
+                Err(why) => format!("whether rounding explains it is not known: {why}"),
+            };
             let _ = writeln!(
                 out,
-                "  printed {:<12} true {}  {} digits agree; its error {:+.1e} lies {place} what ten digits do ({:.1e} to {:.1e})",
-                value.printed,
-                &value.certified.decimal,
-                value.digits_that_agree,
-                value.error,
-                value.study.errors.first().copied().unwrap_or(0.0),
-                value.study.errors.last().copied().unwrap_or(0.0),
+                "  printed {:<12} true {}  {} digits agree; {why}",
+                value.printed, &value.certified.decimal, value.digits_that_agree,
             );
         }
+        for outcome in file.outcomes.iter().filter(|outcome| outcome.pole_of.as_ref() == Some(&printed.text))
+        {
+            let _ = writeln!(out, "  {}: {}", outcome.word(), outcome.statement);
+        }
     }
-    for outcome in found.outcomes.iter().filter(|outcome| outcome.pole_of.as_deref() == Some(DETERMINANT)) {
-        let _ = writeln!(out, "  {}: {}", outcome.word(), outcome.statement);
+    for left in &file.left_out {
+        let _ = writeln!(out, "  not done: {}: {}", left.what, left.why);
+    }
+}
+
+/// Everything that a reader of the terminal wants to see: what does not hold, the errata, and a line for the rest.
+pub fn findings_text(found: &Findings) -> String {
+    let mut out = String::new();
+    let numbering = &found.paper.numbering;
+    let notable = found.outcomes().filter(|outcome| !outcome.ok || outcome.printed.is_some());
+    for outcome in numbering.in_order(notable) {
+        let _ = writeln!(out, "{}", claim_line(outcome));
+    }
+    for file in &found.files {
+        file_text(file, &mut out);
     }
     for fault in Flaw::ALL {
-        let found = errors(&found.outcomes, fault);
+        let found = errors(numbering, found.outcomes(), fault);
         let ids: Vec<&str> = found.independent.iter().map(|outcome| outcome.id.as_str()).collect();
         if !(ids.is_empty() && found.following.is_empty()) {
             let _ = writeln!(out, "{}; on their own: {}", found.text(fault.word()), ids.join(", "));
         }
     }
-    let failed = found.outcomes.iter().filter(|outcome| !outcome.ok).count();
-    let (claims, counts) = (found.outcomes.len(), counts_text(&found.outcomes));
-    let _ = writeln!(out, "{claims} claims: {counts}, {failed} not as expected");
+    let failed = found.outcomes().filter(|outcome| !outcome.ok).count();
+    let (claims, counts) = (found.outcomes().count(), counts_text(found.outcomes()));
+    let _ = writeln!(out, "{claims} claims: {counts}; {failed} not as expected");
+    if numbering.count() > 0 {
+        let equations = numbering.equations(found.outcomes());
+        let without = equations.iter().filter(|equation| equation.entries.is_empty()).count();
+        let _ = writeln!(out, "{} numbered equations, {without} of them without an entry", equations.len());
+    }
     if found.interrupted {
         let _ = writeln!(out, "interrupted: this is what was done until then");
     }

@@ -1,8 +1,14 @@
 //! The page that holds everything that was found.
 
+mod anchors;
+mod claims;
+pub(super) mod document;
+mod entry;
 pub(super) mod extremes;
 pub(super) mod findings;
+mod regime;
+mod source;
 pub(super) mod whole;
 
-pub use findings::{printed_value_json, verification_json, verification_text};
+pub use findings::{findings_json, findings_text, printed_value_json};
 pub use whole::page;

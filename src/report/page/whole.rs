@@ -1,403 +1,88 @@
-//! The page that the main job writes: one file, with its plots and nothing from elsewhere.
+//! The page of a paper, put together from its parts: one file, with its pictures and nothing from elsewhere.
 
-use crate::claim::{Outcome, Verdict};
-use crate::report::claims::outcomes::{error_bound, explanations, special_text, witness_line};
-use crate::report::claims::words::{RULE_OF_DAMAGE, counts, errors, meaning};
+use super::anchors::{Anchors, placed, stem};
+use super::claims::{all_claims, equations, faults, tally};
+use super::document::document;
+use super::extremes::{extremes, has_extremes};
+use super::regime::{file_section, has_a_section};
+use super::source::sources;
+use crate::claim::Outcome;
+use crate::paper::Findings;
 use crate::report::motion::answers::Observed;
 use crate::report::motion::section::observed_section;
-use crate::report::page::extremes::extremes;
-use crate::report::page::findings::ranks_in_words;
-use crate::report::plot;
-use crate::report::ranks::answer::fields_text;
-use crate::sweep::RankAnswer;
-use crate::system::Flaw;
-use crate::tradeoff::Rows;
-use crate::verification::{
-    Appendix, DETERMINANT, RegimeResult, Verification, equations, in_order_of_the_thesis,
-};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
-const STYLE: &str = include_str!("../page.css");
+/// The names of the sections, which nothing else on the page may have.
+const SECTIONS: [&str; 12] = [
+    "equations",
+    "errata",
+    "extremes",
+    "observers",
+    "claims",
+    "sources",
+    "filter",
+    "list",
+    "word",
+    "file",
+    "text",
+    "sort",
+];
 
 /// The page as HTML.
-pub fn page(found: &Verification) -> String {
-    let failed = found.outcomes.iter().filter(|outcome| !outcome.ok).count();
+pub fn page(found: &Findings) -> String {
+    let names: Vec<String> = (0..found.files.len()).map(|place| format!("file{place}")).collect();
+    let reserved: Vec<&str> =
+        SECTIONS.into_iter().chain(["shown"]).chain(names.iter().map(String::as_str)).collect();
+    let (anchors, claims) = (Anchors::new(&found.files, &reserved), placed(&found.files));
+    let numbering = &found.paper.numbering;
     let experiments: Vec<Observed<'_>> =
         found.experiments.iter().map(|(experiment, answers)| Observed::of(experiment, answers)).collect();
+    let files: Vec<&str> = found.files.iter().map(|file| stem(&file.system.name)).collect();
+    let systems: Vec<_> = found.files.iter().map(|file| &file.system).collect();
+    let sections = || found.files.iter().zip(&names).filter(|(file, _)| has_a_section(file));
+    let has_faults = claims.iter().any(|claim| claim.outcome.fault.is_some());
     let content = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Palmistry: what holds in Moll 2002, and what does not" }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                header {
-                    h1 { "What holds, and what does not" }
-                    p {
-                        "M. Moll, " em { "Shape Reconstruction Using Active Tactile Sensors" }
-                        " (2002), checked from first principles: every numbered equation, the rank of every regime of chapter 4 "
-                        "on its singular sets, and the determinants of appendix A.2. "
-                        "Each verdict says what stands behind it: " b { "proved" } " is exact arithmetic with the "
-                        "probability of an error stated, " b { "refuted" } " a state in exact numbers at which the two "
-                        "sides differ, " b { "erratum" } " a printed form refuted and its corrected form proved. "
-                        b { "Restated" } " is no proof: the two sides are one expression once names are put in."
-                    }
-                    ul.tally {
-                        @for (word, count) in counts(&found.outcomes) {
-                            li title=(meaning(word)) { b { (count) } " " (word) }
-                        }
-                        li class=[(failed > 0).then_some("bad")] { b { (failed) } " not as expected" }
-                        li { b { (format!("{:.0} s", found.seconds)) } " in all" }
-                    }
-                    @if found.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
-                    nav {
-                        a href="#equations" { "All equations" }
-                        a href="#errata" { "Errata" }
-                        a href="#damage" { "Damage and wording" }
-                        @for (i, result) in found.regimes.iter().enumerate() {
-                            a href=(format!("#regime{i}")) { (result.title) }
-                        }
-                        a href="#appendix" { "Appendix A.2" }
-                        a href="#derivatives" { "Lie derivatives" }
-                        a href="#extremes" { "Speed against accuracy" }
-                        @if !experiments.is_empty() { a href="#observers" { "Bodies in motion" } }
-                        a href="#claims" { "All claims" }
-                    }
-                }
-                (all_equations(&found.outcomes))
-                (errata(&found.outcomes))
-                (damage(&found.outcomes))
-                @for (i, result) in found.regimes.iter().enumerate() { (regime(i, result)) }
-                @if let Some(values) = &found.appendix { (appendix(values, &found.outcomes)) }
-                (derivatives(found))
-                (extremes(found))
-                @if !experiments.is_empty() { (observed_section(&experiments)) }
-                (all_claims(&found.outcomes))
-            }
+        (header(found, html! {
+            @if numbering.count() > 0 { a href="#equations" { "All equations" } }
+            @if has_faults { a href="#errata" { "What does not hold" } }
+            @for (file, name) in sections() { a href=(format!("#{name}")) { (file.system.title) } }
+            @if has_extremes(found) { a href="#extremes" { "Speed against accuracy" } }
+            @if !experiments.is_empty() { a href="#observers" { "Bodies in motion" } }
+            a href="#claims" { "All claims" }
+            a href="#sources" { "The proof files" }
+        }))
+        main {
+            @if numbering.count() > 0 { (equations(numbering, &claims, &anchors)) }
+            (faults(numbering, &claims, &anchors))
+            @for (file, name) in sections() { (file_section(name, file, &|_| None)) }
+            @if has_extremes(found) { (extremes(found)) }
+            @if !experiments.is_empty() { (observed_section(&experiments)) }
+            (all_claims(&claims, &anchors, &files))
+            (sources(&systems, &anchors))
         }
     };
-    content.into_string()
+    let title = format!("{}: what holds, and what does not", found.paper.title);
+    document(&title, &content, true)
 }
 
-fn errata(outcomes: &[Outcome]) -> Markup {
+fn header(found: &Findings, links: Markup) -> Markup {
+    let outcomes: Vec<&Outcome> = found.outcomes().collect();
     html! {
-        section #errata {
-            h2 { "Errata" }
-            p { "The printed form is refuted by a state that a pocket calculator can check; the corrected form is proved." }
-            p { (errors(outcomes, Flaw::Erratum).text("erratum")) }
-            @for outcome in in_order_of_the_thesis(outcomes.iter().filter(|o| o.fault == Some(Flaw::Erratum))) {
-                (fault_entry(outcome, Flaw::Erratum))
-            }
-        }
-    }
-}
-
-/// A form in the text that does not hold, and the right one.
-fn fault_entry(outcome: &Outcome, fault: Flaw) -> Markup {
-    let [_, before, between] = fault.keywords();
-    html! {
-        article class=[(!outcome.ok).then_some("bad")] {
-            h3 { (outcome.id) }
-            @if let Some(quoted) = &outcome.quoted {
-                p.printed { span.label { (before) } code { (quoted) } }
-            }
-            @if let Some((statement, verdict)) = &outcome.printed {
-                p.printed { span.label { @if outcome.quoted.is_some() { "as" } @else { (before) } } code { (statement) } }
-                p { span.label { (verdict.word()) } (explain(verdict)) }
-                @if let Some(special) = &outcome.printed_at_files_values { p { (special_text(special)) } }
-            }
-            p.corrected { span.label { (between) } code { (outcome.statement) } }
-            p { span.label { (outcome.verdict.word()) } (explain(&outcome.verdict)) }
-            @if let Some(special) = &outcome.at_files_values { p { (special_text(special)) } }
-            @let lines = explanations(outcome);
-            @if !lines.is_empty() {
-                details {
-                    summary { "what the names mean" }
-                    @for line in lines { div { code { (line) } } }
-                }
-            }
-            @if let Some(from) = &outcome.follows { p { "Follows " (from) "." } }
-            @if let Some(remark) = &outcome.remark { p.remark { (remark) } }
-        }
-    }
-}
-
-/// One cell for each numbered equation, coloured by its verdict.
-fn all_equations(outcomes: &[Outcome]) -> Markup {
-    let all = equations(outcomes);
-    let mut words: Vec<&str> = all.iter().map(|equation| equation.word()).collect();
-    words.sort_unstable();
-    words.dedup();
-    html! {
-        section #equations {
-            h2 { "All numbered equations" }
-            p.legend {
-                @for word in words {
-                    span class=(class_of(word)) { (word) } " " (all.iter().filter(|e| e.word() == word).count()) " "
-                }
-            }
-            div.cells {
-                @for equation in &all {
-                    @let ids = equation.entries.iter().map(|o| format!("{} {}", o.id, o.word())).collect::<Vec<_>>().join("; ");
-                    span class=(class_of(equation.word())) title=(ids) { (equation.number) }
-                }
-            }
-        }
-    }
-}
-
-fn class_of(word: &str) -> String {
-    format!("cell {}", word.replace(' ', "-"))
-}
-
-/// What is not, or not for sure, the author's mistake.
-fn damage(outcomes: &[Outcome]) -> Markup {
-    html! {
-        section #damage {
-            h2 { "Damage and wording" }
-            p { (RULE_OF_DAMAGE.replace('*', "")) }
-            @for fault in Flaw::ALL.into_iter().filter(|fault| *fault != Flaw::Erratum) {
-                @let of_kind = in_order_of_the_thesis(outcomes.iter().filter(|o| o.fault == Some(fault)));
-                @if !of_kind.is_empty() {
-                    details {
-                        summary { (errors(outcomes, fault).text(fault.word())) ": " (meaning(fault.word())) }
-                        @for outcome in of_kind { (fault_entry(outcome, fault)) }
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn explain(verdict: &Verdict) -> Markup {
-    html! {
-        @match verdict {
-            Verdict::Proved { engine, log2_error } => {
-                (engine)
-                @if *log2_error == f64::NEG_INFINITY { "; certain" }
-                @else { "; probability of an error below " (error_bound(*log2_error)) }
-            }
-            Verdict::Refuted { witness, .. } => { (witness_line(witness)) }
-            Verdict::Definition { .. } => { "nothing to decide" }
-            Verdict::Undecided { why } => { (why) }
-        }
-    }
-}
-
-fn unseen(answer: &RankAnswer, own: bool) -> Vec<String> {
-    let mut found = Vec::new();
-    for branch in &answer.branches {
-        let report = if own { branch.rows.as_ref() } else { Some(&branch.full) };
-        for direction in report.into_iter().flat_map(|report| &report.unseen) {
-            let text = direction.states.join(", ");
-            if !found.contains(&text) {
-                found.push(text);
-            }
-        }
-    }
-    found
-}
-
-/// The words that were needed, branches with the same words together.
-fn distinct_words(answer: &RankAnswer) -> Vec<String> {
-    let mut found: Vec<String> = answer.branches.iter().map(|branch| branch.words.join(", ")).collect();
-    found.dedup();
-    found
-}
-
-fn regime(index: usize, result: &RegimeResult) -> Markup {
-    html! {
-        section #(format!("regime{index}")) {
-            h2 { (result.title) }
-            p { "Left out: " (result.regime.left_out) "." }
-            @if let Some(c) = &result.comparison {
-                p {
-                    (c.small_states) " states instead of " (c.large_states) ". That the general regime becomes this one is "
-                    "proved among the claims (" code { "reduce.*" } "); numerically the Lie derivatives' differentials agree to "
-                    (format!("{:.0e}", c.largest_difference.max(f64::EPSILON))) " relative. One state's matrix and singular values take "
-                    b { (format!("{:.1}", c.large_seconds / c.small_seconds)) } " times as long with all ten states ("
-                    (c.large_operations) " operations against " (c.small_operations) ")."
-                }
-            }
-            div.scroll { table {
-                thead { tr {
-                    th { "states" } th { "sampled" } th { "certified" } th { "rank, full codistribution" } th { "words needed" }
-                    th { "not seen" } th { "rank, thesis's own rows" } th { "not seen by these" } th { "worst condition" }
-                } }
-                tbody {
-                    @for (set, found) in &result.ranks {
-                        tr { td { (set.title) @if !set.conditions.is_empty() { br; code { (set.conditions.join(", ")) } } }
-                        @match found {
-                            Ok(answer) => {
-                                td.number { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
-                                td.number { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
-                                td { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
-                                td.words { @for words in distinct_words(answer) { div { (words) } } }
-                                td { (unseen(answer, false).join("; ")) }
-                                td { b { (ranks_in_words(answer, true)) } }
-                                td { (unseen(answer, true).join("; ")) }
-                                td.number { (worst(answer)) }
-                            }
-                            Err(pole) => { td colspan="8" { (pole) } }
-                        } }
-                    }
-                }
-            } }
-            figure {
-                div.pair {
-                    @for (kind, map) in &result.maps {
-                        @let title = if *kind == Rows::Own { "the thesis's own rows" } else { "the full codistribution" };
-                        (PreEscaped(plot::map(map, title)))
-                    }
-                }
-                figcaption {
-                    "The smallest singular value (of what remains without unit rows, equilibrated; computed, not certified) over two "
-                    "coordinates. "
-                    (result.regime.picture.caption)
-                }
-            }
-            figure {
-                div.grid { @for (title, slope) in &result.lines { (PreEscaped(plot::slope(slope, title))) } }
-                figcaption {
-                    "The singular values of the thesis's own rows on the way into a singularity; the smallest in red. "
-                    "Distances are in the coordinate that moves."
-                }
-            }
-        }
-    }
-}
-
-fn worst(answer: &RankAnswer) -> String {
-    let conditions = answer.branches.iter().filter_map(|b| b.full.worst.as_ref()).map(|(_, s)| s.condition());
-    match conditions.fold(None::<f64>, |a, c| Some(a.map_or(c, |a| a.max(c)))) {
-        Some(condition) => format!("{condition:.1e}"),
-        None => "-".to_owned(),
-    }
-}
-
-fn appendix(found: &Appendix, outcomes: &[Outcome]) -> Markup {
-    html! {
-        section #appendix {
-            h2 { "The appendix's determinants" }
+        header {
+            h1 { "What holds, and what does not" }
             p {
-                "Multiplied out over its common denominator, as a computer-algebra system's " code { "simplify" }
-                " leaves it, the determinant has " b { (found.monomials) } " monomials: "
-                code { (found.front) " * (" (found.beginning) ") / (" (denominator(found)) ")" } "."
+                (PreEscaped(found.paper.reference(|title| html! { em { (title) } }.into_string())))
+                @if let Some(source) = &found.paper.source { ", " (source) }
+                ", checked from first principles. "
+                "Each verdict says what stands behind it: " b { "proved" } " is exact arithmetic with the "
+                "probability of an error stated, " b { "refuted" } " a state in exact numbers at which the two "
+                "sides differ, " b { "erratum" } " a printed form refuted and its corrected form proved. "
+                b { "Restated" } " is no proof: the two sides are one expression once names are put in."
             }
-            div.scroll { table {
-                thead { tr {
-                    th { "point" } th { "printed" } th { "certified to forty digits" } th { "digits that agree" } th { "error of print" }
-                    th { "errors of ten-digit sums" } th { "print is" }
-                } }
-                tbody {
-                    @for value in &found.values {
-                        tr {
-                            td.words { (value.point) }
-                            td.number { (value.printed) }
-                            td.number { (value.certified.decimal) }
-                            td.number { (value.digits_that_agree) }
-                            td.number { (format!("{:+.2e}", value.error)) }
-                            td.number {
-                                (format!("{:+.1e}", value.study.errors.first().copied().unwrap_or(0.0))) " to "
-                                (format!("{:+.1e}", value.study.errors.last().copied().unwrap_or(0.0)))
-                                ", rms " (format!("{:.1e}", value.study.deviation()))
-                            }
-                            td { @if value.study.contains(value.error) { "inside" } @else { "outside" } }
-                        }
-                    }
-                }
-            } }
-            figure {
-                div.grid {
-                    @for value in &found.values {
-                        (PreEscaped(plot::rounding(&value.study, value.error, &format!("printed {}", value.printed))))
-                    }
-                }
-                figcaption {
-                    "The determinant's monomials added up in ten-digit decimal arithmetic, in "
-                    (found.values.first().map_or(0, |v| v.study.errors.len()))
-                    " random orders: how far each sum is from the certified value. The red line is the number in print. The "
-                    "largest monomial is "
-                    @for (i, value) in found.values.iter().enumerate() {
-                        @if i > 0 { ", " } (format!("{:.0}", value.study.cancellation))
-                    }
-                    " times the sum: that is where the digits go."
-                }
-            }
-            h3 { "Where the thesis met a division by zero" }
-            table {
-                thead { tr { th { "the factor that vanishes, and the order of the pole" } th { "verdict" } } }
-                tbody {
-                    @for outcome in outcomes.iter().filter(|outcome| outcome.pole_of.as_deref() == Some(DETERMINANT)) {
-                        tr {
-                            td.words { code { (outcome.statement) } }
-                            td.words { (outcome.word()) ": " (explain(&outcome.verdict)) }
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn denominator(found: &Appendix) -> String {
-    let factor = |(text, power): &(String, u32)| {
-        let text = if text.contains(' ') { format!("({text})") } else { text.clone() };
-        if *power == 1 { text } else { format!("{text}^{power}") }
-    };
-    found.denominator.iter().map(factor).collect::<Vec<_>>().join(" ")
-}
-
-fn derivatives(found: &Verification) -> Markup {
-    html! {
-        section #derivatives {
-            h2 { "Lie derivatives by two routes" }
-            p {
-                "The derivatives of the shared expression graph against num-dual's nested dual numbers, which share no rule of "
-                "differentiation; same-rate regime, " code { "L(f, L(f, ... s1))" } "."
-            }
-            div.pair {
-                table {
-                    thead { tr { th { "order" } th { "largest relative difference" } th { "states" } } }
-                    tbody { @for route in &found.routes {
-                        tr {
-                            td.number { (route.order) }
-                            td.number { (format!("{:.1e}", route.largest_difference)) }
-                            td.number { (route.states) }
-                        }
-                    } }
-                }
-                (PreEscaped(plot::growth(&found.growth, "operations of the graph; grey: order^3")))
-            }
-        }
-    }
-}
-
-fn all_claims(outcomes: &[Outcome]) -> Markup {
-    html! {
-        section #claims {
-            h2 { "All claims" }
-            div.scroll { table {
-                thead { tr { th { "file" } th { "id" } th { "verdict" } th { "statement" } th { "what stands behind it" } } }
-                tbody {
-                    @for outcome in outcomes {
-                        tr class=[(!outcome.ok).then_some("bad")] {
-                            td { (outcome.file.rsplit('/').next().unwrap_or_default()) }
-                            td { (outcome.id) }
-                            td { (outcome.word()) }
-                            td.words { code { (outcome.statement) } @if let Some(remark) = &outcome.remark { p.remark { (remark) } } }
-                            td.words {
-                                (explain(&outcome.verdict))
-                                @if let Some(special) = &outcome.at_files_values { p { (special_text(special)) } }
-                                @if !outcome.fields.is_empty() { p { (fields_text(&outcome.fields)) } }
-                            }
-                        }
-                    }
-                }
-            } }
+            (tally(&outcomes))
+            p.y { "Seed " (found.seed) ", " (format!("{:.0} s", found.seconds)) " in all." }
+            @if found.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
+            nav { (links) }
         }
     }
 }

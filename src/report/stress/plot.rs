@@ -1,6 +1,6 @@
 //! Pictures of the extremes: for every set and every way a bar from far to near, coloured by what its verdict is worth.
 
-use crate::report::plot::{INK, svg};
+use crate::report::drawing::{INK, MESH, SOFT, svg};
 use crate::tradeoff::stress::{End, Mark, Study, Way};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -49,62 +49,67 @@ impl Bars<'_> {
         }
     }
 
+    /// What is written over the bars.
+    fn head(&self) -> i32 {
+        if self.is_calm() { 18 } else { 18 + 15 * self.below.len() as i32 }
+    }
+
     fn height(&self) -> i32 {
-        if self.is_calm() { BAR + 10 } else { BAR * Way::ALL.len() as i32 + 10 }
+        self.head() + BAR * self.ways().len() as i32 + 10
     }
 }
 
-const BAR: i32 = 11;
-const LEFT: i32 = 400;
-const WIDTH: i32 = 990;
-const TOP: i32 = 74;
+const BAR: i32 = 13;
+const LEFT: i32 = 134;
+const WIDTH: i32 = 400;
+const RIGHT: i32 = WIDTH - 14;
+const TOP: i32 = 84;
 
 /// The chart of some rows; `ticks` are texts at parts of the width between zero and one.
 fn bars(title: &str, axis: &str, ticks: &[(f64, String)], rows: &[Bars<'_>]) -> String {
     let bottom = TOP + rows.iter().map(Bars::height).sum::<i32>();
-    let height = bottom + 44;
-    let right = WIDTH - 24;
-    svg((WIDTH as u32, height as u32), |area| {
-        area.fill(&WHITE)?;
+    svg((WIDTH as u32, (bottom + 44) as u32), title, |area| {
         let text = |size: i32| ("sans-serif", size).into_font().color(&INK);
         let anchored = |size: i32, h: HPos| text(size).pos(Pos::new(h, VPos::Center));
-        area.draw(&Text::new(title.to_owned(), (12, 10), text(16)))?;
-        let mut x = 12;
+        area.draw(&Text::new(cut(title, 58), (8, 6), text(13)))?;
+        let (mut x, mut y) = (8, 34);
         for (mark, words) in LEGEND {
-            area.draw(&Rectangle::new([(x, 42), (x + 16, 54)], colour(Some(mark)).filled()))?;
-            area.draw(&Text::new(words, (x + 22, 48), anchored(12, HPos::Left)))?;
-            x += 40 + 7 * words.len() as i32;
+            let width = 26 + 6 * words.len() as i32;
+            if x + width > RIGHT {
+                (x, y) = (8, y + 17);
+            }
+            area.draw(&Rectangle::new([(x, y - 5), (x + 12, y + 6)], colour(Some(mark)).filled()))?;
+            area.draw(&Text::new(words, (x + 16, y), anchored(11, HPos::Left)))?;
+            x += width;
         }
         for (part, label) in ticks {
-            let x = LEFT + (f64::from(right - LEFT) * part).round() as i32;
-            area.draw(&PathElement::new([(x, TOP - 4), (x, bottom)], RGBColor(225, 228, 232)))?;
+            let x = LEFT + (f64::from(RIGHT - LEFT) * part).round() as i32;
+            area.draw(&PathElement::new([(x, TOP - 4), (x, bottom)], MESH))?;
             area.draw(&Text::new(label.clone(), (x, bottom + 10), anchored(11, HPos::Center)))?;
         }
-        area.draw(&Text::new(
-            axis.to_owned(),
-            ((LEFT + right) / 2, bottom + 30),
-            anchored(12, HPos::Center),
-        ))?;
+        let middle = ((LEFT + RIGHT) / 2, bottom + 30);
+        area.draw(&Text::new(axis.to_owned(), middle, anchored(12, HPos::Center)))?;
         let mut next = TOP;
         for row in rows {
-            let top = next;
+            let (top, first) = (next, next + row.head());
             next += row.height();
-            area.draw(&Text::new(cut(&row.title, 48), (12, top), text(12)))?;
+            area.draw(&Text::new(cut(&row.title, 62), (8, top + 2), text(12)))?;
             for (line, below) in row.below.iter().enumerate().filter(|_| !row.is_calm()) {
-                let style = ("sans-serif", 11).into_font().color(&RGBColor(95, 100, 110));
-                area.draw(&Text::new(cut(below, 48), (12, top + 18 + 15 * line as i32), style))?;
+                let style = ("sans-serif", 11).into_font().color(&SOFT);
+                area.draw(&Text::new(cut(below, 68), (8, top + 17 + 15 * line as i32), style))?;
             }
             for (place, (way, marks)) in row.ways().into_iter().enumerate() {
-                let (high, low) = (top + BAR * place as i32, top + BAR * (place as i32 + 1) - 1);
-                area.draw(&Text::new(way, (LEFT - 6, (high + low) / 2), anchored(10, HPos::Right)))?;
-                let at = |i: usize| LEFT + (right - LEFT) * i as i32 / marks.len().max(1) as i32;
+                let (high, low) = (first + BAR * place as i32, first + BAR * (place as i32 + 1) - 2);
+                area.draw(&Text::new(way, (LEFT - 6, (high + low) / 2), anchored(11, HPos::Right)))?;
+                let at = |i: usize| LEFT + (RIGHT - LEFT) * i as i32 / marks.len().max(1) as i32;
                 let mut start = 0;
-                while start < marks.len() {
+                for run in marks.chunk_by(|a, b| a == b) {
                     // neighbours of one colour are one rectangle
-                    let length = marks[start..].iter().take_while(|mark| **mark == marks[start]).count();
-                    let corners = [(at(start), high), (at(start + length), low)];
-                    area.draw(&Rectangle::new(corners, colour(marks[start]).filled()))?;
-                    start += length;
+                    let corners = [(at(start), high), (at(start + run.len()), low)];
+                    if run[0].is_some() {
+                        area.draw(&Rectangle::new(corners, colour(run[0]).filled()))?;
+                    }
+                    start += run.len();
                 }
             }
         }
@@ -195,22 +200,22 @@ pub fn conditioning_picture(study: &Study, title: &str) -> String {
     };
     let tallest = found.old.values().chain(found.new.values()).copied().max().unwrap_or(1) as f64 * 2.0;
     let (from, to) = (f64::from(least), f64::from(most) + 1.0);
-    svg((560, 320), |area| {
-        area.fill(&WHITE)?;
+    svg((420, 300), title, |area| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(10)
             .x_label_area_size(38)
-            .y_label_area_size(48)
+            .y_label_area_size(56)
             .build_cartesian_2d(from..to, (0.7..tallest).log_scale())?;
         chart
             .configure_mesh()
             .disable_x_mesh()
             .light_line_style(WHITE)
-            .bold_line_style(RGBColor(225, 228, 232))
-            .x_labels((most - least + 2).clamp(2, 12) as usize)
+            .bold_line_style(MESH)
+            .x_labels((most - least + 2).clamp(2, 7) as usize)
             .x_label_formatter(&|v| format!("1e{v:.0}"))
             .y_label_formatter(&|v| format!("{v:.0}"))
+            .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_desc("condition number of the state")
             .y_desc("states")
             .axis_desc_style(("sans-serif", 12))
@@ -232,7 +237,7 @@ pub fn conditioning_picture(study: &Study, title: &str) -> String {
             .configure_series_labels()
             .position(SeriesLabelPosition::UpperRight)
             .background_style(WHITE)
-            .label_font(("sans-serif", 12))
+            .label_font(("sans-serif", 12).into_font().color(&INK))
             .draw()?;
         Ok(())
     })

@@ -1,6 +1,6 @@
 //! Speed against accuracy, as a picture.
 
-use crate::report::plot::{INK, svg};
+use crate::report::drawing::{INK, MESH, svg};
 use crate::tradeoff::{Combination, Derivative, Digits, Number, Trade};
 use plotters::coord::CoordTranslate;
 use plotters::prelude::*;
@@ -40,10 +40,13 @@ pub fn trade_plot(trade: &Trade) -> String {
     if timed.is_empty() {
         return "<p>nothing was timed</p>".to_owned();
     }
-    svg((760, 460), |area| {
-        let (plot, legend) = area.split_horizontally(580);
+    let names =
+        distinct(timed.iter().map(|c| c.number)).len() + distinct(timed.iter().map(|c| c.derivative)).len();
+    let tall = 330 + 18 * names.div_ceil(2) as i32 + 48;
+    svg((420, tall as u32), &trade.title, |area| {
+        let (plot, legend) = area.split_vertically(330);
         let mut chart = ChartBuilder::on(&plot)
-            .caption(&trade.title, ("sans-serif", 15).into_font().color(&INK))
+            .caption(&trade.title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
             .x_label_area_size(38)
             .y_label_area_size(46)
@@ -51,8 +54,9 @@ pub fn trade_plot(trade: &Trade) -> String {
         chart
             .configure_mesh()
             .light_line_style(WHITE)
-            .bold_line_style(RGBColor(225, 228, 232))
-            .x_labels(8)
+            .bold_line_style(MESH)
+            .x_labels(6)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_label_formatter(&|v| time_label(*v))
             .y_labels(8)
             .y_label_formatter(&|v| if *v == ALL_DIGITS { "all".to_owned() } else { format!("{v:.0}") })
@@ -84,25 +88,24 @@ pub fn trade_plot(trade: &Trade) -> String {
             let words = ("sans-serif", 11).into_font().color(&INK);
             chart.plotting_area().draw(&Text::new("modulo a prime: no digits", at, words))?;
         }
-        let key = |row: usize| (14, 40 + 20 * row as i32);
+        let key = |place: usize| (16 + 205 * (place % 2) as i32, 12 + 18 * (place / 2) as i32);
         let words = ("sans-serif", 12).into_font().color(&INK);
         let numbers: Vec<Number> = distinct(timed.iter().map(|c| c.number));
-        for (row, number) in numbers.iter().enumerate() {
-            let (x, y) = key(row);
+        for (place, number) in numbers.iter().enumerate() {
+            let (x, y) = key(place);
             legend.draw(&Rectangle::new([(x - 5, y - 5), (x + 5, y + 5)], colour(*number).filled()))?;
-            legend.draw(&Text::new(number.name(), (x + 14, y - 5), words.clone()))?;
+            legend.draw(&Text::new(number.name(), (x + 12, y - 5), words.clone()))?;
         }
-        for (row, derivative) in distinct(timed.iter().map(|c| c.derivative)).into_iter().enumerate() {
-            let (x, y) = key(row + numbers.len() + 1);
+        for (place, derivative) in distinct(timed.iter().map(|c| c.derivative)).into_iter().enumerate() {
+            let (x, y) = key(place + numbers.len());
             mark(&legend, (x, y), derivative, INK, INK)?;
-            legend.draw(&Text::new(derivative.name(), (x + 14, y - 5), words.clone()))?;
+            legend.draw(&Text::new(derivative.name(), (x + 12, y - 5), words.clone()))?;
         }
-        let (x, y) = key(15);
-        for (row, text) in ["hollow: some verdicts", "are not right", "dark rim: all verdicts", "are certain"]
-            .iter()
-            .enumerate()
+        let below = 18 * names.div_ceil(2) as i32 + 8;
+        for (row, text) in
+            ["hollow: some verdicts are not right", "dark rim: all verdicts are certain"].iter().enumerate()
         {
-            legend.draw(&Text::new(*text, (x - 6, y + 15 * row as i32), words.clone()))?;
+            legend.draw(&Text::new(*text, (10, below + 17 * row as i32), words.clone()))?;
         }
         Ok(())
     })

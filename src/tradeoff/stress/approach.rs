@@ -1,9 +1,9 @@
-//! Sets of states to walk into, and where they come from for a system of which nothing else is known: what its file
-//! says to avoid, what its rows divide by, and each of its quantities at zero.
+//! Sets of states to walk into: those that a file names; and where it names none, what it says to avoid, what its rows divide
+//! by, and each of its quantities at zero.
 
 use crate::expression::{Node, NodeId};
 use crate::observability::{Branch, Locus, State, parse_condition, solve_conditions};
-use crate::system::System;
+use crate::system::{LineEnd, LineView, NamedSet, System};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Where lines go.
@@ -85,8 +85,21 @@ impl Approach {
     }
 }
 
-/// The sets of a system of which nothing is known but its file: see the module's head. `rows` are what is evaluated.
+/// Where lines go in a system: to the sets that its file names and to where lines go to infinity; where it names none, to
+/// what its rows suggest. `rows` are what is evaluated.
 pub fn approaches_of(system: &System, rows: &[NodeId]) -> Vec<Approach> {
+    let set = |set: &NamedSet| Approach::Set { title: set.name.clone(), conditions: set.written.clone() };
+    let infinite = |line: &LineView| {
+        (line.end == LineEnd::Infinity)
+            .then(|| Approach::Infinity { title: line.title.clone(), symbol: line.moving.clone() })
+    };
+    let named: Vec<Approach> =
+        system.sets.iter().map(set).chain(system.lines.iter().filter_map(infinite)).collect();
+    if named.is_empty() { suggested(system, rows) } else { named }
+}
+
+/// The sets of a system of which nothing is known but its rows: see the module's head.
+fn suggested(system: &System, rows: &[NodeId]) -> Vec<Approach> {
     let mut found: Vec<Approach> = Vec::new();
     let mut met = BTreeSet::new();
     let mut add = |title: String, expression: String| {

@@ -1,0 +1,116 @@
+//! Everything that was found of a paper.
+
+use super::folder::Paper;
+use super::reduction::ReductionFound;
+use super::views::{LineFound, MapFound, SetRank};
+use crate::certificate::RegionAnswer;
+use crate::claim::Outcome;
+use crate::experiment::{Answer, Experiment};
+use crate::system::System;
+use crate::tradeoff::stress::Study;
+use crate::tradeoff::{Growth, PrintedExpression, RouteAgreement, Trade};
+
+/// Something that could not be done, and why. The rest is done all the same.
+#[derive(Clone, Debug)]
+pub struct LeftOut {
+    pub what: String,
+    pub why: String,
+}
+
+/// Lie derivatives of one output along one field, to high orders.
+pub struct Derivatives {
+    pub field: String,
+    pub output: String,
+    /// Two routes to each, order by order.
+    pub routes: Vec<RouteAgreement>,
+    /// The size of the graph, order by order.
+    pub growth: Vec<Growth>,
+}
+
+/// What was found of one proof file.
+pub struct FileFindings {
+    /// The file as it was read; its name is as seen from the paper's folder.
+    pub system: System,
+    /// The claims, in the order of the file.
+    pub outcomes: Vec<Outcome>,
+    /// The whole box first, then each named set.
+    pub ranks: Vec<SetRank>,
+    pub maps: Vec<MapFound>,
+    pub lines: Vec<LineFound>,
+    /// Numbers in print, by formula.
+    pub printed: Vec<PrintedExpression>,
+    pub reductions: Vec<ReductionFound>,
+    pub derivatives: Option<Derivatives>,
+    /// Speed against accuracy, in short.
+    pub trade: Option<Trade>,
+    /// The extremes, in short.
+    pub stress: Option<Study>,
+    /// The certificate on the sample box, after a few thousand sub-boxes.
+    pub certificate: Option<RegionAnswer>,
+    pub left_out: Vec<LeftOut>,
+}
+
+impl FileFindings {
+    /// Nothing found yet.
+    pub(super) fn begun(system: System) -> FileFindings {
+        FileFindings {
+            system,
+            outcomes: Vec::new(),
+            ranks: Vec::new(),
+            maps: Vec::new(),
+            lines: Vec::new(),
+            printed: Vec::new(),
+            reductions: Vec::new(),
+            derivatives: None,
+            trade: None,
+            stress: None,
+            certificate: None,
+            left_out: Vec::new(),
+        }
+    }
+
+    /// Whether everything is as the file expects.
+    pub fn ok(&self) -> bool {
+        self.outcomes.iter().all(|outcome| outcome.ok)
+            && self.ranks.iter().all(SetRank::as_expected)
+            && self.reductions.iter().all(ReductionFound::proved)
+            && self.left_out.is_empty()
+    }
+}
+
+/// Everything that was found.
+pub struct Findings {
+    pub paper: Paper,
+    /// In the order of the paper.
+    pub files: Vec<FileFindings>,
+    /// Bodies in motion, and what observers made of them.
+    pub experiments: Vec<(Experiment, Vec<Answer>)>,
+    pub seed: u64,
+    /// Whether it was stopped before the end.
+    pub interrupted: bool,
+    pub seconds: f64,
+}
+
+impl Findings {
+    /// Nothing found yet.
+    pub fn begun(seed: u64) -> Findings {
+        Findings {
+            paper: Paper::default(),
+            files: Vec::new(),
+            experiments: Vec::new(),
+            seed,
+            interrupted: false,
+            seconds: 0.0,
+        }
+    }
+
+    /// The claims of all files, in order.
+    pub fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
+        self.files.iter().flat_map(|file| &file.outcomes)
+    }
+
+    /// Whether everything is as the files expect.
+    pub fn ok(&self) -> bool {
+        !self.interrupted && self.files.iter().all(FileFindings::ok)
+    }
+}

@@ -1,0 +1,19 @@
+//! A paper is a folder: proof files, scenes, and a `paper.toml` that says what it is called and how it numbers its equations.
+//! [`Paper::read`] finds them, and [`verify`] takes them through everything below: claims, ranks on named sets, maps, lines,
+//! numbers in print, reductions, speed against accuracy, the extremes, certificates, bodies in motion.
+//!
+//! This floor knows no palm, no chapter and no file name. It calls everything below and draws nothing.
+
+mod findings;
+mod folder;
+mod numbering;
+mod reduction;
+mod verify;
+mod views;
+
+pub use findings::{Derivatives, FileFindings, Findings, LeftOut};
+pub use folder::{MANIFEST, Paper};
+pub use numbering::{Equation, Numbering};
+pub use reduction::ReductionFound;
+pub use verify::{VerifyOptions, verify, verify_into};
+pub use views::{LineFound, MapFound, SetRank};

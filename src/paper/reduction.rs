@@ -1,0 +1,201 @@
+//! Whether a system is another one under conditions. What has to hold is written down in the language, as claims of the smaller
+//! file, and decided like any other: that the conditions stay met, that what is left out stays as it is, that fields, outputs
+//! and the differentials of the words that the rank needs are the same. And what that saves is counted.
+
+use super::LeftOut;
+use crate::claim::{Outcome, decide_all};
+use crate::expression::NodeId;
+use crate::expression::syntax::Relation;
+use crate::observability::{Branch, Codistribution, Length, Locus, Word, parse_condition, solve_conditions};
+use crate::system::{Assignment, ReadError, ReductionTo, Role, System};
+use crate::tradeoff::{ModelComparison, compare_models};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// What was found of one reduction.
+pub struct ReductionFound {
+    pub reduction: ReductionTo,
+    /// The title of the larger system.
+    pub of: String,
+    /// The states of the larger system that are left out.
+    pub left_out: Vec<String>,
+    /// What has to hold, each with its verdict.
+    pub claims: Vec<Outcome>,
+    /// States and time saved, on the same work; why they are not counted, otherwise.
+    pub comparison: Result<ModelComparison, String>,
+}
+
+impl ReductionFound {
+    /// Whether everything that has to hold is proved.
+    pub fn proved(&self) -> bool {
+        !self.claims.is_empty() && self.claims.iter().all(|outcome| outcome.ok)
+    }
+}
+
+/// States at which the two models are timed.
+const STATES_TO_TIME: u64 = 400;
+
+/// The ids of the claims that are made for a reduction begin so.
+const PREFIX: &str = "reduction";
+
+/// Decides one reduction of a system; `folder` is that of its file.
+///
+/// # Errors
+/// In words: the larger file cannot be used, or is not about the same states, fields and outputs.
+pub(super) fn reduce(
+    system: &System,
+    reduction: &ReductionTo,
+    folder: &Path,
+    seed: u64,
+    interrupt: &AtomicBool,
+) -> Result<ReductionFound, LeftOut> {
+    let what = format!("the reduction of {}", reduction.alias.text);
+    let failed = |why: String| LeftOut { what: what.clone(), why };
+    let read = |error: ReadError| {
+        let (line, column) = error.line_and_column();
+        failed(format!("{}:{line}:{column}: {}", error.source_code.name(), error.message))
+    };
+    let large = System::read(&reduction.path).map_err(read)?;
+    let (text, left_out) = claims(system, &large, reduction).map_err(failed)?;
+    let path = folder.join(&system.name);
+    let mut longer =
+        System::parse(&path.display().to_string(), &text, path.parent().unwrap_or(folder)).map_err(read)?;
+    longer.claims.drain(..system.claims.len());
+    longer.name.clone_from(&system.name);
+    let outcomes = decide_all(&longer, seed, interrupt, &|_| ());
+    let comparison = compare(system, &large, reduction, seed);
+    Ok(ReductionFound {
+        reduction: reduction.clone(),
+        of: large.title,
+        left_out,
+        claims: outcomes,
+        comparison,
+    })
+}
+
+/// The text of the smaller file with a claim for everything that has to hold, and the states that are left out.
+fn claims(small: &System, large: &System, reduction: &ReductionTo) -> Result<(String, Vec<String>), String> {
+    let alias = &reduction.alias.text;
+    let under = format!("where {}", reduction.written.join(", "));
+    let states = small.state_names();
+    if let Some(own) = states.iter().find(|state| !large.state_names().contains(state)) {
+        return Err(format!("'{own}' is no state of {alias}"));
+    }
+    let left_out: Vec<String> =
+        large.state_names().into_iter().filter(|state| !states.contains(state)).collect();
+    let mut text = small.source.clone();
+    let mut count = 0;
+    let mut claim = |what: &str, statement: String| {
+        count += 1;
+        // no claim of the file has a name like this: it would be the same number of the same reduction
+        let _ = write!(text, "\nclaim {PREFIX}-{alias}-{count}-{what}: {statement}");
+    };
+    let mut fields = Vec::new();
+    for field in small.moving_fields() {
+        let field = &small.fields[field];
+        if !large.fields.iter().any(|other| other.name == field.name && other.role == field.role) {
+            let role = field.role.name();
+            return Err(format!("{alias} has no {role} '{}'", field.name));
+        }
+        fields.push(&field.name);
+    }
+    let conditions =
+        reduction.written.iter().map(|text| parse_condition(text)).collect::<Result<Vec<_>, _>>()?;
+    // an inequality is kept for a while by itself
+    let equalities = || {
+        let each = conditions.iter().zip(&reduction.written);
+        each.flat_map(|(list, written)| list.iter().map(move |condition| (condition, written)))
+            .filter(|(condition, _)| condition.relation == Relation::Equal)
+    };
+    for field in &fields {
+        for (condition, written) in equalities() {
+            let side = |span: &std::ops::Range<usize>| &written[span.clone()];
+            let (left, right) = (side(&condition.left.span), side(&condition.right.span));
+            claim("conditions", format!("L({alias}.{field}, ({left}) - ({right})) = 0 {under}"));
+        }
+        for state in &states {
+            claim("fields", format!("L({field}, {state}) = L({alias}.{field}, {state}) {under}"));
+        }
+        for state in &left_out {
+            claim("left-out", format!("L({alias}.{field}, {state}) = 0 {under}"));
+        }
+    }
+    let words = Codistribution::new(&mut small.clone(), &Assignment::new(), Length::UntilItStops)?;
+    let columns = states.join(", ");
+    // the larger system's outputs as its own file means them: names may mean other things here
+    let of_large = |place: usize| {
+        let unit = (0..large.outputs.len()).map(|i| if i == place { "1" } else { "0" });
+        format!("det([{}]*{alias}.output)", unit.collect::<Vec<_>>().join(", "))
+    };
+    let mut pairs = Vec::new();
+    for (output, _) in &small.outputs {
+        match large.outputs.iter().position(|(other, _)| other == output) {
+            Some(place) => pairs.push(of_large(place)),
+            None => return Err(format!("{alias} has no output '{output}'")),
+        }
+    }
+    for (place, (output, _)) in large.outputs.iter().enumerate() {
+        match small.outputs.iter().position(|(other, _)| other == output) {
+            Some(_) => claim("outputs", format!("{output} = {} {under}", of_large(place))),
+            // what is seen besides is known already
+            None => {
+                let zeros = vec!["0"; states.len()].join(", ");
+                claim("outputs", format!("d({}, {columns}) = [{zeros}] {under}", of_large(place)));
+            }
+        }
+    }
+    for word in words.needed.iter().map(|index| &words.words[*index]).filter(|word| !word.fields.is_empty()) {
+        let taken = |prefix: &str, output: &str| {
+            let along = word.fields.iter().map(|field| format!("{prefix}{}", small.fields[*field].name));
+            let along: Vec<String> = along.collect();
+            format!("d(L({}, {output}), {columns})", along.join(", "))
+        };
+        let (own, other) =
+            (taken("", &small.outputs[word.output].0), taken(&format!("{alias}."), &pairs[word.output]));
+        claim("differentials", format!("{own} = {other} {under}"));
+    }
+    Ok((text, left_out))
+}
+
+/// The same rows, once with the smaller system's states and once with the larger one's.
+fn compare(
+    small: &System,
+    large: &System,
+    reduction: &ReductionTo,
+    seed: u64,
+) -> Result<ModelComparison, String> {
+    let (mut small, mut large) = (small.clone(), large.clone());
+    let equations =
+        reduction.written.iter().map(|text| parse_condition(text)).collect::<Result<Vec<_>, _>>()?.concat();
+    let branches = solve_conditions(&mut large, &equations).map_err(|e| e.to_string())?;
+    let branch: Branch = branches.into_iter().next().ok_or("no state meets the conditions")?;
+    let (own, rows) = counterparts(&mut small, &mut large)?;
+    let locus = Locus::new(&mut large, &branch, &BTreeMap::new(), &rows).map_err(|e| e.to_string())?;
+    compare_models((&mut small, &own), (&mut large, &rows, &locus), STATES_TO_TIME, seed)
+}
+
+/// The rows that the smaller system's codistribution needs, and in the larger one the differentials of all outputs and of the
+/// same Lie derivatives.
+fn counterparts(small: &mut System, large: &mut System) -> Result<(Vec<NodeId>, Vec<NodeId>), String> {
+    let words = Codistribution::new(small, &Assignment::new(), Length::UntilItStops)?;
+    let mut rows: Vec<NodeId> = Vec::new();
+    for output in large.outputs.clone() {
+        rows.extend(large.differential(output.1));
+    }
+    let longer = |word: &&Word| !word.fields.is_empty();
+    for word in words.needed.iter().map(|index| &words.words[*index]).filter(longer) {
+        let output = &small.outputs[word.output].0;
+        let place = large.outputs.iter().position(|(name, _)| name == output);
+        let mut value = large.outputs[place.ok_or_else(|| format!("no output {output}"))?].1;
+        for field in word.fields.iter().rev() {
+            let name = &small.fields[*field].name;
+            let place =
+                large.fields.iter().position(|field| field.name == *name && field.role != Role::Other);
+            value = large.lie_derivative(place.ok_or_else(|| format!("no field {name}"))?, value);
+        }
+        rows.extend(large.differential(value));
+    }
+    Ok((words.needed_entries(), rows))
+}

@@ -1,0 +1,131 @@
+//! The sets, maps and lines of one system: ranks decided, singular values drawn.
+
+use super::LeftOut;
+use crate::expression::NodeId;
+use crate::observability::{Codistribution, CodistributionError, Length, OWN_ROWS};
+use crate::sweep::{RankAnswer, RankError, RankQuestion, answer_rank};
+use crate::system::{Assignment, LineView, MapView, NamedSet, System, Value};
+use crate::tradeoff::{Landscape, Map, Rows, Slope};
+use std::sync::atomic::AtomicBool;
+
+/// States of the sample box, and of each set, at which ranks are decided.
+const SAMPLES: u64 = 20_000;
+const SAMPLES_ON_A_SET: u64 = 200;
+/// Cells of a map.
+const MAP: (usize, usize) = (120, 80);
+const POINTS_ON_A_LINE: usize = 65;
+/// Lines end this far from where they go.
+const LEAST_DISTANCE: f64 = 1e-14;
+
+/// The rank on a set of states.
+pub struct SetRank {
+    /// The set; nothing for the whole sample box.
+    pub set: Option<NamedSet>,
+    /// The rank there, or why there is none: a divisor that is zero at all its states.
+    pub found: Result<RankAnswer, RankError>,
+}
+
+impl SetRank {
+    /// What reports call it.
+    pub fn name(&self) -> &str {
+        self.set.as_ref().map_or("the whole sample box", |set| &set.name)
+    }
+
+    /// Whether every state is a pole.
+    pub fn is_pole(&self) -> bool {
+        matches!(self.found, Err(RankError::Codistribution(CodistributionError::Pole { .. })))
+    }
+
+    /// A pole where the file says so, and elsewhere a rank.
+    pub fn as_expected(&self) -> bool {
+        match &self.set {
+            Some(set) if set.is_pole => self.is_pole(),
+            _ => self.found.is_ok(),
+        }
+    }
+}
+
+/// The smallest singular value over a plane: of the file's own rows where it has some, and of the full codistribution.
+pub struct MapFound {
+    pub view: MapView,
+    pub maps: Vec<(Rows, Map)>,
+}
+
+/// The singular values along a line, of the file's own rows where it has some.
+pub struct LineFound {
+    pub view: LineView,
+    pub slope: Slope,
+}
+
+/// Whether there is a rank to ask for.
+pub(super) fn has_a_rank(system: &System) -> bool {
+    !system.states.is_empty() && !system.outputs.is_empty() && system.require_motion().is_ok()
+}
+
+/// The rank on the sample box, or on one set.
+pub(super) fn rank_on(system: &System, set: Option<&NamedSet>, seed: u64, interrupt: &AtomicBool) -> SetRank {
+    let question = RankQuestion {
+        samples: if set.is_none() { SAMPLES } else { SAMPLES_ON_A_SET },
+        seed,
+        conditions: set.map(|set| set.written.clone()).unwrap_or_default(),
+        interrupt,
+        ..RankQuestion::default()
+    };
+    SetRank { set: set.cloned(), found: answer_rank(&mut system.clone(), &question) }
+}
+
+/// The maps and lines of a file, and what of them cannot be drawn.
+pub(super) fn draw(system: &System, left_out: &mut Vec<LeftOut>) -> (Vec<MapFound>, Vec<LineFound>) {
+    let own = own_rows(system);
+    let mut maps = Vec::new();
+    for view in &system.maps {
+        match map(system, own.as_deref(), view) {
+            Ok(found) => maps.push(MapFound { view: view.clone(), maps: found }),
+            Err(why) => left_out.push(LeftOut { what: format!("the map \"{}\"", view.title), why }),
+        }
+    }
+    let mut lines = Vec::new();
+    for view in &system.lines {
+        match line(system, own.as_deref(), view) {
+            Ok(slope) => lines.push(LineFound { view: view.clone(), slope }),
+            Err(why) => left_out.push(LeftOut { what: format!("the line \"{}\"", view.title), why }),
+        }
+    }
+    (maps, lines)
+}
+
+fn map(system: &System, own: Option<&[NodeId]>, view: &MapView) -> Result<Vec<(Rows, Map)>, String> {
+    let mut system = system.clone();
+    let length = view.order.map_or(Length::UntilItStops, Length::Exactly);
+    let full = Codistribution::new(&mut system, &Assignment::new(), length)?.entries();
+    let axis = |(name, low, high): &(String, _, _)| {
+        let number = |value: &dashu::rational::RBig| value.to_f64().value();
+        (name.clone(), number(low), number(high))
+    };
+    let [x, y] = [axis(&view.axes[0]), axis(&view.axes[1])];
+    let mut maps = Vec::new();
+    for (kind, rows) in own.map(|rows| (Rows::Own, rows)).into_iter().chain([(Rows::Full, &full[..])]) {
+        let mut copy = system.clone();
+        let landscape = Landscape::new(&mut copy, rows, &view.at)?;
+        maps.push((kind, landscape.map((&x.0, x.1, x.2), (&y.0, y.1, y.2), MAP.0, MAP.1)?));
+    }
+    Ok(maps)
+}
+
+fn line(system: &System, own: Option<&[NodeId]>, view: &LineView) -> Result<Slope, String> {
+    let mut system = system.clone();
+    let rows = match own {
+        Some(rows) => rows.to_vec(),
+        None => Codistribution::new(&mut system, &Assignment::new(), Length::UntilItStops)?.entries(),
+    };
+    let mut landscape = Landscape::new(&mut system, &rows, &view.from)?;
+    landscape.line(&view.moving, view.end, LEAST_DISTANCE, POINTS_ON_A_LINE)
+}
+
+/// The file's own choice of rows.
+pub(super) fn own_rows(system: &System) -> Option<Vec<NodeId>> {
+    match system.definition(OWN_ROWS) {
+        Some(Value::Matrix(matrix)) if matrix.columns == system.states.len() => Some(matrix.entries.clone()),
+        _ => None,
+    }
+}

@@ -1,0 +1,340 @@
+//! A picture as SVG for pages in light and dark: what plotters draws, with shapes of one look written as one path, colours that
+//! follow the page, and numbers to be read under the pointer.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use std::fmt::Write;
+
+/// What is drawn on.
+pub(super) type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// The colour of words and axes; on a page the ink of the page.
+pub(super) const INK: RGBColor = RGBColor(40, 44, 52);
+/// Lines behind a chart; on a page the colour of its rules.
+pub(super) const MESH: RGBColor = RGBColor(225, 228, 232);
+/// Words that are less important; on a page those of the page.
+pub(super) const SOFT: RGBColor = RGBColor(95, 100, 110);
+
+/// A part of a picture over which the pointer shows a text: left, top, right, bottom, in pixels.
+pub(super) struct Hover {
+    pub corners: [i32; 4],
+    pub text: String,
+}
+
+/// A picture that is to be drawn.
+pub(super) struct Canvas<'a> {
+    pub size: (u32, u32),
+    /// What it shows, for those who do not see it.
+    pub title: &'a str,
+    /// What stands behind the fields of a colour.
+    pub by_colour: &'a [(RGBColor, String)],
+    /// Whether its edges are those of cells, between which no gap may show.
+    pub is_crisp: bool,
+}
+
+/// A picture without texts under the pointer.
+pub(super) fn svg(
+    size: (u32, u32),
+    title: &str,
+    draw: impl FnOnce(&Drawing<'_>) -> Result<(), Box<dyn std::error::Error>>,
+) -> String {
+    Canvas { size, title, by_colour: &[], is_crisp: false }.draw(|area, _| draw(area))
+}
+
+impl Canvas<'_> {
+    /// Draws into a string. What cannot be drawn is said in its place.
+    pub fn draw(
+        &self,
+        draw: impl FnOnce(&Drawing<'_>, &mut Vec<Hover>) -> Result<(), Box<dyn std::error::Error>>,
+    ) -> String {
+        let mut text = String::new();
+        let mut hovers = Vec::new();
+        let result = {
+            let area = SVGBackend::with_string(&mut text, self.size).into_drawing_area();
+            draw(&area, &mut hovers).and_then(|()| area.present().map_err(Into::into))
+        };
+        match result {
+            Ok(()) => self.written(&text, &hovers),
+            Err(error) => format!("<p>this plot could not be drawn: {}</p>", escaped(&error.to_string())),
+        }
+    }
+
+    fn written(&self, text: &str, hovers: &[Hover]) -> String {
+        let (width, height) = self.size;
+        let mut out = format!(
+            "<svg role=\"img\" aria-label=\"{}\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
+             width=\"{width}\" height=\"{height}\" color=\"#282c34\" font-family=\"system-ui,sans-serif\"{}>",
+            escaped(self.title),
+            if self.is_crisp { " shape-rendering=\"crispEdges\"" } else { "" }
+        );
+        let mut last: Option<Look> = None;
+        let mut path = String::new();
+        for element in elements(text) {
+            let Some((look, part)) = element.shape() else { continue };
+            // what is half transparent adds up where it overlaps: each for itself
+            if last.as_ref() != Some(&look) || look.opacity != "1" {
+                self.finish(last.take(), &mut path, &mut out);
+            }
+            path.push_str(&part);
+            last = Some(look);
+        }
+        self.finish(last, &mut path, &mut out);
+        if !hovers.is_empty() {
+            out.push_str("<g fill=\"#0000\">");
+            for Hover { corners: [left, top, right, bottom], text } in hovers {
+                let (wide, high) = (right - left, bottom - top);
+                let _ = write!(
+                    out,
+                    "<path d=\"M{left} {top}h{wide}v{high}h-{wide}z\"><title>{}</title></path>",
+                    escaped(text)
+                );
+            }
+            out.push_str("</g>");
+        }
+        out.push_str("</svg>");
+        out
+    }
+
+    /// Writes down the shapes of one look.
+    fn finish(&self, look: Option<Look>, path: &mut String, out: &mut String) {
+        let Some(look) = look else { return };
+        let drawn = std::mem::take(path);
+        let opacity =
+            if look.opacity == "1" { String::new() } else { format!(" opacity=\"{}\"", look.opacity) };
+        let _ = match &look.kind {
+            Kind::Fill => {
+                let known = self.by_colour.iter().find(|(colour, _)| hex(*colour) == look.colour);
+                let title =
+                    known.map_or(String::new(), |(_, text)| format!("<title>{}</title>", escaped(text)));
+                write!(out, "<path fill=\"{}\"{opacity} d=\"{drawn}\">{title}</path>", paint(&look.colour))
+            }
+            Kind::Stroke(width) => {
+                let colour = paint(&look.colour);
+                let width = if width == "1" { String::new() } else { format!(" stroke-width=\"{width}\"") };
+                write!(out, "<path fill=\"none\" stroke=\"{colour}\"{width}{opacity} d=\"{drawn}\"/>")
+            }
+            Kind::Words { size, anchor } => {
+                let anchor =
+                    if *anchor == "start" { String::new() } else { format!(" text-anchor=\"{anchor}\"") };
+                let colour = paint(&look.colour);
+                write!(out, "<g fill=\"{colour}\" font-size=\"{size}\"{anchor}>{drawn}</g>")
+            }
+        };
+    }
+}
+
+#[derive(Clone, PartialEq, Eq)]
+struct Look {
+    kind: Kind,
+    colour: String,
+    opacity: String,
+}
+
+#[derive(Clone, PartialEq, Eq)]
+enum Kind {
+    Fill,
+    Stroke(String),
+    Words { size: i32, anchor: String },
+}
+
+/// An element of the SVG of plotters.
+struct Element<'a> {
+    tag: &'a str,
+    attributes: Vec<(&'a str, &'a str)>,
+    words: &'a str,
+}
+
+/// The elements of a flat SVG, in order.
+fn elements(text: &str) -> impl Iterator<Item = Element<'_>> {
+    text.split('<').skip(1).filter_map(|part| {
+        let (head, words) = part.split_once('>')?;
+        let (tag, rest) = head.split_once(' ')?;
+        let mut attributes = Vec::new();
+        let mut quoted = rest.split('"');
+        while let (Some(name), Some(value)) = (quoted.next(), quoted.next()) {
+            attributes.push((name.trim().trim_end_matches('='), value));
+        }
+        (tag != "svg").then_some(Element { tag, attributes, words: words.trim() })
+    })
+}
+
+impl Element<'_> {
+    fn attribute(&self, name: &str) -> &str {
+        self.attributes.iter().find(|(known, _)| *known == name).map_or("", |(_, value)| value)
+    }
+
+    fn number(&self, name: &str) -> i32 {
+        self.attribute(name).parse().unwrap_or(0)
+    }
+
+    /// How it looks, and its part of a path.
+    fn shape(&self) -> Option<(Look, String)> {
+        let opacity = match self.attribute("opacity") {
+            "" => "1".to_owned(),
+            other => other.to_owned(),
+        };
+        let (fill, stroke) = (self.attribute("fill"), self.attribute("stroke"));
+        let look =
+            |kind: Kind, colour: &str| Look { kind, colour: colour.to_owned(), opacity: opacity.clone() };
+        let lined = || match self.attribute("stroke-width") {
+            "" => "1".to_owned(),
+            width => width.to_owned(),
+        };
+        let outline = |path: String| match fill {
+            "none" => (look(Kind::Stroke(lined()), stroke), path),
+            _ => (look(Kind::Fill, fill), path),
+        };
+        Some(match self.tag {
+            "rect" => {
+                let [x, y, width, height] = ["x", "y", "width", "height"].map(|name| self.number(name));
+                outline(format!("M{x} {y}h{width}v{height}h{}z", -width))
+            }
+            "line" => {
+                let ends = [("x1", "y1"), ("x2", "y2")].map(|(x, y)| (self.number(x), self.number(y)));
+                (look(Kind::Stroke(lined()), stroke), track(&ends))
+            }
+            "polyline" => (look(Kind::Stroke(lined()), stroke), track(&self.points())),
+            "polygon" => {
+                let mut points = self.points();
+                // all one way around, so that shapes of one path that overlap do not cut holes
+                let turned = |pair: (&(i32, i32), &(i32, i32))| pair.0.0 * pair.1.1 - pair.1.0 * pair.0.1;
+                let around = points.iter().zip(points.iter().cycle().skip(1)).map(turned).sum::<i32>();
+                if around < 0 {
+                    points.reverse();
+                }
+                (look(Kind::Fill, fill), track(&points) + "z")
+            }
+            "circle" => {
+                let [x, y, r] = ["cx", "cy", "r"].map(|name| self.number(name));
+                let twice = 2 * r;
+                outline(format!("M{} {y}a{r} {r} 0 1 1 {twice} 0a{r} {r} 0 1 1-{twice} 0z", x - r))
+            }
+            "text" => self.words(&look),
+            _ => return None,
+        })
+    }
+
+    fn points(&self) -> Vec<(i32, i32)> {
+        let pair = |text: &str| {
+            let (x, y) = text.split_once(',')?;
+            Some((x.parse().ok()?, y.parse().ok()?))
+        };
+        self.attribute("points").split_whitespace().filter_map(pair).collect()
+    }
+
+    fn words(&self, look: &impl Fn(Kind, &str) -> Look) -> (Look, String) {
+        // plotters takes a font's height for 1.24 of its size
+        let size = (self.attribute("font-size").parse::<f64>().unwrap_or(10.0) * 1.24).round();
+        let [x, y] = [self.number("x"), self.number("y")];
+        let down = match self.attribute("dy") {
+            "0.76em" => 0.76,
+            "0.5ex" => 0.33,
+            _ => -0.25,
+        };
+        let turn = self.attribute("transform").split(['(', ',']).nth(1).unwrap_or_default();
+        let words = self.words;
+        let (down, kind) = (
+            (down * size).round() as i32,
+            Kind::Words { size: size as i32, anchor: self.attribute("text-anchor").to_owned() },
+        );
+        let placed = match turn {
+            "" => format!("<text x=\"{x}\" y=\"{}\">{words}</text>", y + down),
+            turn => {
+                format!(
+                    "<text x=\"{x}\" y=\"{y}\" dy=\"{down}\" transform=\"rotate({turn} {x} {y})\">{words}</text>"
+                )
+            }
+        };
+        (look(kind, self.attribute("fill")), placed)
+    }
+}
+
+/// A line through points, by steps.
+fn track(points: &[(i32, i32)]) -> String {
+    let Some(first) = points.first() else { return String::new() };
+    let mut path = format!("M{} {}", first.0, first.1);
+    let mut steps = String::new();
+    for (from, to) in points.iter().zip(&points[1..]) {
+        for value in [to.0 - from.0, to.1 - from.1] {
+            if value >= 0 && !steps.is_empty() {
+                steps.push(' ');
+            }
+            let _ = write!(steps, "{value}");
+        }
+    }
+    if !steps.is_empty() {
+        let _ = write!(path, "l{steps}");
+    }
+    path
+}
+
+fn hex(colour: RGBColor) -> String {
+    format!("#{:02X}{:02X}{:02X}", colour.0, colour.1, colour.2)
+}
+
+/// A colour of plotters as one that follows the page; where there is no page, as it is.
+fn paint(colour: &str) -> String {
+    if colour == "#000000" || colour == hex(INK) {
+        "currentColor".to_owned()
+    } else if colour == "#FFFFFF" {
+        "var(--paper,#fff)".to_owned()
+    } else if colour == hex(MESH) {
+        format!("var(--line,{colour})")
+    } else if colour == hex(SOFT) {
+        format!("var(--soft,{colour})")
+    } else {
+        colour.to_lowercase()
+    }
+}
+
+/// A text that may stand in XML.
+pub(super) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: two squares of one colour are one path, a line between them another, and the words stand where they were put.
+    #[test]
+    fn shapes_of_one_look_are_one_path() {
+        let red = RGBColor(200, 40, 60);
+        let by_colour = [(red, "from 1 < 2".to_owned())];
+        let canvas = Canvas { size: (100, 50), title: "a \"b\"", by_colour: &by_colour, is_crisp: false };
+        let found = canvas.draw(|area, hovers| {
+            area.draw(&Rectangle::new([(1, 2), (11, 12)], red.filled()))?;
+            area.draw(&Rectangle::new([(20, 2), (30, 12)], red.filled()))?;
+            area.draw(&PathElement::new([(0, 0), (5, 3), (4, 4)], INK))?;
+            area.draw(&Text::new("x & y", (7, 20), ("sans-serif", 12).into_font().color(&INK)))?;
+            hovers.push(Hover { corners: [1, 2, 3, 5], text: "value".to_owned() });
+            Ok(())
+        });
+        assert!(found.contains("aria-label=\"a &quot;b&quot;\""), "{found}");
+        assert!(found.contains("<path fill=\"#c8283c\" d=\"M1 2h10v10h-10zM20 2h10v10h-10z\"><title>from 1 &lt; 2</title></path>"), "{found}");
+        assert!(
+            found.contains("<path fill=\"none\" stroke=\"currentColor\" d=\"M0 0l5 3-1 1\"/>"),
+            "{found}"
+        );
+        assert!(
+            found.contains(
+                "<g fill=\"currentColor\" font-size=\"12\"><text x=\"7\" y=\"29\">x &amp; y</text></g>"
+            ),
+            "{found}"
+        );
+        assert!(found.contains("<path d=\"M1 2h2v3h-2z\"><title>value</title></path>"), "{found}");
+    }
+
+    /// A polygon and its mirror image go around the same way.
+    #[test]
+    fn overlapping_shapes_cut_no_holes() {
+        let square = |around: &str| {
+            elements(&format!("<polygon opacity=\"1\" fill=\"#112233\" points=\"{around}\"/>"))
+                .next()
+                .and_then(|e| e.shape())
+                .map(|s| s.1)
+        };
+        assert_eq!(square("0,0 4,0 4,4 0,4 "), Some("M0 0l4 0 0 4-4 0z".to_owned()));
+        assert_eq!(square("0,4 4,4 4,0 0,0 "), Some("M0 0l4 0 0 4-4 0z".to_owned()));
+    }
+}

@@ -1,0 +1,96 @@
+//! How text is laid out for the place where it is read: colours, and lines broken at a width.
+
+use anstyle::{AnsiColor, Style};
+use textwrap::{Options, WordSeparator, WordSplitter};
+
+/// Whether text is coloured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colour {
+    /// Characters alone.
+    #[default]
+    Plain,
+    /// With the escape sequences of terminals (ECMA-48).
+    Ansi,
+}
+
+/// What a colour says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// As expected.
+    Good,
+    /// Not as expected.
+    Bad,
+    /// A name that the eye looks for.
+    Strong,
+    /// What is there for those who look for it.
+    Quiet,
+}
+
+/// The place where a text is read. By default a file: no colours, and no line is broken.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Layout {
+    /// How many columns a line may have, if that is bounded.
+    pub width: Option<usize>,
+    /// Whether text is coloured.
+    pub colour: Colour,
+}
+
+/// Lines are never made shorter than this: on a narrower terminal words would stand one below the other.
+const NARROWEST: usize = 40;
+
+impl Layout {
+    /// A text in the colour of its tone.
+    pub fn paint(&self, tone: Tone, text: &str) -> String {
+        let style = match (self.colour, tone) {
+            (Colour::Plain, _) => return text.to_owned(),
+            (Colour::Ansi, Tone::Good) => Style::new().fg_color(Some(AnsiColor::Green.into())),
+            (Colour::Ansi, Tone::Bad) => Style::new().fg_color(Some(AnsiColor::Red.into())).bold(),
+            (Colour::Ansi, Tone::Strong) => Style::new().bold(),
+            (Colour::Ansi, Tone::Quiet) => Style::new().dimmed(),
+        };
+        format!("{style}{text}{style:#}")
+    }
+
+    /// A text behind what begins its first line; further lines begin `hang` columns from the left. Only blanks are broken
+    /// at: a formula without any stays whole, so that it can be copied.
+    pub fn wrap(&self, first: &str, hang: usize, text: &str) -> String {
+        let Some(width) = self.width else { return format!("{first}{text}").trim_end().to_owned() };
+        let rest = " ".repeat(hang);
+        let options = Options::new(width.max(NARROWEST))
+            .initial_indent(first)
+            .subsequent_indent(&rest)
+            .break_words(false)
+            .word_separator(WordSeparator::AsciiSpace)
+            .word_splitter(WordSplitter::NoHyphenation);
+        let lines = textwrap::wrap(text, options);
+        if lines.is_empty() { first.trim_end().to_owned() } else { lines.join("\n") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_broken_at_blanks_alone_and_hang() {
+        let layout = Layout { width: Some(40), ..Layout::default() };
+        let text = "alpha beta gamma delta epsilon zeta eta theta";
+        assert_eq!(
+            layout.wrap("  left ", 7, text),
+            "  left alpha beta gamma delta epsilon\n       zeta eta theta"
+        );
+        let formula = "x".repeat(60);
+        assert_eq!(layout.wrap("  left ", 7, &formula).lines().count(), 1);
+        assert_eq!(Layout::default().wrap("  left ", 7, text).lines().count(), 1);
+    }
+
+    #[test]
+    fn colours_take_no_columns() {
+        let layout = Layout { width: Some(40), colour: Colour::Ansi };
+        let painted = layout.paint(Tone::Bad, "alpha");
+        assert_eq!(painted, "\u{1b}[1m\u{1b}[31malpha\u{1b}[0m");
+        let line = layout.wrap("", 0, &format!("{painted} beta gamma delta epsilon zeta eta"));
+        assert_eq!(line.lines().next(), Some(format!("{painted} beta gamma delta epsilon zeta").as_str()));
+        assert_eq!(Layout::default().paint(Tone::Bad, "alpha"), "alpha");
+    }
+}
