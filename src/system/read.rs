@@ -256,7 +256,7 @@ impl System {
     fn check(&mut self, claim: &ClaimSyntax) -> Result<(), Problem> {
         for statement in claim.body.statements() {
             let (left, right) = (&statement.equation.left, &statement.equation.right);
-            let values = (self.elaborate(left)?, self.elaborate(right)?);
+            let values = Value::compared(self.elaborate(left)?, self.elaborate(right)?);
             let comparable = match &values {
                 (Value::Matrix(l), Value::Matrix(r)) => (l.rows, l.columns) == (r.rows, r.columns),
                 (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
@@ -281,7 +281,7 @@ impl System {
                 return Err(Problem::new(&statement.span, message, "this claim"));
             }
             let relation = statement.equation.relation;
-            let of_numbers = matches!(values, (Value::Scalar(_), Value::Scalar(_)));
+            let of_numbers = values.0.as_number().is_some() && values.1.as_number().is_some();
             if relation != Relation::Equal && !of_numbers {
                 let (left, right) = (values.0.describe(), values.1.describe());
                 let message = format!("'{}' compares numbers, not {left} and {right}", relation.sign());

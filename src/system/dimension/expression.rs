@@ -254,34 +254,33 @@ impl Checker<'_> {
 
     /// The column of the rates of all states.
     fn bracket(&mut self, arguments: &[Expr]) -> Quantity {
-        let [first, second] = arguments else { return Quantity::Open };
+        let [first, second, names @ ..] = arguments else { return Quantity::Open };
         let factor = self.along(first).times(&self.along(second));
-        let states = self.system.states.clone();
-        let rate = |state| match self.known.symbols.get(state) {
-            Some(form) => factor.by(form),
-            None => Entry::Open,
-        };
-        let entries: Vec<Entry> = states.iter().map(rate).collect();
+        let entries = self.states_or(names).iter().map(|state| state.times(&factor)).collect();
         Quantity::Table(Table::row(entries).transpose())
+    }
+
+    /// The dimensions of the states that are named, or of all where none is.
+    fn states_or(&mut self, names: &[Expr]) -> Vec<Entry> {
+        if names.is_empty() {
+            let form = |state| self.known.symbols.get(state).cloned().map_or(Entry::Open, Entry::Of);
+            return self.system.states.iter().map(form).collect();
+        }
+        let mut found = Vec::with_capacity(names.len());
+        for name in names {
+            found.push(match self.quantity(name) {
+                Quantity::Table(table) if table.is_scalar() => table.entries[0].clone(),
+                _ => Entry::Open,
+            });
+        }
+        found
     }
 
     fn differential(&mut self, arguments: &[Expr]) -> Quantity {
         let Some((first, names)) = arguments.split_first() else { return Quantity::Open };
         let Quantity::Table(table) = self.quantity(first) else { return Quantity::Open };
         let [entry] = table.entries.as_slice() else { return Quantity::Open };
-        let by: Vec<Entry> = if names.is_empty() {
-            let form = |state| self.known.symbols.get(state).cloned().map_or(Entry::Open, Entry::Of);
-            self.system.states.iter().map(form).collect()
-        } else {
-            let mut by = Vec::new();
-            for name in names {
-                by.push(match self.quantity(name) {
-                    Quantity::Table(table) if table.is_scalar() => table.entries[0].clone(),
-                    _ => Entry::Open,
-                });
-            }
-            by
-        };
+        let by = self.states_or(names);
         let entries = by.iter().map(|by| entry.over(by)).collect();
         Quantity::Table(Table { at_numbers: table.at_numbers, ..Table::row(entries) })
     }
