@@ -64,9 +64,9 @@ fn rows() -> (Program, Vec<State>) {
     let mut system = System::read(&file).expect("the file is read");
     let Some(Value::Matrix(rows)) = system.definition(OWN_ROWS) else { panic!("the file has rows") };
     let entries = rows.entries.clone();
-    let angles = system.angles();
-    let roots = expand_angles(&mut system.graph, &entries, |symbol| angles.contains(&symbol));
-    let program = Program::new(&system.graph, &roots, |symbol| angles.contains(&symbol), false);
+    let is_angle = &system.angle_test();
+    let roots = expand_angles(&mut system.graph, &entries, is_angle);
+    let program = Program::new(&system.graph, &roots, is_angle, false);
     let locus =
         Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &entries).expect("a sample box");
     let states = (0..64).map(|index| locus.draw(1, index).expect("a state")).collect();

@@ -118,9 +118,9 @@ fn drawn(system: &mut System, rows: RegionRows, condition: &str, count: u64) -> 
         }
     };
     let locus = Locus::new(system, &branch, &BTreeMap::new(), &entries).unwrap();
-    let angles = system.angles();
-    let entries = expand_angles(&mut system.graph, &entries, |symbol| angles.contains(&symbol));
-    let program = Program::new(&system.graph, &entries, |symbol| angles.contains(&symbol), false);
+    let is_angle = &system.angle_test();
+    let entries = expand_angles(&mut system.graph, &entries, is_angle);
+    let program = Program::new(&system.graph, &entries, is_angle, false);
     let exact = Rationals::default();
     let loaded = program.load(exact).unwrap();
     let columns = system.states.len();

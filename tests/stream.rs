@@ -78,8 +78,7 @@ fn certified_states_have_full_rank_modulo_a_prime_and_exactly() {
         let mut system = regime(name);
         let stream = stream(&mut system);
         let (_, left) = run(&stream, 300, Certainty::Certified);
-        let angles = system.angles();
-        let is_angle = |symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let rows = rows(&system);
         let rows = expand_angles(&mut system.graph, &rows, is_angle);
         let program = Program::new(&system.graph, &rows, is_angle, false);
@@ -176,10 +175,10 @@ fn states_that_are_handed_over_get_the_verdicts_of_those_that_are_drawn() {
         );
         assert!(count(&plain, StateVerdict::Full(Certainty::Computed)) >= 1000, "{name}");
 
-        let angles = system.angles();
+        let is_angle = &system.angle_test();
         let rows = rows(&system);
         let kept = Reduction::new(&system.graph, &rows, system.states.len());
-        let entries = expand_angles(&mut system.graph, &kept.entries, |symbol| angles.contains(&symbol));
+        let entries = expand_angles(&mut system.graph, &kept.entries, is_angle);
         let program = Program::new(&system.graph, &entries, |_| false, false);
         let symbols: Vec<_> = stream.coordinates().collect();
         let (width, loaded) = (kept.columns.len(), program.load(Floats).unwrap());

@@ -101,8 +101,8 @@ impl Work {
             }
             _ => return Err(format!("there is no job '{job}'").into()),
         };
-        let angles = system.angles();
-        let roots = expand_angles(&mut system.graph, &entries, |symbol| angles.contains(&symbol));
+        let is_angle = &system.angle_test();
+        let roots = expand_angles(&mut system.graph, &entries, is_angle);
         let default = |input| match input {
             Input::Plain(symbol) => system.symbol_info(symbol).and_then(|info| info.default.clone()),
             _ => None,

@@ -60,8 +60,7 @@ impl Problem {
             return Err(format!("{} declares no states or no outputs", system.name));
         }
         let RangesAndValues { ranges, values, exactly } = ranges_of(system, given)?;
-        let angles = system.angles();
-        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let dimension = system.states.len();
         let NamedRows { names, entries: flat, order } = NamedRows::of(system, rows, &values)?;
         let as_written = rows_by_name(&names, &flat, dimension);

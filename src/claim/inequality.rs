@@ -108,8 +108,7 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
     if let Some(verdict) = where_equal(system, on, goal, &mut tries, solved, rng) {
         return verdict;
     }
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     // the search knows expressions only, and the graph is the system's
     let mut graph = std::mem::take(&mut system.graph);
     let answer = decide(&mut graph, goal, given, &is_angle, &mut |graph, proposed| {
@@ -169,8 +168,7 @@ fn where_equal(
     may_refute: bool,
     rng: &mut impl Rng,
 ) -> Option<Verdict> {
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, &[goal.node], is_angle);
     let (engine, log2_error) = match identically_zero(&system.graph, &expanded, is_angle, rng) {
         ZeroTest::Zero { log2_error, .. } => (RANDOM_PRIMES.to_owned(), log2_error),

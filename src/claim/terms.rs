@@ -284,8 +284,7 @@ fn program(system: &mut System, nodes: &[NodeId], circular: bool) -> Program {
     if !circular {
         return Program::new(&system.graph, nodes, |_| false, false);
     }
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, nodes, is_angle);
     Program::new(&system.graph, &expanded, is_angle, false)
 }

@@ -4,7 +4,7 @@ use super::certainty::Certainty;
 use super::digits::{Digits, NoDigits};
 use super::ladder::{Judge, StateJudgement, StateReport};
 use super::stream::{Stream, StreamOptions};
-use crate::expression::{Guard, NodeId, Symbol, add_guard, expand_angles};
+use crate::expression::{Guard, NodeId, add_guard, expand_angles};
 use crate::number::{PrimeField, Rung, rational_to_f64};
 use crate::observability::{Codistribution, Defined, Locus, LocusError, Spectrum, State, StateInWords};
 use crate::system::System;
@@ -118,8 +118,7 @@ pub fn sweep(
     options: SweepOptions<'_>,
 ) -> Result<SweepReport, LocusError> {
     let begin = Instant::now();
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let quick = expand_angles(&mut system.graph, quick, is_angle);
     let all = expand_angles(&mut system.graph, all, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);

@@ -60,8 +60,7 @@ impl Subject {
         if columns == 0 || rows.is_empty() {
             return Err(format!("{} has no states, or no outputs whose differentials are rows", system.name));
         }
-        let angles = system.angles();
-        let is_angle = |symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let expanded = expand_angles(&mut system.graph, rows, is_angle);
         let program = Program::new(&system.graph, &expanded, is_angle, false);
         if let Some(angle) = program.bare_angle() {
