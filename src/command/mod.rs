@@ -9,6 +9,7 @@ mod certify;
 mod check;
 mod eval;
 mod interrupt;
+mod new;
 mod observe;
 mod output;
 mod prove;
@@ -52,6 +53,7 @@ enum Verb {
     Stress(stress::Stress),
     Eval(eval::Eval),
     Observe(observe::Observe),
+    New(new::New),
 }
 
 /// What a command has come to.
@@ -119,6 +121,7 @@ impl Verb {
             Verb::Stress(verb) => verb.json,
             Verb::Eval(verb) => verb.json,
             Verb::Observe(verb) => verb.json,
+            Verb::New(verb) => verb.json,
         })
     }
 
@@ -137,6 +140,7 @@ impl Verb {
             Verb::Stress(verb) => verb.run(),
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::New(verb) => verb.run(),
         }
     }
 }
