@@ -48,6 +48,20 @@ fn the_radii_are_unseen_where_the_object_does_not_turn() {
     assert_eq!(unseen, ["r1", "r2"]);
 }
 
+/// Several conditions in one `--where` are what several of one condition are.
+#[test]
+fn several_conditions_stand_in_one_where() {
+    let ask = |conditions: &[&str]| {
+        let mut found = rank(&[&[SAME_RATE, "--samples", "40"], conditions].concat());
+        common::without_times(&mut found);
+        found
+    };
+    let apart = ask(&["--where", "g = 0", "--where", "r1 > 1", "--where", "r1 < r2"]);
+    assert_eq!(ask(&["--where", "g = 0, 1 < r1 < r2"]), apart);
+    assert_eq!(ask(&["--where", "g = 0,r1 > 1", "--where", "r1 < r2"]), apart);
+    assert_eq!(apart["rank_histogram"], json!({ "5": 40 }));
+}
+
 /// Palm 1 level: the thesis's own six rows lose one, the full codistribution does not (it has L_f L_f s2).
 #[test]
 fn two_questions_have_two_answers() {

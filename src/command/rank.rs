@@ -35,7 +35,8 @@ pub(crate) struct Rank {
     /// Hold these states and parameters fixed, as in omega0=0 or g=0, and sample the rest.
     #[arg(long, value_name = "NAME=VALUE,...", value_delimiter = ',')]
     at: Vec<String>,
-    /// Sample only states that meet this condition, as in 'sin(phi1) = 0' or '0 < x < 1' (may be repeated).
+    /// Sample only states that meet this condition, as in 'sin(phi1) = 0' or '0 < x < 1', or several: 'x = 0, y > 0' (may be
+    /// repeated).
     #[arg(long = "where", value_name = "CONDITION")]
     conditions: Vec<String>,
     /// What every rank has to be: 'certified', proved at the very state, or 'computed', by numbers that round. The

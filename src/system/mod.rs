@@ -13,6 +13,7 @@ mod elaborate;
 mod error;
 mod extent;
 mod grammar;
+mod lie;
 mod matrices;
 mod model;
 mod problems;

@@ -282,6 +282,7 @@ impl<'a> Layout<'a> {
                 (Formula::Row(vec![a, Formula::Sign(sign), b]), Binding::Vectors)
             }
             ("L", [fields @ .., last]) if !fields.is_empty() => self.lie(fields, last, closed),
+            ("bracket", [_, _]) => (Formula::Fence(Fence::Square, Box::new(all())), Binding::Atom),
             ("d", [inner]) => self.applied(Formula::Word("d"), inner, closed),
             ("d", [inner, by @ ..]) => {
                 let partial = || Formula::Sign(Sign::Partial);

@@ -11,6 +11,7 @@ use crate::expression::syntax::{Equation, Expr, Name, Span};
 use crate::system::Problem;
 use crate::system::grammar::{ClaimBody, Expectation, Item, Statement};
 use crate::system::model::{Role, System};
+use crate::system::views::{End, View};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -213,15 +214,31 @@ impl Checker<'_> {
                 | ClaimBody::Erratum { corrected: statement, .. } => self.statement(statement),
                 ClaimBody::Definition { .. } | ClaimBody::Open { .. } => {}
             },
-            // a number there is one in the unit of the other side
-            Item::View(view) => {
-                for condition in view.equations() {
-                    let left = self.quantity(&condition.left);
-                    let right = self.quantity(&condition.right);
-                    self.sides(condition, left, right, true);
+            Item::View(view) => match &**view {
+                View::Set { conditions, .. } | View::Reduction { conditions, .. } => {
+                    self.conditions(conditions);
                 }
-            }
+                View::Line { moving, end: End::Value(value), .. } => {
+                    self.at_point(&[(moving.clone(), value.clone())]);
+                }
+                View::Line { end: End::Zero(equation), .. } => {
+                    self.conditions(std::slice::from_ref(equation));
+                }
+                // ranges and the values of a point are numbers
+                View::Line { end: End::Infinity, .. } | View::Map { .. } => {}
+            },
         }
+    }
+
+    /// Conditions; whether one gives a number to something that has a dimension.
+    fn conditions(&mut self, conditions: &[Equation]) -> bool {
+        let mut at_numbers = false;
+        for condition in conditions {
+            let left = self.quantity(&condition.left);
+            let right = self.quantity(&condition.right);
+            at_numbers |= self.sides(condition, left, right, true);
+        }
+        at_numbers
     }
 
     /// What is declared of a definition or an output; a written number is one in this unit.
@@ -261,12 +278,7 @@ impl Checker<'_> {
     }
 
     fn statement(&mut self, statement: &Statement) {
-        let mut at_numbers = statement.on_sample;
-        for condition in &statement.conditions {
-            let left = self.quantity(&condition.left);
-            let right = self.quantity(&condition.right);
-            at_numbers |= self.sides(condition, left, right, true);
-        }
+        let at_numbers = self.conditions(&statement.conditions) || statement.on_sample;
         let mut left = self.quantity(&statement.equation.left);
         for equation in statement.relations() {
             let right = self.quantity(&equation.right);
