@@ -29,6 +29,9 @@ pub(crate) struct Dimensions {
     pub(super) definitions: HashMap<String, Quantity>,
     /// The dimension by which a derivative along the field differs from what is differentiated.
     pub(super) fields: HashMap<String, Form>,
+    /// Whether some definition, field or output holds a number that stands for something with a dimension, or something of
+    /// which no dimension is known: then a change of units is not told by the dimensions of the symbols alone.
+    pub(super) holds_units: bool,
     /// The dimensions that are known in the end.
     found: BTreeMap<Symbol, Dimension>,
 }
@@ -102,6 +105,7 @@ impl Checker<'_> {
 
     /// Takes over what is known of an imported file, its unknowns under new places.
     fn import(&mut self, alias: &str, span: &Span, other: &Dimensions) {
+        self.known.holds_units |= other.holds_units;
         let mut theirs = other.solution.clone();
         let mut places: BTreeMap<usize, Form> = BTreeMap::new();
         let mut moved = |form: &Form, mine: &mut Solution| {
@@ -188,12 +192,14 @@ impl Checker<'_> {
                 if let Some(dimension) = dimension {
                     found = self.declared(found, &name.text, dimension);
                 }
+                self.note_units(&found);
                 self.known.definitions.insert(name.text.clone(), found);
             }
             Item::Field { role, name, components, .. } => self.field(*role, name, components),
             Item::Output(list) => {
                 for (expr, dimension) in list {
                     let found = self.quantity(expr);
+                    self.note_units(&found);
                     if let Some(dimension) = dimension {
                         let text = crate::system::in_one_line(&self.system.source, &expr.span);
                         self.declared(found, &text, dimension);
@@ -250,11 +256,21 @@ impl Checker<'_> {
             _ => Entry::Of(form.clone()),
         };
         let table_wanted = table.with(table.entries.iter().map(wanted).collect());
-        if !table.is_number {
+        if table.is_number {
+            self.known.holds_units |= !declared.dimension.is_none();
+        } else {
             let asked = Asked::Declared(name.to_owned());
             self.entrywise(&table_wanted, &table, &declared.span, &asked);
         }
         Quantity::Table(table_wanted)
+    }
+
+    /// Notes whether something holds numbers in units, or is not known.
+    fn note_units(&mut self, found: &Quantity) {
+        self.known.holds_units |= match found {
+            Quantity::Table(table) => table.at_numbers || table.entries.contains(&Entry::Open),
+            Quantity::Open => true,
+        };
     }
 
     fn field(&mut self, role: Role, name: &Name, components: &[(Name, Expr)]) {
@@ -264,6 +280,7 @@ impl Checker<'_> {
         };
         for (state, expr) in components {
             let found = self.quantity(expr);
+            self.note_units(&found);
             let symbol = self.system.find_symbol(&state.text);
             let form = symbol.and_then(|symbol| self.known.symbols.get(&symbol)).cloned();
             if let (Some(form), Quantity::Table(Table { entries, .. })) = (form, found)
