@@ -20,16 +20,19 @@ fn line(error: &ReadError) -> String {
     format!("{line}:{column}: {} ({})", error.message, error.help.as_deref().unwrap_or_default())
 }
 
+/// All that is wrong with a text.
+fn all_mistakes(name: &str, text: &str, folder: &Path) -> Vec<ReadError> {
+    System::examine_text(name, text, folder, 1000).problems
+}
+
 #[test]
 fn the_thesis_is_right_in_its_dimensions() {
     let mut mistakes = Vec::new();
     for file in files() {
         let text = std::fs::read_to_string(&file).unwrap();
         let name = file.display().to_string();
-        match System::all_dimension_mistakes(&name, &text, file.parent().unwrap()) {
-            Ok(found) => mistakes.extend(found.iter().map(|one| format!("{name}:{}", line(one)))),
-            Err(error) => mistakes.push(format!("{name}:{}", line(&error))),
-        }
+        let found = all_mistakes(&name, &text, file.parent().unwrap());
+        mistakes.extend(found.iter().map(|one| format!("{name}:{}", line(one))));
     }
     assert!(mistakes.is_empty(), "{}", mistakes.join("\n"));
 }
@@ -56,8 +59,7 @@ sample x in [1, 2] v in [1, 2] avoid total - e0
 
 fn mistakes(claim: &str) -> Vec<ReadError> {
     let text = format!("{SPRING}{claim}\n");
-    System::all_dimension_mistakes("spring.proof", &text, Path::new(""))
-        .unwrap_or_else(|error| panic!("{}: {claim}", line(&error)))
+    all_mistakes("spring.proof", &text, Path::new(""))
 }
 
 /// The text that a mistake marks.
@@ -348,7 +350,7 @@ fn a_dimension_holds_for_the_names_before_it() {
 fn imports_bring_their_dimensions() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("spring.proof"), SPRING).unwrap();
-    let parse = |text: &str| System::all_dimension_mistakes("other.proof", text, folder.path()).unwrap();
+    let parse = |text: &str| all_mistakes("other.proof", text, folder.path());
     let head = "system \"other\" use s = \"spring.proof\"\n";
     let found = parse(&format!("{head}state x\nclaim 1: s.total = L(s.f, s.total)"));
     assert_eq!(found.len(), 1);
@@ -395,14 +397,13 @@ fn no_file_costs_much() {
     // powers of powers
     let tower = (0..40).fold("x".to_owned(), |inner, _| format!("({inner})^2"));
     let text = format!("system \"s\" state x : length let y = sqrt({tower}) claim 1: y = x");
-    let found = System::all_dimension_mistakes("s", &text, Path::new("")).unwrap();
+    let found = all_mistakes("s", &text, Path::new(""));
     assert!(found[0].message.contains(&format!("length^{}", 1u64 << 39)), "{}", found[0].message);
     assert!(begin.elapsed().as_secs() < 60);
 }
 
 mod any_text {
     use super::SPRING;
-    use palmistry::System;
     use proptest::prelude::*;
     use std::path::Path;
 
@@ -424,7 +425,7 @@ mod any_text {
                 format!("{SPRING} param q : {words} = 3"),
                 format!("{SPRING} let q : {words}"),
             ] {
-                let _ = System::all_dimension_mistakes("s", &text, Path::new(""));
+                let _ = super::all_mistakes("s", &text, Path::new(""));
             }
         }
     }

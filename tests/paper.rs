@@ -118,7 +118,12 @@ fn a_folder_is_taken_through_everything() {
     assert_eq!((printed.printed.as_str(), printed.carried, printed.digits_that_agree), ("3.01", 3, 2));
     assert!(!printed.study.as_ref().unwrap().contains(printed.error));
     assert!(pendulum.derivatives.is_some() && pendulum.trade.is_some() && pendulum.certificate.is_some());
-    assert!(found.files[1].trade.is_none() && found.files[1].stress.is_some());
+    // the other file names nothing to be looked at
+    assert!(pendulum.stress.is_some());
+    let cart = &found.files[1];
+    assert!(
+        cart.trade.is_none() && cart.stress.is_none() && cart.certificate.is_none() && cart.ranks.len() == 1
+    );
 }
 
 /// A reduction that is none: the cart moves, and then the angle does not go as that of a pendulum.
@@ -178,7 +183,7 @@ fn mistakes_are_marked_where_they_are() {
         ("set \"a\" x = 0", "':' behind the name", "x"),
         ("set \"a\": z = 0", "unknown name 'z'", "z"),
         ("set \"a\": x = 0 within 1", "met exactly", "1"),
-        ("set \"a\": [x] = 0", "", "[x]"),
+        ("set \"a\": [x, y] = 0", "", "[x, y]"),
         ("pole \"a\": rank = 1", "", "rank"),
         ("map \"m\": x in [0, 1]", "two coordinates", "x"),
         ("map \"m\": x in [0, 1], y in [0, 1], k in [0, 1]", "two coordinates", "x"),
@@ -204,6 +209,23 @@ fn mistakes_are_marked_where_they_are() {
         let whole = &text[begin..begin + length.max(1)];
         assert!(marked.starts_with(whole) || whole.starts_with(marked), "{line}: marked '{whole}'");
     }
+}
+
+/// A pole is one also where the words that were needed exist on it: a divisor of a rate, that no output's derivative has met.
+#[test]
+fn a_pole_of_the_fields_is_a_pole() {
+    let text = "system \"s\"\nstate x, y\ndrift f\n  x' = y\n  y' = 1/x\noutput x\nsample\n  x in [1, 2]\n  \
+        y in [1, 2]\npole \"p\": x = 0\nset \"q\": x = 0, y = 1\nset \"r\": y = 0\nset \"none\": x = 0, x = 1\n";
+    let folder = folder();
+    let file = write(&folder, "s.proof", text);
+    let found = found(&file);
+    let ranks: Vec<_> =
+        found.files[0].ranks.iter().map(|rank| (rank.name(), rank.is_pole(), rank.as_expected())).collect();
+    let whole = ("the whole sample box", false, true);
+    assert_eq!(
+        ranks,
+        [whole, ("p", true, true), ("q", true, false), ("r", false, true), ("none", false, false)]
+    );
 }
 
 /// The words of the new entries are names all the same.
@@ -270,7 +292,8 @@ fn papers_come_with_the_program() {
     let error = json(&output)["error"].clone();
     for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
-        assert!(error["help"].as_str().unwrap().contains(&name), "{error}");
+        let advice = "a paper that is new is packed when build.rs runs again: touch it";
+        assert!(error["help"].as_str().unwrap().contains(&name), "{error}; {advice}");
     }
     // a file that came with the program, by its path
     let output = run(&["prove", "papers:moll2002/same_rate.proof", "--json"]);
@@ -283,4 +306,42 @@ fn papers_come_with_the_program() {
     };
     assert!(statements(&packed).len() > 70);
     assert_eq!(statements(&packed), statements(&on_disk));
+}
+
+/// A new paper proves and is verified, and nothing that is there is lost to it.
+#[test]
+fn a_new_paper_proves() {
+    let folder = folder();
+    let place = folder.path().join("a/b");
+    let name = place.to_str().unwrap();
+    let made = palmistry(&["new", name, "--json"]);
+    assert_eq!((made.status.code(), json(&made)["files"].as_array().unwrap().len()), (Some(0), 2));
+    for file in ["paper.toml", "pendulum.proof"] {
+        let text = std::fs::read_to_string(place.join(file)).unwrap();
+        // a comment on each line that is not blank, or on the one above
+        let lines: Vec<&str> = text.lines().collect();
+        let commented = lines.iter().filter(|line| line.contains('#') || line.contains('"')).count();
+        assert!(commented > lines.iter().filter(|line| !line.trim().is_empty()).count() / 2, "{file}");
+    }
+    let found =
+        json(&palmistry(&["verify", name, "--json", "--out", folder.path().join("out").to_str().unwrap()]));
+    assert_eq!((&found["ok"], &found["paper"]["title"]), (&true.into(), &"A paper of my own".into()));
+    assert_eq!(found["files"][0]["left_out"].as_array().unwrap().len(), 0);
+    let page = std::fs::read_to_string(folder.path().join("out/index.html")).unwrap();
+    assert!(page.contains("A pendulum whose angle is seen") && page.contains("no length"));
+    // what is there stays as it is, and nothing is left beside it
+    write(&folder, "a/b/mine.proof", "system \"mine\"");
+    for taken in
+        [name, place.join("paper.toml").to_str().unwrap(), place.join("paper.toml/x").to_str().unwrap()]
+    {
+        let output = palmistry(&["new", taken, "--json"]);
+        assert_eq!(output.status.code(), Some(2), "{taken}");
+    }
+    assert_eq!(std::fs::read_dir(&place).unwrap().count(), 3);
+    assert_eq!(std::fs::read_dir(folder.path().join("a")).unwrap().count(), 1);
+    // an empty folder is taken
+    let empty = folder.path().join("empty");
+    std::fs::create_dir(&empty).unwrap();
+    assert_eq!(palmistry(&["new", empty.to_str().unwrap()]).status.code(), Some(0));
+    assert!(empty.join("paper.toml").is_file());
 }

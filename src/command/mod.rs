@@ -1,4 +1,4 @@
-//! Floor 8: the command line. A file a verb: it reads its arguments, calls the library, and prints.
+//! The command line. A file a verb: it reads its arguments, calls the library, and prints.
 //!
 //! Results go to standard output (as JSON with `--json`), progress and words to standard error. The exit status is 0
 //! when all is as expected, 1 when something is not or the work was interrupted, 2 when the input could not be used or
@@ -6,8 +6,10 @@
 
 mod arguments;
 mod certify;
+mod check;
 mod eval;
 mod interrupt;
+mod new;
 mod observe;
 mod output;
 mod prove;
@@ -43,6 +45,7 @@ struct Cli {
 enum Verb {
     Verify(verify::Verify),
     Prove(prove::Prove),
+    Check(check::Check),
     Rank(rank::Rank),
     Recheck(recheck::Recheck),
     Certify(certify::Certify),
@@ -50,6 +53,7 @@ enum Verb {
     Stress(stress::Stress),
     Eval(eval::Eval),
     Observe(observe::Observe),
+    New(new::New),
 }
 
 /// What a command has come to.
@@ -57,6 +61,8 @@ enum Verb {
 pub(crate) enum Status {
     AsExpected,
     NotAsExpected,
+    /// A file could not be used; what is wrong with it is printed.
+    Unusable,
     /// The results are printed, but a file that was asked for could not be written.
     Unwritten,
 }
@@ -90,7 +96,7 @@ pub fn run() -> ExitCode {
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,
         Ok(Status::NotAsExpected) => ExitCode::from(1),
-        Ok(Status::Unwritten) => ExitCode::from(2),
+        Ok(Status::Unusable | Status::Unwritten) => ExitCode::from(2),
         Err(report) => {
             if form == Form::Json {
                 // where this cannot be written either, the words below are all that can be done
@@ -107,6 +113,7 @@ impl Verb {
         Form::of(match self {
             Verb::Verify(verb) => verb.json,
             Verb::Prove(verb) => verb.json,
+            Verb::Check(verb) => verb.json,
             Verb::Rank(verb) => verb.json,
             Verb::Recheck(verb) => verb.json,
             Verb::Certify(verb) => verb.json,
@@ -114,6 +121,7 @@ impl Verb {
             Verb::Stress(verb) => verb.json,
             Verb::Eval(verb) => verb.json,
             Verb::Observe(verb) => verb.json,
+            Verb::New(verb) => verb.json,
         })
     }
 
@@ -124,6 +132,7 @@ impl Verb {
         match self {
             Verb::Verify(verb) => verb.run(),
             Verb::Prove(verb) => verb.run(),
+            Verb::Check(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Rank(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Recheck(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Certify(verb) => interrupt::watched(move || verb.run(), nothing),
@@ -131,6 +140,7 @@ impl Verb {
             Verb::Stress(verb) => verb.run(),
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::New(verb) => verb.run(),
         }
     }
 }

@@ -2,7 +2,7 @@
 //! file, and decided like any other: that the conditions stay met, that what is left out stays as it is, that fields, outputs
 //! and the differentials of the words that the rank needs are the same. And what that saves is counted.
 
-use super::LeftOut;
+use super::left_out::LeftOut;
 use crate::claim::{Outcome, decide_all};
 use crate::expression::NodeId;
 use crate::expression::syntax::Relation;
@@ -113,7 +113,13 @@ fn claims(small: &System, large: &System, reduction: &ReductionTo) -> Result<(St
         for (condition, written) in equalities() {
             let side = |span: &std::ops::Range<usize>| &written[span.clone()];
             let (left, right) = (side(&condition.left.span), side(&condition.right.span));
-            claim("conditions", format!("L({alias}.{field}, ({left}) - ({right})) = 0 {under}"));
+            // a number has no rate, and is one in the unit of the other side
+            let difference = match (condition.left.is_literal(), condition.right.is_literal()) {
+                (_, true) => left.to_owned(),
+                (true, _) => right.to_owned(),
+                _ => format!("({left}) - ({right})"),
+            };
+            claim("conditions", format!("L({alias}.{field}, {difference}) = 0 {under}"));
         }
         for state in &states {
             claim("fields", format!("L({field}, {state}) = L({alias}.{field}, {state}) {under}"));

@@ -21,6 +21,23 @@ pub(super) struct Hover {
     pub text: String,
 }
 
+/// A field of cells of a few colours.
+pub(super) struct Cells {
+    /// Left, top, right, bottom, in pixels.
+    pub corners: [i32; 4],
+    pub columns: usize,
+    /// By rows, from the top.
+    pub colours: Vec<RGBColor>,
+}
+
+/// What a picture has beside what plotters draws.
+#[derive(Default)]
+pub(super) struct Extras {
+    pub hovers: Vec<Hover>,
+    /// Behind everything else.
+    pub cells: Option<Cells>,
+}
+
 /// A picture that is to be drawn.
 pub(super) struct Canvas<'a> {
     pub size: (u32, u32),
@@ -45,21 +62,21 @@ impl Canvas<'_> {
     /// Draws into a string. What cannot be drawn is said in its place.
     pub fn draw(
         &self,
-        draw: impl FnOnce(&Drawing<'_>, &mut Vec<Hover>) -> Result<(), Box<dyn std::error::Error>>,
+        draw: impl FnOnce(&Drawing<'_>, &mut Extras) -> Result<(), Box<dyn std::error::Error>>,
     ) -> String {
         let mut text = String::new();
-        let mut hovers = Vec::new();
+        let mut extras = Extras::default();
         let result = {
             let area = SVGBackend::with_string(&mut text, self.size).into_drawing_area();
-            draw(&area, &mut hovers).and_then(|()| area.present().map_err(Into::into))
+            draw(&area, &mut extras).and_then(|()| area.present().map_err(Into::into))
         };
         match result {
-            Ok(()) => self.written(&text, &hovers),
+            Ok(()) => self.written(&text, &extras),
             Err(error) => format!("<p>this plot could not be drawn: {}</p>", escaped(&error.to_string())),
         }
     }
 
-    fn written(&self, text: &str, hovers: &[Hover]) -> String {
+    fn written(&self, text: &str, Extras { hovers, cells }: &Extras) -> String {
         let (width, height) = self.size;
         let mut out = format!(
             "<svg role=\"img\" aria-label=\"{}\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
@@ -67,6 +84,9 @@ impl Canvas<'_> {
             escaped(self.title),
             if self.is_crisp { " shape-rendering=\"crispEdges\"" } else { "" }
         );
+        if let Some(cells) = cells {
+            self.cells(cells, &mut out);
+        }
         let mut last: Option<Look> = None;
         let mut path = String::new();
         for element in elements(text) {
@@ -93,6 +113,43 @@ impl Canvas<'_> {
         }
         out.push_str("</svg>");
         out
+    }
+
+    /// Cells as lines as wide as a cell is high, neighbours of one colour together: a path a colour, in whole numbers of cells.
+    fn cells(&self, cells: &Cells, out: &mut String) {
+        let [left, top, right, bottom] = cells.corners.map(f64::from);
+        let rows = cells.colours.len() / cells.columns.max(1);
+        let (wide, high) = ((right - left) / cells.columns as f64, (bottom - top) / rows as f64);
+        let middle = top + high / 2.0;
+        // a little wider than a cell, so that no gaps show
+        let _ = write!(
+            out,
+            "<g fill=\"none\" stroke-width=\"1.04\" transform=\"translate({left} {middle:.3}) scale({wide:.4} {high:.4})\">"
+        );
+        let mut colours: Vec<RGBColor> = Vec::new();
+        for colour in &cells.colours {
+            if !colours.contains(colour) {
+                colours.push(*colour);
+            }
+        }
+        for colour in colours {
+            let (mut path, mut at) = (String::new(), (0, 0));
+            for (y, row) in cells.colours.chunks(cells.columns).enumerate() {
+                let mut x = 0;
+                for run in row.chunk_by(|a, b| a == b) {
+                    if run[0] == colour {
+                        let (dx, dy) = (x - at.0, y as i32 - at.1);
+                        let _ = write!(path, "m{dx}{}{dy}h{}", if dy < 0 { "" } else { " " }, run.len());
+                        at = (x + run.len() as i32, y as i32);
+                    }
+                    x += run.len() as i32;
+                }
+            }
+            let known = self.by_colour.iter().find(|(known, _)| *known == colour);
+            let title = known.map_or(String::new(), |(_, text)| format!("<title>{}</title>", escaped(text)));
+            let _ = write!(out, "<path stroke=\"{}\" d=\"{path}\">{title}</path>", paint(&hex(colour)));
+        }
+        out.push_str("</g>");
     }
 
     /// Writes down the shapes of one look.
@@ -302,12 +359,12 @@ mod tests {
         let red = RGBColor(200, 40, 60);
         let by_colour = [(red, "from 1 < 2".to_owned())];
         let canvas = Canvas { size: (100, 50), title: "a \"b\"", by_colour: &by_colour, is_crisp: false };
-        let found = canvas.draw(|area, hovers| {
+        let found = canvas.draw(|area, extras| {
             area.draw(&Rectangle::new([(1, 2), (11, 12)], red.filled()))?;
             area.draw(&Rectangle::new([(20, 2), (30, 12)], red.filled()))?;
             area.draw(&PathElement::new([(0, 0), (5, 3), (4, 4)], INK))?;
             area.draw(&Text::new("x & y", (7, 20), ("sans-serif", 12).into_font().color(&INK)))?;
-            hovers.push(Hover { corners: [1, 2, 3, 5], text: "value".to_owned() });
+            extras.hovers.push(Hover { corners: [1, 2, 3, 5], text: "value".to_owned() });
             Ok(())
         });
         assert!(found.contains("aria-label=\"a &quot;b&quot;\""), "{found}");
@@ -323,6 +380,21 @@ mod tests {
             "{found}"
         );
         assert!(found.contains("<path d=\"M1 2h2v3h-2z\"><title>value</title></path>"), "{found}");
+    }
+
+    /// By hand: two rows of three cells, of two colours.
+    #[test]
+    fn neighbours_of_one_colour_are_one_line() {
+        let (red, blue) = (RGBColor(200, 40, 60), RGBColor(0, 0, 200));
+        let canvas = Canvas { size: (100, 50), title: "", by_colour: &[], is_crisp: true };
+        let found = canvas.draw(|_, extras| {
+            let colours = vec![red, red, blue, blue, red, red];
+            extras.cells = Some(Cells { corners: [10, 20, 40, 40], columns: 3, colours });
+            Ok(())
+        });
+        assert!(found.contains("translate(10 25.000) scale(10.0000 10.0000)"), "{found}");
+        assert!(found.contains("<path stroke=\"#c8283c\" d=\"m0 0h2m-1 1h2\"></path>"), "{found}");
+        assert!(found.contains("<path stroke=\"#0000c8\" d=\"m2 0h1m-3 1h1\"></path>"), "{found}");
     }
 
     /// A polygon and its mirror image go around the same way.

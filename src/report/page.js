@@ -4,17 +4,20 @@
   if (!form) return;
   const entries = [...list.querySelectorAll('article')], heads = [...list.querySelectorAll('h3')];
   const order = [...list.children], texts = new Map();
+  // an entry is of the file under whose name it stands
+  let of = '';
+  for (const each of order) each.dataset.f = of = each.dataset.f ?? of;
   // what an entry says, and how its file says it
   const text = entry => {
     if (!texts.has(entry)) {
-      const link = entry.querySelector('.s');
+      const link = entry.querySelector('h4 a');
       let line = link && by(decodeURIComponent(link.hash.slice(1))), words = entry.textContent;
       for (let first = true; line && (first || !line.id); line = line.nextElementSibling, first = false) words += ' ' + line.textContent;
       texts.set(entry, words.toLowerCase());
     }
     return texts.get(entry);
   };
-  const name = entry => entry.querySelector('a').textContent;
+  const name = entry => entry.querySelector('i').textContent;
   const filter = () => {
     const [word, file, wanted] = ['word', 'file', 'text'].map(id => by(id).value.toLowerCase());
     const counts = new Map();

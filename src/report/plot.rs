@@ -1,6 +1,7 @@
 //! Plots as SVG, to be put into a page.
 
-use crate::report::drawing::{Canvas, Hover, INK, MESH, svg};
+use crate::expression::notation::in_letters;
+use crate::report::drawing::{Canvas, Cells, Hover, INK, MESH, escaped, svg};
 use crate::tradeoff::{Growth, Map, RoundingStudy, Slope};
 use plotters::prelude::{
     ChartBuilder, Circle, Color, IntoFont, IntoLogRange, LineSeries, RGBColor, Rectangle, WHITE,
@@ -29,7 +30,7 @@ fn level(value: f64, lowest: f64, highest: f64) -> usize {
     ((part * SHADES as f64).floor().max(0.0) as usize).min(SHADES - 1)
 }
 
-const SHADES: usize = 24;
+const SHADES: usize = 18;
 
 fn shade(level: usize) -> RGBColor {
     let part = level as f64 / (SHADES - 1) as f64 * (SCALE.len() - 1) as f64;
@@ -39,9 +40,14 @@ fn shade(level: usize) -> RGBColor {
     RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
+/// What is said in the place of a picture without values.
+const NOTHING: &str =
+    "there is no singular value above zero to draw: poles, or nothing that remains without unit rows";
+
 /// A name along an axis, with the unit of what it means where that is known.
 pub(crate) fn axis(name: &str, unit: Option<&str>) -> String {
-    unit.filter(|unit| !unit.is_empty()).map_or(name.to_owned(), |unit| format!("{name}, {unit}"))
+    let name = in_letters(name);
+    unit.filter(|unit| !unit.is_empty()).map_or(name.clone(), |unit| format!("{name}, {unit}"))
 }
 
 /// The smallest singular value over two coordinates; dark where it is small, white at poles. Under the pointer stand the
@@ -52,7 +58,7 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
     let highest = found.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = found.iter().copied().fold(f64::INFINITY, f64::min).max(highest - 6.0);
     if found.is_empty() {
-        return "<p>there is a pole everywhere on this map</p>".to_owned();
+        return format!("<p>{}: {NOTHING}</p>", escaped(title));
     }
     let at = |step: usize| lowest + (highest - lowest) * step as f64 / SHADES as f64;
     let short = |log: f64| format!("{:.2e}", 10f64.powf(log));
@@ -64,7 +70,7 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
         (0..SHADES).map(|step| (shade(step), values(step))).collect();
     by_colour.push((POLE, "a pole".to_owned()));
     let canvas = Canvas { size: (420, 330), title, by_colour: &by_colour, is_crisp: true };
-    canvas.draw(|area, _| {
+    canvas.draw(|area, extras| {
         let (plot, legend) = area.split_horizontally(345);
         let mut chart = ChartBuilder::on(&plot)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
@@ -72,24 +78,16 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
             .x_label_area_size(38)
             .y_label_area_size(48)
             .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
-        let (dx, dy) = ((map.x.2 - map.x.1) / map.width as f64, (map.y.2 - map.y.1) / map.height as f64);
-        let colour =
-            |cell: &Option<f64>| cell.map(|value| level(value.max(f64::MIN_POSITIVE), lowest, highest));
-        // all of one colour together, so that they are one path
-        for this in [None].into_iter().chain((0..SHADES).map(Some)) {
-            let style = this.map_or(POLE, shade).filled();
-            for (row, cells) in map.smallest.chunks(map.width).enumerate() {
-                let mut start = 0;
-                for run in cells.chunk_by(|a, b| colour(a) == colour(b)) {
-                    let corner = |i: usize, j: usize| (map.x.1 + dx * i as f64, map.y.1 + dy * j as f64);
-                    if colour(&run[0]) == this {
-                        let corners = [corner(start, row), corner(start + run.len(), row + 1)];
-                        chart.draw_series([Rectangle::new(corners, style)])?;
-                    }
-                    start += run.len();
-                }
-            }
-        }
+        let colour = |cell: &Option<f64>| {
+            cell.map_or(POLE, |value| shade(level(value.max(f64::MIN_POSITIVE), lowest, highest)))
+        };
+        let (low, high) =
+            (chart.backend_coord(&(map.x.1, map.y.1)), chart.backend_coord(&(map.x.2, map.y.2)));
+        extras.cells = Some(Cells {
+            corners: [low.0, high.1, high.0, low.1],
+            columns: map.width,
+            colours: map.smallest.chunks(map.width).rev().flatten().map(colour).collect(),
+        });
         chart
             .configure_mesh()
             .disable_mesh()
@@ -127,11 +125,14 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
 /// The singular values on the way into a singularity, both axes logarithmic. Under the pointer stand all of them at a distance.
 pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
     let values: Vec<f64> = slope.values.iter().flatten().copied().filter(|v| *v > 1e-20).collect();
+    if values.is_empty() {
+        return format!("<p>{}: {NOTHING}</p>", escaped(title));
+    }
     let highest = values.iter().copied().fold(1e-20, f64::max) * 2.0;
     let lowest = values.iter().copied().fold(highest, f64::min).max(1e-18) / 2.0;
     let (near, far) =
         (slope.distance.last().copied().unwrap_or(1e-14), slope.distance.first().copied().unwrap_or(1.0));
-    Canvas { size: (420, 300), title, by_colour: &[], is_crisp: false }.draw(|area, hovers| {
+    Canvas { size: (420, 300), title, by_colour: &[], is_crisp: false }.draw(|area, extras| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
@@ -164,7 +165,7 @@ pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
         }
         let place = |distance: f64, value: f64| chart.backend_coord(&(distance, value));
         let (top, bottom) = (place(far, highest).1, place(far, lowest).1);
-        hovers.extend(columns(slope, |distance| place(distance, lowest).0, [top, bottom]));
+        extras.hovers.extend(columns(slope, |distance| place(distance, lowest).0, [top, bottom]));
         Ok(())
     })
 }
@@ -173,10 +174,15 @@ pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
 const LINES: [RGBColor; 4] =
     [RGBColor(112, 90, 200), RGBColor(0, 135, 190), RGBColor(0, 150, 110), RGBColor(150, 130, 60)];
 
-/// A stripe around each distance, and what stands there.
+/// The stripes of a line, which are as wide as a finger.
+const STRIPES: usize = 22;
+
+/// A stripe around every few distances, and what stands there.
 fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -> Vec<Hover> {
-    let places: Vec<i32> = slope.distance.iter().map(|distance| place(*distance)).collect();
-    let found = slope.distance.iter().zip(&slope.values).enumerate();
+    let all: Vec<(&f64, &Vec<f64>)> = slope.distance.iter().zip(&slope.values).collect();
+    let shown: Vec<_> = all.iter().step_by(all.len().div_ceil(STRIPES).max(1)).copied().collect();
+    let places: Vec<i32> = shown.iter().map(|(distance, _)| place(**distance)).collect();
+    let found = shown.into_iter().enumerate();
     let stripe = |(i, (distance, values)): (usize, (&f64, &Vec<f64>))| {
         let here = places[i];
         let half = |other: Option<&i32>| other.map_or(here, |other| (other + here) / 2);

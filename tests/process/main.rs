@@ -7,10 +7,12 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod check;
 mod cost;
 mod inputs;
 mod interrupts;
 mod prove;
+mod rank;
 mod values;
 mod writes;
 

@@ -111,6 +111,20 @@ impl Name {
     }
 }
 
+/// A name in letters alone, for places that hold no formula, such as the axis of a picture: `ω₀` for `omega0`. What has accents
+/// or an index of letters stays as it is written.
+pub fn in_letters(text: &str) -> String {
+    let plain = |name: &Name| name.accents.is_empty() && name.from.is_empty() && name.index.len() < 2;
+    let Some(name) = Name::of(text).filter(plain) else { return text.to_owned() };
+    let index = name.index.first().map_or("", String::as_str);
+    let below: Option<String> = index.chars().map(|c| char::from_u32(0x2080 + c.to_digit(10)?)).collect();
+    match (greek(&name.letters), below) {
+        (Some((letter, _)), Some(below)) => format!("{letter}{below}"),
+        (None, Some(below)) if name.letters.len() == 1 => format!("{}{below}", name.letters),
+        _ => text.to_owned(),
+    }
+}
+
 /// A part of an index, cut into runs of digits and of letters.
 pub(super) fn runs(part: &str) -> Vec<&str> {
     let mut found = Vec::new();

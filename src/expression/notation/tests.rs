@@ -373,6 +373,20 @@ fn nothing_overflows() {
     balanced(&latex(&formula));
 }
 
+#[test]
+fn names_in_letters() {
+    for (name, letters) in [
+        ("omega0", "ω₀"),
+        ("r12", "r₁₂"),
+        ("phi", "φ"),
+        ("theta_dot", "theta_dot"),
+        ("mass2", "mass2"),
+        ("c_m", "c_m"),
+    ] {
+        assert_eq!(in_letters(name), letters);
+    }
+}
+
 /// What is no number, letter by letter.
 #[test]
 fn markup_is_escaped() {

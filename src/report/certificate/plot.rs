@@ -77,9 +77,12 @@ pub fn region_map(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> Str
             .x_label_area_size(38)
             .y_label_area_size(50)
             .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
-        let smallest = ((map.x.2 - map.x.1) / 300.0, (map.y.2 - map.y.1) / 200.0);
+        let smallest = ((map.x.2 - map.x.1) / 100.0, (map.y.2 - map.y.1) / 70.0);
         // all of one standing together, so that they are one path, and then their borders
-        for standing in meanings {
+        // most is proved: the whole first, and then the rest on it
+        let whole = [(map.x.1, map.y.1), (map.x.2, map.y.2)];
+        chart.draw_series([Rectangle::new(whole, colour(Standing::Proved).filled())])?;
+        for standing in meanings.into_iter().filter(|standing| *standing != Standing::Proved) {
             for patch in map.patches.iter().filter(|patch| patch.standing == standing) {
                 let corners = [(patch.x.0, patch.y.0), (patch.x.1, patch.y.1)];
                 chart.draw_series([Rectangle::new(corners, colour(standing).filled())])?;

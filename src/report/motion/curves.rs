@@ -13,7 +13,7 @@ const LIMIT: RGBColor = RGBColor(200, 204, 210);
 const WIDTH: i32 = 800;
 const CHART: i32 = 500;
 /// No picture needs more places along its axis.
-const PLACES: usize = 220;
+const PLACES: usize = 130;
 
 /// What a curve shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,11 +1,11 @@
 //! The page of an experiment.
 
+use crate::report::document::document;
 use crate::report::motion::answers::Observed;
 use crate::report::motion::section::{
     body_pictures, faults, sensor_pictures, state_pictures, studies, summary,
 };
 use crate::report::motion::table::{ends, notes, updates};
-use crate::report::page::document::document;
 use maud::html;
 
 /// The page as HTML.
@@ -90,9 +90,9 @@ steps = 20
             let (page, section) = (observe_page(observed), observed_section(&[*observed]).into_string());
             for (text, what) in [(&page, "page"), (&section, "section")] {
                 assert!(!text.contains("could not be drawn"), "{what}");
-                // frames and outline, three states with their errors, sensor errors of one method and of both outputs, the noise
+                // twelve frames and the outline, three states with their errors, sensor errors of one method and of both outputs, the noise
                 // of three states, the basins of two methods
-                assert_eq!(text.matches("<svg").count(), 2 + 6 + 3 + 3 + 2, "{what}");
+                assert_eq!(text.matches("<svg").count(), 12 + 1 + 6 + 3 + 3 + 2, "{what}");
                 assert!(!text.contains("NaN"), "{what}");
             }
             assert!(section.contains("id=\"observers\""));

@@ -1,7 +1,7 @@
 //! All claims as a list that can be sorted and filtered, the map of numbered equations, and the faults of the text by kinds.
 
 use super::anchors::{Anchors, Placed};
-use super::entry::entry;
+use super::entry::{Engines, entry};
 use crate::claim::Outcome;
 use crate::paper::Numbering;
 use crate::report::claims::words::{RULE_OF_DAMAGE, counts, errors, meaning};
@@ -87,6 +87,7 @@ pub(super) fn faults(numbering: &Numbering, claims: &[Placed<'_>], anchors: &Anc
 /// The list of all claims, under the names of their files. What filters it is shown by the script alone.
 pub(super) fn all_claims(claims: &[Placed<'_>], anchors: &Anchors, files: &[&str]) -> Markup {
     let words = counts(claims.iter().map(|claim| claim.outcome));
+    let engines = Engines::new(claims);
     html! {
         section #claims {
             h2 { "All claims" }
@@ -109,12 +110,13 @@ pub(super) fn all_claims(claims: &[Placed<'_>], anchors: &Anchors, files: &[&str
                 } }
                 output #shown for="word file text sort" {}
             }
+            (engines.legend())
             div #list {
                 @for (place, name) in files.iter().enumerate() {
                     @let of_file: &[_] = &claims.iter().filter(|claim| claim.file == place).collect::<Vec<_>>();
                     @if !of_file.is_empty() {
                         h3 data-f=(place) { a href=(format!("#{}", anchors.file(place))) { (name) } }
-                        @for claim in of_file { (entry(**claim, anchors, name)) }
+                        @for claim in of_file { (entry(**claim, anchors, &engines)) }
                     }
                 }
             }

@@ -2,58 +2,55 @@
 
 use super::anchors::{Anchors, Placed};
 use crate::claim::{Outcome, Verdict};
-use crate::report::claims::outcomes::{error_bound, explanations, special_text, witness_line};
+use crate::report::claims::outcomes::{error_bound, special_text, witness_line};
 use crate::report::formula::formula_mathml;
-use crate::report::ranks::answer::fields_text;
+use crate::report::names::fields_text;
 use crate::system::{Basis, Flaw};
 use maud::{Markup, PreEscaped, html};
+use std::collections::BTreeMap;
 
-/// An entry with its anchor; `name` is that of its file.
-pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, name: &str) -> Markup {
+/// An entry with its anchor.
+pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>) -> Markup {
     let Placed { file, outcome } = claim;
     let anchor = anchors.claim(file, &outcome.id);
     html! {
-        article #(anchor) data-w=(outcome.word()) data-f=(file) class=[(!outcome.ok).then_some("bad")] {
+        article #(anchor) data-w=(outcome.word()) class=[(!outcome.ok).then_some("bad")] {
             h4 {
-                a href=(format!("#{anchor}")) { (outcome.id) } " " b.v { (outcome.word()) } " "
+                i { (outcome.id) } " " b.v { (outcome.word()) } " "
                 @if !outcome.ok { b { "expected: " (outcome.expected_word()) } " " }
                 @if let Some(line) = anchors.line(file, &outcome.id) {
-                    a.s href=(format!("#{}", anchors.line_name(file, line))) { (name) ":" (line) }
+                    a href=(format!("#{}", anchors.line_name(file, line))) { "line " (line) }
                 }
             }
             @match outcome.fault {
-                Some(fault) => (faulty(outcome, fault)),
+                Some(fault) => (faulty(outcome, fault, engines)),
                 None => {
                     @if !matches!(outcome.verdict, Verdict::Definition { .. }) || formula_mathml(&outcome.statement).is_some() {
                         (formula(&outcome.statement))
                     }
-                    p.y { (explain(&outcome.verdict)) (restated(outcome)) }
+                    p { (engines.explain(&outcome.verdict)) (restated(outcome)) }
                 }
             }
-            @if let Some(special) = &outcome.at_files_values { p.y { (special_text(special)) } }
-            @if !outcome.fields.is_empty() { p.y { "fields: " (fields_text(&outcome.fields)) } }
-            @if let Some(from) = &outcome.follows { p.y { "follows " (from) } }
+            @if let Some(special) = &outcome.at_files_values { p { (special_text(special)) } }
+            @if !outcome.fields.is_empty() { p { "fields: " (fields_text(&outcome.fields)) } }
+            @if let Some(from) = &outcome.follows { p { "follows " (from) } }
             @if let Some(remark) = &outcome.remark { p.r { (remark) } }
         }
     }
 }
 
 /// A form in the text that does not hold, and the right one.
-fn faulty(outcome: &Outcome, fault: Flaw) -> Markup {
+fn faulty(outcome: &Outcome, fault: Flaw, engines: &Engines<'_>) -> Markup {
     let [_, before, between] = fault.keywords();
-    let lines = explanations(outcome);
     html! {
         @if let Some(quoted) = &outcome.quoted { p.q { span.l { (before) } q { (quoted) } } }
         @if let Some((statement, verdict)) = &outcome.printed {
             div.q { span.l { @if outcome.quoted.is_some() { "as" } @else { (before) } } (formula(statement)) }
-            p.y { b { (verdict.word()) } " " (explain(verdict)) }
-            @if let Some(special) = &outcome.printed_at_files_values { p.y { (special_text(special)) } }
+            p { b { (verdict.word()) } " " (engines.explain(verdict)) }
+            @if let Some(special) = &outcome.printed_at_files_values { p { (special_text(special)) } }
         }
         div.c { span.l { (between) } (formula(&outcome.statement)) }
-        p.y { b { (outcome.verdict.word()) } " " (explain(&outcome.verdict)) }
-        @if !lines.is_empty() {
-            details { summary { "what the names mean" } @for line in lines { code { (line) } } }
-        }
+        p { b { (outcome.verdict.word()) } " " (engines.explain(&outcome.verdict)) }
     }
 }
 
@@ -75,14 +72,66 @@ fn restated(outcome: &Outcome) -> Markup {
     }
 }
 
+/// What decides claims: a name for each that decides several, so that it need not be said a thousand times.
+pub(super) struct Engines<'a>(Vec<&'a str>);
+
+impl<'a> Engines<'a> {
+    /// Those of some claims, the most frequent first.
+    pub fn new(claims: &[Placed<'a>]) -> Engines<'a> {
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for claim in claims {
+            if let Verdict::Proved { engine, .. } = &claim.outcome.verdict {
+                *counts.entry(engine).or_default() += 1;
+            }
+        }
+        let mut found: Vec<(&str, usize)> = counts.into_iter().filter(|(_, count)| *count > 3).collect();
+        found.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        found.truncate(26);
+        Engines(found.into_iter().map(|(engine, _)| engine).collect())
+    }
+
+    /// The names and what they stand for.
+    pub fn legend(&self) -> Markup {
+        html! {
+            @if !self.0.is_empty() {
+                details open {
+                    summary { "How they are decided" }
+                    ol type="A" { @for (place, engine) in self.0.iter().enumerate() { li #(name(place)) { (engine) } } }
+                }
+            }
+        }
+    }
+
+    fn explain(&self, verdict: &Verdict) -> Markup {
+        match verdict {
+            Verdict::Proved { engine, log2_error } => match self.0.iter().position(|known| known == engine) {
+                Some(place) => html! {
+                    "by " a href=(format!("#{}", name(place))) { (char::from(b'A' + place as u8)) } (certainty(*log2_error))
+                },
+                None => explain(verdict),
+            },
+            _ => explain(verdict),
+        }
+    }
+}
+
+fn name(engine: usize) -> String {
+    format!("by{engine}")
+}
+
+fn certainty(log2_error: f64) -> Markup {
+    html! {
+        @if log2_error == f64::NEG_INFINITY { "; certain" }
+        @else { "; error below 2" sup { (error_bound(log2_error).trim_start_matches("2^")) } }
+    }
+}
+
 /// What stands behind a verdict.
 pub(super) fn explain(verdict: &Verdict) -> Markup {
     html! {
         @match verdict {
             Verdict::Proved { engine, log2_error } => {
-                (engine)
-                @if *log2_error == f64::NEG_INFINITY { "; certain" }
-                @else { "; probability of an error below " (error_bound(*log2_error)) }
+                (engine) (certainty(*log2_error))
             }
             Verdict::Refuted { witness, .. } => { (witness_line(witness)) }
             Verdict::Definition { text } => { (text) }

@@ -2,12 +2,12 @@
 
 use super::anchors::{Anchors, placed, stem};
 use super::claims::{all_claims, equations, faults, tally};
-use super::document::document;
 use super::extremes::{extremes, has_extremes};
 use super::regime::{file_section, has_a_section};
 use super::source::sources;
 use crate::claim::Outcome;
 use crate::paper::Findings;
+use crate::report::document::document;
 use crate::report::motion::answers::Observed;
 use crate::report::motion::section::observed_section;
 use maud::{Markup, PreEscaped, html};
@@ -31,8 +31,12 @@ const SECTIONS: [&str; 12] = [
 /// The page as HTML.
 pub fn page(found: &Findings) -> String {
     let names: Vec<String> = (0..found.files.len()).map(|place| format!("file{place}")).collect();
-    let reserved: Vec<&str> =
-        SECTIONS.into_iter().chain(["shown"]).chain(names.iter().map(String::as_str)).collect();
+    let engines: Vec<String> = (0..26).map(|place| format!("by{place}")).collect();
+    let reserved: Vec<&str> = SECTIONS
+        .into_iter()
+        .chain(["shown"])
+        .chain(names.iter().chain(&engines).map(String::as_str))
+        .collect();
     let (anchors, claims) = (Anchors::new(&found.files, &reserved), placed(&found.files));
     let numbering = &found.paper.numbering;
     let experiments: Vec<Observed<'_>> =

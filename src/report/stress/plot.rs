@@ -40,13 +40,15 @@ impl Bars<'_> {
         self.marks.iter().all(|marks| marks.iter().all(|mark| matches!(mark, Some(Mark::Right))))
     }
 
+    /// The ways to which something happens, and one bar for those to which nothing does.
     fn ways(&self) -> Vec<(&'static str, &[Option<Mark>])> {
-        let all: Vec<_> = Way::ALL.iter().zip(&self.marks).map(|(way, marks)| (way.name(), *marks)).collect();
-        if self.is_calm() {
-            all.first().map(|(_, marks)| vec![("all of them", *marks)]).unwrap_or_default()
-        } else {
-            all
+        let is_right = |marks: &&[Option<Mark>]| marks.iter().all(|mark| matches!(mark, Some(Mark::Right)));
+        let named = Way::ALL.iter().zip(&self.marks).map(|(way, marks)| (way.name(), *marks));
+        let mut found: Vec<_> = named.filter(|(_, marks)| !is_right(marks)).collect();
+        if let Some(marks) = self.marks.iter().find(|marks| is_right(marks)) {
+            found.push((if found.is_empty() { "all of them" } else { "all others" }, marks));
         }
+        found
     }
 
     /// What is written over the bars.

@@ -4,6 +4,7 @@ use crate::report::drawing::{INK, MESH, svg};
 use crate::tradeoff::{Combination, Derivative, Digits, Number, Trade};
 use plotters::coord::CoordTranslate;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// All digits are drawn here.
 const ALL_DIGITS: f64 = 35.0;
@@ -31,7 +32,7 @@ fn height(combination: &Combination) -> f64 {
 }
 
 /// Every combination by its time a state (logarithmic) and the digits of its worst state: colours are kinds of numbers,
-/// shapes ways to a derivative; filled where every verdict is right, with a dark rim where every one is certain. The line joins those that no other combination
+/// shapes ways to a derivative; filled where every verdict is right, with a rim where every one is certain. The line joins those that no other combination
 /// whose every verdict is right beats in time and digits.
 pub fn trade_plot(trade: &Trade) -> String {
     let timed: Vec<&Combination> = trade.combinations.iter().filter(|c| c.seconds.is_finite()).collect();
@@ -84,8 +85,9 @@ pub fn trade_plot(trade: &Trade) -> String {
             mark(chart.plotting_area(), at, combination.derivative, inside, rim)?;
         }
         if timed.iter().any(|c| c.digits == Digits::Modular) {
-            let at = (fastest / 1.3, NO_DIGITS + 0.4);
-            let words = ("sans-serif", 11).into_font().color(&INK);
+            let at = (slowest * 1.3, NO_DIGITS);
+            let right = Pos::new(HPos::Right, VPos::Center);
+            let words = ("sans-serif", 12).into_font().color(&INK).pos(right);
             chart.plotting_area().draw(&Text::new("modulo a prime: no digits", at, words))?;
         }
         let key = |place: usize| (16 + 205 * (place % 2) as i32, 12 + 18 * (place / 2) as i32);
@@ -103,7 +105,7 @@ pub fn trade_plot(trade: &Trade) -> String {
         }
         let below = 18 * names.div_ceil(2) as i32 + 8;
         for (row, text) in
-            ["hollow: some verdicts are not right", "dark rim: all verdicts are certain"].iter().enumerate()
+            ["hollow: some verdicts are not right", "with a rim: all verdicts are certain"].iter().enumerate()
         {
             legend.draw(&Text::new(*text, (10, below + 17 * row as i32), words.clone()))?;
         }

@@ -15,6 +15,7 @@ mod exponents;
 mod expression;
 mod form;
 mod matrices;
+mod mistakes;
 mod problem;
 mod quantity;
 mod reading;
