@@ -206,6 +206,23 @@ fn mistakes_are_marked_where_they_are() {
     }
 }
 
+/// A pole is one also where the words that were needed exist on it: a divisor of a rate, that no output's derivative has met.
+#[test]
+fn a_pole_of_the_fields_is_a_pole() {
+    let text = "system \"s\"\nstate x, y\ndrift f\n  x' = y\n  y' = 1/x\noutput x\nsample\n  x in [1, 2]\n  \
+        y in [1, 2]\npole \"p\": x = 0\nset \"q\": x = 0, y = 1\nset \"r\": y = 0\nset \"none\": x = 0, x = 1\n";
+    let folder = folder();
+    let file = write(&folder, "s.proof", text);
+    let found = found(&file);
+    let ranks: Vec<_> =
+        found.files[0].ranks.iter().map(|rank| (rank.name(), rank.is_pole(), rank.as_expected())).collect();
+    let whole = ("the whole sample box", false, true);
+    assert_eq!(
+        ranks,
+        [whole, ("p", true, true), ("q", true, false), ("r", false, true), ("none", false, false)]
+    );
+}
+
 /// The words of the new entries are names all the same.
 #[test]
 fn words_of_entries_are_names() {
@@ -270,7 +287,8 @@ fn papers_come_with_the_program() {
     let error = json(&output)["error"].clone();
     for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
-        assert!(error["help"].as_str().unwrap().contains(&name), "{error}");
+        let advice = "a paper that is new is packed when build.rs runs again: touch it";
+        assert!(error["help"].as_str().unwrap().contains(&name), "{error}; {advice}");
     }
     // a file that came with the program, by its path
     let output = run(&["prove", "papers:moll2002/same_rate.proof", "--json"]);

@@ -180,7 +180,7 @@ fn an_equation_has_the_word_of_its_own_entry() {
 /// text shows is never called proved.
 #[test]
 fn the_words_of_the_thesis() {
-    let found = json(&palmistry(&["prove", "proofs", "--json"]));
+    let found = json(&palmistry(&["prove", "proofs/moll2002", "--json"]));
     let claims = found["claims"].as_array().unwrap();
     let mut words: BTreeMap<&str, usize> = BTreeMap::new();
     for claim in claims {

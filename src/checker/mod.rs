@@ -1,4 +1,4 @@
-//! Floor 3, beside `observability`: a small checker of what the engines found, which shares nothing with them.
+//! A small checker of what the engines found, which shares nothing with them.
 //!
 //! An engine that refutes, certifies or proves writes down what its verdict rests on: a [`Listing`] of operations as plain
 //! data, a state in exact numbers, the two sides, a minor. The checker reads that and evaluates it again, naively, one

@@ -1,4 +1,4 @@
-//! Floor 4: claims, the engines that decide them, and the verdicts.
+//! Claims, the engines that decide them, and the verdicts.
 //!
 //! [`decide`] takes one claim of a file to an [`Outcome`]. A verdict never says more than its engine knows: *proved*
 //! rests on an exact argument with the probability of an error stated, *refuted* on a state in exact numbers at which

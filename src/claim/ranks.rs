@@ -49,7 +49,7 @@ pub(crate) fn decide_codistribution(
     let words = Codistribution::new(system, &branch.values, Length::UntilItStops)?;
     let entries = system.graph.substitute(&words.entries(), &branch.values);
     let found = words.generic_rank();
-    if !words.is_final() && found <= claimed {
+    if !words.is_final() && found <= claimed && found < system.states.len() {
         return Err(format!(
             "words of up to {} fields give the rank {found}; the fields leave these states, so that longer words may add \
              to it (to claim a rank for some words, write rank([d(...); ...]))",

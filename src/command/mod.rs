@@ -1,4 +1,4 @@
-//! Floor 8: the command line. A file a verb: it reads its arguments, calls the library, and prints.
+//! The command line. A file a verb: it reads its arguments, calls the library, and prints.
 //!
 //! Results go to standard output (as JSON with `--json`), progress and words to standard error. The exit status is 0
 //! when all is as expected, 1 when something is not or the work was interrupted, 2 when the input could not be used or
@@ -6,6 +6,7 @@
 
 mod arguments;
 mod certify;
+mod check;
 mod eval;
 mod interrupt;
 mod observe;
@@ -43,6 +44,7 @@ struct Cli {
 enum Verb {
     Verify(verify::Verify),
     Prove(prove::Prove),
+    Check(check::Check),
     Rank(rank::Rank),
     Recheck(recheck::Recheck),
     Certify(certify::Certify),
@@ -57,6 +59,8 @@ enum Verb {
 pub(crate) enum Status {
     AsExpected,
     NotAsExpected,
+    /// A file could not be used; what is wrong with it is printed.
+    Unusable,
     /// The results are printed, but a file that was asked for could not be written.
     Unwritten,
 }
@@ -90,7 +94,7 @@ pub fn run() -> ExitCode {
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,
         Ok(Status::NotAsExpected) => ExitCode::from(1),
-        Ok(Status::Unwritten) => ExitCode::from(2),
+        Ok(Status::Unusable | Status::Unwritten) => ExitCode::from(2),
         Err(report) => {
             if form == Form::Json {
                 // where this cannot be written either, the words below are all that can be done
@@ -107,6 +111,7 @@ impl Verb {
         Form::of(match self {
             Verb::Verify(verb) => verb.json,
             Verb::Prove(verb) => verb.json,
+            Verb::Check(verb) => verb.json,
             Verb::Rank(verb) => verb.json,
             Verb::Recheck(verb) => verb.json,
             Verb::Certify(verb) => verb.json,
@@ -124,6 +129,7 @@ impl Verb {
         match self {
             Verb::Verify(verb) => verb.run(),
             Verb::Prove(verb) => verb.run(),
+            Verb::Check(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Rank(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Recheck(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Certify(verb) => interrupt::watched(move || verb.run(), nothing),

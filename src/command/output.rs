@@ -124,12 +124,24 @@ pub(crate) fn error_json(report: &Report) -> Value {
         error["help"] = json!(help.to_string());
     }
     if let Some(read) = report.downcast_ref::<ReadError>() {
-        let (line, column) = read.line_and_column();
-        error["file"] = json!(read.source_code.name());
-        error["line"] = json!(line);
-        error["column"] = json!(column);
+        error = read_error_json(read);
     }
     json!({ "error": error })
+}
+
+/// What is wrong with a file, and where, as one object.
+pub(crate) fn read_error_json(error: &ReadError) -> Value {
+    let (line, column) = error.line_and_column();
+    let mut object = json!({
+        "message": error.message,
+        "file": error.source_code.name(),
+        "line": line,
+        "column": column,
+    });
+    if let Some(help) = &error.help {
+        object["help"] = json!(help);
+    }
+    object
 }
 
 /// What is wrong with the command line, as JSON: the first line is the message, the rest says what to do.

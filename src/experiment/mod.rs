@@ -1,4 +1,4 @@
-//! Floor 6, beside the trade-offs: experiments, simulated or recorded.
+//! Experiments, simulated or recorded.
 //!
 //! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
 //! from a TOML file and checked value by value. A [`Simulation`] moves its body; an [`Experiment`] is a scene with its readings, and

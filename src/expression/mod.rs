@@ -1,4 +1,4 @@
-//! Floor 1: from text to a shared graph of expressions, its derivative, and its value over any number.
+//! From text to a shared graph of expressions, its derivative, and its value over any number.
 //!
 //! [`parse_expression`] reads text into a [`syntax::Expr`]; an elaborator on a higher floor, which knows what names mean, builds
 //! nodes of a [`Graph`] from it; a [`Derivation`] differentiates nodes; a [`Program`] is what is evaluated.

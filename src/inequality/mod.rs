@@ -1,4 +1,4 @@
-//! Floor 3: does an inequality hold wherever others do?
+//! Does an inequality hold wherever others do?
 //!
 //! Three ways, one after the other. Signs that can be read off ([`crate::expression::sign`]); the signs of polynomial
 //! factors, by their coefficients or as sums of squares (`factors`, `squares`), for all states; and branch and bound in

@@ -1,4 +1,4 @@
-//! Floor 4: real bodies, as a second and independent witness for the physics.
+//! Real bodies, as a second and independent witness for the physics.
 //!
 //! A body is given by its support function: [`PlanarBody`] with a few harmonics, [`Solid`] as an ellipsoid or
 //! as a body that is none. It is laid on palms so that it touches them ([`place`], [`grip`](grip())), which

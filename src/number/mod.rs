@@ -1,4 +1,4 @@
-//! Floor 0: what a value can be.
+//! What a value can be.
 //!
 //! An [`Arithmetic`] is a set of numbers together with its operations: numbers of fixed size ([`Real`]: single and
 //! double precision, double-doubles, intervals), residues modulo a prime, exact rationals, enclosures of any precision,

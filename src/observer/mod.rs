@@ -1,4 +1,4 @@
-//! Floor 5: states recovered from what is measured.
+//! States recovered from what is measured.
 //!
 //! [`Signals`] are columns of measurements over time. A [`Model`] takes some states of a system for unknown and everything else
 //! for constants or signals; a [`Flow`] follows it through time with its exact first and second derivatives by the unknowns. A

@@ -1,6 +1,7 @@
 //! Everything that was found of a paper.
 
 use super::folder::Paper;
+use super::left_out::LeftOut;
 use super::reduction::ReductionFound;
 use super::views::{LineFound, MapFound, SetRank};
 use crate::certificate::RegionAnswer;
@@ -9,13 +10,6 @@ use crate::experiment::{Answer, Experiment};
 use crate::system::System;
 use crate::tradeoff::stress::Study;
 use crate::tradeoff::{Growth, PrintedExpression, RouteAgreement, Trade};
-
-/// Something that could not be done, and why. The rest is done all the same.
-#[derive(Clone, Debug)]
-pub struct LeftOut {
-    pub what: String,
-    pub why: String,
-}
 
 /// Lie derivatives of one output along one field, to high orders.
 pub struct Derivatives {

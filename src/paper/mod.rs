@@ -6,13 +6,15 @@
 
 mod findings;
 mod folder;
+mod left_out;
 mod numbering;
 mod reduction;
 mod verify;
 mod views;
 
-pub use findings::{Derivatives, FileFindings, Findings, LeftOut};
+pub use findings::{Derivatives, FileFindings, Findings};
 pub use folder::{MANIFEST, Paper};
+pub use left_out::LeftOut;
 pub use numbering::{Equation, Numbering};
 pub use reduction::ReductionFound;
 pub use verify::{VerifyOptions, verify, verify_into};

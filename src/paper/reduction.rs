@@ -2,7 +2,7 @@
 //! file, and decided like any other: that the conditions stay met, that what is left out stays as it is, that fields, outputs
 //! and the differentials of the words that the rank needs are the same. And what that saves is counted.
 
-use super::LeftOut;
+use super::left_out::LeftOut;
 use crate::claim::{Outcome, decide_all};
 use crate::expression::NodeId;
 use crate::expression::syntax::Relation;

@@ -1,7 +1,8 @@
 //! A paper taken through everything, file by file.
 
-use super::findings::{Derivatives, FileFindings, Findings, LeftOut};
+use super::findings::{Derivatives, FileFindings, Findings};
 use super::folder::Paper;
+use super::left_out::LeftOut;
 use super::reduction::reduce;
 use super::views::{draw, has_a_rank, rank_on};
 use crate::certificate::certify_region;

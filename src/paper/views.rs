@@ -1,9 +1,9 @@
 //! The sets, maps and lines of one system: ranks decided, singular values drawn.
 
-use super::LeftOut;
+use super::left_out::LeftOut;
 use crate::expression::NodeId;
 use crate::observability::{Codistribution, CodistributionError, Length, OWN_ROWS};
-use crate::sweep::{RankAnswer, RankError, RankQuestion, answer_rank};
+use crate::sweep::{BranchAnswer, RankAnswer, RankError, RankQuestion, answer_rank};
 use crate::system::{Assignment, LineView, MapView, NamedSet, System, Value};
 use crate::tradeoff::{Landscape, Map, Rows, Slope};
 use std::sync::atomic::AtomicBool;
@@ -33,14 +33,22 @@ impl SetRank {
 
     /// Whether every state is a pole.
     pub fn is_pole(&self) -> bool {
-        matches!(self.found, Err(RankError::Codistribution(CodistributionError::Pole { .. })))
+        match &self.found {
+            Err(why) => matches!(why, RankError::Codistribution(CodistributionError::Pole { .. })),
+            // the words that were taken exist, and the fields do not
+            Ok(answer) => {
+                let left_out =
+                    |branch: &BranchAnswer| branch.full.samples == 0 && !branch.full.poles.is_empty();
+                !answer.branches.is_empty() && answer.branches.iter().all(left_out)
+            }
+        }
     }
 
     /// A pole where the file says so, and elsewhere a rank.
     pub fn as_expected(&self) -> bool {
         match &self.set {
             Some(set) if set.is_pole => self.is_pole(),
-            _ => self.found.is_ok(),
+            _ => self.found.is_ok() && !self.is_pole(),
         }
     }
 }

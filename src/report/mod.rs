@@ -1,13 +1,15 @@
-//! Floor 7: what was found, as JSON, as text, as JUnit XML, and as a page with plots.
+//! What was found, as JSON, as text, as JUnit XML, and as a page with plots.
 //!
 //! Nothing is decided here.
 
 mod certificate;
 mod claims;
+mod document;
 mod drawing;
 mod formula;
 mod layout;
 mod motion;
+mod names;
 mod page;
 mod plot;
 mod ranks;

@@ -3,6 +3,7 @@
 use super::error::{Problem, nearest};
 use super::matrices::transpose;
 use super::model::{Assignment, Kind, Matrix, System, Value};
+use super::problems::Cause;
 use crate::expression::syntax::{Expr, ExprKind, Name, Span};
 use crate::expression::{Need, NodeId, gradient};
 use crate::number::Function;
@@ -179,6 +180,7 @@ impl System {
             Problem::new(span, format!("'{name}' is no {what}"), "declared above as something else")
         } else {
             Problem::new(span, format!("unknown {what} '{name}'"), "not declared above")
+                .because(Cause::Unknown(name.to_owned()))
         };
         match near {
             Some(near) => problem.help(format!("perhaps you meant '{near}'")),

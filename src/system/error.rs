@@ -1,5 +1,6 @@
 //! What can be wrong with a file, shown at its place.
 
+use super::problems::Cause;
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use std::sync::Arc;
 
@@ -45,11 +46,18 @@ pub(crate) struct Problem {
     pub span: std::ops::Range<usize>,
     pub label: String,
     pub help: Option<String>,
+    pub cause: Cause,
 }
 
 impl Problem {
     pub fn new(span: &std::ops::Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Self {
-        Problem { message: message.into(), span: span.clone(), label: label.into(), help: None }
+        Problem {
+            message: message.into(),
+            span: span.clone(),
+            label: label.into(),
+            help: None,
+            cause: Cause::Itself,
+        }
     }
 
     pub fn help(mut self, help: impl Into<String>) -> Self {
@@ -57,8 +65,20 @@ impl Problem {
         self
     }
 
+    /// Says on what the problem rests.
+    pub fn because(mut self, cause: Cause) -> Self {
+        self.cause = cause;
+        self
+    }
+
     /// The error with the text that it points into. The span is kept within the text and on character boundaries.
     pub fn locate(self, name: &str, text: &str) -> ReadError {
+        self.locate_in(&Arc::new(NamedSource::new(name, text.to_owned())))
+    }
+
+    /// The same with a text that several errors share.
+    pub fn locate_in(self, source: &Arc<NamedSource<String>>) -> ReadError {
+        let text = source.inner();
         let floor = |mut at: usize| {
             at = at.min(text.len());
             while !text.is_char_boundary(at) {
@@ -76,7 +96,7 @@ impl Problem {
         }
         ReadError {
             message: self.message,
-            source_code: Arc::new(NamedSource::new(name, text.to_owned())),
+            source_code: source.clone(),
             span: SourceSpan::new(begin.into(), end - begin),
             label,
             help: self.help,

@@ -1,6 +1,7 @@
 //! The grammar of a proof file, without the meaning of its names. The README documents it; it is a public interface.
 
 use super::model::Role;
+use super::problems::{Damage, indentation, is_first_in_line, next_entry, open_quotation};
 use super::standing::{Basis, Flaw, Reference, basis, fault};
 use super::views::{View, begins, view};
 use crate::expression::Expected;
@@ -11,7 +12,7 @@ use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};
 use winnow::error::{ErrMode, ParserError};
 use winnow::prelude::*;
-use winnow::stream::Location;
+use winnow::stream::{Location, Stream};
 use winnow::token::{literal, take_till, take_while};
 
 /// One entry of a file.
@@ -357,7 +358,7 @@ fn item(input: &mut Text<'_>) -> Read<Item> {
 }
 
 /// The words that begin an entry.
-const ENTRIES: [&str; 24] = [
+pub(super) const ENTRIES: [&str; 24] = [
     "system",
     "use",
     "state",
@@ -403,16 +404,57 @@ fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {
 
 /// Reads a whole file.
 pub(crate) fn parse_file(text: &str) -> Result<Vec<Item>, Expected> {
+    let (items, mut damage) = parse_entries(text, 1);
+    if damage.is_empty() { Ok(items) } else { Err(damage.remove(0).expected) }
+}
+
+/// That a quotation goes on into the next entry.
+fn never_closed(at: usize) -> Expected {
+    let help = "the text goes on into the next entry, up to the quotation mark with which another one begins";
+    Expected { what: "a closing quotation mark for this one".to_owned(), at, help: Some(help.to_owned()) }
+}
+
+/// Reads what can be read of a file: its entries, and up to `most` parts of it that are none. Behind the last of those
+/// nothing is read.
+pub(super) fn parse_entries(text: &str, most: usize) -> (Vec<Item>, Vec<Damage>) {
+    let mut damage = Vec::new();
     let all = |input: &mut Text<'_>| -> Read<Vec<Item>> {
         let mut items = Vec::new();
+        // where the last entry begins
+        let mut before = (input.checkpoint(), input.current_token_start());
         while !input.input.as_ref().is_empty() {
-            match item.parse_next(input) {
-                Ok(found) => items.push(found),
-                Err(ErrMode::Cut(error)) => return Err(ErrMode::Cut(error)),
-                Err(_) => return Err(ErrMode::Cut(no_entry(text, input, !items.is_empty()))),
-            }
+            let (start, begin) = (input.checkpoint(), input.current_token_start());
+            let expected = match item.parse_next(input) {
+                Ok(found) => {
+                    items.push(found);
+                    before = (start, begin);
+                    continue;
+                }
+                Err(ErrMode::Cut(error)) => error,
+                Err(_) => no_entry(text, input, !items.is_empty()),
+            };
+            let after = |begin: usize| next_entry(text, begin, indentation(text, begin));
+            // what stands behind an entry in its line belongs to it
+            let behind = !items.is_empty() && !is_first_in_line(text, begin);
+            let swallowed =
+                if behind { open_quotation(&text[before.1..after(before.1).min(begin)]) } else { None };
+            let (start, begin, damaged, expected) = match swallowed {
+                Some(quote) if after(before.1) < begin => {
+                    items.pop();
+                    (before.0, before.1, before.1, never_closed(before.1 + quote))
+                }
+                _ => (start, begin, if behind { before.1 } else { begin }, expected),
+            };
+            let end = if damage.len() + 1 >= most { text.len() } else { after(begin) };
+            damage.push(Damage { expected, left_out: damaged..end });
+            input.reset(&start);
+            input.next_slice(end - begin);
         }
         Ok(items)
     };
-    read_all(text, &Depth::default(), ENTRY, all)
+    let items = read_all(text, &Depth::default(), ENTRY, all);
+    items.map_or_else(
+        |expected| (Vec::new(), vec![Damage { expected, left_out: 0..text.len() }]),
+        |items| (items, damage),
+    )
 }

@@ -1,4 +1,4 @@
-//! Floor 2: a system, that is its states, parameters, vector fields, outputs and sample box, and how it is read from a
+//! A system, that is its states, parameters, vector fields, outputs and sample box, and how it is read from a
 //! proof file.
 //!
 //! [`System::read`] turns a file into a [`System`], or into a [`ReadError`] that points into the text. The claims of
@@ -14,6 +14,7 @@ mod extent;
 mod grammar;
 mod matrices;
 mod model;
+mod problems;
 mod read;
 mod references;
 mod restates;
@@ -27,6 +28,7 @@ pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statemen
 pub use model::{
     Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,
 };
+pub use read::Examination;
 pub(crate) use read::load;
 pub use standing::{Basis, Flaw, Reference};
 pub use views::{LineEnd, LineView, MapView, NamedSet, Point, ReductionTo};

@@ -3,15 +3,17 @@
 use super::domain::Domain;
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
-use super::grammar::{ClaimSyntax, Item, parse_file};
+use super::grammar::{ClaimSyntax, Item, Statement, parse_entries};
 use super::model::{Field, FieldPlace, Kind, Matrix, Range, Role, SymbolInfo, System, Value};
+use super::problems::{Cause, Full, Problems, Remnant, names_of_text};
 use super::written::{Scope, Written, in_one_line, places_in};
 use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Expr, Name, Relation, Span};
 use crate::expression::{Derivation, Graph, Guard, Symbol, parse_expression};
 use crate::file::{self, ReadFailure, read_text};
+use miette::NamedSource;
 use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -31,9 +33,7 @@ impl System {
     /// # Errors
     /// What is wrong with the file, and where.
     pub fn read(path: &Path) -> Result<System, ReadError> {
-        let name = path.display().to_string();
-        let text = load(path).map_err(|message| Problem::new(&(0..0), message, "").locate(&name, ""))?;
-        Self::parse(&name, &text, path.parent().unwrap_or(Path::new("")))
+        System::examine(path, 1).into_result()
     }
 
     /// Reads a system from a text; imports are looked for in `folder`.
@@ -41,13 +41,47 @@ impl System {
     /// # Errors
     /// What is wrong with the text, and where.
     pub fn parse(name: &str, text: &str, folder: &Path) -> Result<System, ReadError> {
+        System::examine_text(name, text, folder, 1).into_result()
+    }
+
+    /// Reads a proof file and says all that is wrong with it, up to so many problems.
+    pub fn examine(path: &Path, most: usize) -> Examination {
+        let name = path.display().to_string();
+        match load(path) {
+            Ok(text) => {
+                let folder = path.parent().unwrap_or(Path::new(""));
+                let mut found = System::examine_text(&name, &text, folder, most);
+                found.files.insert(path.to_owned());
+                found
+            }
+            Err(message) => Examination {
+                system: None,
+                problems: vec![Problem::new(&(0..0), message, "").locate(&name, "")],
+                more: false,
+                files: BTreeSet::from([path.to_owned()]),
+            },
+        }
+    }
+
+    /// The same of a text; imports are looked for in `folder`.
+    pub fn examine_text(name: &str, text: &str, folder: &Path, most: usize) -> Examination {
         let text = with_plain_line_ends(text);
         let mut reading = Reading::default();
         reading.open.extend(file::identity(Path::new(name)));
+        let mut problems = Problems::up_to(most);
+        let built = System::build(name, &text, folder, Graph::default(), &mut reading, &mut problems);
         // what an imported file refers to is looked for where that file itself is read
-        System::build(name, &text, folder, Graph::default(), &mut reading)
-            .and_then(|system| system.check_references(folder).map(|()| system))
-            .map_err(|problem| problem.locate(name, &text))
+        let system = built
+            .ok()
+            .filter(|system| system.check_references(folder, &mut problems, &mut reading.files).is_ok());
+        let more = problems.more;
+        let found = problems.into_found();
+        let source = Arc::new(NamedSource::new(name, text));
+        let mut problems: Vec<ReadError> =
+            found.into_iter().map(|problem| problem.locate_in(&source)).collect();
+        problems.sort_by_key(|problem| problem.span.offset());
+        let system = system.filter(|_| problems.is_empty());
+        Examination { system, problems, more, files: reading.files }
     }
 
     /// The value of an expression that is not in the file but asked of it from outside.
@@ -74,9 +108,18 @@ impl System {
         folder: &Path,
         graph: Graph,
         reading: &mut Reading,
-    ) -> Result<System, Problem> {
-        refuse_reordering(text)?;
-        let items = parse_file(text).map_err(expected)?;
+        problems: &mut Problems,
+    ) -> Result<System, Full> {
+        if let Err(problem) = refuse_reordering(text) {
+            problems.add(problem)?;
+        }
+        let (items, damage) = parse_entries(text, problems.room());
+        for part in damage {
+            problems.add(expected(part.expected))?;
+            if let Some((word, names)) = names_of_text(&text[part.left_out]) {
+                problems.break_names(word, names);
+            }
+        }
         let mut system = System {
             title: String::new(),
             cite: None,
@@ -112,17 +155,28 @@ impl System {
                 && !ids.insert(claim.id.clone())
             {
                 let message = format!("there is a claim '{}' already", claim.id);
-                return Err(Problem::new(&claim.span, message, "the second one"));
+                problems.add(Problem::new(&claim.span, message, "the second one"))?;
             }
-            system.enter(item, folder, reading)?;
+            let remnant = Remnant::of(&item, problems);
+            if let Err(problem) = system.enter(item, folder, reading) {
+                system.entry_failed(problem, remnant, problems)?;
+            }
         }
         for claim in system.claims.clone() {
-            system.check(&claim)?;
+            for statement in claim.body.statements() {
+                if let Err(problem) = system.check(&claim, statement) {
+                    let remnant = Remnant::of_statement(statement, problems);
+                    system.entry_failed(problem, remnant, problems)?;
+                }
+            }
         }
         system.domain = Default::default();
         if system.title.is_empty() {
-            return Err(Problem::new(&(0..0), "the file does not name a system", "here")
-                .help("begin with: system \"what it is\""));
+            problems.add(
+                Problem::new(&(0..0), "the file does not name a system", "here")
+                    .help("begin with: system \"what it is\"")
+                    .because(Cause::Title),
+            )?;
         }
         Ok(system)
     }
@@ -224,64 +278,64 @@ impl System {
         Ok(())
     }
 
-    /// Whether a claim can be understood: its names are known and its two sides can be equal at all.
-    fn check(&mut self, claim: &ClaimSyntax) -> Result<(), Problem> {
-        for statement in claim.body.statements() {
-            let (left, right) = (&statement.equation.left, &statement.equation.right);
-            let values = (self.elaborate(left)?, self.elaborate(right)?);
-            let comparable = match &values {
-                (Value::Matrix(l), Value::Matrix(r)) => (l.rows, l.columns) == (r.rows, r.columns),
-                (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
-                (left, right) => matches!(left, Value::Scalar(_)) || matches!(right, Value::Scalar(_)),
-            };
-            let of_codistribution =
-                matches!(values, (Value::CodistributionRank, _) | (_, Value::CodistributionRank));
-            if of_codistribution
-                && !self.states.is_empty()
-                && !self.outputs.is_empty()
-                && let Some(problem) = self.no_motion()
-            {
-                let span = if self.fields.is_empty() { statement.span.clone() } else { problem.span.clone() };
-                return Err(Problem {
-                    span,
-                    message: format!("claim {}: {}", claim.id, problem.message),
-                    ..problem
-                });
+    /// Whether a statement of a claim can be understood: its names are known and its two sides can be equal at all.
+    fn check(&mut self, claim: &ClaimSyntax, statement: &Statement) -> Result<(), Problem> {
+        let (left, right) = (&statement.equation.left, &statement.equation.right);
+        let values = (self.elaborate(left)?, self.elaborate(right)?);
+        let comparable = match &values {
+            (Value::Matrix(l), Value::Matrix(r)) => (l.rows, l.columns) == (r.rows, r.columns),
+            (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
+            (left, right) => matches!(left, Value::Scalar(_)) || matches!(right, Value::Scalar(_)),
+        };
+        let of_codistribution =
+            matches!(values, (Value::CodistributionRank, _) | (_, Value::CodistributionRank));
+        if of_codistribution
+            && !self.states.is_empty()
+            && !self.outputs.is_empty()
+            && let Some(problem) = self.no_motion()
+        {
+            let span = if self.fields.is_empty() { statement.span.clone() } else { problem.span.clone() };
+            return Err(Problem {
+                span,
+                message: format!("claim {}: {}", claim.id, problem.message),
+                cause: Cause::Motion,
+                ..problem
+            });
+        }
+        if !comparable {
+            let message = format!("{} cannot equal {}", values.0.describe(), values.1.describe());
+            let problem = Problem::new(&statement.span, message, "this claim");
+            return Err(problem.because(Cause::Shape));
+        }
+        let relation = statement.equation.relation;
+        let of_numbers = matches!(values, (Value::Scalar(_), Value::Scalar(_)));
+        if relation != Relation::Equal && !of_numbers {
+            let (left, right) = (values.0.describe(), values.1.describe());
+            let message = format!("'{}' compares numbers, not {left} and {right}", relation.sign());
+            return Err(Problem::new(&statement.equation.span, message, "this relation"));
+        }
+        for further in &statement.further {
+            self.scalar(&further.right)?;
+        }
+        if statement.on_sample && !of_numbers {
+            let message = "'on sample' is said of numbers; a rank is that at almost all states";
+            return Err(Problem::new(&statement.span, message, "this claim"));
+        }
+        for condition in &statement.conditions {
+            self.scalar(&condition.left)?;
+            self.scalar(&condition.right)?;
+            if let Some(within) = &condition.within {
+                return Err(Problem::new(&within.span, "a condition is met exactly", "without 'within'"));
             }
-            if !comparable {
-                let message = format!("{} cannot equal {}", values.0.describe(), values.1.describe());
+        }
+        if let Some(within) = &statement.equation.within {
+            self.scalar(within)?;
+        }
+        if statement.carried.is_some() {
+            let is_print = statement.equation.right.is_literal();
+            if !is_print || !of_numbers || relation != Relation::Equal {
+                let message = "'carrying ... digits' is said of a number in print, as in e at {x = 1} = 2.718 carrying 10 digits";
                 return Err(Problem::new(&statement.span, message, "this claim"));
-            }
-            let relation = statement.equation.relation;
-            let of_numbers = matches!(values, (Value::Scalar(_), Value::Scalar(_)));
-            if relation != Relation::Equal && !of_numbers {
-                let (left, right) = (values.0.describe(), values.1.describe());
-                let message = format!("'{}' compares numbers, not {left} and {right}", relation.sign());
-                return Err(Problem::new(&statement.equation.span, message, "this relation"));
-            }
-            for further in &statement.further {
-                self.scalar(&further.right)?;
-            }
-            if statement.on_sample && !of_numbers {
-                let message = "'on sample' is said of numbers; a rank is that at almost all states";
-                return Err(Problem::new(&statement.span, message, "this claim"));
-            }
-            for condition in &statement.conditions {
-                self.scalar(&condition.left)?;
-                self.scalar(&condition.right)?;
-                if let Some(within) = &condition.within {
-                    return Err(Problem::new(&within.span, "a condition is met exactly", "without 'within'"));
-                }
-            }
-            if let Some(within) = &statement.equation.within {
-                self.scalar(within)?;
-            }
-            if statement.carried.is_some() {
-                let is_print = statement.equation.right.is_literal();
-                if !is_print || !of_numbers || relation != Relation::Equal {
-                    let message = "'carrying ... digits' is said of a number in print, as in e at {x = 1} = 2.718 carrying 10 digits";
-                    return Err(Problem::new(&statement.span, message, "this claim"));
-                }
             }
         }
         Ok(())
@@ -440,6 +494,7 @@ impl System {
         reading: &mut Reading,
     ) -> Result<(), Problem> {
         let refuse = |message: String| Problem::new(span, message, "this file");
+        reading.files.insert(path.to_owned());
         let place =
             file::identity(path).map_err(|e| refuse(format!("cannot read {}: {e}", path.display())))?;
         if let Some(begin) = reading.open.iter().position(|open| *open == place) {
@@ -543,7 +598,12 @@ impl System {
         let text = with_plain_line_ends(&text);
         let folder = path.parent().unwrap_or(Path::new(""));
         let graph = std::mem::take(&mut self.graph);
-        let mut other = System::build(&name, &text, folder, graph, reading).map_err(|problem| {
+        // what is wrong with an imported file is told of that file: here is said that something is
+        let mut problems = Problems::up_to(1);
+        let built = System::build(&name, &text, folder, graph, reading, &mut problems);
+        let mut other = built.map_err(|Full| {
+            let first = problems.into_found().into_iter().next();
+            let problem = first.unwrap_or_else(|| Problem::new(&(0..0), "the file cannot be read", ""));
             let inner = problem.locate(&name, &text);
             let (line, column) = inner.line_and_column();
             let problem =
@@ -566,6 +626,38 @@ struct Reading {
     /// Those that are read, so that none is read twice, however many others import it. Their graphs are empty: all are
     /// in the one graph of the reading.
     done: HashMap<PathBuf, Arc<System>>,
+    /// All that were asked for, whether they are there or not.
+    files: BTreeSet<PathBuf>,
+}
+
+/// What examining a file came to.
+#[derive(Debug)]
+pub struct Examination {
+    /// The system, where nothing is wrong.
+    pub system: Option<System>,
+    /// What is wrong, in the order of the file.
+    pub problems: Vec<ReadError>,
+    /// Whether there is more than was asked for.
+    pub more: bool,
+    /// The files that were read or looked for: this one, and all that it imports or refers to.
+    pub files: BTreeSet<PathBuf>,
+}
+
+impl Examination {
+    /// The system, or the first problem.
+    ///
+    /// # Errors
+    /// What is wrong with the file, and where.
+    pub fn into_result(self) -> Result<System, ReadError> {
+        match self.system {
+            Some(system) => Ok(system),
+            None => Err(self
+                .problems
+                .into_iter()
+                .next()
+                .unwrap_or_else(|| Problem::new(&(0..0), "the file cannot be read", "").locate("", ""))),
+        }
+    }
 }
 
 /// The last part of a path, for messages.
@@ -616,5 +708,6 @@ fn expected(error: crate::expression::Expected) -> Problem {
         span: error.at..error.at + 1,
         label: "here".to_owned(),
         help: error.help,
+        cause: Cause::Itself,
     }
 }

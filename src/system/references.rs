@@ -3,9 +3,10 @@
 use super::error::{Problem, nearest};
 use super::grammar::{ClaimBody, ClaimSyntax, Item, parse_file};
 use super::model::System;
+use super::problems::{Cause, Full, Problems};
 use super::read::{load, with_plain_line_ends};
 use super::standing::{Basis, Reference};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// An entry, as far as references go.
@@ -36,18 +37,39 @@ fn references(claim: &ClaimSyntax) -> impl Iterator<Item = &Reference> {
 
 impl System {
     /// Whether everything that the entries refer to is there; `folder` is the file's.
-    pub(super) fn check_references(&self, folder: &Path) -> Result<(), Problem> {
+    pub(super) fn check_references(
+        &self,
+        folder: &Path,
+        problems: &mut Problems,
+        files: &mut BTreeSet<PathBuf>,
+    ) -> Result<(), Full> {
         let mut known = Known::from([(PathBuf::new(), entries(&self.claims))]);
+        let looked_for = |reference: &Reference| reference.file.as_ref().map(|file| folder.join(file));
         for claim in &self.claims {
             for reference in references(claim) {
-                let file = look_into(reference, Path::new(""), folder, &mut known)?;
-                self.exists(claim, reference, &known[&file])?;
-                let mut met = HashSet::from([(PathBuf::new(), claim.id.clone())]);
-                if leads_back(reference, Path::new(""), folder, &mut known, &mut met)? {
-                    let message = format!("'{}' is said to come from itself", claim.id);
-                    return Err(Problem::new(&reference.span, message, "leads back to it"));
+                files.extend(looked_for(reference));
+                if let Err(problem) = self.check_reference(claim, reference, folder, &mut known) {
+                    problems.add(problem)?;
                 }
             }
+        }
+        files.extend(known.into_keys().filter(|file| !file.as_os_str().is_empty()));
+        Ok(())
+    }
+
+    fn check_reference(
+        &self,
+        claim: &ClaimSyntax,
+        reference: &Reference,
+        folder: &Path,
+        known: &mut Known,
+    ) -> Result<(), Problem> {
+        let file = look_into(reference, Path::new(""), folder, known)?;
+        self.exists(claim, reference, &known[&file])?;
+        let mut met = HashSet::from([(PathBuf::new(), claim.id.clone())]);
+        if leads_back(reference, Path::new(""), folder, known, &mut met)? {
+            let message = format!("'{}' is said to come from itself", claim.id);
+            return Err(Problem::new(&reference.span, message, "leads back to it"));
         }
         Ok(())
     }
@@ -81,6 +103,8 @@ impl System {
         let file = reference.file.as_ref().map(|file| format!(" in {file}")).unwrap_or_default();
         let problem =
             Problem::new(&reference.span, format!("there is no {what} '{name}'{file}"), "not found");
+        // what another file lacks is not this one's doing
+        let problem = if here { problem.because(Cause::Unknown(name.to_owned())) } else { problem };
         Err(match nearest(name, entries.keys().map(String::as_str)) {
             Some(near) => problem.help(format!("perhaps you meant '{near}'")),
             None => problem,

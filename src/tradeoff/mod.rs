@@ -1,4 +1,4 @@
-//! Floor 6: speed against accuracy, and the extremes. What rounding does to a printed formula, what a smaller model
+//! Speed against accuracy, and the extremes. What rounding does to a printed formula, what a smaller model
 //! saves, how the singular values behave on the way into a singularity.
 
 mod differences;

@@ -214,7 +214,14 @@ fn proof() {
     let folder = root().join("proofs/moll2002");
     let reader = Watched::new("proof", move |bytes| {
         if let Ok(text) = std::str::from_utf8(bytes) {
-            let _ = System::parse("damaged.proof", text, &folder);
+            let first = System::parse("damaged.proof", text, &folder).err();
+            // who asks for all problems gets the first of them too, and none for a file that can be read
+            let all = System::examine_text("damaged.proof", text, &folder, 20);
+            assert!(all.problems.len() <= 20 && all.problems.is_empty() == first.is_none());
+            assert!(all.problems.is_sorted_by_key(|problem| problem.span.offset()));
+            if let Some(first) = first.filter(|_| !all.more) {
+                assert!(all.problems.iter().any(|problem| problem.message == first.message), "{first:?}");
+            }
         }
     });
     // the long ones are as slow to read as they are long, and have no other entries

@@ -7,6 +7,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod check;
 mod cost;
 mod inputs;
 mod interrupts;

@@ -1,8 +1,7 @@
 //! LaTeX, for a paper: what `amsmath` sets, without its dollar signs.
 
-use super::layout::Sign;
 use super::name::{greek, runs};
-use super::{Fence, Formula, Name};
+use super::{Fence, Formula, Name, Sign};
 use crate::expression::syntax::Relation;
 
 /// A formula in LaTeX.

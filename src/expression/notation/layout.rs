@@ -1,34 +1,9 @@
 //! From syntax to what is set: brackets where they are needed, quotients as fractions, products side by side.
 
-use super::{Fence, Formula, Name, latex::latex};
+use super::{Fence, Formula, Name, Sign, latex::latex};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Relation};
 use crate::number::parse_decimal;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// A sign between or before parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    Plus,
-    Minus,
-    /// A minus before a first term.
-    Negative,
-    /// Between factors that would run together.
-    Dot,
-    /// The product of two vectors that is a vector.
-    Cross,
-    /// A narrow space between factors.
-    Thin,
-    Comma,
-    /// A comma in an index, with no room behind it.
-    IndexComma,
-    Relation(Relation),
-    /// `x` lies in an interval.
-    In,
-    /// A value at a point.
-    At,
-    Partial,
-    Transpose,
-}
 
 /// How tightly a formula holds together.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]

@@ -1,8 +1,7 @@
 //! MathML, for a page: presentation elements of the Core, which browsers set without a script and without a font to load.
 
-use super::layout::Sign;
 use super::name::{greek, runs};
-use super::{Fence, Formula, Name};
+use super::{Fence, Formula, Name, Sign};
 use crate::expression::syntax::Relation;
 
 /// A formula as one element.

@@ -11,9 +11,11 @@ mod name;
 mod tests;
 
 pub use latex::latex;
-pub use layout::{Layout, Sign};
+pub use layout::Layout;
 pub use mathml::{mathml, mathml_in_pieces};
 pub use name::in_letters;
+
+use crate::expression::syntax::Relation;
 
 /// A formula as it is set: what stands where, and in which kind of letter, but not in whose notation.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +46,31 @@ pub enum Formula {
     Fence(Fence, Box<Formula>),
     /// Rows of entries.
     Matrix(Vec<Vec<Formula>>),
+}
+
+/// A sign between or before parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    Plus,
+    Minus,
+    /// A minus before a first term.
+    Negative,
+    /// Between factors that would run together.
+    Dot,
+    /// The product of two vectors that is a vector.
+    Cross,
+    /// A narrow space between factors.
+    Thin,
+    Comma,
+    /// A comma in an index, with no room behind it.
+    IndexComma,
+    Relation(Relation),
+    /// `x` lies in an interval.
+    In,
+    /// A value at a point.
+    At,
+    Partial,
+    Transpose,
 }
 
 /// Brackets.

@@ -15,6 +15,7 @@
 //! mass, and `l_j`, that about the origin, are cross products with `n_j`, and, where torques drive the palms, `I A =
 //! tau - l f`. Left are two equations for the two forces.
 
+use super::breach::Breach;
 use super::drive::Drive;
 use super::plane::{Plane, along, cross, dot, left_of, meet, scaled, unit};
 use super::scene::Scene;
@@ -27,18 +28,6 @@ pub(super) type State = [f64; 7];
 /// Palms count as parallel where the sine of the angle between them is below this. The forces follow from equations
 /// whose determinant falls with the square of the sine, so that half of their digits are lost there.
 const PARALLEL: f64 = 1e-4;
-
-/// What ends a contact. That a contact reaches the joint is not among it: it lies on the body's side of the other palm,
-/// so that `s sin(phi2)` is positive as long as the body is between the palms.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Breach {
-    #[error("the palms are parallel, or the body is not between them")]
-    Parallel,
-    #[error("the contact with palm {palm} is beyond the palm's end")]
-    Beyond { palm: usize },
-    #[error("the contact force of palm {palm} is not positive")]
-    Contact { palm: usize },
-}
 
 /// All that is known at one moment. Palms are seen from the world here: both angles, rates and accelerations are
 /// against the X axis.

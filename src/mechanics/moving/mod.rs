@@ -15,6 +15,8 @@
 //! Left out: friction, impacts (a motion ends where a contact force reaches zero, for after that the body may
 //! come back and hit), palms that are not flat, the palms' own weight.
 
+mod breach;
+mod check;
 mod drive;
 mod form;
 mod harmonics;
@@ -36,9 +38,9 @@ pub(crate) mod fixtures;
 #[cfg(test)]
 mod tests;
 
+pub use breach::Breach;
 pub use drive::{Course, Drive, Oscillation, PushedPalm};
 pub use form::{CentreOfMass, Form, FormError, Knots};
-pub use laws::Breach;
 pub use random::{DrawnSpline, MOST_DRAWS, RADII, SplineDraws};
 pub use scene::{DEFAULT_TOLERANCE, Scene, SceneError};
 pub use shape::Shape;

@@ -1,7 +1,8 @@
 //! A scene carried through time.
 
+use super::breach::Breach;
 use super::integrate::steps;
-use super::laws::{Breach, Situation, State};
+use super::laws::{Situation, State};
 use super::scene::{Scene, SceneError};
 use super::trajectory::{Ended, Moment, Trajectory};
 

@@ -1,6 +1,7 @@
 //! A motion through time, as sensors and motors would report it, and how it ended.
 
-use super::laws::{Breach, Situation, State};
+use super::breach::Breach;
+use super::laws::{Situation, State};
 use super::scene::Scene;
 
 /// One palm at one moment. SI units, angles in radians.

@@ -1,7 +1,7 @@
 //! Comma-separated values: a header line with the columns' names, and a line a sample. A line that begins with `#` is
 //! a comment, spaces around a cell do not count.
 
-use super::rows::Table;
+use super::table::Table;
 use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row, TIME};
 use crate::file::read_bytes;
 use csv::{ReaderBuilder, Trim, WriterBuilder};

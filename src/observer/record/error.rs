@@ -1,6 +1,6 @@
 //! Why a record could not be read or written.
 
-use super::{Fault, Rows};
+use super::Fault;
 use miette::Diagnostic;
 use std::path::PathBuf;
 
@@ -101,12 +101,6 @@ pub enum RecordError {
         /// The name.
         column: String,
     },
-}
-
-impl RecordError {
-    pub(super) fn faulty(rows: &Rows, faults: Vec<Fault>) -> Self {
-        RecordError::Faulty { path: rows.path.clone(), faults }
-    }
 }
 
 fn faulty(path: &std::path::Path, faults: &[Fault]) -> String {

@@ -4,6 +4,7 @@
 //! said what is wrong with them and the caller's rules have said what to do about it, as a [`Record`] of plain numbers
 //! whose times increase. This module knows nothing of palms or observers: which columns are needed is the caller's.
 
+mod check;
 mod comma_separated;
 mod error;
 mod fault;
@@ -11,12 +12,15 @@ mod metadata;
 mod parquet_file;
 mod rows;
 mod spike;
+mod table;
 mod thrift;
 mod write;
 
+pub use check::check;
 pub use error::RecordError;
-pub use fault::{Fault, FaultKind, FaultRules, OnFault, check};
-pub use rows::{Cell, Row, Rows};
+pub use fault::{Fault, FaultKind, FaultRules, OnFault};
+pub use rows::Rows;
+pub use table::{Cell, Row};
 
 use std::path::Path;
 
@@ -78,9 +82,9 @@ impl Record {
     /// The file cannot be read, lacks a column or has no row, or a cell that is needed is no number.
     pub fn read(path: &Path, needed: &[&str]) -> Result<Record, RecordError> {
         let rows = Rows::read(path, needed)?;
-        let faults = fault::unreadable(&rows);
+        let faults = check::unreadable(&rows);
         if !faults.is_empty() {
-            return Err(RecordError::faulty(&rows, faults));
+            return Err(RecordError::Faulty { path: path.to_owned(), faults });
         }
         Ok(rows.numbers(|_| true).0)
     }

@@ -1,7 +1,7 @@
 //! Parquet, plain or compressed by Snappy, as columns of doubles. What is read may also hold single-precision and whole numbers
 //! and may lack values; columns of other types, and numbers that mean dates or decimals, are known by name only.
 
-use super::rows::Table;
+use super::table::Table;
 use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row, TIME, metadata};
 use crate::file::read_bytes;
 use bytes::Bytes;

@@ -1,51 +1,10 @@
 //! A record as it stands in its file: cells that may be unreadable, and rows that may be too short or too long.
 
-use super::{Fault, FaultKind, FaultRules, OnFault, Reading, Record, RecordError, TIME, check};
-use super::{comma_separated, parquet_file};
+use super::table::{Cell, Row, Table};
+use super::{Fault, FaultKind, Record, RecordError, TIME, comma_separated, parquet_file};
 use crate::system::nearest;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-
-/// What stands in a cell.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Cell {
-    /// A number, finite or not.
-    Number(f64),
-    /// Nothing.
-    Missing,
-    /// Something else, and what it says.
-    Unreadable(String),
-}
-
-impl Cell {
-    /// The number that stands in the cell, if it is finite.
-    pub fn finite(&self) -> Option<f64> {
-        match self {
-            Cell::Number(value) => Some(*value).filter(|v| v.is_finite()),
-            Cell::Missing | Cell::Unreadable(_) => None,
-        }
-    }
-}
-
-/// A row of a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// The line in the file, counted from one; a Parquet file has no lines.
-    pub line: Option<u64>,
-    /// One cell a column.
-    pub cells: Vec<Cell>,
-    /// How many cells stand after those.
-    pub surplus: usize,
-}
-
-/// What a format's reader finds.
-#[derive(Default)]
-pub(super) struct Table {
-    pub names: Vec<String>,
-    pub rows: Vec<Row>,
-    /// What the columns hold that cannot hold numbers, by their indices.
-    pub foreign: BTreeMap<usize, String>,
-}
 
 /// A record as it stands in its file.
 #[derive(Clone, Debug)]
@@ -109,23 +68,6 @@ impl Rows {
     /// The names of the columns, the time among them, in the order of the file.
     pub fn names(&self) -> &[String] {
         &self.names
-    }
-
-    /// Looks for faults and does with them what the rules say.
-    ///
-    /// # Errors
-    /// There is a fault and the rules say to stop; or no row is left.
-    pub fn settle(self, rules: &FaultRules) -> Result<Reading, RecordError> {
-        let faults = check(&self, rules);
-        if rules.on_fault == OnFault::Stop && !faults.is_empty() {
-            return Err(RecordError::faulty(&self, faults));
-        }
-        let skipped: BTreeSet<usize> = faults.iter().filter(|f| f.takes_its_row()).map(|f| f.row).collect();
-        if skipped.len() == self.rows.len() {
-            return Err(RecordError::NothingLeft { path: self.path, faults });
-        }
-        let (record, left_out) = self.numbers(|row| !skipped.contains(&row));
-        Ok(Reading { record, faults, left_out })
     }
 
     /// The record of the rows to keep, numbered from one, and the names of the columns that hold something other than

@@ -3,7 +3,7 @@
 use crate::certificate::{OpenBox, PartAnswer, RegionAnswer, Standing, Vanishing};
 use crate::number::rational_from_f64;
 use crate::observability::AVOIDED;
-use crate::report::ranks::answer::{fields_json, fields_text};
+use crate::report::names::{fields_json, fields_text};
 use dashu::rational::RBig;
 use serde_json::{Value, json};
 use std::fmt::Write;

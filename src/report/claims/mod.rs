@@ -1,11 +1,13 @@
 //! Claims: their outcomes as lines, JSON and JUnit, what their words are counted as, and the errata.
 
 pub(super) mod errata;
+mod junit;
 pub(super) mod outcomes;
 pub(super) mod text;
 pub(super) mod words;
 
 pub use errata::errata_markdown;
-pub use outcomes::{claim_json, claim_line, junit};
+pub use junit::junit;
+pub use outcomes::{claim_json, claim_line};
 pub use text::{ClaimsForm, ClaimsSummary, Shown, claim_text, claims_text};
 pub use words::counts_text;

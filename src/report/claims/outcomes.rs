@@ -1,13 +1,9 @@
-//! Outcomes of claims, in three notations.
+//! Outcomes of claims, as JSON and in lines.
 
 use crate::claim::{AtFilesValues, Outcome, Verdict, Witness};
-use crate::number::{parse_decimal, rational_to_f64, round_to_decimal};
-use crate::report::claims::text::claim_text;
-use crate::report::layout::Layout;
-use crate::report::ranks::answer::{fields_json, fields_text};
+use crate::number::{parse_decimal, rational_to_f64};
+use crate::report::names::{fields_json, fields_text, values_json, values_text};
 use crate::system::{Basis, Flaw};
-use dashu::rational::RBig;
-use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde_json::{Value, json};
 
 /// A bound on a probability, as people write it.
@@ -126,29 +122,6 @@ fn special_json(special: &AtFilesValues) -> Value {
     json!({ "values": values_json(&special.values), "verdict": special.word })
 }
 
-/// Names and exact values, as people write them.
-pub(crate) fn values_json(values: &[(String, RBig)]) -> Value {
-    let each = values.iter().map(|(name, value)| (name.clone(), json!(plain_number(value))));
-    each.collect::<serde_json::Map<_, _>>().into()
-}
-
-/// The same in words: `g = -9.81, m = 1`.
-pub(crate) fn values_text(values: &[(String, RBig)]) -> String {
-    let each: Vec<String> =
-        values.iter().map(|(name, value)| format!("{name} = {}", plain_number(value))).collect();
-    each.join(", ")
-}
-
-/// A rational as a decimal where a short one is exact, else as a fraction.
-pub(crate) fn plain_number(value: &RBig) -> String {
-    let decimal = round_to_decimal(value, 20);
-    let short = match decimal.contains('.') && !decimal.contains('e') {
-        true => decimal.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => decimal,
-    };
-    if parse_decimal(&short).as_ref() == Some(value) { short } else { value.to_string() }
-}
-
 /// That a statement has another verdict where its parameters have the values of the file.
 pub(crate) fn special_text(special: &AtFilesValues) -> String {
     format!("at the file's values {} it is {}", values_text(&special.values), special.word)
@@ -227,47 +200,4 @@ pub fn claim_line(outcome: &Outcome) -> String {
         line.push_str(&format!("\n         expected: {}", outcome.expected_word()));
     }
     line
-}
-
-/// Outcomes as JUnit XML: a suite a file, a case a claim.
-///
-/// # Errors
-/// Where the XML cannot be built.
-pub fn junit(outcomes: &[Outcome]) -> miette::Result<String> {
-    let mut report = Report::new("palmistry prove");
-    let mut suites: Vec<TestSuite> = Vec::new();
-    for outcome in outcomes {
-        let status = if outcome.ok {
-            TestCaseStatus::success()
-        } else {
-            let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-            status.set_message(format!("{} instead of {}", outcome.word(), outcome.expected_word()));
-            status.set_description(claim_text(outcome, &Layout::default()));
-            status
-        };
-        let mut case = TestCase::new(outcome.id.as_str(), status);
-        case.set_classname(outcome.file.as_str());
-        case.set_time(std::time::Duration::from_secs_f64(outcome.seconds));
-        // attributes that continuous integration shows beside the name of a case
-        let (line, column) = outcome.place;
-        let place =
-            [("file", outcome.file.clone()), ("line", line.to_string()), ("column", column.to_string())];
-        case.extra.extend(place.map(|(name, value)| (name.into(), value.into())));
-        case.add_property(("statement", outcome.statement.as_str()));
-        if let Some((printed, _)) = &outcome.printed {
-            case.add_property(("printed", printed.as_str()));
-        }
-        match suites.last_mut() {
-            Some(suite) if suite.name.as_str() == outcome.file => {
-                suite.add_test_case(case);
-            }
-            _ => {
-                let mut suite = TestSuite::new(outcome.file.as_str());
-                suite.add_test_case(case);
-                suites.push(suite);
-            }
-        }
-    }
-    report.add_test_suites(suites);
-    report.to_string().map_err(|error| miette::miette!("the JUnit report could not be written: {error}"))
 }

@@ -1,11 +1,11 @@
 //! The page of an experiment.
 
+use crate::report::document::document;
 use crate::report::motion::answers::Observed;
 use crate::report::motion::section::{
     body_pictures, faults, sensor_pictures, state_pictures, studies, summary,
 };
 use crate::report::motion::table::{ends, notes, updates};
-use crate::report::page::document::document;
 use maud::html;
 
 /// The page as HTML.

@@ -4,7 +4,7 @@ use super::anchors::{Anchors, Placed};
 use crate::claim::{Outcome, Verdict};
 use crate::report::claims::outcomes::{error_bound, special_text, witness_line};
 use crate::report::formula::formula_mathml;
-use crate::report::ranks::answer::fields_text;
+use crate::report::names::fields_text;
 use crate::system::{Basis, Flaw};
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeMap;

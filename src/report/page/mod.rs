@@ -2,7 +2,6 @@
 
 mod anchors;
 mod claims;
-pub(super) mod document;
 mod entry;
 pub(super) mod extremes;
 pub(super) mod findings;

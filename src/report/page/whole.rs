@@ -2,12 +2,12 @@
 
 use super::anchors::{Anchors, placed, stem};
 use super::claims::{all_claims, equations, faults, tally};
-use super::document::document;
 use super::extremes::{extremes, has_extremes};
 use super::regime::{file_section, has_a_section};
 use super::source::sources;
 use crate::claim::Outcome;
 use crate::paper::Findings;
+use crate::report::document::document;
 use crate::report::motion::answers::Observed;
 use crate::report::motion::section::observed_section;
 use maud::{Markup, PreEscaped, html};

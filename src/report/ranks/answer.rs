@@ -1,9 +1,8 @@
 //! Answers about ranks, as JSON and as text.
 
 use crate::observability::{Spectrum, Stop};
-use crate::report::claims::outcomes::{values_json, values_text};
+use crate::report::names::{fields_json, fields_text, values_json, values_text};
 use crate::sweep::{BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, SweepReport};
-use crate::system::FieldRole;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -14,18 +13,6 @@ fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
         .map(|(rank, count)| (rank.to_string(), json!(count)))
         .collect::<serde_json::Map<_, _>>()
         .into()
-}
-
-/// The fields of which words are made, each with its role.
-pub(crate) fn fields_json(fields: &[FieldRole]) -> Value {
-    fields.iter().map(|field| json!({ "name": field.name, "role": field.role.name() })).collect()
-}
-
-/// The same in words: `drift f, input g1`.
-pub(crate) fn fields_text(fields: &[FieldRole]) -> String {
-    let each: Vec<String> =
-        fields.iter().map(|field| format!("{} {}", field.role.name(), field.name)).collect();
-    each.join(", ")
 }
 
 /// JSON has no infinity; a gap without bound is null.

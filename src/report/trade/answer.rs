@@ -1,6 +1,6 @@
 //! Speed against accuracy, as JSON and as text; the picture is in `trade_plot`.
 
-use crate::report::ranks::answer::{fields_json, fields_text};
+use crate::report::names::{fields_json, fields_text};
 use crate::tradeoff::{
     Combination, DIGITS_TOLERANCE, DerivativeResult, Digits, LeftOut, TIME_TOLERANCE, Trade,
 };

@@ -1,8 +1,8 @@
 //! Ways that take several states side by side in the vectors of the processor: values with bounds on their errors, and
 //! ranks of many small matrices at once.
 
+use super::block::Block;
 use super::ranks::{RankWay, Verdict};
-use super::work::Block;
 use crate::expression::BlockProgram;
 use crate::number::{Bounded, Instructions, Lanes, MOST_LANES, Vectorised};
 use crate::sweep::{Elimination, Jacobi};

@@ -6,6 +6,7 @@
 //! [`trade`] tells how many digits of the entries each way gets right, how often each combination misreports the rank,
 //! and what a state costs; [`Combination::on_front`] marks those that no other beats.
 
+mod block;
 mod blocks;
 mod combination;
 mod duals;

@@ -91,16 +91,21 @@ pub(super) fn svd_faer<F: Float>(block: &[F], columns: usize) -> Verdict {
     found.map_or(Verdict::Failed, |values| counted(values.into_iter(), block.len() / columns, columns))
 }
 
+/// The pivots of a triangular factor; with fewer rows than columns it is not square.
+fn on_the_diagonal<F: Float>(factor: &DMatrix<F>) -> impl Iterator<Item = F> + Clone {
+    (0..factor.nrows().min(factor.ncols())).map(|place| factor[(place, place)])
+}
+
 pub(super) fn qr<F: Float>(block: &[F], columns: usize) -> Verdict {
     let Some(matrix) = nalgebra_matrix(block, columns) else { return Verdict::Failed };
     let r = matrix.col_piv_qr().unpack_r();
-    counted(r.diagonal().iter().copied(), block.len() / columns, columns)
+    counted(on_the_diagonal(&r), block.len() / columns, columns)
 }
 
 pub(super) fn lu<F: Float>(block: &[F], columns: usize) -> Verdict {
     let Some(matrix) = nalgebra_matrix(block, columns) else { return Verdict::Failed };
     let u = matrix.full_piv_lu().u();
-    counted(u.diagonal().iter().copied(), block.len() / columns, columns)
+    counted(on_the_diagonal(&u), block.len() / columns, columns)
 }
 
 /// As `palmistry rank` does it: equilibrated, by faer.

@@ -1,5 +1,6 @@
 //! One kind of number with all its ways: what they get right, and the jobs that tell how long they take.
 
+use super::block::Block;
 use super::combination::{
     Combination, Derivative, DerivativeResult, Digits, LeftOut, Number, RankMethod, RankResult,
 };
@@ -8,7 +9,7 @@ use super::sense::{no_derivative, no_rank};
 use super::timing::{Job, Part};
 use super::truth::{Exact, Truth};
 use super::ways::{Possible, Way};
-use super::work::{Block, Work};
+use super::work::Work;
 use dashu::rational::RBig;
 use rayon::prelude::*;
 use std::ops::Range;

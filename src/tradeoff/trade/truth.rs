@@ -1,7 +1,7 @@
 //! What is known for certain of a state: by exact arithmetic, or by enclosures that are narrower than any way here can
 //! tell.
 
-use super::work::Block;
+use super::block::Block;
 use crate::expression::{Program, Symbol};
 use crate::number::{Arithmetic, Enclosure, Enclosures, Function, Rationals, Refusal, rational_to_f64};
 use crate::observability::{Coordinate, State, certain_rank, rank};

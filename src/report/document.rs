@@ -2,12 +2,12 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-const STYLE: &str = include_str!("../page.css");
+const STYLE: &str = include_str!("page.css");
 /// What sorts and filters; a page without it shows everything.
-const SCRIPT: &str = include_str!("../page.js");
+const SCRIPT: &str = include_str!("page.js");
 
 /// A page as HTML.
-pub(in crate::report) fn document(title: &str, content: &Markup, has_claims: bool) -> String {
+pub(super) fn document(title: &str, content: &Markup, has_claims: bool) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {
