@@ -131,7 +131,7 @@ pub(crate) const RESERVED: [&str; 30] = [
 ];
 
 /// Letters, digits and underscores, beginning with a letter.
-fn word<'a>(input: &mut Text<'a>) -> Read<(&'a str, Span)> {
+pub(crate) fn word<'a>(input: &mut Text<'a>) -> Read<(&'a str, Span)> {
     (
         one_of(|c: char| c.is_ascii_alphabetic() || c == '_'),
         take_while(0.., |c: char| c.is_ascii_alphanumeric() || c == '_'),
@@ -205,7 +205,10 @@ fn number(input: &mut Text<'_>) -> Read<Expr> {
 }
 
 /// Something in brackets, counted.
-fn within<'a, T>(input: &mut Text<'a>, inner: impl Parser<Text<'a>, T, ErrMode<Expected>>) -> Read<T> {
+pub(crate) fn within<'a, T>(
+    input: &mut Text<'a>,
+    inner: impl Parser<Text<'a>, T, ErrMode<Expected>>,
+) -> Read<T> {
     let depth = input.state;
     if depth.0.get() >= DEEPEST {
         let at = input.current_token_start();

@@ -113,7 +113,13 @@ fn claims(small: &System, large: &System, reduction: &ReductionTo) -> Result<(St
         for (condition, written) in equalities() {
             let side = |span: &std::ops::Range<usize>| &written[span.clone()];
             let (left, right) = (side(&condition.left.span), side(&condition.right.span));
-            claim("conditions", format!("L({alias}.{field}, ({left}) - ({right})) = 0 {under}"));
+            // a number has no rate, and is one in the unit of the other side
+            let difference = match (condition.left.is_literal(), condition.right.is_literal()) {
+                (_, true) => left.to_owned(),
+                (true, _) => right.to_owned(),
+                _ => format!("({left}) - ({right})"),
+            };
+            claim("conditions", format!("L({alias}.{field}, {difference}) = 0 {under}"));
         }
         for state in &states {
             claim("fields", format!("L({field}, {state}) = L({alias}.{field}, {state}) {under}"));

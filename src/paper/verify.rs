@@ -77,8 +77,15 @@ pub fn verify_into(
     for (place, system) in systems.iter().enumerate() {
         run.claims(place, system);
     }
+    // where files say what is to be looked at the others are only read and decided
+    let any_named = systems.iter().any(names_something);
     for (place, system) in systems.iter().enumerate() {
-        run.examine(place, system, traded == Some(place), derived == Some(place));
+        let measured = Measured {
+            trade: traded == Some(place),
+            derivatives: derived == Some(place),
+            extremes: names_something(system) || !any_named,
+        };
+        run.examine(place, system, &measured);
     }
     for scene in paper.scenes.iter().take_while(|_| !run.stopped()) {
         let experiment = Experiment::new(Scene::read(&paper.folder.join(scene))?, None)?;
@@ -90,6 +97,19 @@ pub fn verify_into(
     found.interrupted = run.stopped();
     found.seconds = begin.elapsed().as_secs_f64();
     Ok(())
+}
+
+/// What is done of a file besides what it asks for.
+struct Measured {
+    trade: bool,
+    derivatives: bool,
+    /// The extremes, and the certificate on the sample box.
+    extremes: bool,
+}
+
+/// Whether a file names sets, maps or lines.
+fn names_something(system: &System) -> bool {
+    !(system.sets.is_empty() && system.maps.is_empty() && system.lines.is_empty())
 }
 
 /// How many steps are announced.
@@ -155,7 +175,7 @@ impl Run<'_> {
     }
 
     /// Everything but the claims of one file.
-    fn examine(&self, place: usize, system: &System, traded: bool, derived: bool) {
+    fn examine(&self, place: usize, system: &System, measured: &Measured) {
         let (seed, interrupt) = (self.options.seed, self.options.interrupt);
         if has_a_rank(system) {
             for set in std::iter::once(None).chain(system.sets.iter().map(Some)) {
@@ -192,7 +212,7 @@ impl Run<'_> {
                 |file, found| file.printed = found,
             );
         }
-        if derived {
+        if measured.derivatives {
             self.keep(
                 place,
                 "Lie derivatives",
@@ -202,7 +222,7 @@ impl Run<'_> {
                 },
             );
         }
-        if traded {
+        if measured.trade {
             let question = TradeQuestion {
                 samples: TRADE_STATES,
                 seed,
@@ -219,7 +239,7 @@ impl Run<'_> {
                 },
             );
         }
-        if has_a_rank(system) {
+        if has_a_rank(system) && measured.extremes {
             self.keep(
                 place,
                 "the extremes",

@@ -1,5 +1,6 @@
 //! The grammar of a proof file, without the meaning of its names. The README documents it; it is a public interface.
 
+use super::dimension::{Declared, DeclaredDimension, annotation, declared};
 use super::model::Role;
 use super::problems::{Damage, indentation, is_first_in_line, next_entry, open_quotation};
 use super::standing::{Basis, Flaw, Reference, basis, fault};
@@ -20,12 +21,12 @@ use winnow::token::{literal, take_till, take_while};
 pub(crate) enum Item {
     System { title: String, cite: Option<String>, span: Span },
     Use { alias: Name, path: String, span: Span },
-    State(Vec<Name>),
-    Param(Vec<(Name, Option<Expr>)>),
+    State(Vec<Declared>),
+    Param(Vec<Declared>),
     Angle(Vec<Name>),
-    Let(Name, Expr),
+    Let { name: Name, dimension: Option<DeclaredDimension>, value: Expr },
     Field { role: Role, name: Name, components: Vec<(Name, Expr)>, others_are_zero: bool },
-    Output(Vec<Expr>),
+    Output(Vec<(Expr, Option<DeclaredDimension>)>),
     Sample { ranges: Vec<(Name, Expr, Expr)>, avoid: Vec<Expr> },
     Claim(Box<ClaimSyntax>),
     View(Box<View>),
@@ -153,20 +154,29 @@ fn import(input: &mut Text<'_>) -> Read<Item> {
     Ok(Item::Use { alias, path, span: begin..input.current_token_start() })
 }
 
+fn states(input: &mut Text<'_>) -> Read<Item> {
+    keyword("state").parse_next(input)?;
+    cut_err(declared(false)).context("a list of names").map(Item::State).parse_next(input)
+}
+
+fn outputs(input: &mut Text<'_>) -> Read<Item> {
+    let one = |input: &mut Text<'_>| Ok((sum(input)?, annotation(input)?));
+    keyword("output").parse_next(input)?;
+    cut_err(separated(1.., one, sign(","))).map(Item::Output).parse_next(input)
+}
+
 fn params(input: &mut Text<'_>) -> Read<Item> {
-    let one = |input: &mut Text<'_>| -> Read<(Name, Option<Expr>)> {
-        Ok((name(input)?, opt(preceded(sign("="), cut_err(sum))).parse_next(input)?))
-    };
     keyword("param").parse_next(input)?;
-    let list = cut_err(separated(1.., one, sign(","))).context("a list of parameters").parse_next(input)?;
+    let list = cut_err(declared(true)).context("a list of parameters").parse_next(input)?;
     Ok(Item::Param(list))
 }
 
 fn definition(input: &mut Text<'_>) -> Read<Item> {
     keyword("let").parse_next(input)?;
     let name = cut_err(name).context("the name to define").parse_next(input)?;
+    let dimension = annotation(input)?;
     cut_err(sign("=")).context("'=' and an expression").parse_next(input)?;
-    Ok(Item::Let(name, cut_err(sum).parse_next(input)?))
+    Ok(Item::Let { name, dimension, value: cut_err(sum).parse_next(input)? })
 }
 
 fn field(input: &mut Text<'_>) -> Read<Item> {
@@ -346,12 +356,12 @@ fn item(input: &mut Text<'_>) -> Read<Item> {
     alt((
         system,
         import,
-        preceded(keyword("state"), names).map(Item::State),
+        states,
         params,
         preceded(keyword("angle"), names).map(Item::Angle),
         definition,
         field,
-        preceded(keyword("output"), cut_err(separated(1.., sum, sign(",")))).map(Item::Output),
+        outputs,
         alt((sample, claim, faulty, remark_only, view)),
     ))
     .parse_next(input)

@@ -7,6 +7,7 @@
 //! This floor knows nothing of ranks, verdicts or palms.
 
 mod determinant;
+mod dimension;
 mod domain;
 mod elaborate;
 mod error;
@@ -22,6 +23,7 @@ mod standing;
 mod views;
 mod written;
 
+pub use dimension::{Base, Dimension};
 pub use error::ReadError;
 pub(crate) use error::{Problem, line_and_column, nearest};
 pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statement};

@@ -1,5 +1,6 @@
 //! What a system is.
 
+use super::dimension::{Dimensions, Import};
 use super::domain::Domain;
 use super::error::Problem;
 use super::grammar::{ClaimBody, ClaimSyntax};
@@ -10,6 +11,7 @@ use crate::expression::{Derivation, Graph, Guard, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// What a symbol is in its system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,6 +205,10 @@ pub struct System {
     pub(crate) sampled: HashSet<Symbol>,
     /// The definitions that stand for the result of a calculation, and not for a formula; imported ones included.
     pub(crate) calculated: HashSet<String>,
+    /// What is known of dimensions.
+    pub(crate) dimensions: Arc<Dimensions>,
+    /// The dimensions of the files that this one imports, while it is read.
+    pub(crate) imported_dimensions: Vec<Import>,
 }
 
 impl System {

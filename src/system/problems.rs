@@ -203,11 +203,12 @@ impl Item {
     /// The names that it declares.
     fn declares(&self) -> Vec<String> {
         match self {
-            Item::Use { alias: name, .. } | Item::Let(name, _) | Item::Field { name, .. } => {
+            Item::Use { alias: name, .. } | Item::Let { name, .. } | Item::Field { name, .. } => {
                 vec![name.text.clone()]
             }
-            Item::State(names) => names.iter().map(|name| name.text.clone()).collect(),
-            Item::Param(list) => list.iter().map(|(name, _)| name.text.clone()).collect(),
+            Item::State(list) | Item::Param(list) => {
+                list.iter().map(|declared| declared.name.text.clone()).collect()
+            }
             _ => Vec::new(),
         }
     }
@@ -215,9 +216,12 @@ impl Item {
     /// The expressions in it, but those of claims, which are looked at when all names are known.
     fn expressions(&self) -> Vec<Expr> {
         match self {
-            Item::Let(_, expr) => vec![expr.clone()],
+            Item::Let { value, .. } => vec![value.clone()],
             Item::Field { components, .. } => components.iter().map(|(_, expr)| expr.clone()).collect(),
-            Item::Output(list) => list.clone(),
+            Item::Output(list) => list.iter().map(|(expr, _)| expr.clone()).collect(),
+            Item::View(view) => {
+                view.equations().into_iter().flat_map(|e| [e.left.clone(), e.right.clone()]).collect()
+            }
             Item::Sample { avoid, .. } => avoid.clone(),
             _ => Vec::new(),
         }

@@ -1,5 +1,6 @@
 //! From a file to a system.
 
+use super::dimension::{self, Declared};
 use super::domain::Domain;
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
@@ -148,16 +149,18 @@ impl System {
             aliases: Vec::new(),
             sampled: HashSet::new(),
             calculated: HashSet::new(),
+            dimensions: Default::default(),
+            imported_dimensions: Vec::new(),
         };
         let mut ids = HashSet::new();
-        for item in items {
-            if let Item::Claim(claim) = &item
+        for item in &items {
+            if let Item::Claim(claim) = item
                 && !ids.insert(claim.id.clone())
             {
                 let message = format!("there is a claim '{}' already", claim.id);
                 problems.add(Problem::new(&claim.span, message, "the second one"))?;
             }
-            let remnant = Remnant::of(&item, problems);
+            let remnant = Remnant::of(item, problems);
             if let Err(problem) = system.enter(item, folder, reading) {
                 system.entry_failed(problem, remnant, problems)?;
             }
@@ -178,26 +181,32 @@ impl System {
                     .because(Cause::Title),
             )?;
         }
+        let imports = std::mem::take(&mut system.imported_dimensions);
+        let (dimensions, mistakes) = dimension::check(&system, &items, &imports);
+        system.dimensions = Arc::new(dimensions);
+        for mistake in mistakes {
+            problems.add(mistake)?;
+        }
         Ok(system)
     }
 
-    fn enter(&mut self, item: Item, folder: &Path, reading: &mut Reading) -> Result<(), Problem> {
+    fn enter(&mut self, item: &Item, folder: &Path, reading: &mut Reading) -> Result<(), Problem> {
         match item {
             Item::System { title, cite, span } => {
                 if !self.title.is_empty() {
                     let message = format!("the file describes a system already: \"{}\"", self.title);
                     return Err(
-                        Problem::new(&span, message, "the second one").help("one file holds one system")
+                        Problem::new(span, message, "the second one").help("one file holds one system")
                     );
                 }
                 if title.is_empty() {
-                    return Err(Problem::new(&span, "a system needs a title", "this is empty"));
+                    return Err(Problem::new(span, "a system needs a title", "this is empty"));
                 }
-                (self.title, self.cite) = (title, cite);
+                (self.title, self.cite) = (title.clone(), cite.clone());
             }
-            Item::Use { alias, path, span } => self.import(&alias, &folder.join(path), &span, reading)?,
-            Item::State(names) => {
-                for name in names {
+            Item::Use { alias, path, span } => self.import(alias, &folder.join(path), span, reading)?,
+            Item::State(list) => {
+                for Declared { name, .. } in list {
                     if let Some(field) = self.fields.first() {
                         let message = format!("the field '{}' above does not know of this state", field.name);
                         return Err(Problem::new(&name.span, message, "declare states before fields"));
@@ -209,14 +218,14 @@ impl System {
                         );
                         return Err(Problem::new(&name.span, message, "declare states before 'd(...)'"));
                     }
-                    let symbol = self.declare(&name, Kind::State)?;
+                    let symbol = self.declare(name, Kind::State)?;
                     self.states.push(symbol);
                 }
             }
             Item::Param(list) => {
-                for (name, value) in list {
-                    let default = value.map(|value| self.rational(&value)).transpose()?;
-                    let symbol = self.declare(&name, Kind::Parameter)?;
+                for Declared { name, value, .. } in list {
+                    let default = value.as_ref().map(|value| self.rational(value)).transpose()?;
+                    let symbol = self.declare(name, Kind::Parameter)?;
                     if let Some(info) = self.symbols.get_mut(&symbol) {
                         info.default = default;
                     }
@@ -232,15 +241,15 @@ impl System {
                     }
                 }
             }
-            Item::Let(name, expr) => {
-                self.refuse_taken(&name)?;
+            Item::Let { name, value: expr, .. } => {
+                self.refuse_taken(name)?;
                 if self.find_symbol(&name.text).is_some() {
                     let message = format!("'{}' is a symbol of an imported system", name.text);
                     return Err(Problem::new(&name.span, message, "a definition of this name would hide it")
                         .help("choose another name, or declare the symbol with 'param'"));
                 }
-                let (value, domain) = self.apart(|system| system.elaborate(&expr))?;
-                if !self.calculates_nothing(&expr) {
+                let (value, domain) = self.apart(|system| system.elaborate(expr))?;
+                if !self.calculates_nothing(expr) {
                     self.calculated.insert(name.text.clone());
                 }
                 if value == Value::CodistributionRank {
@@ -250,16 +259,16 @@ impl System {
                         "claim it as it is",
                     ));
                 }
-                self.written.insert(name.text.clone(), self.written_as(&expr.span, [&expr]));
+                self.written.insert(name.text.clone(), self.written_as(&expr.span, [expr]));
                 self.definition_domains.insert(name.text.clone(), domain);
-                self.definitions.insert(name.text, value);
+                self.definitions.insert(name.text.clone(), value);
             }
             Item::Field { role, name, components, others_are_zero } => {
-                self.enter_field(role, name, &components, others_are_zero)?
+                self.enter_field(*role, name.clone(), components, *others_are_zero)?
             }
             Item::Output(list) => {
-                for expr in list {
-                    let (value, domain) = self.apart(|system| system.scalar(&expr))?;
+                for (expr, _) in list {
+                    let (value, domain) = self.apart(|system| system.scalar(expr))?;
                     // what is seen twice is seen once: a second time it would count as a measurement of its own
                     let guards = self.guards_of(&domain);
                     match self.outputs.iter().position(|(_, known)| *known == value) {
@@ -271,9 +280,9 @@ impl System {
                     }
                 }
             }
-            Item::Sample { ranges, avoid } => self.sample(&ranges, &avoid)?,
-            Item::Claim(claim) => self.claims.push(*claim),
-            Item::View(view) => self.enter_view(*view)?,
+            Item::Sample { ranges, avoid } => self.sample(ranges, avoid)?,
+            Item::Claim(claim) => self.claims.push((**claim).clone()),
+            Item::View(view) => self.enter_view((**view).clone())?,
         }
         Ok(())
     }
@@ -560,6 +569,7 @@ impl System {
                 }
             }
         }
+        self.imported_dimensions.push((alias.text.clone(), span.clone(), other.dimensions.clone()));
         for field in other.fields.iter().chain(&other.imported_fields) {
             let name = format!("{}.{}", alias.text, field.name);
             // of two of one name the first is meant

@@ -118,6 +118,17 @@ pub(crate) enum View {
     },
 }
 
+impl View {
+    /// The equations in it: conditions, and where a line ends.
+    pub(super) fn equations(&self) -> Vec<&Equation> {
+        match self {
+            View::Set { conditions, .. } | View::Reduction { conditions, .. } => conditions.iter().collect(),
+            View::Line { end: End::Zero(equation), .. } => vec![equation],
+            View::Line { .. } | View::Map { .. } => Vec::new(),
+        }
+    }
+}
+
 type Axis = (Name, Expr, Expr);
 
 #[derive(Clone, Debug)]
