@@ -1,6 +1,7 @@
 //! A smooth convex body in the plane, by its support function.
 
 use super::Real;
+use super::harmonics::Harmonics;
 use super::linear::Vector;
 use dashu::base::Abs;
 use dashu::rational::RBig;
@@ -24,8 +25,7 @@ pub enum ShapeError {
 /// changing its form.
 #[derive(Clone, Debug)]
 pub struct PlanarBody {
-    mean: Real,
-    harmonics: Vec<(Real, Real)>,
+    harmonics: Harmonics<Real>,
 }
 
 impl PlanarBody {
@@ -48,21 +48,21 @@ impl PlanarBody {
         if *mean <= extent {
             return Err(ShapeError::CentreOutside);
         }
-        let real = |(p, q): &(RBig, RBig)| (Real::from_rational(p), Real::from_rational(q));
-        Ok(PlanarBody { mean: Real::from_rational(mean), harmonics: harmonics.iter().map(real).collect() })
+        let real = |(p, q): &(RBig, RBig)| [Real::from_rational(p), Real::from_rational(q)];
+        let pairs = harmonics.iter().map(real).collect();
+        Ok(PlanarBody { harmonics: Harmonics { mean: Real::from_rational(mean), pairs } })
     }
 
     /// The value of the support function and of its derivative in a direction, a unit vector in the body's
     /// frame.
     fn support_and_slope(&self, direction: &Vector<2>) -> (Real, Real) {
-        let (mut value, mut slope) = (self.mean.clone(), Real::zero());
         let [x, y] = direction;
         let (mut cosine, mut sine) = (Real::one(), Real::zero());
-        for (k, (p, q)) in (1i64..).zip(&self.harmonics) {
+        let [value, slope, _] = self.harmonics.support(|_| {
+            // one multiple of the angle after the other: the angle itself is not known
             (cosine, sine) = (&cosine * x - &sine * y, &sine * x + &cosine * y);
-            value = value + p * &cosine + q * &sine;
-            slope = slope + Real::whole(k) * (q * &cosine - p * &sine);
-        }
+            [cosine.clone(), sine.clone()]
+        });
         (value, slope)
     }
 

@@ -23,6 +23,7 @@ mod contact;
 mod derivative;
 mod dynamics;
 mod grip;
+mod harmonics;
 pub mod linear;
 mod motion;
 pub mod moving;

@@ -10,7 +10,8 @@
 //! As the rest of this floor it stays ignorant: it imports numbers only and reads no proof file. What it knows
 //! are the geometry of support functions, Newton's and Euler's laws and that a contact stays a contact. In
 //! particular no equation of the thesis for how `s`, `r` or `d` change is used, so that a motion can be held
-//! against them. The 320-bit floor beside it solves the same laws by differences and is the witness in tests.
+//! against them. The bodies in 320 bits beside it obey the same laws by differences, and are
+//! the witness in tests; what a body with harmonics looks like, its support function, both share.
 //!
 //! Left out: friction, impacts (a motion ends where a contact force reaches zero, for after that the body may
 //! come back and hit), palms that are not flat, the palms' own weight.
@@ -19,7 +20,6 @@ mod breach;
 mod check;
 mod drive;
 mod form;
-mod harmonics;
 mod integrate;
 mod laws;
 mod plane;
@@ -27,6 +27,7 @@ mod positive;
 mod quadrature;
 mod random;
 mod scene;
+mod series;
 mod shape;
 mod simulate;
 mod spline;

@@ -1,10 +1,10 @@
 //! A smooth, strictly convex body by its support function about its centre of mass.
 
 use super::form::{CentreOfMass, Form, FormError};
-use super::harmonics::Harmonics;
 use super::plane::{Plane, along, dot, left_of, scaled, unit};
 use super::positive::{Doubt, positive_everywhere};
 use super::quadrature::{Integrals, over_a_turn, rates};
+use super::series::Series;
 use super::spline::ClosedSpline;
 use super::superellipse::Superellipse;
 use std::f64::consts::TAU;
@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// A support function in the frame of its form.
 #[derive(Clone, Debug)]
 enum Curve {
-    Harmonics(Harmonics),
+    Harmonics(Series),
     Superellipse(Superellipse),
     Spline(ClosedSpline),
 }
@@ -20,7 +20,7 @@ enum Curve {
 impl Curve {
     fn new(form: &Form) -> Result<Self, FormError> {
         Ok(match form {
-            Form::Harmonics { mean, harmonics } => Curve::Harmonics(Harmonics::new(*mean, harmonics)?),
+            Form::Harmonics { mean, harmonics } => Curve::Harmonics(Series::new(*mean, harmonics)?),
             Form::Ellipse { semi_axes } => Curve::Superellipse(Superellipse::new(*semi_axes, 2, 0.0)?),
             Form::Superellipse { semi_axes, exponent, rounding } => {
                 Curve::Superellipse(Superellipse::new(*semi_axes, *exponent, *rounding)?)

@@ -1,16 +1,15 @@
-//! A support function by its harmonics.
+//! A body given by the harmonics of its support function, in doubles.
 
 use super::form::{FormError, length};
+use super::plane::unit;
 use super::positive::{Doubt, positive_everywhere};
+use crate::mechanics::harmonics::Harmonics;
 
-/// `h(a) = mean + sum_k (p_k cos(k a) + q_k sin(k a))`, with a positive radius of curvature.
+/// A series with a positive radius of curvature.
 #[derive(Clone, Debug)]
-pub(super) struct Harmonics {
-    mean: f64,
-    harmonics: Vec<[f64; 2]>,
-}
+pub(super) struct Series(Harmonics<f64>);
 
-impl Harmonics {
+impl Series {
     pub(super) fn new(mean: f64, harmonics: &[[f64; 2]]) -> Result<Self, FormError> {
         length("the mean of the support function", mean)?;
         for (k, pair) in (1..).zip(harmonics) {
@@ -18,7 +17,7 @@ impl Harmonics {
                 return Err(FormError::NotFinite { what: format!("a coefficient of harmonic {k}"), value });
             }
         }
-        let found = Harmonics { mean, harmonics: harmonics.to_vec() };
+        let found = Series(Harmonics { mean, pairs: harmonics.to_vec() });
         // h + h'' = mean + sum (1 - k^2)(p_k cos + q_k sin), whose slope is at most sum k (k^2 - 1) |c_k|
         let slope = found.sum(|k| k * (k * k - 1.0));
         // sum and sine of each term are off by a few units in the last place, the argument k a by k of them
@@ -38,26 +37,17 @@ impl Harmonics {
 
     /// The sum of the harmonics' sizes with weights.
     fn sum(&self, weight: impl Fn(f64) -> f64) -> f64 {
-        (1..).zip(&self.harmonics).map(|(k, [p, q])| weight(f64::from(k)) * p.hypot(*q)).sum()
+        (1..).zip(&self.0.pairs).map(|(k, [p, q])| weight(f64::from(k)) * p.hypot(*q)).sum()
     }
 
     /// `h`, `h'` and `h''`.
     pub(super) fn support(&self, angle: f64) -> [f64; 3] {
-        let mut total = [self.mean, 0.0, 0.0];
-        for (k, [p, q]) in (1..).zip(&self.harmonics) {
-            let k = f64::from(k);
-            let (sine, cosine) = (k * angle).sin_cos();
-            let value = p * cosine + q * sine;
-            total[0] += value;
-            total[1] += k * (q * cosine - p * sine);
-            total[2] -= k * k * value;
-        }
-        total
+        self.0.support(|k| unit(f64::from(k) * angle))
     }
 
     /// No point of the outline is farther from the origin: the greatest distance is the maximum of `h`.
     pub(super) fn reach(&self) -> f64 {
-        self.mean + self.sum(|_| 1.0)
+        self.0.mean + self.sum(|_| 1.0)
     }
 }
 
@@ -68,16 +58,16 @@ mod tests {
     /// `1 + p cos(2 a)` has the radius of curvature `1 - 3 p cos(2 a)`: positive exactly for `|p| < 1/3`.
     #[test]
     fn convexity_is_decided_up_to_its_limit() {
-        let body = |p: f64| Harmonics::new(1.0, &[[0.0, 0.0], [p, 0.0]]).map(|_| ());
+        let body = |p: f64| Series::new(1.0, &[[0.0, 0.0], [p, 0.0]]).map(|_| ());
         assert_eq!(body(0.333333), Ok(()));
         let Err(FormError::NotConvex { angle, radius }) = body(0.333334) else { panic!() };
         // the dent is where cos(2 a) = 1; within 1e-5 of it, (2 a)^2 / 2 < 1e-5
         assert!(angle.sin().abs() < 3e-3 && radius <= 0.0, "{angle} {radius}");
         // two harmonics whose sizes add to more than the mean, 3 * 0.2 + 8 * 0.06 = 1.08, but never together
-        let sum_is_not_needed = Harmonics::new(1.0, &[[0.0, 0.0], [-0.2, 0.0], [0.0, 0.06]]);
+        let sum_is_not_needed = Series::new(1.0, &[[0.0, 0.0], [-0.2, 0.0], [0.0, 0.06]]);
         let radius = |a: f64| 1.0 + 0.6 * (2.0 * a).cos() - 0.48 * (3.0 * a).sin();
         let least = (0..100_000).map(|i| radius(f64::from(i) * 1e-4)).fold(f64::MAX, f64::min);
         assert_eq!(sum_is_not_needed.is_ok(), least > 0.0);
-        assert!(Harmonics::new(1.0, &[[f64::NAN, 0.0]]).is_err() && Harmonics::new(-1.0, &[]).is_err());
+        assert!(Series::new(1.0, &[[f64::NAN, 0.0]]).is_err() && Series::new(-1.0, &[]).is_err());
     }
 }
