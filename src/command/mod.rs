@@ -8,6 +8,7 @@ mod arguments;
 mod certify;
 mod check;
 mod eval;
+mod fmt;
 mod interrupt;
 mod new;
 mod observe;
@@ -54,6 +55,7 @@ enum Verb {
     Eval(eval::Eval),
     Observe(observe::Observe),
     New(new::New),
+    Fmt(fmt::Fmt),
 }
 
 /// What a command has come to.
@@ -122,6 +124,7 @@ impl Verb {
             Verb::Eval(verb) => verb.json,
             Verb::Observe(verb) => verb.json,
             Verb::New(verb) => verb.json,
+            Verb::Fmt(verb) => verb.json,
         })
     }
 
@@ -141,6 +144,7 @@ impl Verb {
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::New(verb) => verb.run(),
+            Verb::Fmt(verb) => verb.run(),
         }
     }
 }
