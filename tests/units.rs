@@ -14,7 +14,8 @@ use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The powers of length, mass and time in the dimension of a symbol of the planar files.
+/// The powers of length, mass and time in the dimension of a symbol of the planar files: by hand from section 4.2, and so a
+/// witness for what the files declare.
 fn dimension(name: &str) -> [i32; 3] {
     match name {
         "r1" | "r2" | "s1" | "s2" | "rho" => [1, 0, 0],
@@ -122,6 +123,27 @@ fn rand_chacha_rng() -> impl rand::Rng {
 fn unit(exponents: std::ops::RangeInclusive<i32>) -> impl Strategy<Value = RBig> {
     (11u32..99, 11u32..99, exponents)
         .prop_map(|(a, b, exponent)| RBig::from(a) / RBig::from(b) * RBig::from(10).pow(exponent as isize))
+}
+
+/// The files declare the dimensions that the table has by hand.
+#[test]
+fn the_files_declare_these_dimensions() {
+    use palmistry::system::Base;
+    for file in ["general.proof", "same_rate.proof", "one_palm_fixed.proof", "fixed_palms.proof"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(file);
+        let system = System::read(&path).unwrap();
+        assert!(system.dimensions_tell_units(), "{file}");
+        let mut count = 0;
+        for (symbol, _) in system.symbols() {
+            let declared = system.dimension_of(symbol).unwrap();
+            let powers = [Base::Length, Base::Mass, Base::Time].map(|base| declared.exponent(base).clone());
+            let name = system.symbol_name(symbol);
+            assert_eq!(powers, dimension(name).map(RBig::from), "{file}: {name}");
+            assert!([Base::Current, Base::Temperature].iter().all(|base| declared.exponent(*base).is_zero()));
+            count += 1;
+        }
+        assert!(count >= 10, "{file}: {count}");
+    }
 }
 
 proptest! {

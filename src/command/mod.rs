@@ -8,7 +8,9 @@ mod arguments;
 mod certify;
 mod check;
 mod eval;
+mod fmt;
 mod interrupt;
+mod new;
 mod observe;
 mod output;
 mod prove;
@@ -52,6 +54,8 @@ enum Verb {
     Stress(stress::Stress),
     Eval(eval::Eval),
     Observe(observe::Observe),
+    New(new::New),
+    Fmt(fmt::Fmt),
 }
 
 /// What a command has come to.
@@ -119,6 +123,8 @@ impl Verb {
             Verb::Stress(verb) => verb.json,
             Verb::Eval(verb) => verb.json,
             Verb::Observe(verb) => verb.json,
+            Verb::New(verb) => verb.json,
+            Verb::Fmt(verb) => verb.json,
         })
     }
 
@@ -137,6 +143,8 @@ impl Verb {
             Verb::Stress(verb) => verb.run(),
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::New(verb) => verb.run(),
+            Verb::Fmt(verb) => verb.run(),
         }
     }
 }

@@ -26,7 +26,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// "full" (a column of its own) is never wrong beside a set.
 ///
 /// Then every quantity is scaled from 1e-150 to 1e150, and the states are looked at in other units, which should change
-/// no verdict. Where numbers overflow or are divided by zero, what did so is named.
+/// no verdict: units of the dimensions that the file declares, or each state in a smaller unit where it declares none. Where numbers overflow or are divided by zero, what did so is named.
 ///
 /// The sets are those that a file names ('set', 'pole', and lines to infinity); where it names none, what it says to avoid,
 /// the divisors of its rows, and each quantity of its sample at zero. Without FILE these are the systems with named sets of a

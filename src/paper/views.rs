@@ -44,6 +44,20 @@ impl SetRank {
         }
     }
 
+    /// The rank, or why there is none in words.
+    pub fn answer(&self) -> Result<&RankAnswer, String> {
+        match &self.found {
+            Err(why) => Err(why.to_string()),
+            Ok(answer) if self.is_pole() => {
+                let divisors = answer.branches.iter().flat_map(|branch| branch.full.poles.keys());
+                let divisors: std::collections::BTreeSet<&str> = divisors.map(String::as_str).collect();
+                let divisors: Vec<&str> = divisors.into_iter().collect();
+                Err(format!("every state there is a pole: {} is divided by", divisors.join(", ")))
+            }
+            Ok(answer) => Ok(answer),
+        }
+    }
+
     /// A pole where the file says so, and elsewhere a rank.
     pub fn as_expected(&self) -> bool {
         match &self.set {

@@ -4,8 +4,9 @@ use super::certainty::Certainty;
 use super::digits::{Digits, NoDigits};
 use super::ladder::{Judge, StateJudgement, StateReport};
 use super::stream::{Stream, StreamOptions};
+use super::unseen::{UnseenDirection, UnseenDirections};
 use crate::expression::{Guard, NodeId, add_guard, expand_angles};
-use crate::number::{PrimeField, Rung, rational_to_f64};
+use crate::number::{PrimeField, Rung};
 use crate::observability::{Codistribution, Defined, Locus, LocusError, Spectrum, State, StateInWords};
 use crate::system::System;
 use dashu::rational::RBig;
@@ -33,19 +34,6 @@ pub struct SweepOptions<'a> {
     pub interrupt: &'a AtomicBool,
     /// Called after every block with the number of states done.
     pub progress: &'a (dyn Fn(u64) + Sync),
-}
-
-/// Directions of one kind that are not seen, with one example.
-#[derive(Clone, Debug)]
-pub struct UnseenDirection {
-    /// The states that take part, by name.
-    pub states: Vec<String>,
-    /// At how many sampled states.
-    pub count: u64,
-    /// One of them, as `1 r1 - 0.5 omega0`.
-    pub example: String,
-    /// The index of the draw that it belongs to.
-    pub index: u64,
 }
 
 /// A state of the sweep with its certified rank.
@@ -283,7 +271,7 @@ struct Tally {
     computed: BTreeMap<usize, u64>,
     poles: BTreeMap<String, u64>,
     worst: Option<(State, Spectrum)>,
-    unseen: BTreeMap<Vec<String>, UnseenDirection>,
+    unseen: UnseenDirections,
     smallest_gap: Option<f64>,
 }
 
@@ -301,7 +289,7 @@ impl Tally {
         self.certified += u64::from(report.certainty == Certainty::Certified);
         *self.rungs.entry(report.rung).or_insert(0) += 1;
         for direction in &report.unseen {
-            self.add_unseen(system, direction, index);
+            self.unseen.add(system, direction, &state, index);
         }
         let (Some(spectrum), Some(computed)) = (report.spectrum, report.computed) else { return };
         *self.computed.entry(computed).or_insert(0) += 1;
@@ -312,21 +300,6 @@ impl Tally {
         if report.rank == system.states.len() && worse {
             self.worst = Some((state, spectrum));
         }
-    }
-
-    fn add_unseen(&mut self, system: &System, direction: &[RBig], index: u64) {
-        let names: Vec<String> = system
-            .states
-            .iter()
-            .zip(direction)
-            .filter(|(_, part)| !part.is_zero())
-            .map(|(symbol, _)| system.symbol_name(*symbol).to_owned())
-            .collect();
-        let entry = self.unseen.entry(names.clone()).or_insert_with(|| {
-            let parts: Vec<f64> = direction.iter().filter(|p| !p.is_zero()).map(rational_to_f64).collect();
-            UnseenDirection { states: names.clone(), count: 0, example: combination(&names, &parts), index }
-        });
-        entry.count += 1;
     }
 
     fn finish(
@@ -352,34 +325,13 @@ impl Tally {
             poles: self.poles,
             digits: digits.map(digits_of_worst),
             worst: self.worst.map(|(state, spectrum)| (state.describe(system), spectrum)),
-            unseen: self.unseen.into_values().collect(),
+            unseen: self.unseen.into_list(),
             smallest_gap: self.smallest_gap.unwrap_or(f64::INFINITY),
             interrupted,
             recorded: Vec::new(),
             seconds: 0.0,
         }
     }
-}
-
-/// `r1 - 0.5 omega0`, the largest part scaled to one.
-fn combination(names: &[String], parts: &[f64]) -> String {
-    let largest = parts.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-    let mut text = String::new();
-    for (name, part) in names.iter().zip(parts) {
-        let part = part / largest;
-        let sign = match (text.is_empty(), part < 0.0) {
-            (true, true) => "-",
-            (true, false) => "",
-            (false, true) => " - ",
-            (false, false) => " + ",
-        };
-        text.push_str(sign);
-        if (part.abs() - 1.0).abs() > 5e-5 {
-            text.push_str(&format!("{:.4} ", part.abs()));
-        }
-        text.push_str(name);
-    }
-    text
 }
 
 /// The rows of a codistribution as [`sweep`] wants them.

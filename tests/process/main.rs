@@ -12,6 +12,7 @@ mod cost;
 mod inputs;
 mod interrupts;
 mod prove;
+mod rank;
 mod values;
 mod writes;
 

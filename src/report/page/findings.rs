@@ -39,10 +39,10 @@ fn line_json(title: &str, slope: &Slope) -> Value {
 }
 
 fn set_json(rank: &SetRank) -> Value {
-    let mut object = match &rank.found {
+    let mut object = match rank.answer() {
         Ok(answer) => rank_json(answer),
-        Err(why) if rank.is_pole() => json!({ "pole": why.to_string() }),
-        Err(why) => json!({ "not_decided": why.to_string() }),
+        Err(why) if rank.is_pole() => json!({ "pole": why }),
+        Err(why) => json!({ "not_decided": why }),
     };
     object["set"] = json!(rank.name());
     object["conditions"] = json!(rank.set.as_ref().map(|set| &set.written).cloned().unwrap_or_default());
@@ -207,16 +207,18 @@ fn file_text(file: &FileFindings, out: &mut String) {
         let own = file.ranks.iter().filter_map(|rank| rank.found.as_ref().ok());
         let has_own = own.flat_map(|answer| &answer.branches).any(|branch| branch.rows.is_some());
         let heading = if has_own { "the file's rows" } else { "" };
-        let _ = writeln!(out, "  {:<48} {:>16} {heading:>16}", "rank on", "full");
+        let line = format!("  {:<48} {:>16} {heading:>16}", "rank on", "full");
+        let _ = writeln!(out, "{}", line.trim_end());
         for rank in &file.ranks {
-            let (full, own) = match &rank.found {
+            let (full, own) = match rank.answer() {
+                _ if rank.is_pole() => ("a pole".to_owned(), "-".to_owned()),
                 Ok(answer) => (ranks_in_words(answer, false), ranks_in_words(answer, true)),
-                Err(_) if rank.is_pole() => ("a pole".to_owned(), "-".to_owned()),
                 Err(why) => (format!("not decided: {why}"), String::new()),
             };
             let own = if has_own { own } else { String::new() };
             let unexpected = if rank.as_expected() { "" } else { "   not as expected" };
-            let _ = writeln!(out, "  {:<48} {full:>16} {own:>16}{unexpected}", rank.name());
+            let line = format!("  {:<48} {full:>16} {own:>16}{unexpected}", rank.name());
+            let _ = writeln!(out, "{}", line.trim_end());
         }
     }
     for found in &file.reductions {

@@ -143,7 +143,7 @@ fn ranks(ranks: &[SetRank]) -> Markup {
                 @for rank in ranks {
                     tr {
                         td { (rank.name()) @if let Some(set) = &rank.set { br; (conditions(&set.written)) } }
-                        @match &rank.found {
+                        @match rank.answer() {
                             Ok(answer) => {
                                 td { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
                                 td { (unseen(answer, false).join("; ")) }

@@ -8,6 +8,7 @@
 //! Nothing here knows of palms; which quantities have which dimension is given from above.
 
 mod approach;
+mod changes;
 mod finding;
 mod jacobi;
 mod line;
@@ -17,6 +18,7 @@ mod subject;
 mod units;
 
 pub use approach::{Approach, approaches_of};
+pub use changes::{unit_quantities, units};
 pub use finding::StressFinding;
 pub use line::{First, Line, LineLimit, OnTheSet, WayOnLine};
 pub use run::{Stress, StressOptions, StressStudy, rows_of};

@@ -2,11 +2,12 @@
 
 use super::super::landscape::LandscapeRows;
 use super::approach::{Approach, Prepared, approaches_of};
+use super::changes::{unit_quantities, units};
 use super::line::{Line, OnTheSet, Walk};
 use super::scaling::{Quantity, Scaling};
 use super::subject::Subject;
 use super::units::{Conditioning, Rescaling, Seen, UnitsRow, conditioning, in_units};
-use crate::expression::NodeId;
+use crate::expression::{NodeId, Symbol};
 use crate::observability::{Branch, Codistribution, Length, Locus, OWN_ROWS, State};
 use crate::system::{Assignment, System, Value};
 use rayon::prelude::*;
@@ -98,8 +99,8 @@ pub fn rows_of(system: &mut System, wanted: LandscapeRows) -> Result<(String, Ve
 }
 
 impl Stress {
-    /// Prepares a system of which nothing is known but its file: see [`approaches_of`]. Each state in turn is measured in
-    /// units 2^20 and 2^40 times smaller.
+    /// Prepares a system of which nothing is known but its file: see [`approaches_of`]. Where it declares dimensions, units
+    /// are changed as these say ([`units`]); where not, each state in turn is measured in units 2^20 and 2^40 times smaller.
     ///
     /// # Errors
     /// As [`rows_of`] and [`Stress::prepare`].
@@ -110,14 +111,16 @@ impl Stress {
     ) -> Result<Stress, String> {
         let (name, rows) = rows_of(system, wanted)?;
         let approaches = approaches_of(system, &rows);
-        let mut units = Vec::new();
-        for power in [20, 40] {
-            for (place, state) in system.states.iter().enumerate() {
+        let quantities = unit_quantities(system, &rows);
+        let others = units(system, &rows).unwrap_or_else(|| {
+            let column = |(power, (place, state)): (i32, (usize, &Symbol))| {
                 let name = format!("{} in units 2^{power} times smaller", system.symbol_name(*state));
-                units.push((name, Rescaling::Column { place, power }));
-            }
-        }
-        Stress::prepare(system, (&name, &rows), &approaches, Vec::new(), units, options)
+                (name, Rescaling::Column { place, power })
+            };
+            let states = |power| system.states.iter().enumerate().map(move |state| (power, state));
+            [20, 40].into_iter().flat_map(states).map(column).collect()
+        });
+        Stress::prepare(system, (&name, &rows), &approaches, quantities, others, options)
     }
 
     /// Prepares some rows of a system (their name and their entries) for approaches. Besides each quantity by itself
