@@ -58,7 +58,7 @@ fn run_the_program(bencher: Bencher, order: usize) {
     for _ in 0..order {
         value = system.lie_derivative(0, value);
     }
-    let program = Program::new(&system.graph, &[value], |_| false, false);
+    let program = Program::plain(&system.graph, &[value]);
     let point = point(&system);
     let inputs = float_inputs(&program, |symbol| point[&symbol]);
     let loaded = program.load(Floats).expect("constants are finite");

@@ -66,7 +66,7 @@ fn rows() -> (Program, Vec<State>) {
     let entries = rows.entries.clone();
     let is_angle = &system.angle_test();
     let roots = expand_angles(&mut system.graph, &entries, is_angle);
-    let program = Program::new(&system.graph, &roots, is_angle, false);
+    let program = Program::new(&system.graph, &roots, is_angle);
     let locus =
         Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &entries).expect("a sample box");
     let states = (0..64).map(|index| locus.draw(1, index).expect("a state")).collect();

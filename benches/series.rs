@@ -76,7 +76,7 @@ fn prepared(bencher: Bencher, build: impl Fn(&mut System, usize, NodeId) -> Vec<
     let (system, field, h) = general();
     bencher.with_inputs(|| system.clone()).bench_local_values(|mut system| {
         let roots = build(&mut system, field, h);
-        let program = Program::new(&system.graph, &roots, |_| false, false);
+        let program = Program::plain(&system.graph, &roots);
         (program, system)
     });
 }
@@ -86,7 +86,7 @@ fn run(bencher: Bencher, build: impl Fn(&mut System, usize, NodeId) -> Vec<NodeI
     let (mut system, field, h) = general();
     let point = point(&mut system);
     let roots = build(&mut system, field, h);
-    let program = Program::new(&system.graph, &roots, |_| false, false);
+    let program = Program::plain(&system.graph, &roots);
     let inputs = float_inputs(&program, |symbol| point[&symbol]);
     let loaded = program.load(Floats::default()).expect("constants are finite");
     let mut registers = Vec::new();

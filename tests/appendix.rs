@@ -220,7 +220,7 @@ fn the_expansion_is_the_determinant() {
     let within: Vec<usize> = (0..values.len()).collect();
     let sum = expansion.sum_terms(&exact, &values, &order, &within).unwrap();
     let roots = palmistry::expression::expand_angles(&mut system.graph, &[determinant], is_angle);
-    let program = palmistry::expression::Program::new(&system.graph, &roots, is_angle, false);
+    let program = palmistry::expression::Program::new(&system.graph, &roots, is_angle);
     let inputs = state.inputs(&program, &exact).unwrap();
     let direct = program.load(exact).unwrap().run(&inputs, &mut Vec::new()).unwrap();
     assert_eq!(sum, direct[0]);

@@ -36,7 +36,7 @@ fn hold_against_rationals(
     inputs: &[f64],
 ) -> (usize, f64) {
     let exact = Rationals::default();
-    let scalar = Program::new(graph, roots, |_| false, false);
+    let scalar = Program::plain(graph, roots);
     let place = |input: &Input| block.inputs().iter().position(|other| other == input);
     let given: Vec<RBig> = scalar
         .inputs()
@@ -127,7 +127,7 @@ fn the_matrices_of_the_regimes_are_those_of_exact_arithmetic() {
         // sines and cosines are given here, any two numbers
         let is_angle = &system.angle_test();
         let block = BlockProgram::new(&system.graph, &roots, &[], is_angle, unknown);
-        let scalar = Program::new(&system.graph, &roots, is_angle, false);
+        let scalar = Program::new(&system.graph, &roots, is_angle);
         let exact = Rationals::default();
         let mut rng = ChaCha8Rng::seed_from_u64(2);
         let (mut compared, mut widest) = (0, Vec::new());
@@ -207,7 +207,7 @@ fn the_scalar_program_agrees_to_within_the_rounding_of_both() {
     let (system, roots) = regime("general.proof");
     let block = BlockProgram::new(&system.graph, &roots, &[], |_| false, unknown);
     let states = random_states(&block, 200);
-    let scalar = Program::new(&system.graph, &roots, |_| false, false);
+    let scalar = Program::plain(&system.graph, &roots);
     let arithmetic = Floats::<Interval>::default();
     let loaded = scalar.load(arithmetic).unwrap();
     for state in 0..200 {

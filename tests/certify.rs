@@ -124,7 +124,7 @@ fn drawn(system: &mut System, rows: RegionRows, condition: &str, count: u64) -> 
     let locus = Locus::new(system, &branch, &BTreeMap::new(), &entries).unwrap();
     let is_angle = &system.angle_test();
     let entries = expand_angles(&mut system.graph, &entries, is_angle);
-    let program = Program::new(&system.graph, &entries, is_angle, false);
+    let program = Program::new(&system.graph, &entries, is_angle);
     let exact = Rationals::default();
     let loaded = program.load(exact).unwrap();
     let columns = system.states.len();

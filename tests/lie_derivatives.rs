@@ -67,7 +67,7 @@ fn differentials_agree<T: RealNumber + DualNum>(bits: usize, exactly: fn(T) -> R
                         value = system.lie_derivative(*field, value);
                     }
                     let row = system.differential(value);
-                    let program = Program::new(&system.graph, &row, |_| false, false);
+                    let program = Program::plain(&system.graph, &row);
                     let inputs = float_inputs(&program, |symbol| point[&symbol]);
                     let graph =
                         program.load(Floats::<T>::new()).unwrap().run(&inputs, &mut Vec::new()).unwrap();
@@ -136,7 +136,7 @@ fn intervals_enclose_the_exact_differential() {
                     }
                     let row = system.differential(value);
                     let row = expand_angles(&mut system.graph, &row, |s| angles.contains(&s));
-                    let program = Program::new(&system.graph, &row, |s| angles.contains(&s), false);
+                    let program = Program::new(&system.graph, &row, |s| angles.contains(&s));
                     let inputs = state.inputs(&program, &Rationals::default()).unwrap();
                     let exact =
                         program.load(Rationals::default()).unwrap().run(&inputs, &mut Vec::new()).unwrap();
@@ -209,7 +209,7 @@ fn a_circle_comes_back_to_itself() {
     for order in 1..=12 {
         value = system.lie_derivative(0, value);
         let expected = [0.25, 3.0, -0.25, -3.0][order % 4];
-        let program = Program::new(&system.graph, &[value], |_| false, false);
+        let program = Program::plain(&system.graph, &[value]);
         let inputs = float_inputs(&program, |symbol| point[&symbol]);
         assert_eq!(program.load(Floats).unwrap().run(&inputs, &mut Vec::new()).unwrap(), [expected]);
         let duals = lie_derivative_by_duals(&system, &vec![0; order], system.outputs[0].1, &point).unwrap();

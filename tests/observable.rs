@@ -128,7 +128,7 @@ fn digits_of_a_regime_are_those_of_scaling_without_end() {
     let kept = Reduction::new(&system.graph, &rows.entries, rows.columns);
     let is_angle = &system.angle_test();
     let entries = expand_angles(&mut system.graph, &kept.entries, is_angle);
-    let program = Program::new(&system.graph, &entries, |_| false, false);
+    let program = Program::plain(&system.graph, &entries);
     let value =
         |symbol| found["worst_conditioned"]["state"][system.symbol_name(symbol)]["value"].as_f64().unwrap();
     let inputs = float_inputs(&program, value);

@@ -136,7 +136,7 @@ fn entries(system: &mut System, text: &str) -> Vec<NodeId> {
 
 /// The value of an entry at a point in doubles, if it exists.
 fn value(system: &System, entry: NodeId, point: &HashMap<String, RBig>) -> Option<f64> {
-    let program = Program::new(&system.graph, &[entry], |_| false, false);
+    let program = Program::plain(&system.graph, &[entry]);
     let inputs = program.inputs().iter().map(|input| match input {
         Input::Plain(symbol) => point.get(system.symbol_name(*symbol)).map(|value| value.to_f64().value()),
         _ => None,

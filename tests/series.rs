@@ -118,7 +118,7 @@ fn every_function_has_its_recurrence() {
             let mut roots = vec![series, derived];
             roots.extend(gradient(&mut system.graph, series, &states));
             roots.extend(forward(&mut system.graph, derived, &states));
-            let program = Program::new(&system.graph, &roots, |_| false, false);
+            let program = Program::plain(&system.graph, &roots);
             let inputs: Vec<_> = program
                 .inputs()
                 .iter()
@@ -177,7 +177,7 @@ fn order_eight_is_the_same_rational_number() {
     let (roots, rates) = extended.split_at(22);
     let moved: Vec<_> =
         system.fields[g1].components.iter().map(|(symbol, _)| *symbol).zip(rates.iter().copied()).collect();
-    let program = Program::new(&system.graph, roots, is_angle, false);
+    let program = Program::new(&system.graph, roots, is_angle);
     let flow = Flow::new(&system.graph, &moved, &[h], is_angle);
     let exact = Rationals::default();
     let field = PrimeField::random(&mut ChaCha8Rng::seed_from_u64(9));
@@ -208,7 +208,7 @@ fn nested_duals_agree() {
                 let (word, h) = (vec![field; order], system.outputs[0].1);
                 let series = lie_derivative_by_series(&mut system, &word, h).unwrap();
                 let row = gradient(&mut system.graph, series, &states);
-                let program = Program::new(&system.graph, &row, |_| false, false);
+                let program = Program::plain(&system.graph, &row);
                 let inputs = float_inputs(&program, |symbol| point[&symbol]);
                 let row = program.load(Floats).unwrap().run(&inputs, &mut Vec::new()).unwrap();
                 let duals = differential_by_duals(&system, &word, h, &point).unwrap();
@@ -233,13 +233,13 @@ fn the_operations_are_few() {
         let word = vec![1; order];
         let value = lie_derivative_by_series(&mut system, &word, h).unwrap();
         let row = gradient(&mut system.graph, value, &states);
-        let size = |roots: &[NodeId]| Program::new(&system.graph, roots, |_| false, false).len();
+        let size = |roots: &[NodeId]| Program::plain(&system.graph, roots).len();
         assert!(size(&row) < 4 * size(&[value]), "order {order}: {} and {}", size(&row), size(&[value]));
         sizes.push(size(&[value]) as f64);
     }
     assert!((sizes[3] / sizes[2]).log2() < 2.1, "{sizes:?}");
     let derived = by_derivation(&mut system, &[1; 8], h);
-    let derived = Program::new(&system.graph, &[derived], |_| false, false).len();
+    let derived = Program::plain(&system.graph, &[derived]).len();
     assert!((sizes[1] as usize) < derived, "{sizes:?} {derived}");
 }
 
@@ -252,7 +252,7 @@ fn what_is_undefined_stays_undefined() {
     let pole = graph.div(one, zero);
     let sum = graph.add(x, pole);
     let slope = gradient(&mut graph, sum, &[symbol])[0];
-    let program = Program::new(&graph, &[slope], |_| false, false);
+    let program = Program::plain(&graph, &[slope]);
     let inputs = vec![2.0; program.inputs().len()];
     assert!(program.load(Floats).unwrap().run(&inputs, &mut Vec::new()).is_err());
 }

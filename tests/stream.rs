@@ -81,7 +81,7 @@ fn certified_states_have_full_rank_modulo_a_prime_and_exactly() {
         let is_angle = &system.angle_test();
         let rows = rows(&system);
         let rows = expand_angles(&mut system.graph, &rows, is_angle);
-        let program = Program::new(&system.graph, &rows, is_angle, false);
+        let program = Program::new(&system.graph, &rows, is_angle);
         let field = PrimeField::random(&mut ChaCha8Rng::seed_from_u64(1));
         let width = system.states.len();
         for index in (0..300).filter(|index| !left.contains(index)) {
@@ -179,7 +179,7 @@ fn states_that_are_handed_over_get_the_verdicts_of_those_that_are_drawn() {
         let rows = rows(&system);
         let kept = Reduction::new(&system.graph, &rows, system.states.len());
         let entries = expand_angles(&mut system.graph, &kept.entries, is_angle);
-        let program = Program::new(&system.graph, &entries, |_| false, false);
+        let program = Program::plain(&system.graph, &entries);
         let symbols: Vec<_> = stream.coordinates().collect();
         let (width, loaded) = (kept.columns.len(), program.load(Floats).unwrap());
         for state in 0..1003 {

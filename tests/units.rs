@@ -176,7 +176,7 @@ fn the_customary_threshold_depends_on_units() {
     let mut changed = 0;
     for case in case("general.proof", &[], 20) {
         let is_angle = &case.system.angle_test();
-        let program = palmistry::expression::Program::new(&case.system.graph, &case.rows[1], is_angle, false);
+        let program = palmistry::expression::Program::new(&case.system.graph, &case.rows[1], is_angle);
         let customary = |state: &State| {
             let inputs = state.inputs(&program, &Floats).unwrap();
             let values = program.load(Floats).unwrap().run(&inputs, &mut Vec::new()).unwrap();

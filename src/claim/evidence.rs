@@ -238,7 +238,7 @@ pub(super) fn claimed_rank(
     };
     let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, &matrix.entries, is_angle);
-    let program = Program::new(&system.graph, &expanded, is_angle, false);
+    let program = Program::new(&system.graph, &expanded, is_angle);
     let field = PrimeField::random(rng);
     let width = matrix.columns.len();
     let most = width.min(matrix.words.len());

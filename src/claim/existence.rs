@@ -44,14 +44,14 @@ pub(crate) fn existence(system: &mut System, on: &OnBranch, rng: &mut impl Rng) 
         .collect();
     let nodes: Vec<NodeId> = open.iter().map(|(_, node)| *node).collect();
     let sides = expand_angles(&mut system.graph, &on.terms.sides, is_angle);
-    let program = Program::new(&system.graph, &nodes, is_angle, true);
+    let program = Program::with_unknown_functions(&system.graph, &nodes, is_angle);
     let algebraic = open.iter().all(|(guard, _)| guard.need == Need::NotZero)
         && program.unknown_function(&system.graph).is_none()
         && program.bare_angle().is_none();
     if algebraic {
         // what is not zero modulo a prime is not zero, and a rational expression that is not zero is so at almost all states
         let all: Vec<NodeId> = nodes.iter().chain(&sides).copied().collect();
-        let all = Program::new(&system.graph, &all, is_angle, true);
+        let all = Program::with_unknown_functions(&system.graph, &all, is_angle);
         let mut registers = Vec::new();
         for _ in 0..ATTEMPTS {
             let field = PrimeField::random(rng);

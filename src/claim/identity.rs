@@ -131,7 +131,7 @@ fn is_the_tolerance(
 }
 
 fn is_positive_number(system: &System, number: NodeId) -> bool {
-    let program = Program::new(&system.graph, &[number], |_| false, false);
+    let program = Program::plain(&system.graph, &[number]);
     let found = enclose(&system.graph, &program, &HashMap::new(), 512);
     found.is_ok_and(|found| found[0].low() > RBig::ZERO)
 }
@@ -175,7 +175,7 @@ pub(crate) fn decide_nearness(
     let mut wanted = vec![difference, tolerance, left, right];
     let terms = wanted.len();
     wanted.extend(guards.iter().map(|guard| guard.node));
-    let program = Program::new(&system.graph, &wanted, |_| false, false);
+    let program = Program::plain(&system.graph, &wanted);
     // a value in a file is a default, and never part of a claim
     let values: HashMap<Symbol, RBig> = HashMap::new();
     let (mut bits, mut compared) = (128, false);

@@ -65,7 +65,7 @@ pub fn pole_order(
     };
     let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, &[approach.expression], is_angle);
-    let program = Program::new(&system.graph, &expanded, is_angle, false);
+    let program = Program::new(&system.graph, &expanded, is_angle);
     // the leading coefficients of numerator and denominator are polynomials of no greater degree than these
     let bound = match crate::expression::sizes(&program) {
         Ok(sizes) => {

@@ -230,7 +230,7 @@ impl OnBranch {
             all.insert(*symbol, (value.exact_text(), value.to_f64()));
         }
         for (symbol, term) in &point.terms {
-            let program = Program::new(&system.graph, &[*term], |_| false, false);
+            let program = Program::plain(&system.graph, &[*term]);
             let near = values(&program, &State::default());
             let near = match &near {
                 Some(Values::Enclosed(value)) => value[0].midpoint(),
@@ -282,11 +282,11 @@ fn bare_angle(system: &mut System, nodes: &[NodeId]) -> Option<Symbol> {
 
 fn program(system: &mut System, nodes: &[NodeId], circular: bool) -> Program {
     if !circular {
-        return Program::new(&system.graph, nodes, |_| false, false);
+        return Program::plain(&system.graph, nodes);
     }
     let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, nodes, is_angle);
-    Program::new(&system.graph, &expanded, is_angle, false)
+    Program::new(&system.graph, &expanded, is_angle)
 }
 
 fn programs(system: &mut System, terms: &Terms, circular: bool) -> Programs {

@@ -141,7 +141,7 @@ fn evaluate<A: Arithmetic + Copy>(
 /// vanishes.
 fn zero_factor(graph: &Graph, divisor: NodeId, values: &HashMap<Symbol, RBig>) -> NodeId {
     let is_zero = |node: NodeId| {
-        let program = Program::new(graph, &[node], |_| false, false);
+        let program = Program::plain(graph, &[node]);
         matches!(evaluate(graph, &program, values, Rationals::default()), Ok(Some(value)) if value.is_zero())
     };
     let mut at = divisor;
@@ -166,7 +166,7 @@ fn zero_factor(graph: &Graph, divisor: NodeId, values: &HashMap<Symbol, RBig>) -
 /// Where it does not, and why; or where 4096 bits cannot tell.
 pub fn exists_at(graph: &Graph, guards: &[Guard], values: &HashMap<Symbol, RBig>) -> Result<(), ValueError> {
     for guard in guards.iter().filter(|guard| guard.is_obvious(graph) != Some(true)) {
-        let program = Program::new(graph, &[guard.node], |_| false, false);
+        let program = Program::plain(graph, &[guard.node]);
         if let Some(value) = evaluate(graph, &program, values, Rationals::default())? {
             if !guard.need.is_met_by(&value) {
                 return Err(match guard.need {
@@ -215,7 +215,7 @@ pub fn certified_value(
     values: &HashMap<Symbol, RBig>,
     digits: usize,
 ) -> Result<PointValue, ValueError> {
-    let program = Program::new(graph, &[expression], |_| false, false);
+    let program = Program::plain(graph, &[expression]);
     let mut climbed = 0;
     let found = |decimal, exact, rung, climbed| {
         Ok(PointValue { decimal, exact, certainty: Certainty::Certified, rung, climbed })
@@ -274,7 +274,7 @@ pub fn computed_value(
     values: &HashMap<Symbol, RBig>,
     digits: usize,
 ) -> Result<PointValue, ValueError> {
-    let program = Program::new(graph, &[expression], |_| false, false);
+    let program = Program::plain(graph, &[expression]);
     let mut climbed = 0;
     if digits <= DIGITS_OF_A_DOUBLE {
         let rough = evaluate(graph, &program, values, Floats)?.and_then(rational_from_f64);

@@ -133,7 +133,7 @@ fn rank_at(
     point: &HashMap<Symbol, RBig>,
 ) -> miette::Result<usize> {
     use palmistry::number::Rationals;
-    let program = palmistry::expression::Program::new(&system.graph, &entries, |_| false, false);
+    let program = palmistry::expression::Program::plain(&system.graph, &entries);
     let exact = Rationals::default();
     let refuse = |why: String| {
         Unusable::report(why, "a rank at a point is exact: give angles only where sines are rational")

@@ -74,7 +74,7 @@ fn certified_rank(
     let width = system.states.len();
     let entries: Vec<NodeId> = rows.iter().flat_map(|row| row.entries.iter().copied()).collect();
     let expanded = expand_angles(&mut system.graph, &entries, is_angle);
-    let program = Program::new(&system.graph, &expanded, is_angle, false);
+    let program = Program::new(&system.graph, &expanded, is_angle);
     let field = PrimeField::random(&mut ChaCha8Rng::seed_from_u64(seed));
     let graph = &system.graph;
     let with_minor = |recorded: &RecordedState| RankedState {

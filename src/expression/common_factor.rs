@@ -21,7 +21,7 @@ pub fn share_a_factor(
     is_angle: impl Fn(Symbol) -> bool,
     rng: &mut impl Rng,
 ) -> Option<bool> {
-    let program = Program::new(graph, &[a, b], is_angle, true);
+    let program = Program::with_unknown_functions(graph, &[a, b], is_angle);
     if program.bare_angle().is_some() {
         return None;
     }

@@ -32,7 +32,7 @@ pub fn expand(
     is_angle: impl Fn(Symbol) -> bool,
 ) -> Result<Expansion, String> {
     let expanded = expand_angles(graph, &[root], &is_angle);
-    let program = Program::new(graph, &expanded, &is_angle, false);
+    let program = Program::new(graph, &expanded, &is_angle);
     let variables = program.inputs().to_vec();
     if variables.len() > LARGEST_ARITY {
         return Err(format!("{} variables; at most {LARGEST_ARITY} can be expanded", variables.len()));

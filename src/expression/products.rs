@@ -59,7 +59,7 @@ impl Products {
         roots: &[NodeId],
         is_angle: impl Fn(Symbol) -> bool,
     ) -> Result<(Vec<Fraction>, NodeFractions), String> {
-        let program = Program::new(graph, roots, is_angle, true);
+        let program = Program::with_unknown_functions(graph, roots, is_angle);
         if let Some(angle) = program.bare_angle() {
             let name = graph.symbol_name(angle);
             return Err(format!("'{name}' is declared as an angle but stands outside sin, cos and tan"));

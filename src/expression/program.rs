@@ -55,15 +55,42 @@ pub struct Failure {
     pub divisor: Option<NodeId>,
 }
 
+/// What becomes of functions.
+#[derive(Clone, Copy, PartialEq)]
+enum Functions {
+    Computed,
+    Unknown,
+}
+
 impl Program {
-    /// The program for `roots`. Sines and cosines of a bare angle become inputs; where `opaque`, so does every other
-    /// function.
-    pub fn new(graph: &Graph, roots: &[NodeId], is_angle: impl Fn(Symbol) -> bool, opaque: bool) -> Self {
-        Self::build(graph, roots, &is_angle, opaque)
+    /// The program for `roots` whose inputs are symbols: all functions are computed.
+    pub fn plain(graph: &Graph, roots: &[NodeId]) -> Self {
+        Self::build(graph, roots, &|_| false, Functions::Computed)
+    }
+
+    /// The program for `roots`. Sines and cosines of a bare angle become inputs, all other functions are computed.
+    pub fn new(graph: &Graph, roots: &[NodeId], is_angle: impl Fn(Symbol) -> bool) -> Self {
+        Self::build(graph, roots, &is_angle, Functions::Computed)
+    }
+
+    /// The program for `roots` in which every function is an input of its own, of whose value nothing is known; but for
+    /// sines and cosines of a bare angle, which are inputs as such.
+    pub fn with_unknown_functions(
+        graph: &Graph,
+        roots: &[NodeId],
+        is_angle: impl Fn(Symbol) -> bool,
+    ) -> Self {
+        Self::build(graph, roots, &is_angle, Functions::Unknown)
     }
 
     /// Compiled once, and not for every closure.
-    fn build(graph: &Graph, roots: &[NodeId], is_angle: &dyn Fn(Symbol) -> bool, opaque: bool) -> Self {
+    fn build(
+        graph: &Graph,
+        roots: &[NodeId],
+        is_angle: &dyn Fn(Symbol) -> bool,
+        functions: Functions,
+    ) -> Self {
+        let opaque = functions == Functions::Unknown;
         let mut program = Program {
             operations: Vec::new(),
             origins: Vec::new(),

@@ -54,10 +54,10 @@ pub fn identically_zero(
     if roots.iter().all(|root| graph.constant_value(*root).is_some_and(|c| c.is_zero())) {
         return ZeroTest::Zero { log2_error: f64::NEG_INFINITY, points: 0, degree: 0.0 };
     }
-    let mut program = Program::new(graph, roots, is_angle, true);
+    let mut program = Program::with_unknown_functions(graph, roots, is_angle);
     if program.bare_angle().is_some() {
         // an angle is a number like others then, and its sine and cosine are unknowns beside it
-        program = Program::new(graph, roots, |_| false, true);
+        program = Program::with_unknown_functions(graph, roots, |_| false);
     }
     let size = match sizes(&program) {
         Ok(sizes) => sizes.into_iter().fold(Size::default(), |a, (top, _)| Size {

@@ -89,7 +89,7 @@ impl Bound {
         let enclosed = match &exact {
             Some(exact) => around(&Enclosures::new(BITS), exact)?,
             None => {
-                let program = Program::new(graph, &[value], |_| false, false);
+                let program = Program::plain(graph, &[value]);
                 let found = program.load(Enclosures::new(BITS)).ok()?.run(&[], &mut Vec::new()).ok()?;
                 to_interval(&found[0])
             }

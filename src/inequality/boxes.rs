@@ -111,7 +111,7 @@ pub fn search(
     symbols.sort_unstable();
     let partials = gradient(graph, question.goal.node, &symbols);
     let expanded = expand_angles(graph, &nodes, is_angle);
-    let circular = Program::new(graph, &expanded, is_angle, true);
+    let circular = Program::with_unknown_functions(graph, &expanded, is_angle);
     let turns = |symbol: Symbol| {
         is_angle(symbol)
             && circular.inputs().iter().all(|input| match input {
@@ -131,7 +131,7 @@ pub fn search(
         .collect();
     let touch = Touch::new(question.goal.node, &symbols, &partials);
     nodes.extend(partials);
-    let program = Program::new(graph, &nodes, |_| false, false);
+    let program = Program::plain(graph, &nodes);
     let Ok(loaded) = program.load(WhereDefined) else {
         return Found::Open { share: 1.0, sample: Vec::new(), boxes: 0 };
     };
@@ -386,7 +386,7 @@ impl Search<'_> {
         let (low, high) = match graph.constant_value(there) {
             Some(value) => (value.clone(), value.clone()),
             None => {
-                let program = Program::new(graph, &[there], |_| false, false);
+                let program = Program::plain(graph, &[there]);
                 let found =
                     program.load(Enclosures::new(CORNER_BITS)).ok()?.run(&[], &mut Vec::new()).ok()?;
                 (found[0].low(), found[0].high())

@@ -35,7 +35,7 @@ pub fn vanishes_somewhere(
             values.insert(*symbol, graph.add(from, step));
         }
         let there = graph.substitute(&nodes, &values);
-        let program = Program::new(graph, &there, |_| false, false);
+        let program = Program::plain(graph, &there);
         let Ok(loaded) = program.load(WhereDefined) else { continue };
         let mut registers = Vec::new();
         let mut at = |low: f64, high: f64| {

@@ -65,7 +65,7 @@ impl Reading {
         let mut nodes = expand_angles(graph, &nodes, is_angle);
         let mut squares: Vec<(NodeId, usize)> = Vec::new();
         loop {
-            let program = Program::new(graph, &nodes, is_angle, true);
+            let program = Program::with_unknown_functions(graph, &nodes, is_angle);
             if program.inputs().len() > LARGEST_ARITY {
                 return None;
             }

@@ -118,7 +118,7 @@ impl Touch {
                     nodes.extend(gradient(graph, *slope, &self.symbols));
                 }
             }
-            let program = Program::new(graph, &nodes, |_| false, false);
+            let program = Program::plain(graph, &nodes);
             self.further = Some((nodes, program));
         }
         self.further.as_ref().map_or(&[], |(nodes, _)| nodes)
@@ -149,7 +149,7 @@ impl Touch {
         let next = match order {
             0 => return false,
             1 => {
-                let program = Program::new(graph, &self.slopes, |_| false, false);
+                let program = Program::plain(graph, &self.slopes);
                 let Ok(loaded) = program.load(WhereDefined) else { return false };
                 let inputs = vec![side; program.inputs().len()];
                 loaded.run(&inputs, &mut Vec::new()).ok().map(|values| values[0])

@@ -292,7 +292,7 @@ fn needed(
     let as_written: Vec<NodeId> = rows.iter().flatten().copied().collect();
     let entries = system.graph.substitute(&as_written, conditions);
     let entries = expand_angles(&mut system.graph, &entries, is_angle);
-    let program = Program::new(&system.graph, &entries, is_angle, true);
+    let program = Program::with_unknown_functions(&system.graph, &entries, is_angle);
     if let Some(angle) = program.bare_angle() {
         let name = system.symbol_name(angle);
         return Err(CodistributionError::AngleOutside(name.to_owned()));

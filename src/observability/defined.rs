@@ -27,7 +27,7 @@ impl Defined {
         let nodes = expand_angles(&mut system.graph, &nodes, is_angle);
         Defined {
             needs: guards.iter().map(|guard| guard.need).collect(),
-            program: Program::new(&system.graph, &nodes, is_angle, false),
+            program: Program::new(&system.graph, &nodes, is_angle),
             texts: guards.iter().map(|guard| guard.text(&system.graph)).collect(),
         }
     }

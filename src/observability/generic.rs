@@ -37,7 +37,7 @@ pub fn generic_rank(
     rng: &mut impl Rng,
 ) -> GenericRank {
     let expanded = expand_angles(graph, entries, &is_angle);
-    let program = Program::new(graph, &expanded, &is_angle, true);
+    let program = Program::with_unknown_functions(graph, &expanded, &is_angle);
     if let Some(angle) = program.bare_angle() {
         let name = graph.symbol_name(angle);
         return GenericRank::Unknown(format!(

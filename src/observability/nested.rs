@@ -61,7 +61,7 @@ fn values<T: Differentiable>(
     nodes: &[NodeId],
     point: &HashMap<Symbol, Tower<T>>,
 ) -> Result<Vec<Tower<T>>, NestedError> {
-    let program = Program::new(&system.graph, nodes, |_| false, false);
+    let program = Program::plain(&system.graph, nodes);
     let loaded = program.load(Duals::<Tower<T>>::default()).map_err(NestedError::Refusal)?;
     let missing = Tower::Leaf(T::zero());
     let input = |input: &Input| match input {

@@ -115,11 +115,8 @@ impl Model {
         let mut model = Model {
             states: question.followed.clone(),
             outputs: Vec::new(),
-            rates: Formulas {
-                program: Program::new(&system.graph, &[], |_| false, false),
-                feeds: Vec::new(),
-            },
-            seen: Formulas { program: Program::new(&system.graph, &[], |_| false, false), feeds: Vec::new() },
+            rates: Formulas { program: Program::plain(&system.graph, &[]), feeds: Vec::new() },
+            seen: Formulas { program: Program::plain(&system.graph, &[]), feeds: Vec::new() },
             columns: Vec::new(),
             measured: Vec::new(),
             system,
@@ -149,7 +146,7 @@ impl Model {
         rates: &HashMap<Symbol, Symbol>,
         signals: &Signals,
     ) -> Result<Formulas, ModelError> {
-        let program = Program::new(&self.system.graph, nodes, |_| false, false);
+        let program = Program::plain(&self.system.graph, nodes);
         let mut feeds = Vec::new();
         for input in program.inputs() {
             let (Input::Plain(symbol) | Input::Sine(symbol) | Input::Cosine(symbol)) = *input else {

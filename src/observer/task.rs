@@ -181,13 +181,15 @@ pub enum UpdateEnd {
 /// One update from a window of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Update {
-    /// The first and the last time, in s.
+    /// The first time, in s.
     pub from: f64,
+    /// The last time, in s.
     pub to: f64,
-    /// What is believed of the state at the first time, and the least standard deviation that it could have.
+    /// What is believed of the state at the first time.
     pub estimate: Vec<f64>,
     /// What is believed of the outputs that are followed, there.
     pub outputs: Vec<f64>,
+    /// The least standard deviation that each entry of the estimate could have.
     pub deviations: Vec<f64>,
     /// The condition of the sensitivities, scaled.
     pub condition: f64,
@@ -195,11 +197,13 @@ pub struct Update {
     pub cost: f64,
     /// The root of the mean square of expected minus read there, in the outputs' unit.
     pub misfit: f64,
-    /// Steps that were taken, and those of them that had to be shortened, refused or replaced.
+    /// Steps that were taken.
     pub steps: u64,
+    /// Those of them that had to be shortened, refused or replaced.
     pub troubled: usize,
     /// The wall time of the update, in s.
     pub seconds: f64,
+    /// How it ended.
     pub standing: UpdateEnd,
 }
 

@@ -88,8 +88,8 @@ pub(crate) fn standard_deviations(
     let values: Vec<NodeId> = codistribution.needed.iter().map(|word| codistribution.values[*word]).collect();
     let values = expand_angles(&mut system.graph, &values, is_angle);
     let rows = expand_angles(&mut system.graph, &codistribution.needed_entries(), is_angle);
-    let values = Program::new(&system.graph, &values, is_angle, false);
-    let rows = Program::new(&system.graph, &rows, is_angle, false);
+    let values = Program::new(&system.graph, &values, is_angle);
+    let rows = Program::new(&system.graph, &rows, is_angle);
     let columns = system.states.len();
     let (mut states, mut found, mut measured) = (Vec::new(), Vec::new(), Vec::new());
     for index in 0..STATES.min(samples) {

@@ -59,7 +59,7 @@ struct Rows {
 impl Rows {
     fn new(graph: &Graph, entries: &[NodeId], columns: usize, is_angle: impl Fn(Symbol) -> bool) -> Rows {
         let reduction = Reduction::new(graph, entries, columns);
-        let program = Program::new(graph, &reduction.entries, is_angle, false);
+        let program = Program::new(graph, &reduction.entries, is_angle);
         Rows { reduction, program }
     }
 
@@ -113,7 +113,7 @@ impl<'g> Judge<'g> {
             defined,
             quick: Rows::new(graph, quick, columns, is_angle),
             all: Rows::new(graph, all, columns, is_angle),
-            exact: Program::new(graph, all, is_angle, false),
+            exact: Program::new(graph, all, is_angle),
             columns,
             field,
             wanted,

@@ -123,7 +123,7 @@ mod tests {
         let row = loaded.differential(&vec![0; order - 1], 0, &point).unwrap();
         let value = (1..order).fold(h, |value, _| system.lie_derivative(0, value));
         let entries = system.differential(value);
-        let program = Program::new(&system.graph, &entries, |_| false, false);
+        let program = Program::plain(&system.graph, &entries);
         let place = |input: &Input| match input {
             Input::Plain(symbol) if *symbol == system.states[0] => point[0],
             _ => point[1],

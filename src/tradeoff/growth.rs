@@ -24,7 +24,7 @@ pub fn growth_of_lie_derivatives(system: &System, field: usize, output: usize, o
         let begin = Instant::now();
         value = system.lie_derivative(field, value);
         let seconds = begin.elapsed().as_secs_f64();
-        let operations = Program::new(&system.graph, &[value], |_| false, false).len();
+        let operations = Program::plain(&system.graph, &[value]).len();
         found.push(Growth { order, operations, seconds });
         if operations > MOST_OPERATIONS {
             break;

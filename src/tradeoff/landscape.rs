@@ -63,7 +63,7 @@ impl<'s> Landscape<'s> {
         }
         // angles stay plain numbers here: a line into phi = 0 has to be exact in phi, not in its sine
         let reduced = Reduction::new(&system.graph, rows, system.states.len());
-        let program = Program::new(&system.graph, &reduced.entries, |_| false, false);
+        let program = Program::plain(&system.graph, &reduced.entries);
         Ok(Landscape { system, program, values, columns: reduced.columns.len() })
     }
 
@@ -135,7 +135,7 @@ impl<'s> Landscape<'s> {
             let text = self.system.graph.text(expression);
             format!("'{text}' is not linear in {}", self.system.symbol_name(symbol))
         })?;
-        let program = Program::new(&self.system.graph, &[root], |_| false, false);
+        let program = Program::plain(&self.system.graph, &[root]);
         let inputs = float_inputs(&program, |s| self.values.get(&s).copied().unwrap_or(f64::NAN));
         let run = program.load(Floats).map_err(|r| r.to_string())?.run(&inputs, &mut Vec::new());
         run.map(|values| values[0]).map_err(|failure| failure.refusal.to_string())

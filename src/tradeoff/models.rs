@@ -86,10 +86,10 @@ fn compiled(system: &mut System, rows: &[NodeId]) -> (Program, Reduced) {
     let rows = expand_angles(&mut system.graph, rows, is_angle);
     let rest = Reduction::new(&system.graph, &rows, system.states.len());
     let reduced = Reduced {
-        program: Program::new(&system.graph, &rest.entries, is_angle, false),
+        program: Program::new(&system.graph, &rest.entries, is_angle),
         columns: rest.columns.len(),
     };
-    (Program::new(&system.graph, &rows, is_angle, false), reduced)
+    (Program::new(&system.graph, &rows, is_angle), reduced)
 }
 
 /// The values of one system's symbols under another's symbols of the same names.

@@ -39,7 +39,7 @@ impl PointPrograms {
         symbols.dedup();
         let place = |symbol: &Symbol| symbols.partition_point(|other| other < symbol);
         let function = |nodes: &[NodeId]| {
-            let program = Program::new(&system.graph, nodes, |_| false, false);
+            let program = Program::plain(&system.graph, nodes);
             let symbol = |input: &Input| match input {
                 Input::Plain(symbol) | Input::Sine(symbol) | Input::Cosine(symbol) => Some(place(symbol)),
                 Input::Opaque(_) => None, // none is asked for

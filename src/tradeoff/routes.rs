@@ -38,7 +38,7 @@ pub fn compare_routes(
     for _ in 1..=orders {
         value = system.lie_derivative(field, value);
         let expanded = expand_angles(&mut system.graph, &[value], |_| false);
-        programs.push(Program::new(&system.graph, &expanded, |_| false, false));
+        programs.push(Program::plain(&system.graph, &expanded));
         derivatives.push(value);
         if programs.last().is_some_and(|program| program.len() > MOST_OPERATIONS) {
             break;

@@ -26,7 +26,7 @@ fn told_rate(system: &System, simulation: &Simulation, name: &str, row: usize) -
         .iter()
         .filter_map(|field| field.components.iter().find(|(other, _)| *other == state).map(|(_, node)| *node))
         .collect();
-    let program = Program::new(&system.graph, &nodes, |_| false, false);
+    let program = Program::plain(&system.graph, &nodes);
     let value = |name: &str| simulation.truth(name).unwrap_or_else(|| panic!("{name}"))[row];
     let inputs: Vec<f64> = program
         .inputs()

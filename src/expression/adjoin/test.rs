@@ -97,7 +97,7 @@ impl Adjunction<'_> {
 
     fn program(&self, nodes: &[NodeId]) -> Program {
         let circles = &self.generators.circles;
-        Program::new(self.graph, nodes, |symbol| circles.contains_key(&symbol), true)
+        Program::with_unknown_functions(self.graph, nodes, |symbol| circles.contains_key(&symbol))
     }
 
     /// The roots that expressions need, each after those that it is made of.

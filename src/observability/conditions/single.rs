@@ -94,7 +94,9 @@ fn is_positive(system: &System, expression: NodeId) -> bool {
 fn has_unknown_function(system: &mut System, expressions: &[NodeId]) -> bool {
     let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, expressions, is_angle);
-    Program::new(&system.graph, &expanded, is_angle, true).unknown_function(&system.graph).is_some()
+    Program::with_unknown_functions(&system.graph, &expanded, is_angle)
+        .unknown_function(&system.graph)
+        .is_some()
 }
 
 /// The factors of an expression that is written as a product; its own powers and roots vanish where their bases do.

@@ -55,7 +55,7 @@ fn ingredients(system: &mut System) -> Vec<NodeId> {
 pub(super) fn turns_do_not_matter(system: &mut System, expressions: &[NodeId], angle: Symbol) -> bool {
     let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, expressions, is_angle);
-    let program = Program::new(&system.graph, &expanded, is_angle, true);
+    let program = Program::with_unknown_functions(&system.graph, &expanded, is_angle);
     let bare = program.inputs().contains(&Input::Plain(angle));
     let within = |input: &Input| match input {
         Input::Opaque(node) => system.graph.symbols_of([*node]).contains(&angle),

@@ -52,7 +52,7 @@ pub(super) fn enclosed_constant(system: &System, expression: NodeId) -> Option<E
     if !system.graph.symbols_of([expression]).is_empty() {
         return None;
     }
-    let program = Program::new(&system.graph, &[expression], |_| false, false);
+    let program = Program::plain(&system.graph, &[expression]);
     let loaded = program.load(Enclosures::new(CONSTANT_BITS)).ok()?;
     loaded.run(&[], &mut Vec::new()).ok()?.pop()
 }

@@ -62,7 +62,7 @@ impl Subject {
         }
         let is_angle = &system.angle_test();
         let expanded = expand_angles(&mut system.graph, rows, is_angle);
-        let program = Program::new(&system.graph, &expanded, is_angle, false);
+        let program = Program::new(&system.graph, &expanded, is_angle);
         if let Some(angle) = program.bare_angle() {
             let name = system.symbol_name(angle);
             return Err(format!("'{name}' is declared as an angle but stands outside sin, cos and tan"));

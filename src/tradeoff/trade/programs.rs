@@ -43,7 +43,7 @@ impl Programs {
         let roots: Vec<NodeId> = varying.iter().map(|place| entries[*place]).collect();
         let by_series = words.as_ref().map_err(Clone::clone).and_then(|words| series(system, words, varying));
         let expanded = term_by_term(&mut system.graph, &roots, is_angle, MOST_MONOMIALS);
-        let compile = |roots: &[NodeId]| Program::new(&system.graph, roots, is_angle, false);
+        let compile = |roots: &[NodeId]| Program::new(&system.graph, roots, is_angle);
         let columns = system.states.len();
         let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
         Programs {
