@@ -8,7 +8,7 @@ use palmistry::observability::{
     Branch, Codistribution, Coordinate, Defined, Length, Locus, State, customary_singular_values,
     parse_condition, solve_conditions,
 };
-use palmistry::sweep::{Certainty, Judge, StateJudgement, StateReport};
+use palmistry::sweep::{Certainty, Judge, JudgedRows, ProofWanted, StateJudgement, StateReport};
 use palmistry::system::Value;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -103,10 +103,9 @@ fn decide(
     let judge = Judge::new(
         &case.system.graph,
         Defined::default(),
-        (rows, rows),
-        case.system.states.len(),
+        JudgedRows { quick: rows, all: rows, columns: case.system.states.len() },
         is_angle,
-        (PrimeField::random(&mut rand_chacha_rng()), wanted),
+        ProofWanted { wanted, field: PrimeField::random(&mut rand_chacha_rng()) },
     );
     match judge.decide(state) {
         StateJudgement::Report(report) => report,

@@ -84,6 +84,39 @@ impl Matrices for RowsAt<'_, '_> {
     }
 }
 
+/// Rows, entry after entry, whose rank is decided.
+#[derive(Clone, Copy, Debug)]
+pub struct JudgedRows<'r> {
+    /// Those that suffice at a generic state: they are tried first.
+    pub quick: &'r [NodeId],
+    /// All of them: they decide where the quick ones fall short.
+    pub all: &'r [NodeId],
+    /// How many entries a row has.
+    pub columns: usize,
+}
+
+/// How certain a rank has to be, and the numbers by which it may become so.
+#[derive(Clone, Copy, Debug)]
+pub struct ProofWanted {
+    pub wanted: Certainty,
+    /// The residues.
+    pub field: PrimeField,
+}
+
+/// Why there is no exact rank at a state.
+enum NoExactRank {
+    /// A divisor is zero there, in words.
+    Pole(String),
+    /// There is no exact arithmetic for these rows.
+    NotExact,
+}
+
+/// The rank at a state by exact numbers, and a basis of the directions that no row sees.
+struct ExactRank {
+    rank: usize,
+    unseen: Vec<Vec<RBig>>,
+}
+
 /// Decides the rank of some rows at any state.
 pub struct Judge<'g> {
     graph: &'g Graph,
@@ -98,16 +131,16 @@ pub struct Judge<'g> {
 }
 
 impl<'g> Judge<'g> {
-    /// `defined` says where all of it exists. `quick` rows (those that suffice at a generic state) are tried first; where they fall short, `all` rows decide.
-    /// Angles must have been expanded.
+    /// `defined` says where all of the rows exist. Angles must have been expanded.
     pub fn new(
         graph: &'g Graph,
         defined: Defined,
-        (quick, all): (&[NodeId], &[NodeId]),
-        columns: usize,
+        rows: JudgedRows<'_>,
         is_angle: impl Fn(Symbol) -> bool + Copy,
-        (field, wanted): (PrimeField, Certainty),
+        proof: ProofWanted,
     ) -> Self {
+        let JudgedRows { quick, all, columns } = rows;
+        let ProofWanted { field, wanted } = proof;
         Judge {
             graph,
             defined,
@@ -156,12 +189,12 @@ impl<'g> Judge<'g> {
         }
         if self.wanted == Certainty::Certified {
             match self.exact(state) {
-                Ok((rank, unseen)) => {
+                Ok(ExactRank { rank, unseen }) => {
                     (report.rank, report.unseen, report.rung) = (rank, unseen, Rung::Exact);
                     return StateJudgement::Report(report);
                 }
-                Err(Some(pole)) => return StateJudgement::Pole(pole),
-                Err(None) => {}
+                Err(NoExactRank::Pole(pole)) => return StateJudgement::Pole(pole),
+                Err(NoExactRank::NotExact) => {}
             }
         }
         match self.precise(state) {
@@ -222,18 +255,18 @@ impl<'g> Judge<'g> {
         Some(rows.reduction.eliminated + rank(&self.field, rows.matrix(values)).ok()?)
     }
 
-    /// The rank and the unseen directions by exact elimination. `Err(Some(..))` names a pole; `Err(None)` means that
-    /// there is no exact arithmetic for these rows.
-    fn exact(&self, state: &State) -> Result<(usize, Vec<Vec<RBig>>), Option<String>> {
+    /// The rank and the unseen directions by exact elimination.
+    fn exact(&self, state: &State) -> Result<ExactRank, NoExactRank> {
         let exact = Rationals::default();
-        let loaded = self.exact.load(exact).map_err(|_| None)?;
-        let inputs = state.inputs(&self.exact, &exact).map_err(|_| None)?;
-        let values = loaded
-            .run(&inputs, &mut Vec::new())
-            .map_err(|failure| failure.divisor.map(|divisor| format!("{} = 0", self.graph.text(divisor))))?;
+        let loaded = self.exact.load(exact).map_err(|_| NoExactRank::NotExact)?;
+        let inputs = state.inputs(&self.exact, &exact).map_err(|_| NoExactRank::NotExact)?;
+        let values = loaded.run(&inputs, &mut Vec::new()).map_err(|failure| match failure.divisor {
+            Some(divisor) => NoExactRank::Pole(format!("{} = 0", self.graph.text(divisor))),
+            None => NoExactRank::NotExact,
+        })?;
         let rows = values.chunks(self.columns).map(<[RBig]>::to_vec).collect();
-        let unseen = kernel(&exact, rows, self.columns).map_err(|_| None)?;
-        Ok((self.columns - unseen.len(), unseen))
+        let unseen = kernel(&exact, rows, self.columns).map_err(|_| NoExactRank::NotExact)?;
+        Ok(ExactRank { rank: self.columns - unseen.len(), unseen })
     }
 
     /// A lower bound on the rank, by more and more bits until it is full; the rank by the last and most precise.

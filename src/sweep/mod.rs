@@ -19,7 +19,7 @@ mod unseen;
 pub use certainty::Certainty;
 pub use deviation::{NEARLY_INVISIBLE, StandardDeviation, StandardDeviations};
 pub use digits::{Digits, MOST_DIGITS, NoDigits};
-pub use ladder::{Judge, StateJudgement, StateReport};
+pub use ladder::{Judge, JudgedRows, ProofWanted, StateJudgement, StateReport};
 pub use question::{BranchAnswer, RankAnswer, RankError, RankQuestion, TakenRow, answer_rank};
 pub use states::{RecordedState, SweepOptions, SweepReport, sweep};
 pub use stream::{

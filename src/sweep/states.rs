@@ -2,7 +2,7 @@
 
 use super::certainty::Certainty;
 use super::digits::{Digits, NoDigits};
-use super::ladder::{Judge, StateJudgement, StateReport};
+use super::ladder::{Judge, JudgedRows, ProofWanted, StateJudgement, StateReport};
 use super::stream::{Stream, StreamOptions};
 use super::unseen::{UnseenDirection, UnseenDirections};
 use crate::expression::{Guard, NodeId, add_guard, expand_angles};
@@ -119,10 +119,10 @@ pub fn sweep(
     options.guards.iter().for_each(|guard| add_guard(&system.graph, &mut guards, *guard));
     let defined = Defined::new(system, &guards);
     let field = PrimeField::random(&mut rng);
-    // the judge looks at the graph while the tally asks the system for names
+    // the judge looks at the graph while the counts asks the system for names
     let graph = system.graph.clone();
-    let judge =
-        Judge::new(&graph, defined, (&quick, &all), system.states.len(), is_angle, (field, options.wanted));
+    let rows = JudgedRows { quick: &quick, all: &all, columns: system.states.len() };
+    let judge = Judge::new(&graph, defined, rows, is_angle, ProofWanted { wanted: options.wanted, field });
     // a stream decides full ranks only; where the quick rows cannot have it, there is nothing to stream
     let stream = Stream::new(system, locus, &quick)
         .filter(|_| watched)
@@ -142,17 +142,17 @@ fn one_by_one(
     judge: &Judge<'_>,
     options: SweepOptions<'_>,
 ) -> Result<SweepReport, LocusError> {
-    let mut tally = Tally::default();
+    let mut counts = SweepCounts::default();
     let mut done = 0;
     while done < options.samples && !options.interrupt.load(Ordering::Relaxed) {
         let end = (done + BLOCK).min(options.samples);
         let indices: Vec<u64> = (done..end).collect();
-        judge_all(system, judge, &mut tally, &indices, |index| locus.draw(options.seed, index))?;
+        judge_all(system, judge, &mut counts, &indices, |index| locus.draw(options.seed, index))?;
         done = end;
         (options.progress)(done);
     }
-    let worst = tally.worst.as_ref().map(|(state, _)| state.clone());
-    let mut report = tally.finish(system, judge, options.digits, done < options.samples);
+    let worst = counts.worst.as_ref().map(|(state, _)| state.clone());
+    let mut report = counts.finish(system, judge, options.digits, done < options.samples);
     report.recorded = recorded(judge, worst, options, |index| locus.draw(options.seed, index))?;
     report.remaining = judge.remaining();
     Ok(report)
@@ -165,7 +165,7 @@ fn streamed(
     judge: &Judge<'_>,
     options: SweepOptions<'_>,
 ) -> Result<SweepReport, LocusError> {
-    let mut tally = Tally::default();
+    let mut counts = SweepCounts::default();
     let mut trouble = None;
     let mut skipped = false;
     let state = |index| stream.state(options.seed, index);
@@ -175,7 +175,7 @@ fn streamed(
             if skipped || trouble.is_some() {
                 return;
             }
-            trouble = judge_all(system, judge, &mut tally, block, state).err();
+            trouble = judge_all(system, judge, &mut counts, block, state).err();
         }
     };
     let SweepOptions { samples: states, seed, wanted, digits, interrupt, progress, .. } = options;
@@ -186,26 +186,26 @@ fn streamed(
     let full = system.states.len();
     let decided = found.states - found.left;
     if decided > 0 {
-        tally.samples += decided;
-        tally.certified += found.certified;
-        *tally.ranks.entry(full).or_insert(0) += decided;
-        *tally.rungs.entry(Rung::Doubles).or_insert(0) += decided;
-        *tally.computed.entry(full).or_insert(0) += decided - found.denied;
-        tally.disagreements += found.denied;
+        counts.samples += decided;
+        counts.certified += found.certified;
+        *counts.ranks.entry(full).or_insert(0) += decided;
+        *counts.rungs.entry(Rung::Doubles).or_insert(0) += decided;
+        *counts.computed.entry(full).or_insert(0) += decided - found.denied;
+        counts.disagreements += found.denied;
     }
     if let Some(gap) = found.smallest_gap {
-        tally.smallest_gap = Some(tally.smallest_gap.map_or(gap, |least| least.min(gap)));
+        counts.smallest_gap = Some(counts.smallest_gap.map_or(gap, |least| least.min(gap)));
     }
     if let Some((index, condition)) = found.worst
-        && tally.worst.as_ref().is_none_or(|(_, worst)| condition > worst.condition())
+        && counts.worst.as_ref().is_none_or(|(_, worst)| condition > worst.condition())
     {
         let state = state(index)?;
         if let StateJudgement::Report(StateReport { spectrum: Some(spectrum), .. }) = judge.decide(&state) {
-            tally.worst = Some((state, spectrum));
+            counts.worst = Some((state, spectrum));
         }
     }
-    let worst = tally.worst.as_ref().map(|(state, _)| state.clone());
-    let mut report = tally.finish(system, judge, digits, found.interrupted || skipped);
+    let worst = counts.worst.as_ref().map(|(state, _)| state.clone());
+    let mut report = counts.finish(system, judge, digits, found.interrupted || skipped);
     report.recorded = recorded(judge, worst, options, state)?;
     report.first = Rung::Doubles;
     report.remaining = found.remaining;
@@ -242,7 +242,7 @@ fn recorded(
 fn judge_all(
     system: &System,
     judge: &Judge<'_>,
-    tally: &mut Tally,
+    counts: &mut SweepCounts,
     indices: &[u64],
     state: impl Fn(u64) -> Result<State, LocusError> + Sync,
 ) -> Result<(), LocusError> {
@@ -256,13 +256,13 @@ fn judge_all(
         .collect();
     for (index, item) in indices.iter().zip(block) {
         let (state, judged) = item?;
-        tally.add(system, *index, state, judged);
+        counts.add(system, *index, state, judged);
     }
     Ok(())
 }
 
 #[derive(Default)]
-struct Tally {
+struct SweepCounts {
     samples: u64,
     certified: u64,
     disagreements: u64,
@@ -275,7 +275,7 @@ struct Tally {
     smallest_gap: Option<f64>,
 }
 
-impl Tally {
+impl SweepCounts {
     fn add(&mut self, system: &System, index: u64, state: State, judged: StateJudgement) {
         let report = match judged {
             StateJudgement::Pole(divisor) => {

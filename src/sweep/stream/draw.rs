@@ -52,32 +52,58 @@ fn inside(bound: &RBig, next: fn(f64) -> f64) -> f64 {
     if outside { beyond } else { nearest }
 }
 
-/// What a program wants of a state.
+/// A function of one coordinate that is drawn, by the coordinate's place among the axes.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Wish {
+pub(super) enum AxisFunction {
     Plain(usize),
     Sine(usize),
     Cosine(usize),
 }
 
-/// What a program wants, by places among its inputs; `None` where it wants something that is not drawn.
-pub(super) fn wishes(program: &BlockProgram, axes: &[Axis]) -> Option<Vec<(usize, Wish)>> {
-    let place = |symbol: &Symbol| axes.iter().position(|axis| axis.symbol == *symbol);
-    program
-        .inputs()
-        .iter()
-        .enumerate()
-        .filter(|(at, _)| program.is_used(*at))
-        .map(|(at, input)| {
-            let wish = match input {
-                Input::Plain(symbol) => place(symbol).filter(|axis| !axes[*axis].is_turn).map(Wish::Plain),
-                Input::Sine(symbol) => place(symbol).filter(|axis| axes[*axis].is_turn).map(Wish::Sine),
-                Input::Cosine(symbol) => place(symbol).filter(|axis| axes[*axis].is_turn).map(Wish::Cosine),
+/// Where an input of a program comes from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DrawnInput {
+    /// Its place among the inputs.
+    pub place: usize,
+    pub function: AxisFunction,
+}
+
+/// A program whose inputs are drawn.
+#[derive(Clone, Debug)]
+pub(super) struct DrawnProgram {
+    pub program: BlockProgram,
+    /// Where those of its inputs come from that have any influence.
+    pub inputs: Vec<DrawnInput>,
+}
+
+impl DrawnProgram {
+    /// `None` where it needs something that is not drawn.
+    pub fn new(program: BlockProgram, axes: &[Axis]) -> Option<DrawnProgram> {
+        let axis = |symbol: &Symbol, is_turn: bool| {
+            axes.iter()
+                .position(|axis| axis.symbol == *symbol)
+                .filter(|place| axes[*place].is_turn == is_turn)
+        };
+        let drawn = |(place, input): (usize, &Input)| {
+            let function = match input {
+                Input::Plain(symbol) => axis(symbol, false).map(AxisFunction::Plain),
+                Input::Sine(symbol) => axis(symbol, true).map(AxisFunction::Sine),
+                Input::Cosine(symbol) => axis(symbol, true).map(AxisFunction::Cosine),
                 Input::Opaque(_) => None,
             };
-            Some((at, wish?))
-        })
-        .collect()
+            Some(DrawnInput { place, function: function? })
+        };
+        let used = program.inputs().iter().enumerate().filter(|(place, _)| program.is_used(*place));
+        let inputs = used.map(drawn).collect::<Option<_>>()?;
+        Some(DrawnProgram { program, inputs })
+    }
+}
+
+/// In which numbers states are drawn, and how many at a time.
+#[derive(Clone, Copy)]
+pub(super) struct BlockOf<L> {
+    pub zero: L,
+    pub lanes: usize,
 }
 
 /// A block of drawn states, structure of arrays.
@@ -90,17 +116,13 @@ pub(super) struct Drawer<'a, L> {
     states: usize,
     avoid: Machine<'a, L>,
     avoided: usize,
-    avoid_wishes: &'a [(usize, Wish)],
+    avoid_inputs: &'a [DrawnInput],
 }
 
 impl<'a, L: Lanes> Drawer<'a, L> {
     #[inline(always)]
-    pub fn new(
-        axes: &'a [Axis],
-        (avoid, avoid_wishes): (&'a BlockProgram, &'a [(usize, Wish)]),
-        seed: u64,
-        (zero, lanes): (L, usize),
-    ) -> Self {
+    pub fn new(axes: &'a [Axis], avoid: &'a DrawnProgram, seed: u64, block: BlockOf<L>) -> Self {
+        let BlockOf { zero, lanes } = block;
         let states = lanes * L::COUNT;
         Drawer {
             axes,
@@ -108,9 +130,9 @@ impl<'a, L: Lanes> Drawer<'a, L> {
             zero,
             values: vec![0.0; axes.len() * states],
             states,
-            avoid: avoid.machine_of(zero, states / L::COUNT),
-            avoided: avoid.outputs(),
-            avoid_wishes,
+            avoid: avoid.program.machine_of(zero, states / L::COUNT),
+            avoided: avoid.program.outputs(),
+            avoid_inputs: &avoid.inputs,
         }
     }
 
@@ -176,10 +198,10 @@ impl<'a, L: Lanes> Drawer<'a, L> {
             return None;
         }
         let lanes = self.avoid.lanes();
-        for (place, wish) in self.avoid_wishes {
+        for input in self.avoid_inputs {
             for lane in 0..lanes {
-                let value = plain(self.values(lane), *wish, self.zero);
-                if let Some(room) = self.avoid.input(*place) {
+                let value = plain(self.values(lane), input.function, self.zero);
+                if let Some(room) = self.avoid.input(input.place) {
                     room[lane] = value;
                 }
             }
@@ -209,14 +231,14 @@ impl<'a, L: Lanes> Drawer<'a, L> {
         Lane { values: &self.values, states: self.states, at }
     }
 
-    /// What a wish comes to in one lane, with a bound on its error.
+    /// The values of a function in one lane, with a bound on their errors.
     #[inline(always)]
-    pub fn grant(&self, wish: Wish, lane: usize) -> Bounded<L> {
+    pub fn value(&self, function: AxisFunction, lane: usize) -> Bounded<L> {
         let at = self.values(lane);
-        match wish {
-            Wish::Plain(place) => Bounded::exact(self.zero.load(at.row(place))),
-            Wish::Sine(place) => sine(Bounded::exact(self.zero.load(at.row(place)))),
-            Wish::Cosine(place) => cosine(Bounded::exact(self.zero.load(at.row(place)))),
+        match function {
+            AxisFunction::Plain(place) => Bounded::exact(self.zero.load(at.row(place))),
+            AxisFunction::Sine(place) => sine(Bounded::exact(self.zero.load(at.row(place)))),
+            AxisFunction::Cosine(place) => cosine(Bounded::exact(self.zero.load(at.row(place)))),
         }
     }
 
@@ -251,11 +273,11 @@ impl<'v> Lane<'v> {
 }
 
 #[inline(always)]
-fn plain<L: Lanes>(values: Lane<'_>, wish: Wish, zero: L) -> L {
-    match wish {
-        Wish::Plain(place) => zero.load(values.row(place)),
-        Wish::Sine(place) => sine(zero.load(values.row(place))),
-        Wish::Cosine(place) => cosine(zero.load(values.row(place))),
+fn plain<L: Lanes>(values: Lane<'_>, function: AxisFunction, zero: L) -> L {
+    match function {
+        AxisFunction::Plain(place) => zero.load(values.row(place)),
+        AxisFunction::Sine(place) => sine(zero.load(values.row(place))),
+        AxisFunction::Cosine(place) => cosine(zero.load(values.row(place))),
     }
 }
 

@@ -4,7 +4,7 @@
 //! The states are doubles, structure of arrays, angles in radians. Whether they lie in the sample box is not asked.
 
 use super::decide::Decider;
-use super::draw::Wish;
+use super::draw::AxisFunction;
 use super::{Stream, StreamReport};
 use crate::expression::{Machine, Symbol};
 use crate::number::{Bounded, Lanes, MOST_LANES, Vectorised};
@@ -100,7 +100,7 @@ impl Vectorised for Given<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, zero: L) {
-        let matrix = &self.stream.matrix;
+        let matrix = &self.stream.matrix.program;
         match self.wanted {
             Certainty::Computed => self.decide(matrix.machine(zero), zero, zero),
             Certainty::Certified => {
@@ -121,10 +121,10 @@ impl Given<'_> {
         let (count, lanes) = (found.verdicts.len(), machine.lanes());
         let mut start = 0;
         while start < count {
-            for (place, wish) in &stream.matrix_wishes {
-                let Some(room) = machine.input(*place) else { continue };
+            for input in &stream.matrix.inputs {
+                let Some(room) = machine.input(input.place) else { continue };
                 for (lane, value) in room.iter_mut().enumerate() {
-                    *value = granted(states, *wish, start + lane * L::COUNT, number);
+                    *value = value_of(input.function, states, start + lane * L::COUNT, number);
                 }
             }
             machine.run();
@@ -146,8 +146,9 @@ impl Given<'_> {
                     if !bounds[i].is_finite() {
                         lanes_found.certain[i] = 0.0;
                     }
-                    let finite =
-                        finite[i] == 0.0 && lanes_found.finite[i] == 0.0 && !stream.matrix.is_undefined();
+                    let finite = finite[i] == 0.0
+                        && lanes_found.finite[i] == 0.0
+                        && !stream.matrix.program.is_undefined();
                     found.verdicts[first + i] = verdict(&report, &lanes_found, i, finite);
                 }
                 let range = first..first + here;
@@ -193,10 +194,10 @@ impl<L: Lanes> Entry<L> for Bounded<L> {
     }
 }
 
-/// What a program wants of the states from `first` on; of the last one again, where there are no more.
+/// The values of a function at the states from `first` on; at the last one again, where there are no more.
 #[inline(always)]
-fn granted<N: Lanes>(states: &[&[f64]], wish: Wish, first: usize, number: N) -> N {
-    let (Wish::Plain(axis) | Wish::Sine(axis) | Wish::Cosine(axis)) = wish;
+fn value_of<N: Lanes>(function: AxisFunction, states: &[&[f64]], first: usize, number: N) -> N {
+    let (AxisFunction::Plain(axis) | AxisFunction::Sine(axis) | AxisFunction::Cosine(axis)) = function;
     let values = states[axis];
     let value = if first + N::COUNT <= values.len() {
         number.load(&values[first..])
@@ -207,10 +208,10 @@ fn granted<N: Lanes>(states: &[&[f64]], wish: Wish, first: usize, number: N) -> 
         }
         number.load(&room)
     };
-    match wish {
-        Wish::Plain(_) => value,
-        Wish::Sine(_) => value.sin_cos().0,
-        Wish::Cosine(_) => value.sin_cos().1,
+    match function {
+        AxisFunction::Plain(_) => value,
+        AxisFunction::Sine(_) => value.sin_cos().0,
+        AxisFunction::Cosine(_) => value.sin_cos().1,
     }
 }
 

@@ -25,7 +25,7 @@ use crate::system::System;
 pub use certain::Elimination;
 use dashu::rational::RBig;
 use decide::Decider;
-use draw::{Axis, Drawer, Wish, wishes};
+use draw::{Axis, BlockOf, Drawer, DrawnProgram};
 pub(super) use equilibrate::Equilibrium;
 pub use given::{StateVerdict, StatesError, Verdicts};
 pub use jacobi::Jacobi;
@@ -58,10 +58,8 @@ pub struct Stream {
     locus: Locus,
     axes: Vec<Axis>,
     reduction: Reduction,
-    matrix: BlockProgram,
-    matrix_wishes: Vec<(usize, Wish)>,
-    avoid: BlockProgram,
-    avoid_wishes: Vec<(usize, Wish)>,
+    matrix: DrawnProgram,
+    avoid: DrawnProgram,
     instructions: Instructions,
 }
 
@@ -108,12 +106,10 @@ impl Stream {
         let avoid = BlockProgram::new(&system.graph, &avoided, &[], is_angle, known);
         Some(Stream {
             locus: locus.clone(),
-            matrix_wishes: wishes(&matrix, &axes)?,
-            avoid_wishes: wishes(&avoid, &axes)?,
+            matrix: DrawnProgram::new(matrix, &axes)?,
+            avoid: DrawnProgram::new(avoid, &axes)?,
             axes,
             reduction,
-            matrix,
-            avoid,
             instructions: Instructions::detect(),
         })
     }
@@ -129,7 +125,7 @@ impl Stream {
     /// Where nothing is found that keeps clear of what is avoided, or where the conditions have no solution there.
     pub fn state(&self, seed: u64, index: u64) -> Result<State, LocusError> {
         // this state alone: whether one is found must not depend on those after it
-        let mut drawer = Drawer::new(&self.axes, (&self.avoid, &self.avoid_wishes), seed, (0.0f64, 1));
+        let mut drawer = Drawer::new(&self.axes, &self.avoid, seed, BlockOf { zero: 0.0f64, lanes: 1 });
         drawer.draw(index).map_err(|_| self.empty())?;
         let mut state = State::default();
         for (symbol, source) in &self.locus.sources {
@@ -275,10 +271,9 @@ impl Vectorised for Chunk<'_, '_> {
         let Chunk { stream, options, first, count } = self;
         let mut report = stream.nothing();
         let mut left = Vec::new();
-        let mut machine = stream.matrix.machine(Bounded::exact(zero));
+        let mut machine = stream.matrix.program.machine(Bounded::exact(zero));
         let lanes = machine.lanes();
-        let avoid = (&stream.avoid, &stream.avoid_wishes[..]);
-        let mut drawer = Drawer::new(&stream.axes, avoid, options.seed, (zero, lanes));
+        let mut drawer = Drawer::new(&stream.axes, &stream.avoid, options.seed, BlockOf { zero, lanes });
         let (rows, columns) = report.remaining;
         let mut decider = Decider::new(rows, columns, zero);
         let mut done = 0;
@@ -289,10 +284,10 @@ impl Vectorised for Chunk<'_, '_> {
             {
                 return Err(stream.empty());
             }
-            for (place, wish) in &stream.matrix_wishes {
-                let Some(room) = machine.input(*place) else { continue };
+            for input in &stream.matrix.inputs {
+                let Some(room) = machine.input(input.place) else { continue };
                 for (lane, value) in room.iter_mut().enumerate() {
-                    *value = drawer.grant(*wish, lane);
+                    *value = drawer.value(input.function, lane);
                 }
             }
             machine.run();
@@ -314,7 +309,8 @@ impl Vectorised for Chunk<'_, '_> {
                     if !bounds[i].is_finite() {
                         found.certain[i] = 0.0;
                     }
-                    let finite = finite[i] == 0.0 && found.finite[i] == 0.0 && !stream.matrix.is_undefined();
+                    let finite =
+                        finite[i] == 0.0 && found.finite[i] == 0.0 && !stream.matrix.program.is_undefined();
                     let index = first + here + i as u64;
                     if report.add(index, &found, i, finite, options.wanted) {
                         left.push(index);

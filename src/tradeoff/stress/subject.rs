@@ -5,7 +5,7 @@ use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, PrimeField, Ratio
 use crate::observability::{
     Defined, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank, singular_values,
 };
-use crate::sweep::{Certainty, Judge};
+use crate::sweep::{Certainty, Judge, JudgedRows, ProofWanted};
 use crate::system::System;
 use dashu::rational::RBig;
 use rand::SeedableRng;
@@ -80,10 +80,10 @@ impl Subject {
 
     /// The ladder for these rows, certified.
     pub(super) fn judge(&self) -> Judge<'_> {
-        let rows: &[NodeId] = &self.expanded;
+        let rows = JudgedRows { quick: &self.expanded, all: &self.expanded, columns: self.columns };
         let is_angle = |symbol| self.system.is_angle(symbol);
-        let wanted = (self.field, Certainty::Certified);
-        Judge::new(&self.system.graph, Defined::default(), (rows, rows), self.columns, is_angle, wanted)
+        let proof = ProofWanted { wanted: Certainty::Certified, field: self.field };
+        Judge::new(&self.system.graph, Defined::default(), rows, is_angle, proof)
     }
 
     /// The rows that remain without unit rows, and their columns.
