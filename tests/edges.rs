@@ -138,7 +138,7 @@ fn a_law_is_not_refuted_where_a_side_does_not_exist() {
     let Verdict::Refuted { witness, .. } = outcome("sqrt(x^2) = x").verdict else {
         panic!("false below zero")
     };
-    assert!(witness.state.iter().any(|(name, _, value)| name == "x" && *value < 0.0), "{witness:?}");
+    assert!(witness.state.iter().any(|at| at.name == "x" && at.value < 0.0), "{witness:?}");
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn a_witness_on_a_set_names_all_of_its_state() {
     let Verdict::Refuted { witness, .. } = outcome("x = 0 where y = x + 1, z = 2*y").verdict else {
         panic!("false but at one point")
     };
-    let value = |name: &str| witness.state.iter().find(|(n, ..)| n == name).map(|(_, _, v)| *v).unwrap();
+    let value = |name: &str| witness.state.iter().find(|at| at.name == name).unwrap().value;
     assert_eq!((value("y"), value("z")), (value("x") + 1.0, 2.0 * (value("x") + 1.0)));
 }
 

@@ -178,7 +178,7 @@ fn conditions_take_part_everywhere() {
     };
     let answer = answer_rank(&mut system, &question).unwrap();
     let worst = answer.branches[0].full.worst.as_ref().expect("a worst state");
-    let value = |name: &str| worst.0.iter().find(|(n, ..)| n == name).map(|(.., value)| *value).unwrap();
+    let value = |name: &str| worst.0.iter().find(|at| at.name == name).unwrap().value;
     assert!(value("x") > 0.5 && value("y").abs() < 0.25, "{:?}", worst.0);
     assert_eq!(answer.branches[0].full.certified, 200);
 }

@@ -297,8 +297,8 @@ fn a_refuted_rank_names_a_state() {
     for outcome in decide_all(&system(text), 1, &false.into(), &|_| ()) {
         let palmistry::Verdict::Refuted { witness, .. } = &outcome.verdict else { panic!("{outcome:?}") };
         let value = |name: &str| {
-            let found = witness.state.iter().find(|(other, _, _)| other == name);
-            found.map(|(_, exact, _)| palmistry::number::parse_decimal(exact).unwrap())
+            let found = witness.state.iter().find(|at| at.name == *name);
+            found.map(|at| palmistry::number::parse_decimal(&at.exact).unwrap())
         };
         let (rank, claimed) = match outcome.id.as_str() {
             "matrix" | "on_a_set" => ("1", "2"),

@@ -4,6 +4,7 @@
 use dashu::rational::RBig;
 use palmistry::expression::{Expected, Input, NodeId, Program, parse_expression};
 use palmistry::number::{Floats, parse_decimal};
+use palmistry::observability::NamedCoordinate;
 use palmistry::system::{ClaimBody, Value};
 use palmistry::{Outcome, System, Verdict, Witness, decide_all};
 use std::collections::HashMap;
@@ -163,7 +164,7 @@ fn sides(system: &System, claim: usize) -> Vec<(String, String, bool)> {
 /// The point that a witness shows; what it does not mention is anywhere.
 fn shown_point(system: &System, witness: &Witness) -> HashMap<String, RBig> {
     let mut values = point(system, 1);
-    for (name, exact, float) in &witness.state {
+    for NamedCoordinate { name, exact, value: float } in &witness.state {
         let value = parse_decimal(exact).or_else(|| RBig::try_from(*float).ok());
         values.insert(name.clone(), value.unwrap());
     }

@@ -9,6 +9,7 @@ use super::verdict::{Verdict, Witness};
 use crate::expression::{Input, Node, NodeId, Program, Symbol, draw_residues, expand_angles};
 use crate::number::polynomial::Size;
 use crate::number::{Arithmetic, Enclosures, Function, Laurent, PrimeField, Refusal, Series};
+use crate::observability::NamedCoordinate;
 use crate::system::{Assignment, System};
 use dashu::rational::RBig;
 use rand::Rng;
@@ -243,7 +244,11 @@ pub(crate) fn decide_pole(
             witness: Witness {
                 state: point
                     .iter()
-                    .map(|(s, v)| (system.symbol_name(*s).to_owned(), v.to_string(), v.to_f64().value()))
+                    .map(|(symbol, value)| NamedCoordinate {
+                        name: system.symbol_name(*symbol).to_owned(),
+                        exact: value.to_string(),
+                        value: value.to_f64().value(),
+                    })
                     .collect(),
                 left: order.to_string(),
                 right: claimed.to_string(),

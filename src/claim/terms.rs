@@ -4,7 +4,7 @@ use crate::expression::syntax::Relation;
 use crate::expression::{Guard, Need, NodeId, Program, Symbol, expand_angles};
 use crate::inequality::{Bound, Bounds, SymbolBounds, bounds};
 use crate::number::{Enclosure, Enclosures, Function, Interval, Rationals, rational_from_f64};
-use crate::observability::{Branch, Coordinate, State, StateInWords};
+use crate::observability::{Branch, Coordinate, NamedCoordinate, State, StateInWords};
 use crate::system::{Assignment, Kind, System};
 use dashu::rational::RBig;
 use rand::{Rng, RngExt};
@@ -239,7 +239,11 @@ impl OnBranch {
             all.insert(*symbol, (system.graph.text(*term), near));
         }
         all.into_iter()
-            .map(|(symbol, (text, value))| (system.symbol_name(symbol).to_owned(), text, value))
+            .map(|(symbol, (exact, value))| NamedCoordinate {
+                name: system.symbol_name(symbol).to_owned(),
+                exact,
+                value,
+            })
             .collect()
     }
 }

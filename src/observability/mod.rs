@@ -40,4 +40,4 @@ pub use reduction::Reduction;
 pub use series::lie_derivative_by_series;
 pub(crate) use singular::SEPARATED;
 pub use singular::{Spectrum, customary_singular_values, singular_values};
-pub use state::{Coordinate, State, StateInWords, float_inputs};
+pub use state::{Coordinate, NamedCoordinate, State, StateInWords, float_inputs};

@@ -40,8 +40,18 @@ impl Coordinate {
     }
 }
 
-/// Name, exact value and nearest double of each coordinate.
-pub type StateInWords = Vec<(String, String, f64)>;
+/// A coordinate of a state in words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedCoordinate {
+    pub name: String,
+    /// Its exact value: `3/2`, or `sin = 4/5, cos = 3/5`.
+    pub exact: String,
+    /// The nearest double; of an angle in radians.
+    pub value: f64,
+}
+
+/// A state in words, in the order of its symbols.
+pub type StateInWords = Vec<NamedCoordinate>;
 
 /// Exact values for some symbols.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -89,8 +99,10 @@ impl State {
     pub fn describe(&self, system: &System) -> StateInWords {
         self.values
             .iter()
-            .map(|(symbol, value)| {
-                (system.symbol_name(*symbol).to_owned(), value.exact_text(), value.to_f64())
+            .map(|(symbol, value)| NamedCoordinate {
+                name: system.symbol_name(*symbol).to_owned(),
+                exact: value.exact_text(),
+                value: value.to_f64(),
             })
             .collect()
     }

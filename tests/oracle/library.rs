@@ -55,7 +55,7 @@ fn said(outcome: &Outcome) -> Said {
     let (word, why, witness) = match &outcome.verdict {
         Verdict::Proved { engine, .. } => (Word::Proved, engine.clone(), None),
         Verdict::Refuted { engine, witness } => {
-            let state = witness.state.iter().map(|(name, exact, _)| (name.clone(), exact.clone())).collect();
+            let state = witness.state.iter().map(|at| (at.name.clone(), at.exact.clone())).collect();
             let shown = Shown { state, left: witness.left.clone(), right: witness.right.clone() };
             (Word::Refuted, engine.clone(), Some(shown))
         }

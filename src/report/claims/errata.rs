@@ -111,8 +111,7 @@ fn definitions(outcome: &Outcome, out: &mut String) {
 }
 
 fn in_words(witness: &Witness) -> String {
-    let state: Vec<String> =
-        witness.state.iter().map(|(name, exact, _)| format!("{name}: {exact}")).collect();
+    let state: Vec<String> = witness.state.iter().map(|at| format!("{}: {}", at.name, at.exact)).collect();
     let side = match witness.entry {
         None => "left side of the form in the text".to_owned(),
         Some((row, column)) => {

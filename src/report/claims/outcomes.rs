@@ -2,6 +2,7 @@
 
 use crate::claim::{AtFilesValues, Outcome, Verdict, Witness};
 use crate::number::{parse_decimal, rational_to_f64};
+use crate::observability::NamedCoordinate;
 use crate::report::names::{fields_json, fields_text, values_json, values_text};
 use crate::system::{Basis, Flaw};
 use serde_json::{Value, json};
@@ -15,7 +16,7 @@ fn witness_json(witness: &Witness) -> Value {
     let state: serde_json::Map<String, Value> = witness
         .state
         .iter()
-        .map(|(name, exact, float)| (name.clone(), json!({ "exact": exact, "value": float })))
+        .map(|at| (at.name.clone(), json!({ "exact": at.exact, "value": at.value })))
         .collect();
     json!({ "state": state, "left": witness.left, "right": witness.right, "entry": witness.entry })
 }
@@ -91,7 +92,7 @@ pub(crate) fn state_line(witness: &Witness) -> String {
     let state: Vec<String> = witness
         .state
         .iter()
-        .map(|(name, exact, float)| {
+        .map(|NamedCoordinate { name, exact, value: float }| {
             if exact.contains("sin") {
                 format!("{name} = {float:.6} ({exact})")
             } else {

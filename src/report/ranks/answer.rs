@@ -2,7 +2,7 @@
 
 use super::seen::{deviations_json, deviations_text, direction_text, place_text};
 use crate::number::rational_to_f64;
-use crate::observability::{Spectrum, Stop};
+use crate::observability::{NamedCoordinate, Spectrum, Stop};
 use crate::report::names::{fields_json, fields_text, values_json, values_text};
 use crate::sweep::{BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, SweepReport};
 use serde_json::{Value, json};
@@ -66,7 +66,7 @@ fn sweep_json(report: &SweepReport) -> Value {
         let (values_of_worst, condition) = nearest_doubles(report, spectrum);
         let values: serde_json::Map<String, Value> = state
             .iter()
-            .map(|(name, exact, float)| (name.clone(), json!({ "exact": exact, "value": float })))
+            .map(|at| (at.name.clone(), json!({ "exact": at.exact, "value": at.value })))
             .collect();
         json!({
             "state": values,
@@ -92,7 +92,7 @@ fn sweep_json(report: &SweepReport) -> Value {
             "count": direction.count,
             "example": direction.example,
             "sample": direction.index,
-            "at": direction.at.iter().map(|(name, exact, value)| {
+            "at": direction.at.iter().map(|NamedCoordinate { name, exact, value }| {
                 (name.clone(), json!({ "exact": exact, "value": value }))
             }).collect::<serde_json::Map<_, _>>(),
             "vector": direction.states.iter().zip(&direction.vector).map(|(name, part)| {
@@ -188,8 +188,7 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
         let _ = writeln!(out, "  smallest gap on which a computed rank rests: {:.1e}", report.smallest_gap);
     }
     if let Some((state, spectrum)) = &report.worst {
-        let values: Vec<String> =
-            state.iter().map(|(name, _, float)| format!("{name} = {float:.6}")).collect();
+        let values: Vec<String> = state.iter().map(|at| format!("{} = {:.6}", at.name, at.value)).collect();
         let condition = match &report.digits {
             Some(Ok(found)) => found.condition.clone(),
             _ => format!("{:.3e}", spectrum.condition()),

@@ -1,7 +1,7 @@
 //! What is not seen at a state, and how well everything else is.
 
 use crate::number::rational_to_f64;
-use crate::observability::StateInWords;
+use crate::observability::{NamedCoordinate, StateInWords};
 use crate::report::names::plain_number;
 use crate::sweep::{NEARLY_INVISIBLE, StandardDeviations, UnseenDirection};
 use dashu::rational::RBig;
@@ -13,7 +13,7 @@ const LONGEST: usize = 12;
 
 /// A state in words: exactly where its numbers are short, angles in radians.
 pub(super) fn place_text(state: &StateInWords) -> String {
-    let coordinate = |(name, exact, value): &(String, String, f64)| match exact.len() <= LONGEST {
+    let coordinate = |NamedCoordinate { name, exact, value }: &NamedCoordinate| match exact.len() <= LONGEST {
         true => format!("{name} = {exact}"),
         false => format!("{name} = {value:.6}"),
     };

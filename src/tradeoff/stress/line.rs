@@ -110,8 +110,25 @@ pub struct Line {
     pub ways: Vec<WayOnLine>,
 }
 
-/// At each distance the true rank, whether it is certified, and what every way finds; `None` where there is no truth.
-pub(super) type Walk = Vec<Option<(usize, bool, Vec<(StressFinding, Mark)>)>>;
+/// What every way finds at one point of a line.
+#[derive(Clone, Debug)]
+pub(super) struct PointOnLine {
+    /// The true rank.
+    rank: usize,
+    certified: bool,
+    /// In the order of [`Way::ALL`].
+    findings: Vec<MarkedFinding>,
+}
+
+/// What a way finds, and how it compares with the truth.
+#[derive(Clone, Debug)]
+struct MarkedFinding {
+    finding: StressFinding,
+    mark: Mark,
+}
+
+/// The points from one base state, at each distance; `None` where there is no truth.
+pub(super) type Walk = Vec<Option<PointOnLine>>;
 
 impl Prepared {
     /// The state at a distance of `2^-halvings` from a base state.
@@ -148,9 +165,9 @@ impl Prepared {
                 let findings = subject.findings(&judge, &state, &truth, None);
                 let marked = findings.into_iter().zip(Way::ALL).map(|(finding, way)| {
                     let mark = finding.mark(way, &truth);
-                    (finding, mark)
+                    MarkedFinding { finding, mark }
                 });
-                Some((truth.rank, truth.certified, marked.collect()))
+                Some(PointOnLine { rank: truth.rank, certified: truth.certified, findings: marked.collect() })
             })
             .collect()
     }
@@ -187,14 +204,14 @@ impl Prepared {
         let ways = Way::ALL.iter().map(|way| {
             // for each distance the findings of this way at all base states
             let at = |place: usize| {
-                walks.iter().filter_map(move |walk| walk[place].as_ref().map(|(_, _, all)| &all[way.place()]))
+                walks.iter().filter_map(move |walk| Some(&walk[place].as_ref()?.findings[way.place()]))
             };
             // where it first happens from each base state, and what is said there
-            let range = |happens: &dyn Fn(&(StressFinding, Mark)) -> Option<String>| {
+            let range = |happens: &dyn Fn(&MarkedFinding) -> Option<String>| {
                 let each = walks.iter().filter_map(|walk| {
-                    walk.iter()
-                        .enumerate()
-                        .find_map(|(place, found)| Some((place, happens(&found.as_ref()?.2[way.place()])?)))
+                    walk.iter().enumerate().find_map(|(place, found)| {
+                        Some((place, happens(&found.as_ref()?.findings[way.place()])?))
+                    })
                 });
                 let each: Vec<(usize, String)> = each.collect();
                 let (place, said) = each.iter().min_by_key(|(place, _)| *place)?;
@@ -206,17 +223,17 @@ impl Prepared {
                     said: said.clone(),
                 })
             };
-            let first = |wanted: Mark| range(&|(finding, mark)| (*mark == wanted).then(|| finding.said()));
+            let first = |wanted: Mark| range(&|found| (found.mark == wanted).then(|| found.finding.said()));
             // a rank may be wrong and the digits lost at once, so that digits are asked for themselves
-            let lost = range(&|(finding, _)| {
-                let digits = finding.digits.filter(|digits| *digits < way.digits() / 2.0)?;
+            let lost = range(&|found| {
+                let digits = found.finding.digits.filter(|digits| *digits < way.digits() / 2.0)?;
                 Some(format!("{digits:.1} digits"))
             });
             WayOnLine {
                 way: *way,
-                marks: (0..distances.len()).map(|place| at(place).map(|(_, mark)| *mark).max()).collect(),
+                marks: (0..distances.len()).map(|place| at(place).map(|found| found.mark).max()).collect(),
                 digits: (0..distances.len())
-                    .map(|place| at(place).filter_map(|(finding, _)| finding.digits).reduce(f64::min))
+                    .map(|place| at(place).filter_map(|found| found.finding.digits).reduce(f64::min))
                     .collect(),
                 wrong: first(Mark::Wrong),
                 lost,
@@ -229,8 +246,8 @@ impl Prepared {
             title: self.title.clone(),
             steps: self.steps.clone(),
             states,
-            ranks: truths().map(|(rank, _, _)| *rank).collect(),
-            certified: truths().all(|(_, certified, _)| *certified),
+            ranks: truths().map(|point| point.rank).collect(),
+            certified: truths().all(|point| point.certified),
             poles: walks.iter().flatten().filter(|truth| truth.is_none()).count(),
             end: self.end(subject, states),
             ways: ways.collect(),
