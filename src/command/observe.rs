@@ -9,7 +9,7 @@ use palmistry::experiment::{Basin, Experiment, NoiseLevel, Scene, SceneError, ba
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
 use palmistry::observer::{Update, UpdateEnd};
-use palmistry::report::{Observed, ended_in_words, method_name, observe_json, observe_page, observe_text};
+use palmistry::report::{Observed, ended_in_words, observe_json, observe_page, observe_text};
 use std::path::PathBuf;
 
 /// Moves a body between two palms, hands on what touch sensors and motors tell, and has observers recover its shape and
@@ -79,7 +79,7 @@ impl Observe {
         }
         bar.set_message("observing");
         let answers = experiment.run(&INTERRUPTED, &|method| {
-            bar.set_message(method_name(method));
+            bar.set_message(method.name());
             bar.inc(1);
         })?;
         bar.finish_and_clear();

@@ -6,6 +6,7 @@
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 
+mod columns;
 mod run;
 mod scene;
 mod simulation;

@@ -3,8 +3,8 @@
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{Simulation, TOUCH, body, constants, deviation};
 use crate::observer::{
-    Fault, Integration, ModelError, MovingWindow, Observer, Record, RecordError, RecordReading, Signals,
-    Sought, Task, Track, WindowSearch,
+    Fault, ModelError, MovingWindow, Observer, Record, RecordError, RecordReading, Signals, Sought, Task,
+    Track, WindowSearch,
 };
 use crate::system::{Kind, System, nearest};
 use miette::Diagnostic;
@@ -114,26 +114,12 @@ impl Experiment {
 
     /// The observer of a name, with the scene's settings.
     pub fn observer(&self, method: scene::Method) -> Box<dyn Observer> {
-        let settings = &self.scene.observer;
-        match method {
-            scene::Method::Newton => Box::new(self.window(WindowSearch::Newton)),
-            scene::Method::TrustRegion => Box::new(self.window(WindowSearch::TrustRegion)),
-            scene::Method::Integration => Box::new(Integration),
-            scene::Method::Kalman => Box::new(settings.kalman),
-            scene::Method::HighGain => Box::new(settings.high_gain),
-        }
+        self.scene.observer.observer(method)
     }
 
     /// The observer by windows, with the scene's settings.
-    pub fn window(&self, method: WindowSearch) -> MovingWindow {
-        let settings = &self.scene.observer;
-        MovingWindow {
-            method,
-            window: settings.window,
-            steps: settings.steps as u64,
-            blind: settings.blind,
-            when_blind: settings.when_blind,
-        }
+    pub fn window(&self, search: WindowSearch) -> MovingWindow {
+        self.scene.observer.window(search)
     }
 
     /// What every observer of the scene makes of the readings; `done` is told of each that has finished.

@@ -1,5 +1,6 @@
 //! The body of a scene set in motion, and what sensors and motors tell of it.
 
+use super::columns::{COLUMNS, Column, SeenAs};
 use super::scene::{self, Scene, SceneError, Simulated};
 use crate::mechanics::moving::{
     BodyForm, CentreOfMass, DEFAULT_TOLERANCE, Ended, FormError, MovingScene as Bodies,
@@ -69,28 +70,20 @@ impl Simulation {
         &self.trajectory.ended
     }
 
-    /// The true values of a state of chapter 4, sample by sample.
+    /// The true values of a state of the models, sample by sample: one of the table's, or a constant.
     pub fn truth(&self, name: &str) -> Option<Vec<f64>> {
-        let moments = &self.trajectory.moments;
-        let of =
-            |value: fn(&crate::mechanics::moving::Moment) -> f64| Some(moments.iter().map(value).collect());
-        match name {
-            "r1" => of(|moment| moment.palms[0].r),
-            "r2" => of(|moment| moment.palms[1].r),
-            "phi0" => of(|moment| moment.phi0),
-            "omega0" => of(|moment| moment.omega0),
-            "s1" => of(|moment| moment.palms[0].s),
-            "s2" => of(|moment| moment.palms[1].s),
-            "phi1" => of(|moment| moment.palms[0].angle),
-            "phi2" => of(|moment| moment.palms[1].angle),
-            "omega1" => of(|moment| moment.palms[0].rate),
-            "omega2" => of(|moment| moment.palms[1].rate),
-            "alpha1" => of(|moment| moment.palms[0].acceleration),
-            "alpha2" => of(|moment| moment.palms[1].acceleration),
-            "tau1" => of(|moment| moment.palms[0].torque),
-            "tau2" => of(|moment| moment.palms[1].torque),
-            _ => self.constants.get(name).map(|value| vec![*value; moments.len()]),
+        match COLUMNS.iter().find(|column| column.name == name && column.seen_as != SeenAs::Shown) {
+            Some(column) => Some(self.values(column)),
+            None => self.constants.get(name).map(|value| vec![*value; self.trajectory.moments.len()]),
         }
+    }
+
+    fn values(&self, column: &Column) -> Vec<f64> {
+        self.trajectory.moments.iter().map(column.value).collect()
+    }
+
+    fn times(&self) -> Vec<f64> {
+        self.trajectory.moments.iter().map(|moment| moment.time).collect()
     }
 
     /// All of the motion, as a table: the body's pose, rates and accelerations, the contacts, the contact forces, the motors'
@@ -99,42 +92,8 @@ impl Simulation {
     /// # Errors
     /// None that a simulation could bring about.
     pub fn table(&self) -> Result<Record, RecordError> {
-        type Column = fn(&crate::mechanics::moving::Moment) -> f64;
-        let columns: [(&str, Column); 26] = [
-            ("phi0", |m| m.phi0),
-            ("omega0", |m| m.omega0),
-            ("alpha0", |m| m.alpha0),
-            ("x", |m| m.centre[0]),
-            ("y", |m| m.centre[1]),
-            ("vx", |m| m.velocity[0]),
-            ("vy", |m| m.velocity[1]),
-            ("phi1", |m| m.palms[0].angle),
-            ("phi2", |m| m.palms[1].angle),
-            ("omega1", |m| m.palms[0].rate),
-            ("omega2", |m| m.palms[1].rate),
-            ("alpha1", |m| m.palms[0].acceleration),
-            ("alpha2", |m| m.palms[1].acceleration),
-            ("s1", |m| m.palms[0].s),
-            ("s2", |m| m.palms[1].s),
-            ("r1", |m| m.palms[0].r),
-            ("r2", |m| m.palms[1].r),
-            ("d1", |m| m.palms[0].d),
-            ("d2", |m| m.palms[1].d),
-            ("force1", |m| m.palms[0].force),
-            ("force2", |m| m.palms[1].force),
-            ("tau1", |m| m.palms[0].torque),
-            ("tau2", |m| m.palms[1].torque),
-            ("kinetic", |m| m.kinetic),
-            ("potential", |m| m.potential),
-            ("work", |m| m.work),
-        ];
-        let moments = &self.trajectory.moments;
-        let values = |column: Column| moments.iter().map(column).collect();
-        let times = moments.iter().map(|moment| moment.time).collect();
-        Record::new(
-            times,
-            columns.into_iter().map(|(name, column)| (name.to_owned(), values(column))).collect(),
-        )
+        let columns = COLUMNS.iter().map(|column| (column.name.to_owned(), self.values(column)));
+        Record::new(self.times(), columns.collect())
     }
 
     /// What sensors and motors tell: the contacts along the palms with normal errors of the standard deviation `noise`,
@@ -144,10 +103,11 @@ impl Simulation {
     /// # Errors
     /// None that a simulation could bring about.
     pub fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
-        let times: Vec<f64> = self.trajectory.moments.iter().map(|moment| moment.time).collect();
-        let names = ["s1", "s2", "phi1", "phi2", "omega1", "omega2", "alpha1", "alpha2", "tau1", "tau2"];
+        let is_read = |column: &&Column| column.seen_as == SeenAs::Read;
+        let mut read: Vec<&Column> = COLUMNS.iter().filter(is_read).collect();
+        read.sort_by_key(|column| !TOUCH.contains(&column.name)); // stable: touch first
         let mut columns: Vec<(String, Vec<f64>)> =
-            names.iter().filter_map(|name| Some(((*name).to_owned(), self.truth(name)?))).collect();
+            read.iter().map(|column| (column.name.to_owned(), self.values(column))).collect();
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         for (_, values) in columns.iter_mut().filter(|(name, _)| TOUCH.contains(&name.as_str())) {
             for value in values {
@@ -157,7 +117,7 @@ impl Simulation {
                 }
             }
         }
-        Record::new(times, columns)
+        Record::new(self.times(), columns)
     }
 }
 

@@ -182,18 +182,13 @@ pub fn basins(
 }
 
 fn arrives(experiment: &Experiment, task: &Task<'_>, method: scene::Method) -> Option<bool> {
-    let (time, state) = match method {
-        scene::Method::Newton | scene::Method::TrustRegion => {
-            let by = if method == scene::Method::Newton {
-                WindowSearch::Newton
-            } else {
-                WindowSearch::TrustRegion
-            };
-            let observer = experiment.window(by);
+    let (time, state) = match method.search() {
+        Some(search) => {
+            let observer = experiment.window(search);
             let update = observer.update(task, &task.guess, &first_window(task, &observer), &task.clamped);
             (update.from, update.estimate)
         }
-        _ => {
+        None => {
             let track = experiment.observer(method).observe(task);
             let last = track.last()?;
             (last.time, last.state.clone())

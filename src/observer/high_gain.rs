@@ -47,10 +47,6 @@ struct Canonical {
 }
 
 impl Observer for HighGain {
-    fn name(&self) -> &'static str {
-        "high-gain"
-    }
-
     fn observe(&self, task: &Task<'_>) -> Track {
         let mut track = Track::default();
         let times = task.signals.times();

@@ -8,10 +8,6 @@ use super::task::{Observer, SampleEstimate, Task, Track};
 pub struct Integration;
 
 impl Observer for Integration {
-    fn name(&self) -> &'static str {
-        "integration"
-    }
-
     fn observe(&self, task: &Task<'_>) -> Track {
         let times = task.signals.times();
         let mut track = Track::default();

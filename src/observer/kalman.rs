@@ -30,10 +30,6 @@ impl Default for Kalman {
 }
 
 impl Observer for Kalman {
-    fn name(&self) -> &'static str {
-        "kalman"
-    }
-
     fn observe(&self, task: &Task<'_>) -> Track {
         let times = task.signals.times();
         let n = task.full.states.len();

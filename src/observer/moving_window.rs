@@ -43,13 +43,6 @@ pub struct MovingWindow {
 }
 
 impl Observer for MovingWindow {
-    fn name(&self) -> &'static str {
-        match self.method {
-            WindowSearch::Newton => "newton",
-            WindowSearch::TrustRegion => "trust-region",
-        }
-    }
-
     fn observe(&self, task: &Task<'_>) -> Track {
         let mut track = Track::default();
         let samples = task.signals.times().len();

@@ -229,8 +229,6 @@ impl Track {
 
 /// A way to estimate states from what is measured.
 pub trait Observer: Sync {
-    /// Its name.
-    fn name(&self) -> &'static str;
     /// Works through the signals of a task. Whatever goes wrong on the way is part of the answer.
     fn observe(&self, task: &Task<'_>) -> Track;
 }

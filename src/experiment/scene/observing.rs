@@ -1,6 +1,8 @@
 //! What is measured, and what is to be found out from it.
 
-use crate::observer::{HighGain, Kalman, OnFault, WhenBlind};
+use crate::observer::{
+    HighGain, Integration, Kalman, MovingWindow, Observer, OnFault, WhenBlind, WindowSearch,
+};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 use std::collections::BTreeMap;
@@ -91,6 +93,52 @@ pub enum Method {
     Kalman,
     /// `high-gain`: the high-gain observer.
     HighGain,
+}
+
+impl ObserverSettings {
+    /// The observer of a method, with these settings.
+    pub fn observer(&self, method: Method) -> Box<dyn Observer> {
+        match method {
+            Method::Newton => Box::new(self.window(WindowSearch::Newton)),
+            Method::TrustRegion => Box::new(self.window(WindowSearch::TrustRegion)),
+            Method::Integration => Box::new(Integration),
+            Method::Kalman => Box::new(self.kalman),
+            Method::HighGain => Box::new(self.high_gain),
+        }
+    }
+
+    /// The observer by windows.
+    pub fn window(&self, search: WindowSearch) -> MovingWindow {
+        MovingWindow {
+            method: search,
+            window: self.window,
+            steps: self.steps as u64,
+            blind: self.blind,
+            when_blind: self.when_blind,
+        }
+    }
+}
+
+impl Method {
+    /// Its name, as a scene writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Newton => "newton",
+            Method::TrustRegion => "trust-region",
+            Method::Integration => "integration",
+            Method::Kalman => "kalman",
+            Method::HighGain => "high-gain",
+        }
+    }
+
+    /// How it seeks the smallest error of a window; of a method that works by windows.
+    pub fn search(self) -> Option<WindowSearch> {
+        match self {
+            Method::Newton => Some(WindowSearch::Newton),
+            Method::TrustRegion => Some(WindowSearch::TrustRegion),
+            Method::Integration | Method::Kalman | Method::HighGain => None,
+        }
+    }
 }
 
 /// What to try many times over.

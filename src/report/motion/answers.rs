@@ -1,6 +1,6 @@
 //! What observers made of an experiment, as JSON and as text.
 
-use crate::experiment::{Answer, Basin, Experiment, Method, NoiseLevel, error};
+use crate::experiment::{Answer, Basin, Experiment, NoiseLevel, error};
 use crate::mechanics::moving::Ended;
 use crate::observer::{Fault, Update, UpdateEnd};
 use serde_json::{Map, Value, json};
@@ -23,17 +23,6 @@ impl<'a> Observed<'a> {
     /// An experiment without studies.
     pub fn of(experiment: &'a Experiment, answers: &'a [Answer]) -> Self {
         Observed { experiment, answers, noise: &[], basins: &[], interrupted: false }
-    }
-}
-
-/// A method's name, as a scene writes it.
-pub fn method_name(method: Method) -> &'static str {
-    match method {
-        Method::Newton => "newton",
-        Method::TrustRegion => "trust-region",
-        Method::Integration => "integration",
-        Method::Kalman => "kalman",
-        Method::HighGain => "high-gain",
     }
 }
 
@@ -120,7 +109,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
             |last| json!({ "time": last.time, "states": states(observed, last.time, &last.state, None) }),
         );
         json!({
-            "method": method_name(answer.method),
+            "method": answer.method.name(),
             "seconds": answer.seconds,
             "unseen_samples": answer.track.unseen,
             "remarks": answer.track.remarks,
@@ -170,7 +159,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
     if !observed.basins.is_empty() {
         let basin = |basin: &Basin| {
             json!({
-                "method": method_name(basin.method),
+                "method": basin.method.name(),
                 "states": basin.names,
                 "values": basin.values,
                 "arrives": basin.arrives,
@@ -203,7 +192,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         let _ = writeln!(text, "  {line}");
     }
     for answer in observed.answers {
-        let _ = writeln!(text, "\n{}: {:.3} s", method_name(answer.method), answer.seconds);
+        let _ = writeln!(text, "\n{}: {:.3} s", answer.method.name(), answer.seconds);
         for update in &answer.track.updates {
             let _ = writeln!(
                 text,
@@ -242,7 +231,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         let _ = writeln!(
             text,
             "\n{} arrives from {:.1}% of {} first guesses of {} and {}",
-            method_name(basin.method),
+            basin.method.name(),
             100.0 * basin.fraction(),
             basin.arrives.iter().flatten().count(),
             basin.names[0],

@@ -2,7 +2,6 @@
 
 use crate::experiment::Method;
 use crate::report::drawing::{Drawing, INK, MESH, svg};
-use crate::report::motion::answers::method_name;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -32,7 +31,7 @@ pub(super) struct Curve {
 
 impl Curve {
     pub fn of_method(method: Method, points: Vec<(f64, f64)>) -> Curve {
-        Curve { shown: Shown::Method(method), name: method_name(method).to_owned(), points }
+        Curve { shown: Shown::Method(method), name: method.name().to_owned(), points }
     }
 
     pub fn truth(points: Vec<(f64, f64)>) -> Curve {

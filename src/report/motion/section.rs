@@ -1,7 +1,7 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
 use crate::experiment::{ARRIVED, NOMINAL, SceneOutline, error};
-use crate::report::motion::answers::{Observed, ended_in_words, fault_lines, method_name};
+use crate::report::motion::answers::{Observed, ended_in_words, fault_lines};
 use crate::report::motion::frames::{frames, recovered_outline};
 use crate::report::motion::plot::{errors, sensor_errors, state};
 use crate::report::motion::shape::{outline, shown};
@@ -106,7 +106,7 @@ fn headline(observed: &Observed<'_>) -> Markup {
     });
     html! {
         p.lead {
-            b { (method_name(answer.method)) }
+            b { (answer.method.name()) }
             @match largest {
                 Some(largest) if largest.is_finite() => {
                     " ends with " (names.join(", ")) " off by at most " b { (format!("{largest:.1e}")) } " of their size; "
@@ -160,7 +160,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>) -> Markup {
             div.frames { @for picture in frames(observed, &outline) { (PreEscaped(picture)) } }
             figcaption {
                 "As figure 4.3: the palms about their joint at " (outline.instants.len().min(12)) " samples. Large dots are the "
-                "centre of mass and the two contacts. Small dots are the part of the outline that " b { (method_name(outline.method)) }
+                "centre of mass and the two contacts. Small dots are the part of the outline that " b { (outline.method.name()) }
                 " has recovered by then, blue where palm 1 touched it and orange where palm 2 did"
                 @if !outline.instants.iter().all(|instant| instant.seen) { ", pale where it could not see" }
                 ". "

@@ -2,9 +2,9 @@
 
 use crate::experiment::Basin;
 use crate::report::drawing::{Canvas, INK, MESH, svg};
-use crate::report::motion::answers::{Observed, method_name};
+use crate::report::motion::answers::Observed;
 use crate::report::motion::curves::number;
-use crate::report::motion::plot::unit_of;
+use crate::report::names::unit_of;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -50,7 +50,7 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
             .x_label_area_size(36)
             .y_label_area_size(64)
             .build_cartesian_2d((left..right).log_scale(), (low..high).log_scale())?;
-        let unit = unit_of(name);
+        let unit = unit_of(&observed.experiment.system, name);
         chart
             .configure_mesh()
             .light_line_style(WHITE)
@@ -61,7 +61,7 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
             .x_label_formatter(&|v| format!("{v:.0e}"))
             .y_label_formatter(&|v| format!("{v:.0e}"))
             .x_desc("standard deviation of a reading, m")
-            .y_desc(if unit.is_empty() { (*name).to_owned() } else { format!("{name}, {unit}") })
+            .y_desc(unit.map_or_else(|| (*name).to_owned(), |unit| format!("{name}, {unit}")))
             .axis_desc_style(("sans-serif", 12))
             .draw()?;
         chart.draw_series(LineSeries::new(bounds.iter().copied(), BOUND.stroke_width(2)))?;
@@ -89,7 +89,7 @@ pub(super) fn basin(observed: &Observed<'_>, basin: &Basin) -> String {
         let of = |name: &String| names.iter().position(|other| other == name).map(|place| truth[place]);
         Some((of(&basin.names[0])?, of(&basin.names[1])?))
     });
-    let title = format!("{}: {:.0}% arrive", method_name(basin.method), 100.0 * basin.fraction());
+    let title = format!("{}: {:.0}% arrive", basin.method.name(), 100.0 * basin.fraction());
     let by_colour = [(ARRIVES, "arrives".to_owned()), (FAILS, "does not arrive".to_owned())];
     Canvas { size: (380, 390), title: &title, by_colour: &by_colour, is_crisp: true }.draw(|area, _| {
         let (head, plot) = area.split_vertically(48);

@@ -2,8 +2,8 @@
 
 use crate::experiment::{Answer, error};
 use crate::observer::{Update, UpdateEnd};
-use crate::report::motion::answers::{Observed, method_name, standing_name};
-use crate::report::motion::plot::unit_of;
+use crate::report::motion::answers::{Observed, standing_name};
+use crate::report::names::unit_of;
 use maud::{Markup, html};
 
 /// More updates than these are in the JSON only.
@@ -58,7 +58,7 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
                 @for answer in observed.answers {
                     @let converged = answer.track.updates.iter().filter(|u| u.standing == UpdateEnd::Converged).count();
                     tr {
-                        td { b { (method_name(answer.method)) } }
+                        td { b { (answer.method.name()) } }
                         @if let Some(last) = answer.track.last() {
                             @let truth = observed.experiment.truth_at(last.time);
                             td.number { (format!("{:.3} s", last.time)) }
@@ -100,7 +100,7 @@ fn last_truth(observed: &Observed<'_>) -> Option<Vec<f64>> {
 pub(super) fn updates(observed: &Observed<'_>) -> Markup {
     html! {
         @for answer in observed.answers.iter().filter(|answer| !answer.track.updates.is_empty()) {
-            h3 { (method_name(answer.method)) ": " (pace(observed, answer)) }
+            h3 { (answer.method.name()) ": " (pace(observed, answer)) }
             (update_table(observed, answer))
             p.remark {
                 "The state is that at the window's first sample; the bound is its least standard deviation. Steps that had to be "
@@ -165,7 +165,7 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
     let samples = observed.experiment.signals.times().len();
     let mut lines = Vec::new();
     for answer in observed.answers {
-        let name = method_name(answer.method);
+        let name = answer.method.name();
         if answer.track.unseen > 0 {
             lines.push(format!(
                 "{name} could not see for {} of {samples} samples, and held what it believed or integrated",
@@ -222,7 +222,7 @@ pub(super) fn noise_table(observed: &Observed<'_>) -> Markup {
         div.scroll { table {
             thead { tr {
                 th { "noise, m" } th { "converged" }
-                @for name in &names { th { (name) ", rms error" } th { "bound, " (unit_of(name)) } th { "ratio" } }
+                @for name in &names { th { (name) ", rms error" } th { "bound" @if let Some(unit) = unit_of(&observed.experiment.system, name) { ", " (unit) } } th { "ratio" } }
             } }
             tbody { @for level in observed.noise { tr {
                 td.number { (format!("{:.1e}", level.noise)) }
