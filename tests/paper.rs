@@ -121,7 +121,9 @@ fn a_folder_is_taken_through_everything() {
     // the other file names nothing to be looked at
     assert!(pendulum.stress.is_some());
     let cart = &found.files[1];
-    assert!(cart.trade.is_none() && cart.stress.is_none() && cart.certificate.is_none() && cart.ranks.len() == 1);
+    assert!(
+        cart.trade.is_none() && cart.stress.is_none() && cart.certificate.is_none() && cart.ranks.len() == 1
+    );
 }
 
 /// A reduction that is none: the cart moves, and then the angle does not go as that of a pendulum.
