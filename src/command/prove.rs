@@ -3,10 +3,11 @@
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
 use super::output::{Files, Form, progress, proof_files};
 use super::terminal::layout;
+use super::watch::Watch;
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
-use palmistry::claim::{Kept, Selection, decide_all_keeping};
+use palmistry::claim::{Kept, Selection, UnmetPattern, decide_all_keeping};
 use palmistry::report::{ClaimsForm, ClaimsSummary, Shown, claim_json, claims_text, junit, statement_latex};
 use palmistry::{Outcome, System};
 use serde_json::json;
@@ -22,10 +23,16 @@ use std::time::Instant;
 /// 'loose'. A claim whose sides are one expression is 'restated' and not 'proved', which is as expected. A claim is about all values of its symbols, whatever
 /// values the file gives to parameters; where the verdict at these is another one, that is said too.
 #[derive(Args, Clone)]
+#[command(after_help = "Examples:
+  palmistry prove mysystem.proof            each claim with its verdict
+  palmistry prove proofs/ -q                only what is not as expected: statement, place, both sides at a witness
+  palmistry prove mysystem.proof --only 4.48 --only 'reduce.*'
+  palmistry prove mysystem.proof --watch    again whenever the file is changed
+  palmistry prove proofs/ --junit claims.xml --verdicts claims.json")]
 pub(crate) struct Prove {
     /// Proof files, or folders in which every .proof file is taken.
     #[arg(required = true, value_name = "FILE-OR-FOLDER")]
-    paths: Vec<PathBuf>,
+    pub(super) paths: Vec<PathBuf>,
     /// Decide only these claims: by id, by the part of ids before a dot ('4.44' is '4.44.r1' too), or with '*' for any
     /// characters (may be repeated).
     #[arg(long, value_name = "ID")]
@@ -33,6 +40,10 @@ pub(crate) struct Prove {
     /// Print only what is not as expected, and the summary.
     #[arg(short, long)]
     quiet: bool,
+    /// Decide again whenever a file is changed, or one that it imports, until it is interrupted. Only files that are changed,
+    /// or import what is changed, are decided again. With --json each report is one line.
+    #[arg(long)]
+    watch: bool,
     /// Print one JSON object: 'claims' with id, file, line, column, statement, verdict, expected, ok, engine, and error_bound
     /// or witness.
     #[arg(long)]
@@ -48,7 +59,7 @@ pub(crate) struct Prove {
     latex: bool,
     /// Seed of the random points.
     #[arg(long, default_value_t = 1, value_name = "S")]
-    seed: u64,
+    pub(super) seed: u64,
 }
 
 /// What is decided so far.
@@ -64,6 +75,10 @@ struct Decided {
 
 impl Prove {
     pub fn run(self) -> miette::Result<Status> {
+        if self.watch {
+            // what was told stays told
+            return watched(move || Watch::of(self).run(), || Ok(Status::NotAsExpected));
+        }
         let decided = Arc::new(Mutex::new(Decided::default()));
         let (worker, filled) = (self.clone(), decided.clone());
         let begin = Instant::now();
@@ -75,6 +90,11 @@ impl Prove {
         watched(work, || self.tell(&decided, begin))
     }
 
+    /// The claims that are asked for.
+    pub(super) fn selection(&self) -> Selection {
+        Selection::new(&self.only)
+    }
+
     /// Reads all files, and keeps the claims that are asked for.
     fn read(&self) -> miette::Result<Vec<System>> {
         // read everything before deciding anything: a mistake in the last file should not cost the first ones' time
@@ -82,11 +102,10 @@ impl Prove {
             .iter()
             .map(|file| System::read(file).map_err(miette::Report::new))
             .collect::<Result<_, _>>()?;
-        let selection = Selection::new(&self.only);
+        let selection = self.selection();
         let ids = systems.iter().flat_map(|system| &system.claims).map(|claim| claim.id.as_str());
         if let Some(unmet) = selection.unmet(ids) {
-            let help = unmet.nearest.as_ref().map(|near| format!("perhaps you meant '{near}'"));
-            return Err(Unusable::report(unmet.to_string(), help.unwrap_or_default()));
+            return Err(no_such_claim(&unmet));
         }
         for system in &mut systems {
             system.claims.retain(|claim| selection.keeps(&claim.id));
@@ -113,14 +132,13 @@ impl Prove {
             decided.claims = claims;
             decided.places = names.into_iter().zip(0..).collect();
         }
-        let kept = if self.verdicts.is_some() { Kept::Evidence } else { Kept::Verdicts };
         let bar = progress(claims as u64, "deciding claims");
         for system in &systems {
             let done = |outcome: &Outcome| {
                 hold(decided).outcomes.push(outcome.clone());
                 bar.inc(1);
             };
-            decide_all_keeping(kept, system, self.seed, &INTERRUPTED, &done);
+            decide_all_keeping(self.kept(), system, self.seed, &INTERRUPTED, &done);
         }
         bar.finish_and_clear();
         Ok(())
@@ -138,35 +156,60 @@ impl Prove {
         object
     }
 
-    /// Prints and writes what is decided, in the order of the files.
-    fn tell(&self, decided: &Mutex<Decided>, begin: Instant) -> miette::Result<Status> {
-        let Decided { claims, places, mut outcomes } = std::mem::take(&mut *hold(decided));
-        outcomes
-            .sort_by_cached_key(|outcome| places.get(&(outcome.file.clone(), outcome.id.clone())).copied());
-        let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
+    /// Writes the files that are asked for.
+    pub(super) fn written(&self, outcomes: &[Outcome]) -> Files {
         let mut files = Files::default();
         if let Some(path) = &self.junit {
-            files.text_or(path, junit(&outcomes));
+            files.text_or(path, junit(outcomes));
         }
         if let Some(path) = &self.verdicts {
             let records = outcomes.iter().flat_map(|outcome| outcome.evidence.iter().cloned()).collect();
             let text = VerdictFile::new(self.seed, records).text();
             files.text_or(path, text);
         }
-        let object = json!({
-            "ok": failed == 0 && !interrupted(),
+        files
+    }
+
+    /// What was found, as JSON.
+    pub(super) fn object(&self, outcomes: &[Outcome], seconds: f64) -> serde_json::Value {
+        json!({
+            "ok": outcomes.iter().all(|outcome| outcome.ok) && !interrupted(),
             "interrupted": interrupted(),
             "seed": self.seed,
-            "seconds": begin.elapsed().as_secs_f64(),
+            "seconds": seconds,
             "claims": outcomes.iter().map(|outcome| self.claim(outcome)).collect::<Vec<_>>(),
-        });
-        let all = failed == 0 && claims > 0 && outcomes.len() == claims;
+        })
+    }
+
+    /// What was found, as text.
+    pub(super) fn in_words(&self, outcomes: &[Outcome], summary: ClaimsSummary) -> String {
+        let shown = if self.quiet { Shown::Unexpected } else { Shown::All };
+        claims_text(outcomes, summary, ClaimsForm { shown, latex: self.latex }, &layout())
+    }
+
+    /// What is kept of a verdict.
+    pub(super) fn kept(&self) -> Kept {
+        if self.verdicts.is_some() { Kept::Evidence } else { Kept::Verdicts }
+    }
+
+    /// Prints and writes what is decided, in the order of the files.
+    fn tell(&self, decided: &Mutex<Decided>, begin: Instant) -> miette::Result<Status> {
+        let Decided { claims, places, mut outcomes } = std::mem::take(&mut *hold(decided));
+        outcomes
+            .sort_by_cached_key(|outcome| places.get(&(outcome.file.clone(), outcome.id.clone())).copied());
+        let all = outcomes.iter().all(|outcome| outcome.ok) && claims > 0 && outcomes.len() == claims;
         let status = if all { Status::AsExpected } else { Status::NotAsExpected };
         let summary = ClaimsSummary { claims, seconds: begin.elapsed().as_secs_f64() };
-        let shown = if self.quiet { Shown::Unexpected } else { Shown::All };
-        let form = ClaimsForm { shown, latex: self.latex };
-        files.print(Form::of(self.json), object, || claims_text(&outcomes, summary, form, &layout()), status)
+        let object = self.object(&outcomes, summary.seconds);
+        let in_words = || self.in_words(&outcomes, summary);
+        self.written(&outcomes).print(Form::of(self.json), object, in_words, status)
     }
+}
+
+/// That a pattern of `--only` is met by no claim.
+pub(super) fn no_such_claim(unmet: &UnmetPattern) -> miette::Report {
+    let help = unmet.nearest.as_ref().map(|near| format!("perhaps you meant '{near}'"));
+    Unusable::report(unmet.to_string(), help.unwrap_or_default())
 }
 
 fn hold(decided: &Mutex<Decided>) -> std::sync::MutexGuard<'_, Decided> {
