@@ -6,8 +6,8 @@ use common::{folder, json, palmistry, with_threads, write};
 use palmistry::System;
 use palmistry::paper::Paper;
 use palmistry::report::stress_pictures;
-use palmistry::tradeoff::Rows;
-use palmistry::tradeoff::stress::{End, Line, Mark, Stress, StressOptions, Study, Way};
+use palmistry::tradeoff::LandscapeRows;
+use palmistry::tradeoff::stress::{Line, LineLimit, Mark, Stress, StressOptions, StressStudy, Way};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -42,7 +42,7 @@ sample
 let rows = [1/(x - y), x^4; 1, 2]
 "#;
 
-fn study(text: &str, interrupt: bool) -> Study {
+fn study(text: &str, interrupt: bool) -> StressStudy {
     let mut system = System::parse("toy.proof", text, Path::new("")).unwrap();
     let options = StressOptions {
         seed: 3,
@@ -53,10 +53,10 @@ fn study(text: &str, interrupt: bool) -> Study {
         interrupt: &AtomicBool::new(interrupt),
         progress: &|| (),
     };
-    Stress::of_file(&mut system, Rows::Own, &options).unwrap().run(&options)
+    Stress::of_file(&mut system, LandscapeRows::Own, &options).unwrap().run(&options)
 }
 
-fn line<'a>(study: &'a Study, title: &str) -> &'a Line {
+fn line<'a>(study: &'a StressStudy, title: &str) -> &'a Line {
     study.lines.iter().find(|line| line.title.contains(title)).unwrap_or_else(|| panic!("{:?}", study.lines))
 }
 
@@ -71,7 +71,7 @@ fn the_distance_of_the_first_wrong_rank_is_known() {
     let study = study(EQUAL_ROWS, false);
     let line = line(&study, "x to zero");
     assert_eq!((line.ranks.clone(), line.certified), (BTreeSet::from([2]), true));
-    assert_eq!(line.end, End::Ranks { ranks: BTreeSet::from([1]), certified: true });
+    assert_eq!(line.end, LineLimit::Ranks { ranks: BTreeSet::from([1]), certified: true });
     // a comparison of two numbers that are equal but for rounding may go either way
     let near = |found: Option<f64>, power: i32| {
         let expected = 2f64.powi(power);
@@ -92,7 +92,7 @@ fn the_distance_of_the_first_wrong_rank_is_known() {
 fn a_division_by_zero_is_named() {
     let study = study(DIVISOR, false);
     let line = line(&study, "divisor x - y");
-    assert!(matches!(&line.end, End::Pole(why) if why.contains("x - y = 0")), "{:?}", line.end);
+    assert!(matches!(&line.end, LineLimit::Pole(why) if why.contains("x - y = 0")), "{:?}", line.end);
     let single = line.ways[Way::Single.place()].refused.clone().unwrap();
     assert_eq!(single.said, "division by zero: x - y = 0");
     assert!((2f64.powi(-25)..=2f64.powi(-22)).contains(&single.distance), "{single:?}");
@@ -228,7 +228,7 @@ fn changes_of_units_come_from_the_file() {
     let parse = |text: &str| System::parse("spring.proof", text, Path::new("")).unwrap();
     let changes = |text: &str| {
         let mut system = parse(text);
-        let (_, rows) = rows_of(&mut system, Rows::Full).unwrap();
+        let (_, rows) = rows_of(&mut system, LandscapeRows::Full).unwrap();
         let found = units(&system, &rows)?;
         let quantities = unit_quantities(&system, &rows);
         let named = |factors: &Rescaling| match factors {
@@ -360,7 +360,7 @@ fn every_named_set_has_its_lines() {
         progress: &|| (),
     };
     for system in &mut systems {
-        let study = Stress::of_file(system, Rows::Own, &options).unwrap().run(&options);
+        let study = Stress::of_file(system, LandscapeRows::Own, &options).unwrap().run(&options);
         for set in &system.sets {
             // two ways to write one set are one line
             let title = |line: &Line| line.title.starts_with(&set.name);
@@ -377,7 +377,7 @@ fn every_named_set_has_its_lines() {
 #[test]
 fn saying_full_does_not_win() {
     let found = study(EQUAL_ROWS, false);
-    let line = found.lines.iter().find(|line| matches!(&line.end, End::Ranks { .. })).unwrap();
+    let line = found.lines.iter().find(|line| matches!(&line.end, LineLimit::Ranks { .. })).unwrap();
     let (full, ladder) = (&line.ways[Way::AlwaysFull.place()], &line.ways[Way::Ladder.place()]);
     assert_eq!((&full.wrong, full.on_the_set.right), (&None, 0));
     assert!(full.on_the_set.wrong >= 10);

@@ -8,7 +8,7 @@ use palmistry::observability::{
     Branch, Codistribution, Coordinate, Defined, Length, Locus, State, customary_singular_values,
     parse_condition, solve_conditions,
 };
-use palmistry::sweep::{Certainty, Judge, Judged, StateReport};
+use palmistry::sweep::{Certainty, Judge, StateJudgement, StateReport};
 use palmistry::system::Value;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -68,9 +68,8 @@ fn case(file: &str, conditions: &[&str], count: u64) -> Vec<Case> {
             let Some(Value::Matrix(own)) = system.definition("rows").cloned() else { panic!("no rows") };
             let mentioned: Vec<_> = full.iter().chain(&own.entries).copied().collect();
             let locus = Locus::new(&mut system, &branch, &BTreeMap::new(), &mentioned).unwrap();
-            let angles = system.angles();
-            let rows = [full, own.entries]
-                .map(|rows| expand_angles(&mut system.graph, &rows, |symbol| angles.contains(&symbol)));
+            let is_angle = &system.angle_test();
+            let rows = [full, own.entries].map(|rows| expand_angles(&mut system.graph, &rows, is_angle));
             let states = (0..count).map(|index| locus.draw(5, index).unwrap()).collect();
             Case { system: system.clone(), rows: rows.to_vec(), states }
         })
@@ -100,18 +99,18 @@ fn decide(
     state: &State,
     wanted: Certainty,
 ) -> StateReport {
-    let angles = case.system.angles();
+    let is_angle = &case.system.angle_test();
     let judge = Judge::new(
         &case.system.graph,
         Defined::default(),
         (rows, rows),
         case.system.states.len(),
-        |symbol| angles.contains(&symbol),
+        is_angle,
         (PrimeField::random(&mut rand_chacha_rng()), wanted),
     );
     match judge.decide(state) {
-        Judged::Report(report) => report,
-        Judged::Pole(pole) => panic!("{pole}"),
+        StateJudgement::Report(report) => report,
+        StateJudgement::Pole(pole) => panic!("{pole}"),
     }
 }
 
@@ -176,13 +175,8 @@ proptest! {
 fn the_customary_threshold_depends_on_units() {
     let mut changed = 0;
     for case in case("general.proof", &[], 20) {
-        let angles = case.system.angles();
-        let program = palmistry::expression::Program::new(
-            &case.system.graph,
-            &case.rows[1],
-            |symbol| angles.contains(&symbol),
-            false,
-        );
+        let is_angle = &case.system.angle_test();
+        let program = palmistry::expression::Program::new(&case.system.graph, &case.rows[1], is_angle, false);
         let customary = |state: &State| {
             let inputs = state.inputs(&program, &Floats).unwrap();
             let values = program.load(Floats).unwrap().run(&inputs, &mut Vec::new()).unwrap();

@@ -10,8 +10,8 @@ use crate::report::stress::answer::stress_json;
 use crate::report::trade::answer::trade_json;
 use crate::sweep::RankAnswer;
 use crate::system::Flaw;
-use crate::tradeoff::stress::Study;
-use crate::tradeoff::{Map, PrintedExpression, PrintedValue, Rows, Slope};
+use crate::tradeoff::stress::StressStudy;
+use crate::tradeoff::{LandscapeRows, Map, PrintedExpression, PrintedValue, Slope};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -20,9 +20,9 @@ fn four_digits(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-fn map_json(kind: Rows, map: &Map) -> Value {
+fn map_json(kind: LandscapeRows, map: &Map) -> Value {
     json!({
-        "rows": if kind == Rows::Own { "own" } else { "full" },
+        "rows": if kind == LandscapeRows::Own { "own" } else { "full" },
         "x": { "name": map.x.0, "low": map.x.1, "high": map.x.2, "cells": map.width },
         "y": { "name": map.y.0, "low": map.y.1, "high": map.y.2, "cells": map.height },
         "smallest_singular_value": map.smallest.iter().map(|v| v.map(four_digits)).collect::<Vec<_>>(),
@@ -147,7 +147,7 @@ pub fn printed_value_json(value: &PrintedValue) -> Value {
 pub fn findings_json(found: &Findings) -> Value {
     let paper = &found.paper;
     let words = counts(found.outcomes()).into_iter().collect::<std::collections::BTreeMap<_, _>>();
-    let stress: Vec<Study> = found.files.iter().filter_map(|file| file.stress.clone()).collect();
+    let stress: Vec<StressStudy> = found.files.iter().filter_map(|file| file.stress.clone()).collect();
     json!({
         "ok": found.ok(),
         "interrupted": found.interrupted,

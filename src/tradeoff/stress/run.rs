@@ -1,6 +1,6 @@
 //! A system prepared for the extremes, and taken to them.
 
-use super::super::landscape::Rows;
+use super::super::landscape::LandscapeRows;
 use super::approach::{Approach, Prepared, approaches_of};
 use super::changes::{unit_quantities, units};
 use super::line::{Line, OnTheSet, Walk};
@@ -45,7 +45,7 @@ pub struct StressOptions<'a> {
 
 /// What was found of one system.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Study {
+pub struct StressStudy {
     pub file: String,
     pub title: String,
     /// Which rows were taken, in words.
@@ -81,12 +81,14 @@ pub struct Stress {
 ///
 /// # Errors
 /// In words: no states or outputs, a pole everywhere.
-pub fn rows_of(system: &mut System, wanted: Rows) -> Result<(String, Vec<NodeId>), String> {
+pub fn rows_of(system: &mut System, wanted: LandscapeRows) -> Result<(String, Vec<NodeId>), String> {
     if system.states.is_empty() || system.outputs.is_empty() {
         return Err(format!("{} declares no states or no outputs", system.name));
     }
     match system.definition(OWN_ROWS) {
-        Some(Value::Matrix(matrix)) if wanted == Rows::Own && matrix.columns == system.states.len() => {
+        Some(Value::Matrix(matrix))
+            if wanted == LandscapeRows::Own && matrix.columns == system.states.len() =>
+        {
             Ok((format!("the file's own '{OWN_ROWS}'"), matrix.entries.clone()))
         }
         _ => {
@@ -102,7 +104,11 @@ impl Stress {
     ///
     /// # Errors
     /// As [`rows_of`] and [`Stress::prepare`].
-    pub fn of_file(system: &mut System, wanted: Rows, options: &StressOptions<'_>) -> Result<Stress, String> {
+    pub fn of_file(
+        system: &mut System,
+        wanted: LandscapeRows,
+        options: &StressOptions<'_>,
+    ) -> Result<Stress, String> {
         let (name, rows) = rows_of(system, wanted)?;
         let approaches = approaches_of(system, &rows);
         let quantities = unit_quantities(system, &rows);
@@ -161,7 +167,7 @@ impl Stress {
     }
 
     /// Goes to the extremes. The same whatever the number of threads.
-    pub fn run(&self, options: &StressOptions<'_>) -> Study {
+    pub fn run(&self, options: &StressOptions<'_>) -> StressStudy {
         let stopped = || options.interrupt.load(Ordering::Relaxed);
         let subject = &self.subject;
         let halvings: Vec<usize> = (0..=MOST_HALVINGS).step_by(options.step.max(1)).collect();
@@ -223,7 +229,7 @@ impl Stress {
             true => (Vec::new(), Vec::new()),
             false => (self.of_box(options, options.samples * MORE_FOR_CONDITIONING), self.near(options)),
         };
-        Study {
+        StressStudy {
             file: subject.system.name.clone(),
             title: subject.system.title.clone(),
             rows: self.rows.clone(),
