@@ -4,6 +4,7 @@
 mod common;
 
 mod browser;
+mod size;
 
 use browser::{Look, browser, look};
 use common::{folder, write};
