@@ -2,6 +2,7 @@
 
 use super::anchors::{Anchors, placed, stem};
 use super::claims::{all_claims, equations, faults, tally};
+use super::entry::{ENGINES, name};
 use super::extremes::{extremes, has_extremes};
 use super::regime::{file_section, has_a_section};
 use super::source::sources;
@@ -31,7 +32,7 @@ const SECTIONS: [&str; 12] = [
 /// The page as HTML.
 pub fn page(found: &Findings) -> String {
     let names: Vec<String> = (0..found.files.len()).map(|place| format!("file{place}")).collect();
-    let engines: Vec<String> = (0..26).map(|place| format!("by{place}")).collect();
+    let engines: Vec<String> = (0..ENGINES).map(name).collect();
     let reserved: Vec<&str> = SECTIONS
         .into_iter()
         .chain(["shown"])
