@@ -8,6 +8,7 @@ use super::regime::{file_section, has_a_section};
 use super::source::sources;
 use crate::claim::Outcome;
 use crate::paper::Findings;
+use crate::report::axis::unit_of;
 use crate::report::document::document;
 use crate::report::motion::answers::Observed;
 use crate::report::motion::section::observed_section;
@@ -59,7 +60,7 @@ pub fn page(found: &Findings) -> String {
         main {
             @if numbering.count() > 0 { (equations(numbering, &claims, &anchors)) }
             (faults(numbering, &claims, &anchors))
-            @for (file, name) in sections() { (file_section(name, file, &|_| None)) }
+            @for (file, name) in sections() { (file_section(name, file, &|name| unit_of(&file.system, name))) }
             @if has_extremes(found) { (extremes(found)) }
             @if !experiments.is_empty() { (observed_section(&experiments)) }
             (all_claims(&claims, &anchors, &files))
