@@ -123,8 +123,8 @@ fn digits_of_a_regime_are_those_of_scaling_without_end() {
     let mut system = System::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(SAME_RATE)).unwrap();
     let Some(Matrix(rows)) = system.definition("rows").cloned() else { panic!("no rows") };
     let kept = Reduction::new(&system.graph, &rows.entries, rows.columns);
-    let angles = system.angles();
-    let entries = expand_angles(&mut system.graph, &kept.entries, |symbol| angles.contains(&symbol));
+    let is_angle = &system.angle_test();
+    let entries = expand_angles(&mut system.graph, &kept.entries, is_angle);
     let program = Program::new(&system.graph, &entries, |_| false, false);
     let value =
         |symbol| found["worst_conditioned"]["state"][system.symbol_name(symbol)]["value"].as_f64().unwrap();

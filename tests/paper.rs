@@ -307,3 +307,41 @@ fn papers_come_with_the_program() {
     assert!(statements(&packed).len() > 70);
     assert_eq!(statements(&packed), statements(&on_disk));
 }
+
+/// A new paper proves and is verified, and nothing that is there is lost to it.
+#[test]
+fn a_new_paper_proves() {
+    let folder = folder();
+    let place = folder.path().join("a/b");
+    let name = place.to_str().unwrap();
+    let made = palmistry(&["new", name, "--json"]);
+    assert_eq!((made.status.code(), json(&made)["files"].as_array().unwrap().len()), (Some(0), 2));
+    for file in ["paper.toml", "pendulum.proof"] {
+        let text = std::fs::read_to_string(place.join(file)).unwrap();
+        // a comment on each line that is not blank, or on the one above
+        let lines: Vec<&str> = text.lines().collect();
+        let commented = lines.iter().filter(|line| line.contains('#') || line.contains('"')).count();
+        assert!(commented > lines.iter().filter(|line| !line.trim().is_empty()).count() / 2, "{file}");
+    }
+    let found =
+        json(&palmistry(&["verify", name, "--json", "--out", folder.path().join("out").to_str().unwrap()]));
+    assert_eq!((&found["ok"], &found["paper"]["title"]), (&true.into(), &"A paper of my own".into()));
+    assert_eq!(found["files"][0]["left_out"].as_array().unwrap().len(), 0);
+    let page = std::fs::read_to_string(folder.path().join("out/index.html")).unwrap();
+    assert!(page.contains("A pendulum whose angle is seen") && page.contains("no length"));
+    // what is there stays as it is, and nothing is left beside it
+    write(&folder, "a/b/mine.proof", "system \"mine\"");
+    for taken in
+        [name, place.join("paper.toml").to_str().unwrap(), place.join("paper.toml/x").to_str().unwrap()]
+    {
+        let output = palmistry(&["new", taken, "--json"]);
+        assert_eq!(output.status.code(), Some(2), "{taken}");
+    }
+    assert_eq!(std::fs::read_dir(&place).unwrap().count(), 3);
+    assert_eq!(std::fs::read_dir(folder.path().join("a")).unwrap().count(), 1);
+    // an empty folder is taken
+    let empty = folder.path().join("empty");
+    std::fs::create_dir(&empty).unwrap();
+    assert_eq!(palmistry(&["new", empty.to_str().unwrap()]).status.code(), Some(0));
+    assert!(empty.join("paper.toml").is_file());
+}

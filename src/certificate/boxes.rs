@@ -3,7 +3,7 @@
 
 use super::slots::{Slot, Slots, Wave};
 use crate::expression::Symbol;
-use crate::number::{Interval, Real, rational_to_f64};
+use crate::number::{Interval, RealNumber, rational_to_f64};
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
 

@@ -34,7 +34,7 @@ mod slots;
 mod tally;
 mod tape;
 
-pub use answer::{OpenBox, PartAnswer, Patch, RegionAnswer, RegionMap, RegionMinor, Standing, Vanishing};
+pub use answer::{BoxStanding, OpenBox, PartAnswer, Patch, RegionAnswer, RegionMap, RegionMinor, Vanishing};
 pub use boxes::FreeCoordinate;
 pub use progress::{Limits, Progress};
 pub use proved::ProvedBox;

@@ -45,7 +45,7 @@ impl Cell {
 }
 
 /// What has come of a box.
-enum Judged {
+enum BoxJudgement {
     /// Everything is, by this minor where there are several to choose from.
     Proved(Option<usize>),
     Halved([Cell; 2]),
@@ -158,7 +158,7 @@ impl Search {
         if queue.is_empty() {
             self.open.remove(&turn.depth);
         }
-        let found: Vec<(Cell, Judged)> = block
+        let found: Vec<(Cell, BoxJudgement)> = block
             .into_par_iter()
             .map_init(Desk::default, |desk, mut cell| {
                 let judged = judge(part, &mut cell, desk);
@@ -167,7 +167,7 @@ impl Search {
             .collect();
         for (cell, judged) in found {
             match judged {
-                Judged::Proved(minor) => {
+                BoxJudgement::Proved(minor) => {
                     self.proved.add(cell.depth());
                     if self.kept.len() < self.most_kept {
                         self.kept.push(ProvedCell { sides: cell.sides.clone(), minor });
@@ -176,8 +176,8 @@ impl Search {
                         self.sections.extend(self.plane.section(&cell.sides));
                     }
                 }
-                Judged::Halved(halves) => self.open.entry(cell.depth() + 1).or_default().extend(halves),
-                Judged::Left => self.left.push(cell),
+                BoxJudgement::Halved(halves) => self.open.entry(cell.depth() + 1).or_default().extend(halves),
+                BoxJudgement::Left => self.left.push(cell),
             }
         }
         self.boxes += count as u64;
@@ -194,7 +194,7 @@ impl Search {
 }
 
 /// Looks at a box.
-fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> Judged {
+fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> BoxJudgement {
     let chart = &part.chart;
     chart.fill(&cell.sides, &mut desk.slots);
     let mut guesses: Vec<Option<Guess>> = vec![None; part.factors.len()];
@@ -237,22 +237,22 @@ fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> Judged {
             }
             proved = false;
             if expression.fails_everywhere(desk) {
-                return Judged::Left;
+                return BoxJudgement::Left;
             }
             if rank == 0 && worst.is_none_or(|(ratio, _)| guess.ratio < ratio) {
                 worst = Some((guess.ratio, factor));
             }
         }
         if proved {
-            return Judged::Proved(minor);
+            return BoxJudgement::Proved(minor);
         }
     }
-    let Some((_, factor)) = worst else { return Judged::Left };
+    let Some((_, factor)) = worst else { return BoxJudgement::Left };
     let can = |coordinate: &usize| cell.sides[*coordinate].depth < DEEPEST;
     let steepest = guesses[factor].and_then(|guess| guess.steepest).filter(can);
     let coordinate = steepest.or_else(|| {
         let coordinates = part.factors[factor].tape.coordinates.iter().copied().filter(can);
         coordinates.min_by_key(|coordinate| cell.sides[*coordinate].depth)
     });
-    coordinate.map_or(Judged::Left, |coordinate| Judged::Halved(cell.halves(coordinate)))
+    coordinate.map_or(BoxJudgement::Left, |coordinate| BoxJudgement::Halved(cell.halves(coordinate)))
 }

@@ -1,13 +1,15 @@
 //! From boxes to an answer: volumes are added exactly, and rounded once, in the end.
 
-use super::answer::{OpenBox, PartAnswer, Patch, RegionAnswer, RegionMap, RegionMinor, Standing, Vanishing};
+use super::answer::{
+    BoxStanding, OpenBox, PartAnswer, Patch, RegionAnswer, RegionMap, RegionMinor, Vanishing,
+};
 use super::boxes::{FreeCoordinate, Side, Volume};
 use super::explain::{Why, explain, sampled_volume};
 use super::part::Part;
 use super::region::Region;
 use super::search::Search;
 use crate::expression::Symbol;
-use crate::number::{Interval, Real};
+use crate::number::{Interval, RealNumber};
 use dashu::rational::RBig;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -24,7 +26,7 @@ struct Tally {
     sampled: RBig,
     largest: Vec<(OpenBox, usize)>,
     /// What open boxes cut out of the map.
-    sections: Vec<([Side; 2], Standing)>,
+    sections: Vec<([Side; 2], BoxStanding)>,
 }
 
 impl Tally {
@@ -65,11 +67,11 @@ impl Tally {
     }
 }
 
-fn standing(why: Why) -> Standing {
+fn standing(why: Why) -> BoxStanding {
     match why {
-        Why::Vanishes { .. } => Standing::MinorVanishes,
-        Why::Pole { .. } => Standing::Pole,
-        Why::Undecided => Standing::Undecided,
+        Why::Vanishes { .. } => BoxStanding::MinorVanishes,
+        Why::Pole { .. } => BoxStanding::Pole,
+        Why::Undecided => BoxStanding::Undecided,
     }
 }
 
@@ -171,7 +173,7 @@ impl Region {
             let varies = |factor: &&usize| !part.factors[**factor].tape.coordinates.is_empty();
             list.iter().filter(varies).map(|factor| part.factors[*factor].text.clone()).collect()
         };
-        let of = |(place, minor): (usize, &super::part::Minor)| {
+        let of = |(place, minor): (usize, &super::part::FactoredMinor)| {
             let mut factors: Vec<String> = parts.iter().flat_map(|part| texts(part, &part.common)).collect();
             for part in parts {
                 let own = part.alternatives.iter().filter(|alternative| alternative.minor == place);
@@ -184,8 +186,9 @@ impl Region {
 
     /// How the boxes stand in which a state may lie; the worst of them, where these are several. `at` encloses the state's
     /// coordinates. `None` where one of them is not given, or lies outside of the box.
-    pub fn standing(&self, at: impl Fn(Symbol) -> Option<Interval>) -> Option<Standing> {
-        let mut worst = if self.problem.parts.is_empty() { Standing::Undecided } else { Standing::Proved };
+    pub fn standing(&self, at: impl Fn(Symbol) -> Option<Interval>) -> Option<BoxStanding> {
+        let mut worst =
+            if self.problem.parts.is_empty() { BoxStanding::Undecided } else { BoxStanding::Proved };
         for range in &self.problem.ranges {
             let whole = Interval::from_rational(&range.low).hull(Interval::from_rational(&range.high));
             at(range.symbol).filter(|value| whole.encloses(*value))?;
@@ -212,15 +215,15 @@ impl Region {
     fn map(&self, tallies: &[Tally]) -> Option<RegionMap> {
         let (x, y) = self.map?;
         let ranges = &self.problem.ranges;
-        let mut patches = vec![([Side::WHOLE; 2], Standing::Proved)];
+        let mut patches = vec![([Side::WHOLE; 2], BoxStanding::Proved)];
         let mut at = Vec::new();
         for ((part, tally), search) in self.problem.parts.iter().zip(tallies).zip(&self.searches.searches) {
             let plane = search.plane;
             if plane.x.is_none() && plane.y.is_none() {
                 continue;
             }
-            let proved = search.sections.iter().map(|section| (*section, Standing::Proved));
-            let all: Vec<([Side; 2], Standing)> = proved.chain(tally.sections.iter().copied()).collect();
+            let proved = search.sections.iter().map(|section| (*section, BoxStanding::Proved));
+            let all: Vec<([Side; 2], BoxStanding)> = proved.chain(tally.sections.iter().copied()).collect();
             if patches.len() * all.len() > MOST_PATCHES {
                 return None;
             }
@@ -241,7 +244,7 @@ impl Region {
             let (low, high) = ranges[place].ends(Side::WHOLE);
             (ranges[place].name.clone(), low, high)
         };
-        let patch = |([a, b], standing): ([Side; 2], Standing)| Patch {
+        let patch = |([a, b], standing): ([Side; 2], BoxStanding)| Patch {
             x: ranges[x].ends(a),
             y: ranges[y].ends(b),
             standing,

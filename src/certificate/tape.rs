@@ -6,7 +6,7 @@
 
 use super::slots::{Slots, Wave};
 use crate::expression::{Graph, Need, Node, NodeId, Symbol};
-use crate::number::{Function, Interval, Real};
+use crate::number::{Function, Interval, RealNumber};
 use std::collections::HashMap;
 
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,7 @@ pub(super) struct Tape {
 }
 
 /// Numbers that a tape computes with: their own image of its constants.
-pub(super) trait Scalar: Real {
+pub(super) trait Scalar: RealNumber {
     fn constants(tape: &Tape) -> &[Self];
 }
 
@@ -255,7 +255,13 @@ impl Tape {
 
     /// What the derivatives by its slots say of the derivatives by the coordinates that it depends on. `inputs` are the
     /// values of the slots.
-    pub fn by_coordinates<T: Real>(&self, slots: &Slots, by_slots: &[T], inputs: &[T], found: &mut [T]) {
+    pub fn by_coordinates<T: RealNumber>(
+        &self,
+        slots: &Slots,
+        by_slots: &[T],
+        inputs: &[T],
+        found: &mut [T],
+    ) {
         let zero = T::from_f64(0.0);
         for coordinate in &self.coordinates {
             found[*coordinate] = zero;
@@ -316,16 +322,16 @@ fn as_wave(graph: &Graph, id: NodeId) -> Option<(Symbol, Wave)> {
 }
 
 /// `a^n`; what is not defined is a NaN, or the whole line.
-fn power<T: Real>(a: T, n: i32) -> T {
+fn power<T: RealNumber>(a: T, n: i32) -> T {
     a.power(n).unwrap_or(T::from_f64(f64::NAN))
 }
 
-fn apply<T: Real>(function: Function, a: T) -> T {
+fn apply<T: RealNumber>(function: Function, a: T) -> T {
     a.function(function).unwrap_or(T::from_f64(f64::NAN))
 }
 
 /// The derivative of a function where its argument and its value are known.
-fn rate<T: Real>(function: Function, a: T, value: T) -> T {
+fn rate<T: RealNumber>(function: Function, a: T, value: T) -> T {
     let one = T::from_f64(1.0);
     match function {
         Function::Sin => apply(Function::Cos, a),

@@ -7,9 +7,11 @@
 mod arguments;
 mod certify;
 mod check;
+mod claims;
 mod completions;
 mod eval;
 mod interrupt;
+mod new;
 mod observe;
 mod output;
 mod prove;
@@ -37,6 +39,7 @@ use std::process::ExitCode;
 #[command(
     after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written.",
     after_long_help = "Where to begin:
+  palmistry new mypaper                     a folder with a small paper that proves, a comment on each line
   palmistry check mysystem.proof            is it a proof file? every mistake, each at its place
   palmistry prove mysystem.proof --watch    decide its claims, and again whenever it is changed
   palmistry rank mysystem.proof             is the state seen in the outputs? what is not, and how well what is
@@ -62,6 +65,7 @@ enum Verb {
     Stress(stress::Stress),
     Eval(eval::Eval),
     Observe(observe::Observe),
+    New(new::New),
     Completions(completions::Completions),
 }
 
@@ -125,7 +129,7 @@ impl Verb {
     fn form(&self) -> Form {
         Form::of(match self {
             Verb::Verify(verb) => verb.json,
-            Verb::Prove(verb) => verb.json,
+            Verb::Prove(verb) => verb.claims.json,
             Verb::Check(verb) => verb.json,
             Verb::Rank(verb) => verb.json,
             Verb::Recheck(verb) => verb.json,
@@ -134,6 +138,7 @@ impl Verb {
             Verb::Stress(verb) => verb.json,
             Verb::Eval(verb) => verb.json,
             Verb::Observe(verb) => verb.json,
+            Verb::New(verb) => verb.json,
             Verb::Completions(_) => false,
         })
     }
@@ -153,6 +158,7 @@ impl Verb {
             Verb::Stress(verb) => verb.run(),
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::New(verb) => verb.run(),
             Verb::Completions(verb) => verb.run(),
         }
     }

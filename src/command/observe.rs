@@ -8,7 +8,7 @@ use indicatif::ProgressBar;
 use palmistry::experiment::{Basin, Experiment, NoiseLevel, Scene, SceneError, basins, noise_study};
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
-use palmistry::observer::{Standing, Update};
+use palmistry::observer::{Update, UpdateEnd};
 use palmistry::report::{Observed, ended_in_words, method_name, observe_json, observe_page, observe_text};
 use std::path::PathBuf;
 
@@ -105,7 +105,8 @@ impl Observe {
             note(&format!("the motion ended early: {}", ended_in_words(simulation.ended())));
         }
         // a window that cannot be seen is part of the answer; a method that saw none has found nothing
-        let unseen = |update: &Update| matches!(update.standing, Standing::Blind { .. } | Standing::Lost(_));
+        let unseen =
+            |update: &Update| matches!(update.standing, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
         let found_nothing = |updates: &[Update]| !updates.is_empty() && updates.iter().all(unseen);
         let as_expected = !interrupted && !answers.iter().any(|answer| found_nothing(&answer.track.updates));
         let status = if as_expected { Status::AsExpected } else { Status::NotAsExpected };

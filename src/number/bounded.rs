@@ -6,7 +6,7 @@
 //! itself computed with rounding, which [`Bounded::error`] makes up for.
 
 use super::Function;
-use super::lanes::{Lanes, Task};
+use super::lanes::{LaneTask, Lanes};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The unit of rounding: to the nearest double, `|fl(x) - x| <= 2^-53 |fl(x)|`.
@@ -166,7 +166,7 @@ impl<L: Lanes> Lanes for Bounded<L> {
             Bounded { value: cosine, units: self.units + two * cosine.abs() },
         )
     }
-    fn apart<T: Task>(self, task: T) -> T::Output {
+    fn apart<T: LaneTask>(self, task: T) -> T::Output {
         self.value.apart(task)
     }
     #[inline(always)]

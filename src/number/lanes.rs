@@ -47,7 +47,7 @@ pub trait Lanes:
 
     /// Does some work in a function of its own that is compiled for these lanes, so that it is compiled once for them
     /// and not wherever it is called.
-    fn apart<T: Task>(self, task: T) -> T::Output {
+    fn apart<T: LaneTask>(self, task: T) -> T::Output {
         called(task)
     }
 
@@ -78,13 +78,13 @@ pub trait Lanes:
 }
 
 /// A piece of work; the method has to be `#[inline(always)]`, all the way down, like that of [`Vectorised`].
-pub trait Task {
+pub trait LaneTask {
     type Output;
     fn call(self) -> Self::Output;
 }
 
 #[inline(never)]
-fn called<T: Task>(task: T) -> T::Output {
+fn called<T: LaneTask>(task: T) -> T::Output {
     task.call()
 }
 

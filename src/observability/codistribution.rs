@@ -288,8 +288,7 @@ fn needed(
     rows: &[Vec<NodeId>],
     conditions: &Assignment,
 ) -> Result<(Vec<usize>, bool), CodistributionError> {
-    let angles = system.angles();
-    let is_angle = |symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let as_written: Vec<NodeId> = rows.iter().flatten().copied().collect();
     let entries = system.graph.substitute(&as_written, conditions);
     let entries = expand_angles(&mut system.graph, &entries, is_angle);

@@ -85,8 +85,8 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
             (chart.backend_coord(&(map.x.1, map.y.1)), chart.backend_coord(&(map.x.2, map.y.2)));
         extras.cells = Some(Cells {
             corners: [low.0, high.1, high.0, low.1],
-            columns: map.width,
-            colours: map.smallest.chunks(map.width).rev().flatten().map(colour).collect(),
+            columns: map.width.div_ceil(BLOCK),
+            colours: blocks(map).iter().map(colour).collect(),
         });
         chart
             .configure_mesh()
@@ -120,6 +120,24 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
             .draw()?;
         Ok(())
     })
+}
+
+/// So many cells along each side are drawn as one.
+const BLOCK: usize = 2;
+
+/// The cells that are drawn, by rows from the top: of those of a block a pole, else the smallest value, so that nothing that is
+/// singular is lost.
+fn blocks(map: &Map) -> Vec<Option<f64>> {
+    let rows: Vec<&[Option<f64>]> = map.smallest.chunks(map.width).collect();
+    let of_band = |band: &[&[Option<f64>]]| -> Vec<Option<f64>> {
+        let columns = (0..map.width).step_by(BLOCK);
+        let block = |left: usize| {
+            let cells = band.iter().flat_map(|row| &row[left..(left + BLOCK).min(row.len())]);
+            cells.copied().try_fold(f64::INFINITY, |least, cell| Some(least.min(cell?)))
+        };
+        columns.map(block).collect()
+    };
+    rows.chunks(BLOCK).rev().flat_map(of_band).collect()
 }
 
 /// The singular values on the way into a singularity, both axes logarithmic. Under the pointer stand all of them at a distance.
@@ -271,4 +289,28 @@ pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
         chart.draw_series(points.iter().map(|point| Circle::new(*point, 3, BAR.filled())))?;
         Ok(())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: three by three cells, of which the lowest row is the last that is drawn.
+    #[test]
+    fn what_is_singular_is_drawn() {
+        let smallest = vec![
+            Some(1.0),
+            Some(2.0),
+            Some(3.0),
+            Some(4.0),
+            None,
+            Some(6.0),
+            Some(7.0),
+            Some(8.0),
+            Some(9.0),
+        ];
+        let axis = |name: &str| (name.to_owned(), 0.0, 1.0);
+        let map = Map { x: axis("x"), y: axis("y"), width: 3, height: 3, smallest };
+        assert_eq!(blocks(&map), [Some(7.0), Some(9.0), None, Some(3.0)]);
+    }
 }

@@ -2,10 +2,10 @@
 
 use super::certainty::Certainty;
 use super::digits::{Digits, NoDigits};
-use super::ladder::{Judge, Judged, StateReport};
+use super::ladder::{Judge, StateJudgement, StateReport};
 use super::stream::{Stream, StreamOptions};
 use super::unseen::{UnseenDirection, UnseenDirections};
-use crate::expression::{Guard, NodeId, Symbol, add_guard, expand_angles};
+use crate::expression::{Guard, NodeId, add_guard, expand_angles};
 use crate::number::{PrimeField, Rung};
 use crate::observability::{Codistribution, Defined, Locus, LocusError, Spectrum, State, StateInWords};
 use crate::system::System;
@@ -106,8 +106,7 @@ pub fn sweep(
     options: SweepOptions<'_>,
 ) -> Result<SweepReport, LocusError> {
     let begin = Instant::now();
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let quick = expand_angles(&mut system.graph, quick, is_angle);
     let all = expand_angles(&mut system.graph, all, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
@@ -201,7 +200,7 @@ fn streamed(
         && tally.worst.as_ref().is_none_or(|(_, worst)| condition > worst.condition())
     {
         let state = state(index)?;
-        if let Judged::Report(StateReport { spectrum: Some(spectrum), .. }) = judge.decide(&state) {
+        if let StateJudgement::Report(StateReport { spectrum: Some(spectrum), .. }) = judge.decide(&state) {
             tally.worst = Some((state, spectrum));
         }
     }
@@ -231,7 +230,7 @@ fn recorded(
     let states: Vec<State> = first.into_iter().chain(drawn).take(count as usize).collect();
     let judged = states.into_par_iter().map(|state| match judge.decide(&state) {
         _ if options.interrupt.load(Ordering::Relaxed) => None,
-        Judged::Report(StateReport { rank, unseen, certainty: Certainty::Certified, .. }) => {
+        StateJudgement::Report(StateReport { rank, unseen, certainty: Certainty::Certified, .. }) => {
             Some(RecordedState { state, rank, unseen })
         }
         _ => None,
@@ -247,7 +246,7 @@ fn judge_all(
     indices: &[u64],
     state: impl Fn(u64) -> Result<State, LocusError> + Sync,
 ) -> Result<(), LocusError> {
-    let block: Vec<Result<(State, Judged), LocusError>> = indices
+    let block: Vec<Result<(State, StateJudgement), LocusError>> = indices
         .par_iter()
         .map(|index| {
             let state = state(*index)?;
@@ -277,13 +276,13 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, system: &System, index: u64, state: State, judged: Judged) {
+    fn add(&mut self, system: &System, index: u64, state: State, judged: StateJudgement) {
         let report = match judged {
-            Judged::Pole(divisor) => {
+            StateJudgement::Pole(divisor) => {
                 *self.poles.entry(divisor).or_insert(0) += 1;
                 return;
             }
-            Judged::Report(report) => report,
+            StateJudgement::Report(report) => report,
         };
         self.samples += 1;
         *self.ranks.entry(report.rank).or_insert(0) += 1;

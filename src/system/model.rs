@@ -256,6 +256,12 @@ impl System {
         self.symbols().filter(|(_, info)| info.is_angle).map(|(symbol, _)| symbol).collect()
     }
 
+    /// Whether a symbol is an angle, for those who ask while the graph grows: what is an angle now.
+    pub fn angle_test(&self) -> impl Fn(Symbol) -> bool + use<> {
+        let angles = self.angles();
+        move |symbol| angles.contains(&symbol)
+    }
+
     /// A symbol's name.
     pub fn symbol_name(&self, symbol: Symbol) -> &str {
         self.graph.symbol_name(symbol)

@@ -90,7 +90,7 @@ pub fn printed_values(system: &System, seed: u64) -> Result<Vec<PrintedExpressio
         claim.body.statements().into_iter().filter_map(|statement| Print::of(&claim.id, statement))
     });
     let mut system = system.clone();
-    let angles = system.angles();
+    let is_angle = &system.angle_test();
     let mut expansions: HashMap<NodeId, Result<Expansion, String>> = HashMap::new();
     let mut found: Vec<PrintedExpression> = Vec::new();
     for print in statements {
@@ -98,9 +98,7 @@ pub fn printed_values(system: &System, seed: u64) -> Result<Vec<PrintedExpressio
         let value = system.elaborate(print.formula).map_err(|problem| problem.message)?;
         let node =
             value.as_number().ok_or_else(|| format!("{}: {text} is {}", print.id, value.describe()))?;
-        let expansion = expansions
-            .entry(node)
-            .or_insert_with(|| expand(&mut system.graph, node, |symbol| angles.contains(&symbol)));
+        let expansion = expansions.entry(node).or_insert_with(|| expand(&mut system.graph, node, is_angle));
         let expansion = expansion.clone();
         let value = print.examine(&mut system, node, &expansion, seed)?;
         match found.iter_mut().find(|known| known.text == text) {

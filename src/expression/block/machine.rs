@@ -5,7 +5,7 @@
 //! disturb each other.
 
 use super::tape::{Instruction, Kind, Operator, Slot, Tape};
-use crate::number::{Function, Lanes, Task};
+use crate::number::{Function, LaneTask, Lanes};
 use std::cell::Cell;
 
 /// A tape with room for its registers.
@@ -101,7 +101,7 @@ impl<'t, L: Lanes> Machine<'t, L> {
 
 struct Run<'m, 't, L>(&'m mut Machine<'t, L>);
 
-impl<L: Lanes> Task for Run<'_, '_, L> {
+impl<L: Lanes> LaneTask for Run<'_, '_, L> {
     type Output = ();
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! From syntax to what is set: brackets where they are needed, quotients as fractions, products side by side.
 
-use super::{Fence, Formula, Name, Sign, latex::latex};
+use super::{Fence, Formula, FormulaName, FormulaSign, latex::latex};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Relation};
 use crate::number::parse_decimal;
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,13 +40,13 @@ const WORDS: [&str; 17] = [
 ];
 
 /// Lays out the expressions of one text.
-pub struct Layout<'a> {
+pub struct FormulaLayout<'a> {
     source: &'a str,
     /// The names that are set as they are written: their looks would be those of others.
     alike: BTreeSet<String>,
 }
 
-impl<'a> Layout<'a> {
+impl<'a> FormulaLayout<'a> {
     /// A layout for expressions that were read from a text and stand in one formula.
     pub fn new<'e>(source: &'a str, expressions: impl IntoIterator<Item = &'e Expr>) -> Self {
         let mut names = BTreeSet::new();
@@ -54,12 +54,12 @@ impl<'a> Layout<'a> {
         expressions.into_iter().for_each(|expression| collect(expression, &mut names, &mut derives));
         let mut looks: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for name in names {
-            if let Some(look) = Name::of(&name) {
+            if let Some(look) = FormulaName::of(&name) {
                 looks.entry(latex(&Formula::Name(look))).or_default().push(name);
             }
         }
         let means_something = |name: &str| {
-            Name::of(name).is_some_and(|look| {
+            FormulaName::of(name).is_some_and(|look| {
                 look.from.is_empty()
                     && (WORDS.contains(&look.letters.as_str()) && name != "rank"
                         || look.letters == "L" && derives && !look.index.is_empty())
@@ -69,7 +69,7 @@ impl<'a> Layout<'a> {
             let alike = names.len() > 1;
             names.into_iter().filter(move |name| alike || means_something(name)).collect::<Vec<_>>()
         };
-        Layout { source, alike: looks.into_iter().flat_map(shared).collect() }
+        FormulaLayout { source, alike: looks.into_iter().flat_map(shared).collect() }
     }
 
     /// An expression.
@@ -82,7 +82,7 @@ impl<'a> Layout<'a> {
         let mut row = Vec::new();
         for (place, chain) in equations.chunk_by(|a, b| a.span == b.span).enumerate() {
             if place > 0 {
-                row.push(Formula::Sign(Sign::Comma));
+                row.push(Formula::Sign(FormulaSign::Comma));
             }
             self.chain(chain, &mut row);
         }
@@ -98,16 +98,19 @@ impl<'a> Layout<'a> {
             && low.left.span == high.left.span
         {
             put(self.expression(&low.left));
-            put(Formula::Sign(Sign::In));
-            let ends =
-                [self.expression(&low.right), Formula::Sign(Sign::Comma), self.expression(&high.right)];
+            put(Formula::Sign(FormulaSign::In));
+            let ends = [
+                self.expression(&low.right),
+                Formula::Sign(FormulaSign::Comma),
+                self.expression(&high.right),
+            ];
             return put(Formula::Fence(Fence::Square, Box::new(Formula::Row(ends.into()))));
         }
         for (place, link) in chain.iter().enumerate() {
             if place == 0 {
                 put(self.expression(&link.left));
             }
-            put(Formula::Sign(Sign::Relation(link.relation)));
+            put(Formula::Sign(FormulaSign::Relation(link.relation)));
             put(self.expression(&link.right));
             if let Some(within) = &link.within {
                 put(Formula::Text("within"));
@@ -140,19 +143,19 @@ impl<'a> Layout<'a> {
                 let mut values = Vec::new();
                 for (place, (name, value)) in list.iter().enumerate() {
                     if place > 0 {
-                        values.push(Formula::Sign(Sign::Comma));
+                        values.push(Formula::Sign(FormulaSign::Comma));
                     }
-                    let equal = Formula::Sign(Sign::Relation(Relation::Equal));
+                    let equal = Formula::Sign(FormulaSign::Relation(Relation::Equal));
                     values.extend([self.name(&name.text), equal, self.expression(value)]);
                 }
-                let inner = Formula::Row(vec![round(self.expression(value)), Formula::Sign(Sign::At)]);
+                let inner = Formula::Row(vec![round(self.expression(value)), Formula::Sign(FormulaSign::At)]);
                 (scripts(inner, Some(Formula::Row(values)), None), Binding::Power)
             }
         }
     }
 
     fn name(&self, text: &str) -> Formula {
-        match Name::of(text) {
+        match FormulaName::of(text) {
             Some(name) if !self.alike.contains(text) => match text {
                 "rank" => Formula::Word("rank"),
                 _ => Formula::Name(name),
@@ -171,13 +174,13 @@ impl<'a> Layout<'a> {
         let mut row = Vec::new();
         for (place, (minus, term)) in terms.iter().enumerate() {
             let (formula, binding) = self.lay(term);
-            let led_by_minus = matches!(&formula, Formula::Row(parts) if parts.first() == Some(&Formula::Sign(Sign::Negative)));
+            let led_by_minus = matches!(&formula, Formula::Row(parts) if parts.first() == Some(&Formula::Sign(FormulaSign::Negative)));
             let brackets = binding == Binding::Sum && (*minus || (place > 0 && led_by_minus));
             match (place, minus) {
                 (0, false) => {}
-                (0, true) => row.push(Formula::Sign(Sign::Negative)),
-                (_, true) => row.push(Formula::Sign(Sign::Minus)),
-                (_, false) => row.push(Formula::Sign(Sign::Plus)),
+                (0, true) => row.push(Formula::Sign(FormulaSign::Negative)),
+                (_, true) => row.push(Formula::Sign(FormulaSign::Minus)),
+                (_, false) => row.push(Formula::Sign(FormulaSign::Plus)),
             }
             match formula {
                 formula if brackets => row.push(round(formula)),
@@ -239,7 +242,7 @@ impl<'a> Layout<'a> {
         let above = match exponent {
             0.. => Formula::Number(exponent.to_string()),
             _ => Formula::Row(vec![
-                Formula::Sign(Sign::Negative),
+                Formula::Sign(FormulaSign::Negative),
                 Formula::Number(exponent.unsigned_abs().to_string()),
             ]),
         };
@@ -268,16 +271,16 @@ impl<'a> Layout<'a> {
                 (Formula::Fence(Fence::Bars, Box::new(self.expression(inner))), Binding::Atom)
             }
             ("transpose", [inner]) => {
-                let above = Some(Formula::Sign(Sign::Transpose));
+                let above = Some(Formula::Sign(FormulaSign::Transpose));
                 (scripts(self.at_least(inner, Binding::Atom), None, above), Binding::Power)
             }
             ("inverse", [inner]) => {
                 let minus_one =
-                    Formula::Row(vec![Formula::Sign(Sign::Negative), Formula::Number("1".into())]);
+                    Formula::Row(vec![Formula::Sign(FormulaSign::Negative), Formula::Number("1".into())]);
                 (scripts(self.at_least(inner, Binding::Atom), None, Some(minus_one)), Binding::Power)
             }
             ("dot" | "cross", [a, b]) => {
-                let sign = if name == "dot" { Sign::Dot } else { Sign::Cross };
+                let sign = if name == "dot" { FormulaSign::Dot } else { FormulaSign::Cross };
                 let [a, b] = [a, b].map(|side| self.at_least(side, Binding::Power));
                 (Formula::Row(vec![a, Formula::Sign(sign), b]), Binding::Vectors)
             }
@@ -285,7 +288,7 @@ impl<'a> Layout<'a> {
             ("bracket", [_, _]) => (Formula::Fence(Fence::Square, Box::new(all())), Binding::Atom),
             ("d", [inner]) => self.applied(Formula::Word("d"), inner, closed),
             ("d", [inner, by @ ..]) => {
-                let partial = || Formula::Sign(Sign::Partial);
+                let partial = || Formula::Sign(FormulaSign::Partial);
                 let top = Formula::Row(vec![partial(), self.at_least(inner, Binding::Atom)]);
                 let by = commas(by.iter().map(|state| self.expression(state)).collect());
                 let bottom = Formula::Row(vec![partial(), round(by)]);
@@ -294,7 +297,8 @@ impl<'a> Layout<'a> {
             ("det", [inner]) => self.applied(Formula::Word("det"), inner, closed),
             ("rank", [inner]) => self.applied(Formula::Word("rank"), inner, closed),
             ("pole", [inner, factor]) => {
-                let zero = [Formula::Sign(Sign::Relation(Relation::Equal)), Formula::Number("0".into())];
+                let zero =
+                    [Formula::Sign(FormulaSign::Relation(Relation::Equal)), Formula::Number("0".into())];
                 let place = Formula::Row([self.expression(factor)].into_iter().chain(zero).collect());
                 let word = scripts(Formula::Word("pole"), Some(place), None);
                 (Formula::Row(vec![word, round(self.expression(inner))]), Binding::Prefix)
@@ -312,7 +316,7 @@ impl<'a> Layout<'a> {
         let parts = if closed || binding < Binding::Atom || matches!(inner, Formula::Number(_)) {
             vec![function, round(inner)]
         } else {
-            vec![function, Formula::Sign(Sign::Thin), inner]
+            vec![function, Formula::Sign(FormulaSign::Thin), inner]
         };
         (Formula::Row(parts), Binding::Prefix)
     }
@@ -321,7 +325,7 @@ impl<'a> Layout<'a> {
     fn lie(&self, fields: &[Expr], last: &Expr, closed: bool) -> (Formula, Binding) {
         let mut row = Vec::new();
         for field in fields {
-            let letter = Name::of("L").map_or(Formula::Word("L"), Formula::Name);
+            let letter = FormulaName::of("L").map_or(Formula::Word("L"), Formula::Name);
             row.push(scripts(letter, Some(self.expression(field)), None));
         }
         match &last.kind {
@@ -396,7 +400,7 @@ fn commas(parts: Vec<Formula>) -> Formula {
     let mut row = Vec::new();
     for part in parts {
         if !row.is_empty() {
-            row.push(Formula::Sign(Sign::Comma));
+            row.push(Formula::Sign(FormulaSign::Comma));
         }
         row.push(part);
     }
@@ -410,9 +414,9 @@ fn joined(factors: Vec<Formula>) -> Formula {
         let (first, last) = (first_of(&factor), row.last().map(last_of));
         let sign = match (last, first) {
             (None, _) => None,
-            (Some(_), Formula::Number(_)) => Some(Sign::Dot),
-            (Some(Formula::Number(_)), Formula::Fraction(..)) => Some(Sign::Dot),
-            (Some(last), first) if is_wide(last) || is_wide(first) => Some(Sign::Thin),
+            (Some(_), Formula::Number(_)) => Some(FormulaSign::Dot),
+            (Some(Formula::Number(_)), Formula::Fraction(..)) => Some(FormulaSign::Dot),
+            (Some(last), first) if is_wide(last) || is_wide(first) => Some(FormulaSign::Thin),
             _ => None,
         };
         row.extend(sign.map(Formula::Sign));
@@ -455,14 +459,16 @@ fn number(written: &str) -> (Formula, Binding) {
     };
     let exponent = exponent.trim_start_matches('+');
     let above = match exponent.strip_prefix('-') {
-        Some(size) => Formula::Row(vec![Formula::Sign(Sign::Negative), Formula::Number(size.to_owned())]),
+        Some(size) => {
+            Formula::Row(vec![Formula::Sign(FormulaSign::Negative), Formula::Number(size.to_owned())])
+        }
         None => Formula::Number(exponent.to_owned()),
     };
     let power = scripts(Formula::Number("10".to_owned()), None, Some(above));
     match digits {
         "1" => (power, Binding::Power),
         _ => {
-            let row = vec![Formula::Number(digits.to_owned()), Formula::Sign(Sign::Dot), power];
+            let row = vec![Formula::Number(digits.to_owned()), Formula::Sign(FormulaSign::Dot), power];
             (Formula::Row(row), Binding::Product)
         }
     }
@@ -478,7 +484,7 @@ fn rational(value: &dashu::rational::RBig) -> (Formula, Binding) {
         bottom => Formula::Fraction(Box::new(size), Box::new(number(bottom.to_owned()))),
     };
     match (top.to_string().starts_with('-'), &formula) {
-        (true, _) => (Formula::Row(vec![Formula::Sign(Sign::Negative), formula]), Binding::Sum),
+        (true, _) => (Formula::Row(vec![Formula::Sign(FormulaSign::Negative), formula]), Binding::Sum),
         (false, Formula::Number(_)) => (formula, Binding::Atom),
         (false, _) => (formula, Binding::Product),
     }

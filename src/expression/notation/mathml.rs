@@ -1,7 +1,7 @@
 //! MathML, for a page: presentation elements of the Core, which browsers set without a script and without a font to load.
 
 use super::name::{greek, runs};
-use super::{Fence, Formula, Name, Sign};
+use super::{Fence, Formula, FormulaName, FormulaSign};
 use crate::expression::syntax::Relation;
 
 /// A formula as one element.
@@ -16,7 +16,16 @@ pub fn mathml(formula: &Formula) -> String {
 pub fn mathml_in_pieces(formula: &Formula) -> String {
     let Formula::Row(parts) = formula else { return mathml(formula) };
     let breaks = |part: &Formula| {
-        matches!(part, Formula::Sign(Sign::Plus | Sign::Minus | Sign::Comma | Sign::Relation(_) | Sign::In))
+        matches!(
+            part,
+            Formula::Sign(
+                FormulaSign::Plus
+                    | FormulaSign::Minus
+                    | FormulaSign::Comma
+                    | FormulaSign::Relation(_)
+                    | FormulaSign::In
+            )
+        )
     };
     let mut pieces = Vec::new();
     let mut piece = String::new();
@@ -125,7 +134,7 @@ fn element(tag: &str, text: &str, out: &mut String) {
 }
 
 /// A name, perhaps with an exponent, which then stands above its index.
-fn write_name(name: &Name, above: Option<&Formula>, out: &mut String) {
+fn write_name(name: &FormulaName, above: Option<&Formula>, out: &mut String) {
     for from in &name.from {
         element("mtext", &format!("{from}."), out);
     }
@@ -149,7 +158,7 @@ fn write_name(name: &Name, above: Option<&Formula>, out: &mut String) {
         out.push_str(if several { "<mrow>" } else { "" });
         for (place, part) in runs.iter().enumerate() {
             if place > 0 {
-                out.push_str(sign_of(Sign::IndexComma));
+                out.push_str(sign_of(FormulaSign::IndexComma));
             }
             for run in part {
                 match run.starts_with(|c: char| c.is_ascii_digit()) {
@@ -175,20 +184,20 @@ fn letters(letters: &str, out: &mut String) {
     }
 }
 
-fn sign_of(sign: Sign) -> &'static str {
+fn sign_of(sign: FormulaSign) -> &'static str {
     match sign {
-        Sign::Plus => "<mo>+</mo>",
-        Sign::Minus | Sign::Negative => "<mo>−</mo>",
-        Sign::Dot => "<mo>·</mo>",
-        Sign::Cross => "<mo>×</mo>",
-        Sign::Thin => "<mspace width=\".2em\"/>",
-        Sign::Comma => "<mo>,</mo>",
-        Sign::IndexComma => "<mo rspace=\"0\">,</mo>",
-        Sign::In => "<mo>∈</mo>",
-        Sign::At => "<mo>|</mo>",
-        Sign::Partial => "<mo>∂</mo>",
-        Sign::Transpose => "<mi mathvariant=\"normal\">T</mi>",
-        Sign::Relation(relation) => match relation {
+        FormulaSign::Plus => "<mo>+</mo>",
+        FormulaSign::Minus | FormulaSign::Negative => "<mo>−</mo>",
+        FormulaSign::Dot => "<mo>·</mo>",
+        FormulaSign::Cross => "<mo>×</mo>",
+        FormulaSign::Thin => "<mspace width=\".2em\"/>",
+        FormulaSign::Comma => "<mo>,</mo>",
+        FormulaSign::IndexComma => "<mo rspace=\"0\">,</mo>",
+        FormulaSign::In => "<mo>∈</mo>",
+        FormulaSign::At => "<mo>|</mo>",
+        FormulaSign::Partial => "<mo>∂</mo>",
+        FormulaSign::Transpose => "<mi mathvariant=\"normal\">T</mi>",
+        FormulaSign::Relation(relation) => match relation {
             Relation::Equal => "<mo>=</mo>",
             Relation::NotEqual => "<mo>≠</mo>",
             Relation::Less => "<mo>&lt;</mo>",

@@ -1,7 +1,7 @@
 //! Lanes in the vector registers of x86-64.
 
 use super::portable::evaluate;
-use crate::number::lanes::{Lanes, MOST_LANES, Task, Vectorised};
+use crate::number::lanes::{LaneTask, Lanes, MOST_LANES, Vectorised};
 use crate::number::{Function, sine};
 use pulp::x86::{V3, V4};
 use pulp::{NullaryFnOnce, cast};
@@ -216,7 +216,7 @@ pub(super) fn run<R: Registers, W: Vectorised>(registers: R, work: W) -> W::Outp
 }
 
 struct Apart<T>(T);
-impl<T: Task> NullaryFnOnce for Apart<T> {
+impl<T: LaneTask> NullaryFnOnce for Apart<T> {
     type Output = T::Output;
     #[inline(always)]
     fn call(self) -> T::Output {
@@ -320,7 +320,7 @@ impl<R: Registers> Lanes for Two<R> {
     fn sin_cos(self) -> (Self, Self) {
         sine::sin_cos(self)
     }
-    fn apart<T: Task>(self, task: T) -> T::Output {
+    fn apart<T: LaneTask>(self, task: T) -> T::Output {
         self.registers.vectorize(Apart(task))
     }
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Speed against accuracy, as a picture.
 
 use crate::report::drawing::{INK, MESH, svg};
-use crate::tradeoff::{Combination, Derivative, Digits, Number, Trade};
+use crate::tradeoff::{Combination, CorrectDigits, Derivative, Number, Trade};
 use plotters::coord::CoordTranslate;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -25,9 +25,9 @@ fn colour(number: Number) -> RGBColor {
 
 fn height(combination: &Combination) -> f64 {
     match combination.digits {
-        Digits::Exact => ALL_DIGITS,
-        Digits::Modular => NO_DIGITS,
-        Digits::Measured { worst, .. } => worst,
+        CorrectDigits::Exact => ALL_DIGITS,
+        CorrectDigits::Modular => NO_DIGITS,
+        CorrectDigits::Measured { worst, .. } => worst,
     }
 }
 
@@ -77,14 +77,25 @@ pub fn trade_plot(trade: &Trade) -> String {
             }
         }
         chart.draw_series(LineSeries::new(line, INK.stroke_width(1)))?;
-        for combination in &timed {
-            let at = (combination.seconds * 1e9, height(combination));
+        // those of one look together
+        let mut marks: Vec<&Combination> = timed.clone();
+        marks.sort_by_key(|c| (c.number, c.not_right() == 0, c.certified == trade.states));
+        let look = |combination: &Combination| {
             let colour = colour(combination.number);
             let inside = if combination.not_right() == 0 { colour } else { WHITE };
-            let rim = if combination.certified == trade.states { INK } else { colour };
-            mark(chart.plotting_area(), at, combination.derivative, inside, rim)?;
+            (inside, if combination.certified == trade.states { INK } else { colour })
+        };
+        for alike in marks.chunk_by(|a, b| look(a) == look(b)) {
+            let (inside, rim) = look(alike[0]);
+            let at = |c: &Combination| (c.seconds * 1e9, height(c));
+            for combination in alike {
+                filled(chart.plotting_area(), at(combination), combination.derivative, inside)?;
+            }
+            for combination in alike {
+                rimmed(chart.plotting_area(), at(combination), combination.derivative, rim)?;
+            }
         }
-        if timed.iter().any(|c| c.digits == Digits::Modular) {
+        if timed.iter().any(|c| c.digits == CorrectDigits::Modular) {
             let at = (slowest * 1.3, NO_DIGITS);
             let right = Pos::new(HPos::Right, VPos::Center);
             let words = ("sans-serif", 12).into_font().color(&INK).pos(right);
@@ -100,7 +111,7 @@ pub fn trade_plot(trade: &Trade) -> String {
         }
         for (place, derivative) in distinct(timed.iter().map(|c| c.derivative)).into_iter().enumerate() {
             let (x, y) = key(place + numbers.len());
-            mark(&legend, (x, y), derivative, INK, INK)?;
+            filled(&legend, (x, y), derivative, INK)?;
             legend.draw(&Text::new(derivative.name(), (x + 12, y - 5), words.clone()))?;
         }
         let below = 18 * names.div_ceil(2) as i32 + 8;
@@ -141,23 +152,27 @@ fn corners(derivative: Derivative) -> Vec<(i32, i32)> {
     }
 }
 
-fn mark<C: CoordTranslate>(
+fn filled<C: CoordTranslate>(
     area: &DrawingArea<SVGBackend<'_>, C>,
     at: C::From,
     derivative: Derivative,
     inside: RGBColor,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let shape = EmptyElement::at(at) + Polygon::new(corners(derivative), inside.filled());
+    Ok(area.draw(&shape).map_err(|error| error.to_string())?)
+}
+
+fn rimmed<C: CoordTranslate>(
+    area: &DrawingArea<SVGBackend<'_>, C>,
+    at: C::From,
+    derivative: Derivative,
     rim: RGBColor,
-) -> Result<(), Box<dyn std::error::Error>>
-where
-    C::From: Clone,
-{
-    let corners = corners(derivative);
-    let mut outline = corners.clone();
-    outline.extend(corners.first());
-    area.draw(&(EmptyElement::at(at.clone()) + Polygon::new(corners, inside.filled())))
-        .map_err(|error| error.to_string())?;
-    area.draw(&(EmptyElement::at(at) + PathElement::new(outline, rim))).map_err(|error| error.to_string())?;
-    Ok(())
+) -> Result<(), Box<dyn std::error::Error>> {
+    let mut outline = corners(derivative);
+    outline.extend(outline.first().copied());
+    Ok(area
+        .draw(&(EmptyElement::at(at) + PathElement::new(outline, rim)))
+        .map_err(|error| error.to_string())?)
 }
 
 fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {

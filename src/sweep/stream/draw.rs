@@ -5,7 +5,7 @@
 
 use super::random::{threefry, unit};
 use crate::expression::{BlockProgram, Input, Machine, Symbol};
-use crate::number::{Bounded, Lanes, MOST_LANES, Task, rational_from_f64, rational_to_f64};
+use crate::number::{Bounded, LaneTask, Lanes, MOST_LANES, rational_from_f64, rational_to_f64};
 use crate::observability::{ATTEMPTS, AVOIDED, Source};
 use dashu::rational::RBig;
 
@@ -228,7 +228,7 @@ impl<'a, L: Lanes> Drawer<'a, L> {
 
 struct Draw<'d, 'a, L>(&'d mut Drawer<'a, L>, u64);
 
-impl<L: Lanes> Task for Draw<'_, '_, L> {
+impl<L: Lanes> LaneTask for Draw<'_, '_, L> {
     type Output = Result<(), usize>;
 
     #[inline(always)]

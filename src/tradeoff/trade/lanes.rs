@@ -2,7 +2,7 @@
 //! ranks of many small matrices at once.
 
 use super::block::Block;
-use super::ranks::{RankWay, Verdict};
+use super::ranks::{RankVerdict, RankWay};
 use crate::expression::BlockProgram;
 use crate::number::{Bounded, Instructions, Lanes, MOST_LANES, Vectorised};
 use crate::sweep::{Elimination, Jacobi};
@@ -102,7 +102,7 @@ struct Jacobis<'a> {
     blocks: &'a [Option<Vec<f64>>],
     rows: usize,
     columns: usize,
-    verdicts: &'a mut Vec<Verdict>,
+    verdicts: &'a mut Vec<RankVerdict>,
 }
 
 impl Vectorised for Jacobis<'_> {
@@ -149,10 +149,9 @@ impl Vectorised for Jacobis<'_> {
             let (mut ranks, mut lost) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
             rank.store(&mut ranks);
             failed.store(&mut lost);
-            verdicts
-                .extend((0..blocks.len()).map(|i| {
-                    if lost[i] == 0.0 { Verdict::Rank(ranks[i] as usize) } else { Verdict::Failed }
-                }));
+            verdicts.extend((0..blocks.len()).map(|i| {
+                if lost[i] == 0.0 { RankVerdict::Rank(ranks[i] as usize) } else { RankVerdict::Failed }
+            }));
         }
     }
 }
@@ -171,7 +170,7 @@ struct Eliminations<'a> {
     blocks: &'a [Option<Vec<Bounded<f64>>>],
     rows: usize,
     columns: usize,
-    verdicts: &'a mut Vec<Verdict>,
+    verdicts: &'a mut Vec<RankVerdict>,
 }
 
 impl Vectorised for Eliminations<'_> {
@@ -206,9 +205,9 @@ impl Vectorised for Eliminations<'_> {
             room.is_full(one).store(&mut found);
             spoiled.store(&mut lost);
             verdicts.extend((0..blocks.len()).map(|i| match (lost[i] == 0.0, found[i] == 1.0) {
-                (false, _) => Verdict::Failed,
-                (true, true) => Verdict::Rank(rows.min(columns)),
-                (true, false) => Verdict::Undecided,
+                (false, _) => RankVerdict::Failed,
+                (true, true) => RankVerdict::Rank(rows.min(columns)),
+                (true, false) => RankVerdict::Undecided,
             }));
         }
     }
