@@ -7,6 +7,7 @@
 mod arguments;
 mod certify;
 mod check;
+mod claims;
 mod completions;
 mod eval;
 mod fmt;
@@ -39,6 +40,7 @@ use std::process::ExitCode;
 #[command(
     after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written.",
     after_long_help = "Where to begin:
+  palmistry new mypaper                     a folder with a small paper that proves, a comment on each line
   palmistry check mysystem.proof            is it a proof file? every mistake, each at its place
   palmistry prove mysystem.proof --watch    decide its claims, and again whenever it is changed
   palmistry rank mysystem.proof             is the state seen in the outputs? what is not, and how well what is
@@ -129,7 +131,7 @@ impl Verb {
     fn form(&self) -> Form {
         Form::of(match self {
             Verb::Verify(verb) => verb.json,
-            Verb::Prove(verb) => verb.json,
+            Verb::Prove(verb) => verb.claims.json,
             Verb::Check(verb) => verb.json,
             Verb::Rank(verb) => verb.json,
             Verb::Recheck(verb) => verb.json,

@@ -6,9 +6,9 @@
 
 use super::Status;
 use super::check::{MOST_PROBLEMS, errors_json, problems_text};
+use super::claims::{Claims, no_such_claim};
 use super::interrupt::{INTERRUPTED, interrupted};
 use super::output::{Form, print_text, progress, proof_files};
-use super::prove::{Prove, no_such_claim};
 use super::terminal::is_terminal;
 use palmistry::claim::decide_all_keeping;
 use palmistry::report::ClaimsSummary;
@@ -52,13 +52,13 @@ impl Decided {
 
 /// The files that are watched.
 pub(super) struct Watch {
-    prove: Prove,
+    asked: Claims,
     files: BTreeMap<PathBuf, Decided>,
 }
 
 impl Watch {
-    pub fn of(prove: Prove) -> Watch {
-        Watch { prove, files: BTreeMap::new() }
+    pub fn of(asked: Claims) -> Watch {
+        Watch { asked, files: BTreeMap::new() }
     }
 
     /// Decides and tells, again and again, until it is interrupted. The status is that of the last report.
@@ -67,7 +67,7 @@ impl Watch {
         loop {
             let begin = Instant::now();
             // what is not there when it begins is a mistake, and what goes away later may come back
-            let paths = match (proof_files(&self.prove.paths), status) {
+            let paths = match (proof_files(&self.asked.paths), status) {
                 (Ok(paths), _) => paths,
                 (Err(error), None) => return Err(error),
                 (Err(_), Some(_)) => Vec::new(),
@@ -114,11 +114,11 @@ impl Watch {
             return Decided { rests_on, claims, ids, outcomes, wrong: Some(examined) };
         };
         let ids = system.claims.iter().map(|claim| claim.id.clone()).collect();
-        let selection = self.prove.selection();
+        let selection = self.asked.selection();
         system.claims.retain(|claim| selection.keeps(&claim.id));
         let bar = progress(system.claims.len() as u64, "deciding claims");
         let done = |_: &Outcome| bar.inc(1);
-        let outcomes = decide_all_keeping(self.prove.kept(), &system, self.prove.seed, &INTERRUPTED, &done);
+        let outcomes = decide_all_keeping(self.asked.kept(), &system, self.asked.seed, &INTERRUPTED, &done);
         bar.finish_and_clear();
         Decided { rests_on, claims: system.claims.len(), ids, outcomes, wrong: None }
     }
@@ -129,15 +129,15 @@ impl Watch {
         let outcomes: Vec<Outcome> = known.iter().flat_map(|file| file.outcomes.iter().cloned()).collect();
         let wrong: Vec<&Examination> = known.iter().filter_map(|file| file.wrong.as_ref()).collect();
         let ids = known.iter().flat_map(|file| &file.ids).map(String::as_str);
-        let unmet = self.prove.selection().unmet(ids).filter(|_| wrong.is_empty());
+        let unmet = self.asked.selection().unmet(ids).filter(|_| wrong.is_empty());
         let claims = known.iter().map(|file| file.claims).sum();
         let summary = ClaimsSummary { claims, seconds: begin.elapsed().as_secs_f64() };
-        let written = self.prove.written(&outcomes);
+        let written = self.asked.written(&outcomes);
         let ok =
             wrong.is_empty() && unmet.is_none() && outcomes.iter().all(|outcome| outcome.ok) && claims > 0;
-        match Form::of(self.prove.json) {
+        match Form::of(self.asked.json) {
             Form::Json => {
-                let mut object = self.prove.object(&outcomes, summary.seconds);
+                let mut object = self.asked.object(&outcomes, summary.seconds);
                 object["ok"] = json!(ok);
                 object["decided_again"] =
                     again.iter().map(|path| json!(path.display().to_string())).collect();
@@ -151,7 +151,7 @@ impl Watch {
                 let begin = if is_terminal() { "\u{1b}[2J\u{1b}[3J\u{1b}[H" } else { "" };
                 let mut text = format!("{begin}decided: {}\n", names.join(", "));
                 wrong.iter().for_each(|file| text.push_str(&problems_text(file)));
-                text.push_str(&self.prove.in_words(&outcomes, summary));
+                text.push_str(&self.asked.in_words(&outcomes, summary));
                 print_text(&text)?;
             }
         }
@@ -159,7 +159,7 @@ impl Watch {
             file::note(&format!("{:?}", no_such_claim(&unmet)));
         }
         written.note_failures();
-        if !self.prove.json {
+        if !self.asked.json {
             file::note("waiting for changes (interrupt to end)");
         }
         let status = if ok { Status::AsExpected } else { Status::NotAsExpected };

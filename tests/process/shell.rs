@@ -35,8 +35,8 @@ fn the_help_of_each_command_has_examples_that_are_understood() {
     for name in names {
         let help = out(&finish(program(&[name, "--help"]).env("COLUMNS", "200")));
         let examples: Vec<&str> = help
-            .split("Examples:")
-            .nth(1)
+            .split_once("Example")
+            .map(|(_, rest)| rest)
             .unwrap_or_else(|| panic!("{name} has no examples"))
             .lines()
             .map(str::trim)
