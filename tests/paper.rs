@@ -345,3 +345,72 @@ fn a_new_paper_proves() {
     assert_eq!(palmistry(&["new", empty.to_str().unwrap()]).status.code(), Some(0));
     assert!(empty.join("paper.toml").is_file());
 }
+
+/// Shipped files are in normal form; and whatever is cut out of one, its form is the same signs, read as before, and its own form.
+#[test]
+fn the_normal_form_changes_no_sign() {
+    use palmistry::system::format_text;
+    let mut files = Vec::new();
+    for folder in std::fs::read_dir("proofs").unwrap() {
+        for file in std::fs::read_dir(folder.unwrap().path()).unwrap() {
+            let path = file.unwrap().path();
+            if path.extension().is_some_and(|e| e == "proof") {
+                files.push(path);
+            }
+        }
+    }
+    assert!(files.len() > 30);
+    let check = palmistry(&["fmt", "proofs", "--check", "--json"]);
+    assert_eq!((check.status.code(), &json(&check)["changed"]), (Some(0), &serde_json::json!([])));
+    let signs = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
+    let claims = |text: &str, folder: &Path| {
+        let system = System::parse("", text, folder).unwrap();
+        let statement = |span: &std::ops::Range<usize>| {
+            system.source[span.clone()].split_whitespace().collect::<String>()
+        };
+        let all = system
+            .claims
+            .iter()
+            .flat_map(|claim| claim.body.statements().into_iter().map(|s| statement(&s.span)));
+        all.collect::<Vec<_>>()
+    };
+    let (mut formed, mut refused) = (0, 0);
+    for (number, file) in files.iter().enumerate() {
+        let text = std::fs::read_to_string(file).unwrap();
+        let folder = file.parent().unwrap();
+        // blanks in front of lines, tabulators and empty lines, where no text goes on
+        let spoilt = text.replace("\nlet ", "  \n\n\n\tlet ").replace("\n  others'", "\n\t  others'");
+        let form = format_text("a", &spoilt).unwrap();
+        assert_eq!(claims(&form, folder), claims(&text, folder), "{}", file.display());
+        let lines: Vec<&str> = text.lines().collect();
+        for place in (number % 7..lines.len()).step_by(23) {
+            let damaged = [&lines[..place], &lines[place + 1..]].concat().join("\n");
+            match format_text("a", &damaged) {
+                Ok(form) => {
+                    assert_eq!(signs(&form), signs(&damaged));
+                    assert_eq!(
+                        format_text("a", &form).unwrap(),
+                        form,
+                        "{} without line {place}",
+                        file.display()
+                    );
+                    formed += 1;
+                }
+                Err(_) => refused += 1,
+            }
+        }
+    }
+    assert!(formed > 50 && refused > 5, "{formed} {refused}");
+    // a file that cannot be read is left, and so are all others of the same run
+    let folder = folder();
+    let good = write(&folder, "a.proof", "system \"s\"\n\n\nstate x\n");
+    write(&folder, "b.proof", "sistem");
+    let output = palmistry(&["fmt", folder.path().to_str().unwrap(), "--json"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(std::fs::read_to_string(&good).unwrap(), "system \"s\"\n\n\nstate x\n");
+    std::fs::remove_file(folder.path().join("b.proof")).unwrap();
+    let check = palmistry(&["fmt", folder.path().to_str().unwrap(), "--check"]);
+    assert_eq!(check.status.code(), Some(1));
+    assert_eq!(palmistry(&["fmt", folder.path().to_str().unwrap()]).status.code(), Some(0));
+    assert_eq!(std::fs::read_to_string(&good).unwrap(), "system \"s\"\n\nstate x\n");
+}

@@ -6,10 +6,11 @@
 
 use super::boxes::{Chart, Side};
 use super::collector::{Collector, Ranges};
-use super::factor::{Desk, Factor};
+use super::factor::Factor;
 use super::part::{Demand, FactoredMinor, Part};
 use super::progress::{Limits, Searches};
 use super::slots::Slots;
+use super::workspace::Workspace;
 use crate::expression::{Graph, NodeId};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -150,13 +151,13 @@ fn distances(
 /// For each drawn state the value of each factor over the change that its slopes would make across the whole box.
 fn ratios(chart: &Chart, factors: &[Factor]) -> Vec<Vec<f64>> {
     let mut rng = ChaCha8Rng::seed_from_u64(0x6d69_6e6f_7273); // any fixed seed: the same file gives the same minors
-    let mut desk = Desk::default();
+    let mut workspace = Workspace::default();
     let draw = |_| {
         let side = |_| Side { index: rng.random_range(0..1 << DEPTH), depth: DEPTH };
         let sides: Vec<Side> = chart.coordinates().iter().map(side).collect();
-        chart.fill(&sides, &mut desk.slots);
-        desk.slots.radii.iter_mut().for_each(|radius| *radius *= f64::from(1u32 << DEPTH));
-        factors.iter().map(|factor| factor.guess(chart, &mut desk).ratio).collect()
+        let mut at = workspace.begin(chart, &sides);
+        at.widen(f64::from(1u32 << DEPTH));
+        factors.iter().map(|factor| factor.guess(&mut at).ratio).collect()
     };
     (0..SAMPLES).map(draw).collect()
 }

@@ -16,23 +16,25 @@
 mod answer;
 mod boxes;
 mod choice;
-mod cleared;
 mod collector;
+mod common_denominator;
 mod domain;
 mod explain;
 mod factor;
 mod journal;
 mod minors;
 mod part;
+mod part_volumes;
 mod problem;
 mod progress;
 mod proved;
 mod region;
+mod region_answer;
 mod rows;
 mod search;
 mod slots;
-mod tally;
 mod tape;
+mod workspace;
 
 pub use answer::{BoxStanding, OpenBox, PartAnswer, Patch, RegionAnswer, RegionMap, RegionMinor, Vanishing};
 pub use boxes::FreeCoordinate;

@@ -2,8 +2,8 @@
 
 use super::boxes::FreeCoordinate;
 use super::choice::choose;
-use super::cleared::{ClearedRow, clear};
 use super::collector::{Collector, Ranges};
+use super::common_denominator::{ClearedRow, clear_denominators};
 use super::domain::{Domain, domain};
 use super::minors::minors as minors_of;
 use super::part::{FactoredMinor, Part};
@@ -74,7 +74,7 @@ impl Problem {
         let mut cleared = Vec::new();
         let columns = block.columns.len();
         for (row, entries) in block.rows.iter().zip(block.entries.chunks(columns.max(1))) {
-            match clear(&mut collector.products, &system.graph, *row, entries, is_angle) {
+            match clear_denominators(&mut collector.products, &system.graph, *row, entries, is_angle) {
                 Ok((row, nodes)) => {
                     collector.note(&system.graph, &nodes);
                     cleared.push(row);

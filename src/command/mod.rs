@@ -10,6 +10,7 @@ mod check;
 mod claims;
 mod completions;
 mod eval;
+mod fmt;
 mod interrupt;
 mod new;
 mod observe;
@@ -66,6 +67,7 @@ enum Verb {
     Eval(eval::Eval),
     Observe(observe::Observe),
     New(new::New),
+    Fmt(fmt::Fmt),
     Completions(completions::Completions),
 }
 
@@ -139,6 +141,7 @@ impl Verb {
             Verb::Eval(verb) => verb.json,
             Verb::Observe(verb) => verb.json,
             Verb::New(verb) => verb.json,
+            Verb::Fmt(verb) => verb.json,
             Verb::Completions(_) => false,
         })
     }
@@ -159,6 +162,7 @@ impl Verb {
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::New(verb) => verb.run(),
+            Verb::Fmt(verb) => verb.run(),
             Verb::Completions(verb) => verb.run(),
         }
     }

@@ -46,7 +46,7 @@ pub use float::Floats;
 pub use fraction::{Factors, Fraction, Fractions};
 pub use instructions::Instructions;
 pub use interval::Interval;
-pub use lanes::{LaneTask, Lanes, MOST_LANES, Vectorised};
+pub use lanes::{ErrorBounds, LaneTask, Lanes, MOST_LANES, Vectorised};
 pub use laurent::{Laurent, Series};
 pub use rational::{Rationals, display_rational, parse_decimal, rational_from_f64, rational_to_f64};
 pub use real::RealNumber;

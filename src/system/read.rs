@@ -691,7 +691,7 @@ pub(super) fn with_plain_line_ends(text: &str) -> String {
 
 /// Refuses characters that make a text look other than it is read: marks of the direction of writing, behind which an
 /// editor shows a claim as a comment or a comment as a claim.
-fn refuse_reordering(text: &str) -> Result<(), Problem> {
+pub(super) fn refuse_reordering(text: &str) -> Result<(), Problem> {
     let reorders = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}');
     match text.char_indices().find(|(_, c)| reorders(*c)) {
         None => Ok(()),

@@ -138,6 +138,9 @@ pub(crate) enum End {
     Infinity,
 }
 
+/// The words that begin these entries; they are names too.
+pub(super) const WORDS: [&str; 5] = ["set", "pole", "map", "line", "reduction"];
+
 /// Whether one of these entries begins here, and not a name that is one of their words: a quotation mark or `of` follows.
 pub(super) fn begins(input: &mut Text<'_>) -> bool {
     let title = |word: &'static str| (keyword(word), winnow::token::literal("\"")).void();

@@ -1,7 +1,7 @@
 //! Lanes in the vector registers of x86-64.
 
 use super::portable::evaluate;
-use crate::number::lanes::{LaneTask, Lanes, MOST_LANES, Vectorised};
+use crate::number::lanes::{ErrorBounds, LaneTask, Lanes, MOST_LANES, Vectorised};
 use crate::number::{Function, sine};
 use pulp::x86::{V3, V4};
 use pulp::{NullaryFnOnce, cast};
@@ -261,6 +261,8 @@ impl<R: Registers> Neg for Two<R> {
         self.with(self.registers.neg(a), self.registers.neg(b))
     }
 }
+
+impl<R: Registers> ErrorBounds for Two<R> {}
 
 impl<R: Registers> Lanes for Two<R> {
     const COUNT: usize = 2 * R::WIDTH;

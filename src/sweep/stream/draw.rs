@@ -192,7 +192,7 @@ impl<'a, L: Lanes> Drawer<'a, L> {
             let mut bad = self.avoid.health(lane);
             for place in 0..self.avoided {
                 let value = self.avoid.output(place, lane);
-                bad = bad + value.lost() + value.abs().where_less(bound, one, self.zero);
+                bad = bad + value.zero_if_finite() + value.abs().where_less(bound, one, self.zero);
             }
             let mut marks = [0.0; MOST_LANES];
             bad.store(&mut marks);

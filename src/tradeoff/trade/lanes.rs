@@ -52,7 +52,7 @@ impl Vectorised for BoundedValues<'_> {
                 let health = machine.health(lane);
                 let (mut spoiled, mut unknown) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
                 health.value.store(&mut spoiled);
-                health.error().lost().store(&mut unknown);
+                health.error().zero_if_finite().store(&mut unknown);
                 for place in 0..outputs {
                     let result = machine.output(place, lane);
                     result.value.store(&mut values);
@@ -120,7 +120,7 @@ impl Vectorised for Jacobis<'_> {
                 let mut largest = zero;
                 for (j, entry) in row.iter_mut().enumerate() {
                     *entry = gathered(zero, blocks, i * columns + j, |x| *x);
-                    spoiled = spoiled + entry.lost();
+                    spoiled = spoiled + entry.zero_if_finite();
                     largest = largest.larger(entry.abs());
                 }
                 let factor = inverse(largest);
@@ -191,7 +191,7 @@ impl Vectorised for Eliminations<'_> {
                     let place = i * columns + j;
                     let value = gathered(zero, blocks, place, |x: &Bounded<f64>| x.value);
                     let units = gathered(zero, blocks, place, |x: &Bounded<f64>| x.units);
-                    spoiled = spoiled + value.lost();
+                    spoiled = spoiled + value.zero_if_finite();
                     of_row = of_row.larger(value.abs());
                     *of_column = of_column.larger(value.abs());
                     room.set(i, j, Bounded { value, units });
