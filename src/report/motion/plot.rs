@@ -1,6 +1,7 @@
 //! What observers made of an experiment, over time: as figure 4.4, and the errors beside the bound.
 
 use crate::experiment::Answer;
+use crate::report::axis::{axis, unit_of};
 use crate::report::motion::answers::{Observed, method_name};
 use crate::report::motion::curves::{Curve, Frame, Shown, draw};
 use std::collections::BTreeSet;
@@ -9,22 +10,9 @@ use std::sync::atomic::AtomicBool;
 /// Errors below this are drawn there.
 const LEAST: f64 = 1e-17;
 
-/// The unit in which the thesis's models have a state or reading; empty for a name that they do not have.
-pub(super) fn unit_of(name: &str) -> &'static str {
-    match name {
-        "r1" | "r2" | "s1" | "s2" | "rho" => "m",
-        "phi0" | "phi1" | "phi2" => "rad",
-        "omega0" | "omega1" | "omega2" => "rad/s",
-        "m" => "kg",
-        "I1" | "I2" => "kg m^2",
-        "g" => "m/s^2",
-        _ => "",
-    }
-}
-
-fn with_unit(name: &str) -> String {
-    let unit = unit_of(name);
-    if unit.is_empty() { name.to_owned() } else { format!("{name}, {unit}") }
+/// A name with the unit that its model declares for it.
+pub(super) fn with_unit(observed: &Observed<'_>, name: &str) -> String {
+    axis(name, unit_of(&observed.experiment.system, name).as_deref())
 }
 
 fn times(observed: &Observed<'_>) -> (f64, f64) {
@@ -102,7 +90,7 @@ pub(super) fn state(observed: &Observed<'_>, place: usize) -> String {
     }
     let frame = Frame {
         title: format!("{name} over time"),
-        vertical: with_unit(name),
+        vertical: with_unit(observed, name),
         times: times(observed),
         range,
         limits: &limits(observed),
@@ -152,7 +140,7 @@ pub(super) fn errors(observed: &Observed<'_>, place: usize) -> Option<String> {
     }
     let frame = Frame {
         title: format!("{name}: |recovered - true|"),
-        vertical: with_unit(name),
+        vertical: with_unit(observed, name),
         times: times(observed),
         range: decades(&curves, dots.iter().map(|dot| dot.2)),
         logarithmic: true,
@@ -204,7 +192,10 @@ pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
         let size = values.filter(|value| value.is_finite()).fold(0.0f64, f64::max).max(LEAST) * 1.08;
         let frame = Frame {
             title: format!("sensor error of {}: expected minus read", method_name(answer.method)),
-            vertical: names.first().map_or(String::new(), |name| unit_of(name).to_owned()),
+            vertical: names
+                .first()
+                .and_then(|name| unit_of(&observed.experiment.system, name))
+                .unwrap_or_default(),
             times: times(observed),
             range: (-size, size),
             limits: &limits,
@@ -228,7 +219,7 @@ pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
         let range = decades(&curves, sigma.iter().map(|sigma| sigma.log10()));
         let frame = Frame {
             title: format!("sensor error of {name}: rms in short stretches of time"),
-            vertical: with_unit(name),
+            vertical: with_unit(observed, name),
             times: times(observed),
             range,
             logarithmic: true,

@@ -2,8 +2,8 @@
 
 use crate::experiment::{Answer, error};
 use crate::observer::{Update, UpdateEnd};
+use crate::report::axis::unit_of;
 use crate::report::motion::answers::{Observed, method_name, standing_name};
-use crate::report::motion::plot::unit_of;
 use maud::{Markup, html};
 
 /// More updates than these are in the JSON only.
@@ -222,7 +222,7 @@ pub(super) fn noise_table(observed: &Observed<'_>) -> Markup {
         div.scroll { table {
             thead { tr {
                 th { "noise, m" } th { "converged" }
-                @for name in &names { th { (name) ", rms error" } th { "bound, " (unit_of(name)) } th { "ratio" } }
+                @for name in &names { th { (name) ", rms error" } th { "bound" @if let Some(unit) = unit_of(&observed.experiment.system, name) { ", " (unit) } } th { "ratio" } }
             } }
             tbody { @for level in observed.noise { tr {
                 td.number { (format!("{:.1e}", level.noise)) }
