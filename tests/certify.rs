@@ -1,19 +1,23 @@
 //! Full rank on whole regions: what is called proved is true, and what is true is mostly proved.
 
 mod common;
+#[path = "common/picture.rs"]
+mod picture;
 
 use common::{folder, json, palmistry, with_threads, without_times, write};
 use dashu::rational::RBig;
 use palmistry::System;
-use palmistry::certificate::{BoxStanding, Limits, Region, RegionAnswer, RegionRows};
+use palmistry::certificate::{BoxStanding, Limits, Progress, Region, RegionAnswer, RegionRows};
 use palmistry::expression::Symbol;
 use palmistry::expression::{Program, expand_angles};
 use palmistry::number::{Interval, Rationals, RealNumber};
 use palmistry::observability::{Branch, Codistribution, Coordinate, Length, Locus, rank};
 use palmistry::system::Assignment;
+use picture::Picture;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 const SAME_RATE: &str = "proofs/moll2002/same_rate.proof";
 const ONE_PALM_FIXED: &str = "proofs/moll2002/one_palm_fixed.proof";
@@ -454,37 +458,44 @@ fn pictures_are_written() {
     let folder = folder();
     let out = folder.path().join("out");
     certify(&[ONE_PALM_FIXED, "--boxes", "3000", "--map", "s1,phi2", "--out", out.to_str().unwrap()]);
-    for name in ["curve.svg", "map.svg"] {
-        let text = std::fs::read_to_string(out.join(name)).unwrap();
-        assert!(text.starts_with("<svg ") && text.trim_end().ends_with("</svg>"), "{name}");
-    }
-    let written: Value =
-        serde_json::from_str(&std::fs::read_to_string(out.join("certify.json")).unwrap()).unwrap();
+    let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
+    let written: Value = serde_json::from_str(&read("certify.json")).unwrap();
     assert!(fraction(&written) > 0.9);
+
+    // a line through as many points as there are entries, with powers of ten up to the 3000 boxes below it
+    let curve = Picture::read(&read("curve.svg"));
+    assert_eq!(curve.title, written["title"].as_str().unwrap());
+    let points = written["curve"].as_array().unwrap().len();
+    assert_eq!(curve.lines_of("#0072b2"), [points]);
+    for label in ["boxes", "part of the volume that is open", "1e0", "1e3"] {
+        assert!(curve.texts.contains(&label.to_owned()), "{label}: {:?}", curve.texts);
+    }
+    assert!(!curve.texts.contains(&"1e4".to_owned()));
+
+    // s1 from 1/2 to 3 below, phi2 from 4/5 to 12/5 beside it; a minor vanishes on a curve, which takes many boxes
+    let map = Picture::read(&read("map.svg"));
+    let expected = ["φ₂", "s₁", "1.0", "1.5", "2.0", "0.5", "1.0", "1.5", "2.0", "2.5", "3.0"];
+    assert_eq!(map.texts[1..], expected);
+    assert!(map.boxes_of("#d55e00") > 100, "{}", map.boxes_of("#d55e00"));
+    assert_eq!(map.boxes_of("#cde4f0"), 1);
 }
 
-/// A long run that is interrupted says so, keeps its state, and can be taken up.
-#[cfg(unix)]
+/// A search that is interrupted, here where half is proved, keeps what it had; another one takes it up there.
 #[test]
-fn an_interrupted_run_keeps_what_it_had() {
-    use std::process::{Command, Stdio};
-    let folder = folder();
-    let state = folder.path().join("search.state");
-    let child = Command::new(env!("CARGO_BIN_EXE_palmistry"))
-        .args(["certify", ONE_PALM_FIXED, "--budget", "1000", "--json", "--state"])
-        .arg(&state)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(std::time::Duration::from_secs(4));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    let found = json(&output);
-    assert_eq!(found["interrupted"], true);
-    assert!(fraction(&found) > 0.5);
-    let more = certify(&[ONE_PALM_FIXED, "--boxes", "1", "--state", state.to_str().unwrap()]);
-    assert_eq!(more["boxes"].as_u64(), found["boxes"].as_u64().map(|boxes| boxes + 1));
+fn an_interrupted_search_keeps_what_it_had() {
+    let read = || System::read(Path::new(ONE_PALM_FIXED)).unwrap();
+    let begun = || Region::new(&mut read(), ALL, &BTreeMap::new(), None).unwrap();
+    let mut region = begun();
+    let interrupt = AtomicBool::new(false);
+    let stop_at_half = |now: Progress| {
+        interrupt.fetch_or(now.proved > 0.5, Ordering::Relaxed);
+    };
+    region.run(Limits { seconds: None, boxes: None }, &interrupt, &stop_at_half);
+    assert!(interrupt.load(Ordering::Relaxed) && region.proved() > 0.5 && !region.is_finished());
+    let mut again = begun();
+    again.resume(&region.saved()).unwrap();
+    assert_eq!(again.proved_exactly(), region.proved_exactly());
+    assert_eq!(again.boxes(), region.boxes());
+    again.run(Limits { seconds: None, boxes: Some(1) }, &false.into(), &|_| ());
+    assert_eq!(again.boxes(), region.boxes() + 1);
 }

@@ -1,6 +1,8 @@
 //! Story: what does accuracy cost? Digits and verdicts of `palmistry trade` against what is known; no test asserts a time.
 
 mod common;
+#[path = "common/picture.rs"]
+mod picture;
 
 use common::{folder, json, palmistry, with_threads, without_times, write};
 use palmistry::System;
@@ -8,6 +10,8 @@ use palmistry::report::{trade_front_table, trade_plot};
 use palmistry::tradeoff::{
     Combination, CorrectDigits, Derivative, Number, RankMethod, Trade, TradeQuestion, trade,
 };
+use picture::Picture;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 fn measure(system: &System, samples: u64) -> Trade {
@@ -180,8 +184,9 @@ fn one_seed_gives_one_result_on_any_number_of_threads() {
     without_times(&mut one);
     without_times(&mut two);
     assert_eq!(one, two);
-    let picture = std::fs::read_to_string(folder.path().join("trade.svg")).unwrap();
-    assert!(picture.starts_with("<svg") && picture.contains("digits at the worst state"));
+    let picture = Picture::read(&std::fs::read_to_string(folder.path().join("trade.svg")).unwrap());
+    assert_eq!(picture.title, one["title"].as_str().unwrap());
+    assert!(picture.texts.iter().any(|text| text == "digits at the worst state"));
     let written: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(folder.path().join("trade.json")).unwrap()).unwrap();
     assert_eq!(written["samples"], 40);
@@ -206,7 +211,18 @@ fn the_front_is_one() {
     let table = trade_front_table(&found);
     assert_eq!(table.len(), found.combinations.iter().filter(|c| c.on_front).count());
     assert!(table.iter().any(|row| row[0] == "rational" && row[4] == "all"));
-    assert!(trade_plot(&found).starts_with("<svg"));
+    // everything that was timed is named below the picture, each thing once, with what its looks mean
+    let picture = Picture::read(&trade_plot(&found));
+    assert_eq!(picture.title, system.title);
+    let timed = || found.combinations.iter().filter(|c| c.seconds.is_finite());
+    let mut names: BTreeSet<&str> = timed().map(|c| c.number.name()).collect();
+    names.extend(timed().map(|c| c.derivative.name()));
+    names.extend(["hollow: some verdicts are not right", "with a rim: all verdicts are certain"]);
+    names.extend(["time a state, derivative and rank", "digits at the worst state"]);
+    assert!(names.len() > 12, "{names:?}");
+    for name in names {
+        assert_eq!(picture.texts.iter().filter(|text| *text == name).count(), 1, "{name}");
+    }
 }
 
 #[test]
