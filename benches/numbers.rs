@@ -8,7 +8,7 @@ use divan::{Bencher, black_box};
 use palmistry::System;
 use palmistry::expression::{Program, expand_angles};
 use palmistry::number::{
-    Arithmetic, DoubleDouble, Enclosures, Floats, Function, Interval, PrimeField, Rationals, Real,
+    Arithmetic, DoubleDouble, Enclosures, Floats, Function, Interval, PrimeField, Rationals, RealNumber,
 };
 use palmistry::observability::{Branch, Locus, OWN_ROWS, State};
 use palmistry::system::Value;
@@ -22,12 +22,12 @@ fn main() {
 const MANY: usize = 1024;
 
 /// A number that was computed, so that none of the short ways for round ones is taken; over intervals a little wide.
-fn operands<T: Real>(shift: f64) -> Vec<T> {
+fn operands<T: RealNumber>(shift: f64) -> Vec<T> {
     let three = T::from_f64(3.0);
     (0..MANY).map(|i| T::from_f64(1.5 + ((i as f64 * 0.754877666 + shift) % 1.0) * 4.5) / three).collect()
 }
 
-fn each<T: Real>(bencher: Bencher, operation: impl Fn(T, T) -> T) {
+fn each<T: RealNumber>(bencher: Bencher, operation: impl Fn(T, T) -> T) {
     let (a, b) = (operands::<T>(0.1), operands::<T>(0.7));
     let mut out = a.clone();
     bencher.counter(ItemsCount::new(MANY)).bench_local(|| {
@@ -39,22 +39,22 @@ fn each<T: Real>(bencher: Bencher, operation: impl Fn(T, T) -> T) {
 }
 
 #[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
-fn add<T: Real>(bencher: Bencher) {
+fn add<T: RealNumber>(bencher: Bencher) {
     each::<T>(bencher, |a, b| a + b);
 }
 
 #[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
-fn mul<T: Real>(bencher: Bencher) {
+fn mul<T: RealNumber>(bencher: Bencher) {
     each::<T>(bencher, |a, b| a * b);
 }
 
 #[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
-fn div<T: Real>(bencher: Bencher) {
+fn div<T: RealNumber>(bencher: Bencher) {
     each::<T>(bencher, |a, b| a / b);
 }
 
 #[divan::bench(types = [f32, f64, DoubleDouble, Interval], args = [Function::Sin, Function::Sqrt, Function::Exp, Function::Atan])]
-fn apply<T: Real>(bencher: Bencher, function: Function) {
+fn apply<T: RealNumber>(bencher: Bencher, function: Function) {
     each::<T>(bencher, |a, _| a.function(function).unwrap_or(a));
 }
 
@@ -64,9 +64,9 @@ fn rows() -> (Program, Vec<State>) {
     let mut system = System::read(&file).expect("the file is read");
     let Some(Value::Matrix(rows)) = system.definition(OWN_ROWS) else { panic!("the file has rows") };
     let entries = rows.entries.clone();
-    let angles = system.angles();
-    let roots = expand_angles(&mut system.graph, &entries, |symbol| angles.contains(&symbol));
-    let program = Program::new(&system.graph, &roots, |symbol| angles.contains(&symbol), false);
+    let is_angle = &system.angle_test();
+    let roots = expand_angles(&mut system.graph, &entries, is_angle);
+    let program = Program::new(&system.graph, &roots, is_angle, false);
     let locus =
         Locus::new(&mut system, &Branch::default(), &BTreeMap::new(), &entries).expect("a sample box");
     let states = (0..64).map(|index| locus.draw(1, index).expect("a state")).collect();
@@ -89,7 +89,7 @@ fn run<A: Arithmetic>(bencher: Bencher, arithmetic: A) {
 }
 
 #[divan::bench(types = [f32, f64, DoubleDouble, Interval])]
-fn rows_over_machine_numbers<T: Real>(bencher: Bencher) {
+fn rows_over_machine_numbers<T: RealNumber>(bencher: Bencher) {
     run(bencher, Floats::<T>::new());
 }
 

@@ -61,9 +61,9 @@ fn verdicts(stream: &Stream, states: u64) -> StreamReport {
 #[divan::bench(args = REGIMES, consts = [false, true], sample_count = 200)]
 fn matrix<const WIDE: bool>(bencher: Bencher, regime: &str) {
     let mut system = read(regime);
-    let angles = system.angles();
+    let is_angle = &system.angle_test();
     let rows = own_rows(&system);
-    let rows = expand_angles(&mut system.graph, &rows, |symbol| angles.contains(&symbol));
+    let rows = expand_angles(&mut system.graph, &rows, is_angle);
     let value = |symbol| {
         system.symbol_info(symbol).and_then(|info| info.default.clone().filter(|_| info.range.is_none()))
     };

@@ -151,8 +151,8 @@ fn the_expansion_is_the_determinant() {
     use palmistry::{System, system::Value};
     let mut system = System::read(std::path::Path::new(GENERAL)).unwrap();
     let Value::Scalar(determinant) = system.evaluate_text("det(A)").unwrap() else { panic!("not a number") };
-    let angles = system.angles();
-    let expansion = expand(&mut system.graph, determinant, |s| angles.contains(&s)).unwrap();
+    let is_angle = &system.angle_test();
+    let expansion = expand(&mut system.graph, determinant, is_angle).unwrap();
     assert_eq!(expansion.numerator.len(), 1481); // also counted with SymPy
     // the monomials that the thesis prints of its own expansion (those that the scan leaves legible), with the factor -18
     assert_eq!(expansion.front.to_string(), "-18");
@@ -219,9 +219,8 @@ fn the_expansion_is_the_determinant() {
     let order: Vec<usize> = (0..expansion.numerator.len()).collect();
     let within: Vec<usize> = (0..values.len()).collect();
     let sum = expansion.sum_terms(&exact, &values, &order, &within).unwrap();
-    let roots =
-        palmistry::expression::expand_angles(&mut system.graph, &[determinant], |s| angles.contains(&s));
-    let program = palmistry::expression::Program::new(&system.graph, &roots, |s| angles.contains(&s), false);
+    let roots = palmistry::expression::expand_angles(&mut system.graph, &[determinant], is_angle);
+    let program = palmistry::expression::Program::new(&system.graph, &roots, is_angle, false);
     let inputs = state.inputs(&program, &exact).unwrap();
     let direct = program.load(exact).unwrap().run(&inputs, &mut Vec::new()).unwrap();
     assert_eq!(sum, direct[0]);

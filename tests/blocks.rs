@@ -115,8 +115,8 @@ fn regime(name: &str) -> (System, Vec<NodeId>) {
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(name);
     let mut system = System::read(&file).unwrap();
     let Some(Value::Matrix(rows)) = system.definition("rows").cloned() else { panic!("no rows") };
-    let angles = system.angles();
-    let roots = expand_angles(&mut system.graph, &rows.entries, |symbol| angles.contains(&symbol));
+    let is_angle = &system.angle_test();
+    let roots = expand_angles(&mut system.graph, &rows.entries, is_angle);
     (system, roots)
 }
 
@@ -125,8 +125,7 @@ fn the_matrices_of_the_regimes_are_those_of_exact_arithmetic() {
     for name in ["general", "same_rate", "one_palm_fixed", "fixed_palms"] {
         let (system, roots) = regime(&format!("{name}.proof"));
         // sines and cosines are given here, any two numbers
-        let angles = system.angles();
-        let is_angle = |symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let block = BlockProgram::new(&system.graph, &roots, &[], is_angle, unknown);
         let scalar = Program::new(&system.graph, &roots, is_angle, false);
         let exact = Rationals::default();

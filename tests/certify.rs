@@ -5,10 +5,10 @@ mod common;
 use common::{folder, json, palmistry, with_threads, without_times, write};
 use dashu::rational::RBig;
 use palmistry::System;
-use palmistry::certificate::{Limits, Region, RegionAnswer, RegionRows, Standing};
+use palmistry::certificate::{BoxStanding, Limits, Region, RegionAnswer, RegionRows};
 use palmistry::expression::Symbol;
 use palmistry::expression::{Program, expand_angles};
-use palmistry::number::{Interval, Rationals, Real};
+use palmistry::number::{Interval, Rationals, RealNumber};
 use palmistry::observability::{Branch, Codistribution, Coordinate, Length, Locus, rank};
 use palmistry::system::Assignment;
 use serde_json::{Value, json};
@@ -89,7 +89,7 @@ fn proved_boxes_hold_no_counterexample_among_drawn_states() {
             let mut proved = 0;
             for condition in &conditions {
                 for (state, exact) in drawn(&mut system, rows, condition, 150) {
-                    if region.standing(|symbol| enclosed(&state, symbol)) == Some(Standing::Proved) {
+                    if region.standing(|symbol| enclosed(&state, symbol)) == Some(BoxStanding::Proved) {
                         assert_eq!(exact, system.states.len(), "{file} {condition} {state:?}");
                         proved += 1;
                     }
@@ -118,9 +118,9 @@ fn drawn(system: &mut System, rows: RegionRows, condition: &str, count: u64) -> 
         }
     };
     let locus = Locus::new(system, &branch, &BTreeMap::new(), &entries).unwrap();
-    let angles = system.angles();
-    let entries = expand_angles(&mut system.graph, &entries, |symbol| angles.contains(&symbol));
-    let program = Program::new(&system.graph, &entries, |symbol| angles.contains(&symbol), false);
+    let is_angle = &system.angle_test();
+    let entries = expand_angles(&mut system.graph, &entries, is_angle);
+    let program = Program::new(&system.graph, &entries, is_angle, false);
     let exact = Rationals::default();
     let loaded = program.load(exact).unwrap();
     let columns = system.states.len();
@@ -171,12 +171,13 @@ fn a_curve_on_which_the_rank_drops_is_left_out_everywhere() {
             Some(Interval::from_rational(value))
         };
         if let Some(standing) = region.standing(at) {
-            assert_ne!(standing, Standing::Proved, "x = {a}");
+            assert_ne!(standing, BoxStanding::Proved, "x = {a}");
             seen += 1;
         }
     }
     assert!(seen > 8000);
-    let vanishing: Vec<_> = answer.largest.iter().filter(|b| b.standing == Standing::MinorVanishes).collect();
+    let vanishing: Vec<_> =
+        answer.largest.iter().filter(|b| b.standing == BoxStanding::MinorVanishes).collect();
     assert!(!vanishing.is_empty());
     for open in vanishing {
         let exact = |value: f64| palmistry::number::rational_from_f64(value).unwrap();
@@ -268,7 +269,7 @@ fn poles_and_undefined_states_are_not_proved() {
     assert!(
         answer.parts.iter().flat_map(|part| &part.vanishing).any(|v| v.minor.is_none() && v.factor == "x")
     );
-    assert_ne!(region.standing(|_| Some(Interval::ZERO.hull(Interval::ONE))), Some(Standing::Proved));
+    assert_ne!(region.standing(|_| Some(Interval::ZERO.hull(Interval::ONE))), Some(BoxStanding::Proved));
     // sin(phi) = 0 in the middle of the box, at a half turn, where the tangent of the half angle is infinite
     let text = "state x, phi angle phi drift f x' = 0 phi' = 0 output phi, x/sin(phi)
                 sample x in [1, 2] phi in [2, 4]";
@@ -277,7 +278,7 @@ fn poles_and_undefined_states_are_not_proved() {
     assert!(answer.proved > 0.999 && answer.proved < 1.0, "{}", answer.proved);
     let half_turn =
         |symbol| Some(if turned.is_angle(symbol) { Interval::pi() } else { Interval::point(1.5) });
-    assert_ne!(region.standing(half_turn), Some(Standing::Proved));
+    assert_ne!(region.standing(half_turn), Some(BoxStanding::Proved));
     // half of the box has no logarithm
     let text = "state x drift f x' = 0 output log(x) + x sample x in [-1, 1]";
     let (_, answer) = searched(&mut system(text), ALL, 5000);
@@ -295,7 +296,7 @@ fn a_half_turn_is_seen() {
     assert!(answer.proved > 0.999 && answer.proved < 1.0, "{}", answer.proved);
     let half_turn =
         |symbol| Some(if system.is_angle(symbol) { Interval::pi() } else { Interval::point(1.5) });
-    assert_ne!(region.standing(half_turn), Some(Standing::Proved));
+    assert_ne!(region.standing(half_turn), Some(BoxStanding::Proved));
 }
 
 /// What sampled states keep away from counts for the whole and not for what is sampled.

@@ -3,9 +3,9 @@
 
 use dashu::rational::RBig;
 use palmistry::System;
-use palmistry::certificate::{Limits, Region, RegionAnswer, RegionRows, Standing};
+use palmistry::certificate::{BoxStanding, Limits, Region, RegionAnswer, RegionRows};
 use palmistry::expression::Symbol;
-use palmistry::number::{Interval, Real};
+use palmistry::number::{Interval, RealNumber};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -46,7 +46,7 @@ fn is_proved(system: &System, region: &Region, at: &[(&str, Interval)]) -> bool 
     };
     let standing = region.standing(value);
     assert!(standing.is_some(), "the state lies in the box: {at:?}");
-    standing == Some(Standing::Proved)
+    standing == Some(BoxStanding::Proved)
 }
 
 /// A pole or an edge that nothing of the simplified rows shows any more: a text, the rows, what is proved at most and at

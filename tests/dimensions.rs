@@ -130,6 +130,13 @@ fn every_mistake_is_marked_at_its_operator() {
         ("claim 1: T*x = c*v", "x ", "=", "length*temperature = mass*length/time^2"),
         ("claim 1: x # 1 + 2 = 3\n + # +\n v = 0", "# 1 + 2 = 3\n ", "+", "length + length/time"),
         ("claim 1: total = m*v^2/2 + k*x/2", "m*v^2/2 ", "+", "mass*length^2/time^2 + mass*length/time^2"),
+        ("claim 1: L(bracket(f, push), x) = x", ") ", "=", "1/mass"),
+        ("claim 1: bracket(f, push) = [x; v]", ") ", "=", "1/mass = length, in row 1, column 1"),
+        ("claim 1: d(total, x) + e0 = 0", ") ", "+", "mass*length/time^2 + mass*length^2/time^2"),
+        ("set \"s\": x = v", "x ", "=", "length = length/time"),
+        ("pole \"s\": x > 1, sin(x) = 0", "", "sin", "not length"),
+        ("line \"s\": x to v", "to ", "v", "'x' is length, and what stands for it is length/time"),
+        ("line \"s\": x to x = v", "x ", "=", "length = length/time"),
         ("claim 1: pi*x + pi = 0", "x ", "+", "length + number"),
     ] {
         let found = mistakes(text);
@@ -178,6 +185,10 @@ fn what_has_one_dimension_is_let_through() {
         "claim 1: x at {x = 2*x} = 2*x",
         "claim 1: cross([x; x; 0], [v; v; 0]) = [0; 0; 0]",
         "claim 1: x^0 + 1 = 2",
+        "claim 1: L(bracket(f, push), m*x) = L(f, push, m*x) - L(push, f, m*x)",
+        "claim 1: bracket(f, push, x) = -1/m",
+        "claim 1: d(total, x) + m*g = k*x + m*g",
+        "set \"s\": x = 2, v < 0 map \"m\": x in [0, 1], v in [0, 1] line \"l\": x to 0 line \"i\": x to infinity",
         "field h x' = x others' = 0 claim 1: L(h, h, v*x) = x*v",
     ] {
         let found = mistakes(text);

@@ -7,7 +7,7 @@ use dashu::rational::RBig;
 use num_dual::{Dual64, DualNum};
 use palmistry::expression::{Program, Symbol, expand_angles};
 use palmistry::number::{
-    Arithmetic, DoubleDouble, Enclosures, Floats, Interval, Rationals, Real, rational_from_f64,
+    Arithmetic, DoubleDouble, Enclosures, Floats, Interval, Rationals, RealNumber, rational_from_f64,
     rational_to_f64,
 };
 use palmistry::observability::{
@@ -49,7 +49,7 @@ fn words(fields: usize, length: usize) -> Vec<Vec<usize>> {
 /// and the width of the result bounds what any evaluation of these operations in such numbers may be off by. The graph's
 /// value has to lie in that interval; num-dual takes other steps to the same value, and may be off by some widths (its
 /// quotient rule squares the divisor, its products take two roundings more).
-fn differentials_agree<T: Real + DualNum>(bits: usize, exactly: fn(T) -> RBig) {
+fn differentials_agree<T: RealNumber + DualNum>(bits: usize, exactly: fn(T) -> RBig) {
     let intervals = Enclosures::new(bits);
     let unit = |x: &RBig| x.clone().abs() / RBig::from(IBig::ONE << (bits - 1));
     for name in REGIMES {
@@ -57,7 +57,7 @@ fn differentials_agree<T: Real + DualNum>(bits: usize, exactly: fn(T) -> RBig) {
         for index in 0..5 {
             let point: HashMap<Symbol, T> = point(&mut system, index)
                 .into_iter()
-                .map(|(symbol, x)| (symbol, <T as Real>::from_f64(x)))
+                .map(|(symbol, x)| (symbol, <T as RealNumber>::from_f64(x)))
                 .collect();
             let fields = system.fields.len();
             for word in (0..=2).flat_map(|length| words(fields, length)) {

@@ -4,7 +4,7 @@ use palmistry::System;
 use palmistry::expression::NodeId;
 use palmistry::number::Instructions;
 use palmistry::observability::{Locus, solve_conditions};
-use palmistry::sweep::{Certainty, Stream, StreamOptions, StreamReport, Verdict, Verdicts};
+use palmistry::sweep::{Certainty, StateVerdict, Stream, StreamOptions, StreamReport, Verdicts};
 use palmistry::system::Value;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -49,7 +49,7 @@ fn drawn(stream: &Stream, count: u64) -> Vec<Vec<f64>> {
 }
 
 /// What is said of states, in bits: verdicts, singular values, and factors of rows and columns, state by state.
-fn bits(found: &Verdicts) -> Vec<(Verdict, Vec<u64>)> {
+fn bits(found: &Verdicts) -> Vec<(StateVerdict, Vec<u64>)> {
     let numbers = [&found.singular_values, &found.row_factors, &found.column_factors];
     found
         .verdicts
@@ -92,7 +92,7 @@ fn states_get_in_any_order_and_company_the_bits_that_they_get_alone() {
                 bits(&found)
             };
             let alone: Vec<_> = (0..150).map(|state| decided(&stream, &[state]).remove(0)).collect();
-            let not_finite = alone.iter().filter(|(verdict, _)| *verdict == Verdict::NotFinite).count();
+            let not_finite = alone.iter().filter(|(verdict, _)| *verdict == StateVerdict::NotFinite).count();
             assert!(not_finite > 5 && not_finite < 60, "{name}: {not_finite}");
             for instructions in Instructions::ALL {
                 stream = stream.with(instructions);

@@ -48,6 +48,20 @@ fn the_radii_are_unseen_where_the_object_does_not_turn() {
     assert_eq!(unseen, ["r1", "r2"]);
 }
 
+/// Several conditions in one `--where` are what several of one condition are.
+#[test]
+fn several_conditions_stand_in_one_where() {
+    let ask = |conditions: &[&str]| {
+        let mut found = rank(&[&[SAME_RATE, "--samples", "40"], conditions].concat());
+        common::without_times(&mut found);
+        found
+    };
+    let apart = ask(&["--where", "g = 0", "--where", "r1 > 1", "--where", "r1 < r2"]);
+    assert_eq!(ask(&["--where", "g = 0, 1 < r1 < r2"]), apart);
+    assert_eq!(ask(&["--where", "g = 0,r1 > 1", "--where", "r1 < r2"]), apart);
+    assert_eq!(apart["rank_histogram"], json!({ "5": 40 }));
+}
+
 /// Palm 1 level: the thesis's own six rows lose one, the full codistribution does not (it has L_f L_f s2).
 #[test]
 fn two_questions_have_two_answers() {
@@ -109,8 +123,8 @@ fn digits_of_a_regime_are_those_of_scaling_without_end() {
     let mut system = System::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(SAME_RATE)).unwrap();
     let Some(Matrix(rows)) = system.definition("rows").cloned() else { panic!("no rows") };
     let kept = Reduction::new(&system.graph, &rows.entries, rows.columns);
-    let angles = system.angles();
-    let entries = expand_angles(&mut system.graph, &kept.entries, |symbol| angles.contains(&symbol));
+    let is_angle = &system.angle_test();
+    let entries = expand_angles(&mut system.graph, &kept.entries, is_angle);
     let program = Program::new(&system.graph, &entries, |_| false, false);
     let value =
         |symbol| found["worst_conditioned"]["state"][system.symbol_name(symbol)]["value"].as_f64().unwrap();

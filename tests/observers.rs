@@ -50,7 +50,7 @@ fn sought(guess: &[(&str, f64)]) -> Sought {
     }
 }
 
-fn window(method: Method) -> MovingWindow {
+fn window(method: WindowSearch) -> MovingWindow {
     MovingWindow { method, window: 50, steps: 20, blind: 1.0, when_blind: WhenBlind::Hold }
 }
 
@@ -61,7 +61,7 @@ fn sensitivities_are_those_of_the_closed_form() {
     let question =
         ModelQuestion { followed: ["x", "v", "w"].map(str::to_owned).to_vec(), ..Default::default() };
     let model = Model::new(&system(OSCILLATOR), &question, &signals).unwrap();
-    let flow = Flow { model: &model, signals: &signals, tolerance: 1e-12 };
+    let flow = ModelFlow { model: &model, signals: &signals, tolerance: 1e-12 };
     let samples = flow.follow(&truth, &[0, 1, 2], signals.times(), Order::Second).unwrap();
     for sample in samples {
         let (x, slopes, bends) = oscillator(sample.time, truth);
@@ -89,7 +89,7 @@ fn an_input_field_drives_by_its_signal() {
         inputs: vec![("g".to_owned(), "u".to_owned())],
     };
     let model = Model::new(&system(OSCILLATOR), &question, &signals).unwrap();
-    let flow = Flow { model: &model, signals: &signals, tolerance: 1e-12 };
+    let flow = ModelFlow { model: &model, signals: &signals, tolerance: 1e-12 };
     for sample in flow.follow(&[-1.0, 0.0], &[], signals.times(), Order::Value).unwrap() {
         assert!((sample.outputs[0] + (2.0 * sample.time).cos()).abs() < 1e-10, "at {}", sample.time);
     }
@@ -99,14 +99,14 @@ fn an_input_field_drives_by_its_signal() {
 fn both_methods_by_windows_find_speed_and_frequency() {
     let truth = [0.7, -1.1, 2.3];
     let signals = readings(truth, 151);
-    for method in [Method::Newton, Method::TrustRegion] {
+    for method in [WindowSearch::Newton, WindowSearch::TrustRegion] {
         let task =
             Task::new(&system(OSCILLATOR), &sought(&[("v", -1.21), ("w", 2.53)]), &signals, &NEVER).unwrap();
         let track = window(method).observe(&task);
         assert_eq!(track.updates.len(), 3);
         assert_eq!(track.moments.len(), 151);
         for update in &track.updates {
-            assert_eq!(update.standing, Standing::Converged, "{method:?}");
+            assert_eq!(update.standing, UpdateEnd::Converged, "{method:?}");
             let (s, c) = (truth[2] * update.from).sin_cos();
             let v = -truth[0] * truth[2] * s + truth[1] * c;
             assert!((update.estimate[0] - v).abs() < 1e-9, "{method:?}: {:?} and {v}", update.estimate);
@@ -124,7 +124,7 @@ fn newton_converges_quadratically() {
     let task =
         Task::new(&system(OSCILLATOR), &sought(&[("v", -1.21), ("w", 2.53)]), &signals, &NEVER).unwrap();
     let error = |steps: u64| {
-        let track = MovingWindow { steps, ..window(Method::Newton) }.observe(&task);
+        let track = MovingWindow { steps, ..window(WindowSearch::Newton) }.observe(&task);
         (track.updates[0].estimate[1] - truth[2]).abs()
     };
     let errors: Vec<f64> = (1..=6).map(error).collect();
@@ -191,8 +191,8 @@ fn what_cannot_be_told_apart_is_said_to_be_unseen() {
     let signals = readings([0.7, -1.1, 2.0], 60);
     let task =
         Task::new(&system(text), &sought(&[("v", -1.1), ("a", 1.0), ("b", 3.0)]), &signals, &NEVER).unwrap();
-    let track = window(Method::Newton).observe(&task);
-    let Standing::Blind { weakest } = &track.updates[0].standing else { panic!("{:?}", track.updates[0]) };
+    let track = window(WindowSearch::Newton).observe(&task);
+    let UpdateEnd::Blind { weakest } = &track.updates[0].standing else { panic!("{:?}", track.updates[0]) };
     // the two differ against each other, in units of their sizes 1 and 3
     assert!((weakest[0]).abs() < 1e-6 && (weakest[1] + 3.0 * weakest[2]).abs() < 1e-6, "{weakest:?}");
     assert_eq!(track.updates[0].estimate, [-1.1, 1.0, 3.0]);

@@ -118,7 +118,12 @@ fn a_folder_is_taken_through_everything() {
     assert_eq!((printed.printed.as_str(), printed.carried, printed.digits_that_agree), ("3.01", 3, 2));
     assert!(!printed.study.as_ref().unwrap().contains(printed.error));
     assert!(pendulum.derivatives.is_some() && pendulum.trade.is_some() && pendulum.certificate.is_some());
-    assert!(found.files[1].trade.is_none() && found.files[1].stress.is_some());
+    // the other file names nothing to be looked at
+    assert!(pendulum.stress.is_some());
+    let cart = &found.files[1];
+    assert!(
+        cart.trade.is_none() && cart.stress.is_none() && cart.certificate.is_none() && cart.ranks.len() == 1
+    );
 }
 
 /// A reduction that is none: the cart moves, and then the angle does not go as that of a pendulum.
@@ -178,7 +183,7 @@ fn mistakes_are_marked_where_they_are() {
         ("set \"a\" x = 0", "':' behind the name", "x"),
         ("set \"a\": z = 0", "unknown name 'z'", "z"),
         ("set \"a\": x = 0 within 1", "met exactly", "1"),
-        ("set \"a\": [x] = 0", "", "[x]"),
+        ("set \"a\": [x, y] = 0", "", "[x, y]"),
         ("pole \"a\": rank = 1", "", "rank"),
         ("map \"m\": x in [0, 1]", "two coordinates", "x"),
         ("map \"m\": x in [0, 1], y in [0, 1], k in [0, 1]", "two coordinates", "x"),
@@ -301,4 +306,111 @@ fn papers_come_with_the_program() {
     };
     assert!(statements(&packed).len() > 70);
     assert_eq!(statements(&packed), statements(&on_disk));
+}
+
+/// A new paper proves and is verified, and nothing that is there is lost to it.
+#[test]
+fn a_new_paper_proves() {
+    let folder = folder();
+    let place = folder.path().join("a/b");
+    let name = place.to_str().unwrap();
+    let made = palmistry(&["new", name, "--json"]);
+    assert_eq!((made.status.code(), json(&made)["files"].as_array().unwrap().len()), (Some(0), 2));
+    for file in ["paper.toml", "pendulum.proof"] {
+        let text = std::fs::read_to_string(place.join(file)).unwrap();
+        // a comment on each line that is not blank, or on the one above
+        let lines: Vec<&str> = text.lines().collect();
+        let commented = lines.iter().filter(|line| line.contains('#') || line.contains('"')).count();
+        assert!(commented > lines.iter().filter(|line| !line.trim().is_empty()).count() / 2, "{file}");
+    }
+    let found =
+        json(&palmistry(&["verify", name, "--json", "--out", folder.path().join("out").to_str().unwrap()]));
+    assert_eq!((&found["ok"], &found["paper"]["title"]), (&true.into(), &"A paper of my own".into()));
+    assert_eq!(found["files"][0]["left_out"].as_array().unwrap().len(), 0);
+    let page = std::fs::read_to_string(folder.path().join("out/index.html")).unwrap();
+    assert!(page.contains("A pendulum whose angle is seen") && page.contains("no length"));
+    // what is there stays as it is, and nothing is left beside it
+    write(&folder, "a/b/mine.proof", "system \"mine\"");
+    for taken in
+        [name, place.join("paper.toml").to_str().unwrap(), place.join("paper.toml/x").to_str().unwrap()]
+    {
+        let output = palmistry(&["new", taken, "--json"]);
+        assert_eq!(output.status.code(), Some(2), "{taken}");
+    }
+    assert_eq!(std::fs::read_dir(&place).unwrap().count(), 3);
+    assert_eq!(std::fs::read_dir(folder.path().join("a")).unwrap().count(), 1);
+    // an empty folder is taken
+    let empty = folder.path().join("empty");
+    std::fs::create_dir(&empty).unwrap();
+    assert_eq!(palmistry(&["new", empty.to_str().unwrap()]).status.code(), Some(0));
+    assert!(empty.join("paper.toml").is_file());
+}
+
+/// Shipped files are in normal form; and whatever is cut out of one, its form is the same signs, read as before, and its own form.
+#[test]
+fn the_normal_form_changes_no_sign() {
+    use palmistry::system::format_text;
+    let mut files = Vec::new();
+    for folder in std::fs::read_dir("proofs").unwrap() {
+        for file in std::fs::read_dir(folder.unwrap().path()).unwrap() {
+            let path = file.unwrap().path();
+            if path.extension().is_some_and(|e| e == "proof") {
+                files.push(path);
+            }
+        }
+    }
+    assert!(files.len() > 30);
+    let check = palmistry(&["fmt", "proofs", "--check", "--json"]);
+    assert_eq!((check.status.code(), &json(&check)["changed"]), (Some(0), &serde_json::json!([])));
+    let signs = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
+    let claims = |text: &str, folder: &Path| {
+        let system = System::parse("", text, folder).unwrap();
+        let statement = |span: &std::ops::Range<usize>| {
+            system.source[span.clone()].split_whitespace().collect::<String>()
+        };
+        let all = system
+            .claims
+            .iter()
+            .flat_map(|claim| claim.body.statements().into_iter().map(|s| statement(&s.span)));
+        all.collect::<Vec<_>>()
+    };
+    let (mut formed, mut refused) = (0, 0);
+    for (number, file) in files.iter().enumerate() {
+        let text = std::fs::read_to_string(file).unwrap();
+        let folder = file.parent().unwrap();
+        // blanks in front of lines, tabulators and empty lines, where no text goes on
+        let spoilt = text.replace("\nlet ", "  \n\n\n\tlet ").replace("\n  others'", "\n\t  others'");
+        let form = format_text("a", &spoilt).unwrap();
+        assert_eq!(claims(&form, folder), claims(&text, folder), "{}", file.display());
+        let lines: Vec<&str> = text.lines().collect();
+        for place in (number % 7..lines.len()).step_by(23) {
+            let damaged = [&lines[..place], &lines[place + 1..]].concat().join("\n");
+            match format_text("a", &damaged) {
+                Ok(form) => {
+                    assert_eq!(signs(&form), signs(&damaged));
+                    assert_eq!(
+                        format_text("a", &form).unwrap(),
+                        form,
+                        "{} without line {place}",
+                        file.display()
+                    );
+                    formed += 1;
+                }
+                Err(_) => refused += 1,
+            }
+        }
+    }
+    assert!(formed > 50 && refused > 5, "{formed} {refused}");
+    // a file that cannot be read is left, and so are all others of the same run
+    let folder = folder();
+    let good = write(&folder, "a.proof", "system \"s\"\n\n\nstate x\n");
+    write(&folder, "b.proof", "sistem");
+    let output = palmistry(&["fmt", folder.path().to_str().unwrap(), "--json"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(std::fs::read_to_string(&good).unwrap(), "system \"s\"\n\n\nstate x\n");
+    std::fs::remove_file(folder.path().join("b.proof")).unwrap();
+    let check = palmistry(&["fmt", folder.path().to_str().unwrap(), "--check"]);
+    assert_eq!(check.status.code(), Some(1));
+    assert_eq!(palmistry(&["fmt", folder.path().to_str().unwrap()]).status.code(), Some(0));
+    assert_eq!(std::fs::read_to_string(&good).unwrap(), "system \"s\"\n\nstate x\n");
 }

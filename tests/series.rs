@@ -30,8 +30,7 @@ fn forward(graph: &mut Graph, root: NodeId, symbols: &[Symbol]) -> Vec<NodeId> {
 
 fn assert_identical(system: &mut System, left: &[NodeId], right: &[NodeId], what: &str) {
     let differences: Vec<NodeId> = left.iter().zip(right).map(|(a, b)| system.graph.sub(*a, *b)).collect();
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let differences = expand_angles(&mut system.graph, &differences, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let found = identically_zero(&system.graph, &differences, is_angle, &mut rng);
@@ -171,8 +170,7 @@ fn order_eight_is_the_same_rational_number() {
     roots.extend(gradient(&mut system.graph, series, &states));
     roots.push(derived);
     roots.extend(forward(&mut system.graph, derived, &states));
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let mut extended = roots;
     extended.extend(system.fields[g1].components.iter().map(|(_, node)| *node));
     let extended = expand_angles(&mut system.graph, &extended, is_angle);

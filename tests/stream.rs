@@ -7,7 +7,7 @@ use palmistry::number::{Floats, Instructions, PrimeField, Rationals, rational_to
 use palmistry::observability::{
     Coordinate, Locus, Reduction, float_inputs, rank, singular_values, solve_conditions,
 };
-use palmistry::sweep::{Certainty, StatesError, Stream, StreamOptions, StreamReport, Verdict, Verdicts};
+use palmistry::sweep::{Certainty, StateVerdict, StatesError, Stream, StreamOptions, StreamReport, Verdicts};
 use palmistry::system::Value;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -78,8 +78,7 @@ fn certified_states_have_full_rank_modulo_a_prime_and_exactly() {
         let mut system = regime(name);
         let stream = stream(&mut system);
         let (_, left) = run(&stream, 300, Certainty::Certified);
-        let angles = system.angles();
-        let is_angle = |symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let rows = rows(&system);
         let rows = expand_angles(&mut system.graph, &rows, is_angle);
         let program = Program::new(&system.graph, &rows, is_angle, false);
@@ -168,18 +167,18 @@ fn states_that_are_handed_over_get_the_verdicts_of_those_that_are_drawn() {
         stream.verdicts(&slices, Certainty::Computed, &mut plain).unwrap();
         let count =
             |found: &Verdicts, verdict| found.verdicts.iter().filter(|v| **v == verdict).count() as u64;
-        assert_eq!(count(&proved, Verdict::Full(Certainty::Certified)), report.certified, "{name}");
+        assert_eq!(count(&proved, StateVerdict::Full(Certainty::Certified)), report.certified, "{name}");
         assert_eq!(
-            count(&plain, Verdict::Full(Certainty::Certified)),
+            count(&plain, StateVerdict::Full(Certainty::Certified)),
             0,
             "{name}: plain doubles prove nothing"
         );
-        assert!(count(&plain, Verdict::Full(Certainty::Computed)) >= 1000, "{name}");
+        assert!(count(&plain, StateVerdict::Full(Certainty::Computed)) >= 1000, "{name}");
 
-        let angles = system.angles();
+        let is_angle = &system.angle_test();
         let rows = rows(&system);
         let kept = Reduction::new(&system.graph, &rows, system.states.len());
-        let entries = expand_angles(&mut system.graph, &kept.entries, |symbol| angles.contains(&symbol));
+        let entries = expand_angles(&mut system.graph, &kept.entries, is_angle);
         let program = Program::new(&system.graph, &entries, |_| false, false);
         let symbols: Vec<_> = stream.coordinates().collect();
         let (width, loaded) = (kept.columns.len(), program.load(Floats).unwrap());
@@ -222,11 +221,11 @@ fn states_that_cannot_be_looked_at_are_refused_or_named() {
     let states: Vec<&[f64]> = names.iter().map(|name| if *name == "x" { &x[..] } else { &y[..] }).collect();
     let mut found = Verdicts::default();
     stream.verdicts(&states, Certainty::Certified, &mut found).unwrap();
-    let proved = Verdict::Full(Certainty::Certified);
-    assert_eq!(found.verdicts, [proved, Verdict::Open(1), Verdict::NotFinite, proved]);
+    let proved = StateVerdict::Full(Certainty::Certified);
+    assert_eq!(found.verdicts, [proved, StateVerdict::Open(1), StateVerdict::NotFinite, proved]);
     stream.verdicts(&states, Certainty::Computed, &mut found).unwrap();
-    let computed = Verdict::Full(Certainty::Computed);
-    assert_eq!(found.verdicts, [computed, Verdict::Open(1), Verdict::NotFinite, computed]);
+    let computed = StateVerdict::Full(Certainty::Computed);
+    assert_eq!(found.verdicts, [computed, StateVerdict::Open(1), StateVerdict::NotFinite, computed]);
 
     let wanted = Certainty::Computed;
     assert_eq!(

@@ -6,8 +6,8 @@ use common::{folder, json, palmistry, with_threads, write};
 use palmistry::System;
 use palmistry::paper::Paper;
 use palmistry::report::stress_pictures;
-use palmistry::tradeoff::Rows;
-use palmistry::tradeoff::stress::{End, Line, Mark, Stress, StressOptions, Study, Way};
+use palmistry::tradeoff::LandscapeRows;
+use palmistry::tradeoff::stress::{Line, LineLimit, Mark, Stress, StressOptions, StressStudy, Way};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -42,7 +42,7 @@ sample
 let rows = [1/(x - y), x^4; 1, 2]
 "#;
 
-fn study(text: &str, interrupt: bool) -> Study {
+fn study(text: &str, interrupt: bool) -> StressStudy {
     let mut system = System::parse("toy.proof", text, Path::new("")).unwrap();
     let options = StressOptions {
         seed: 3,
@@ -53,10 +53,10 @@ fn study(text: &str, interrupt: bool) -> Study {
         interrupt: &AtomicBool::new(interrupt),
         progress: &|| (),
     };
-    Stress::of_file(&mut system, Rows::Own, &options).unwrap().run(&options)
+    Stress::of_file(&mut system, LandscapeRows::Own, &options).unwrap().run(&options)
 }
 
-fn line<'a>(study: &'a Study, title: &str) -> &'a Line {
+fn line<'a>(study: &'a StressStudy, title: &str) -> &'a Line {
     study.lines.iter().find(|line| line.title.contains(title)).unwrap_or_else(|| panic!("{:?}", study.lines))
 }
 
@@ -71,7 +71,7 @@ fn the_distance_of_the_first_wrong_rank_is_known() {
     let study = study(EQUAL_ROWS, false);
     let line = line(&study, "x to zero");
     assert_eq!((line.ranks.clone(), line.certified), (BTreeSet::from([2]), true));
-    assert_eq!(line.end, End::Ranks { ranks: BTreeSet::from([1]), certified: true });
+    assert_eq!(line.end, LineLimit::Ranks { ranks: BTreeSet::from([1]), certified: true });
     // a comparison of two numbers that are equal but for rounding may go either way
     let near = |found: Option<f64>, power: i32| {
         let expected = 2f64.powi(power);
@@ -92,7 +92,7 @@ fn the_distance_of_the_first_wrong_rank_is_known() {
 fn a_division_by_zero_is_named() {
     let study = study(DIVISOR, false);
     let line = line(&study, "divisor x - y");
-    assert!(matches!(&line.end, End::Pole(why) if why.contains("x - y = 0")), "{:?}", line.end);
+    assert!(matches!(&line.end, LineLimit::Pole(why) if why.contains("x - y = 0")), "{:?}", line.end);
     let single = line.ways[Way::Single.place()].refused.clone().unwrap();
     assert_eq!(single.said, "division by zero: x - y = 0");
     assert!((2f64.powi(-25)..=2f64.powi(-22)).contains(&single.distance), "{single:?}");
@@ -200,6 +200,107 @@ fn what_holds_for_the_thesis() {
     assert!(singular >= 4, "{singular} sets of lower rank");
 }
 
+/// The distance to a body on a spring, with a length under a root, in a file that no paper has.
+const SPRING: &str = r#"
+system "A spring"
+state x : length, v : velocity, s : length^(1/2)
+param m : mass, k : stiffness, q : charge
+drift f
+  x' = v
+  v' = -k*x/m
+  s' = 0
+output k*x/m, s^2
+sample
+  x in [0.5, 1]
+  v in [0.5, 1]
+  s in [0.5, 1]
+  m in [1, 2]
+  k in [1, 2]
+  avoid x
+"#;
+
+/// Changes of units are those of the declared dimensions. By hand: in picometres and kilograms a length is 10^12 times as
+/// many, its root 10^6 times; so that the root is rational a file with roots of a length takes the square of that. The charge is
+/// in no row, and no rank hangs on it.
+#[test]
+fn changes_of_units_come_from_the_file() {
+    use palmistry::tradeoff::stress::{Rescaling, rows_of, unit_quantities, units};
+    let parse = |text: &str| System::parse("spring.proof", text, Path::new("")).unwrap();
+    let changes = |text: &str| {
+        let mut system = parse(text);
+        let (_, rows) = rows_of(&mut system, LandscapeRows::Full).unwrap();
+        let found = units(&system, &rows)?;
+        let quantities = unit_quantities(&system, &rows);
+        let named = |factors: &Rescaling| match factors {
+            Rescaling::Symbols(list) => list
+                .iter()
+                .map(|(symbol, factor)| (system.symbol_name(*symbol).to_owned(), factor.to_string()))
+                .collect::<Vec<_>>(),
+            Rescaling::Column { .. } => panic!("no column"),
+        };
+        let found: Vec<_> = found.iter().map(|(name, factors)| (name.clone(), named(factors))).collect();
+        let quantities: Vec<_> = quantities
+            .iter()
+            .map(|one| {
+                let powers =
+                    one.powers.iter().map(|(symbol, power)| (system.symbol_name(*symbol).to_owned(), *power));
+                (one.name.clone(), powers.collect::<Vec<_>>())
+            })
+            .collect();
+        Some((found, quantities))
+    };
+    let owned = |list: &[(&str, &str)]| {
+        list.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned())).collect::<Vec<_>>()
+    };
+    let (found, quantities) = changes(SPRING).unwrap();
+    let million = "1000000";
+    let microseconds = found.iter().find(|(name, _)| name.contains("microsecond")).unwrap();
+    assert_eq!(microseconds.0, "metre, kilogram, microsecond");
+    assert_eq!(microseconds.1, owned(&[("v", "1/1000000"), ("k", "1/1000000000000")]));
+    let small = found.iter().find(|(name, _)| name.contains("milligram")).unwrap();
+    assert_eq!(small.0, "10^(-12) of the unit of length, milligram, second");
+    assert_eq!(
+        small.1,
+        owned(&[
+            ("x", "1000000000000"),
+            ("v", "1000000000000"),
+            ("s", million),
+            ("m", million),
+            ("k", million)
+        ])
+    );
+    assert!(found.iter().all(|(name, _)| !name.contains("ampere")), "{found:?}");
+    let powers = |name: &str| {
+        let found = quantities.iter().find(|(known, _)| known == name).unwrap();
+        found.1.iter().map(|(symbol, power)| (symbol.as_str(), *power)).collect::<Vec<_>>()
+    };
+    assert_eq!(powers("the unit of mass"), [("m", 1), ("k", 1)]);
+    assert_eq!(powers("the unit of length"), [("x", 2), ("v", 2), ("s", 1)]);
+    assert_eq!(powers("the unit of time"), [("v", -1), ("k", -2)]);
+    assert_eq!(quantities.len(), 3);
+    // what the file does not tell is not made up: no dimension, one that is unknown, a number that stands for a length
+    for text in [
+        SPRING
+            .replace(" : length, v : velocity, s : length^(1/2)", ", v, s")
+            .replace(" : mass, k : stiffness, q : charge", ", k"),
+        SPRING.replace("m : mass, k : stiffness, q : charge", "m, k, q"),
+        SPRING.replace("output k*x/m", "let a : length = 2 output k*x/m*(x + a)"),
+        SPRING.replace("output k*x/m", "let a = (x + s^2) at {x = 2} output k*x/m"),
+    ] {
+        assert!(changes(&text).is_none(), "{text}");
+    }
+    // and a study of any such file looks at its states in these units
+    let study = study(SPRING, false);
+    let names: Vec<&str> = study.units.iter().map(|row| row.name.as_str()).collect();
+    assert_eq!(names[0], "the file's own");
+    assert_eq!(names[1..], found.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>());
+    for row in &study.units {
+        let ladder = &row.ways[Way::Ladder.place()];
+        assert_eq!((row.states > 0, ladder.wrong, ladder.changed), (true, 0, 0), "{}", row.name);
+    }
+    assert!(study.scalings.iter().any(|scaling| scaling.quantity == "the unit of time"));
+}
+
 #[test]
 fn threads_make_no_difference() {
     let arguments =
@@ -259,7 +360,7 @@ fn every_named_set_has_its_lines() {
         progress: &|| (),
     };
     for system in &mut systems {
-        let study = Stress::of_file(system, Rows::Own, &options).unwrap().run(&options);
+        let study = Stress::of_file(system, LandscapeRows::Own, &options).unwrap().run(&options);
         for set in &system.sets {
             // two ways to write one set are one line
             let title = |line: &Line| line.title.starts_with(&set.name);
@@ -276,7 +377,7 @@ fn every_named_set_has_its_lines() {
 #[test]
 fn saying_full_does_not_win() {
     let found = study(EQUAL_ROWS, false);
-    let line = found.lines.iter().find(|line| matches!(&line.end, End::Ranks { .. })).unwrap();
+    let line = found.lines.iter().find(|line| matches!(&line.end, LineLimit::Ranks { .. })).unwrap();
     let (full, ladder) = (&line.ways[Way::AlwaysFull.place()], &line.ways[Way::Ladder.place()]);
     assert_eq!((&full.wrong, full.on_the_set.right), (&None, 0));
     assert!(full.on_the_set.wrong >= 10);

@@ -5,7 +5,9 @@ mod common;
 use common::{folder, json, palmistry, with_threads, without_times, write};
 use palmistry::System;
 use palmistry::report::{trade_front_table, trade_plot};
-use palmistry::tradeoff::{Combination, Derivative, Digits, Number, RankMethod, Trade, TradeQuestion, trade};
+use palmistry::tradeoff::{
+    Combination, CorrectDigits, Derivative, Number, RankMethod, Trade, TradeQuestion, trade,
+};
 use std::path::Path;
 
 fn measure(system: &System, samples: u64) -> Trade {
@@ -22,7 +24,7 @@ fn digits(found: &Trade, number: Number, derivative: Derivative) -> (f64, f64) {
     let result = found.derivatives.iter().find(|d| (d.number, d.derivative) == (number, derivative)).unwrap();
     assert_eq!(result.failed, 0, "{result:?}");
     match result.digits {
-        Digits::Measured { median, worst } => (median, worst),
+        CorrectDigits::Measured { median, worst } => (median, worst),
         other => panic!("{other:?}"),
     }
 }
@@ -73,8 +75,8 @@ fn digits_are_what_the_numbers_have() {
     }
     for result in &found.derivatives {
         match result.number {
-            Number::Rational => assert_eq!(result.digits, Digits::Exact),
-            Number::Residue => assert_eq!((result.digits, result.failed), (Digits::Modular, 0)),
+            Number::Rational => assert_eq!(result.digits, CorrectDigits::Exact),
+            Number::Residue => assert_eq!((result.digits, result.failed), (CorrectDigits::Modular, 0)),
             _ => {}
         }
     }

@@ -8,13 +8,14 @@ use palmistry::observability::{
     Branch, Codistribution, Coordinate, Defined, Length, Locus, State, customary_singular_values,
     parse_condition, solve_conditions,
 };
-use palmistry::sweep::{Certainty, Judge, Judged, StateReport};
+use palmistry::sweep::{Certainty, Judge, StateJudgement, StateReport};
 use palmistry::system::Value;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The powers of length, mass and time in the dimension of a symbol of the planar files.
+/// The powers of length, mass and time in the dimension of a symbol of the planar files: by hand from section 4.2, and so a
+/// witness for what the files declare.
 fn dimension(name: &str) -> [i32; 3] {
     match name {
         "r1" | "r2" | "s1" | "s2" | "rho" => [1, 0, 0],
@@ -67,9 +68,8 @@ fn case(file: &str, conditions: &[&str], count: u64) -> Vec<Case> {
             let Some(Value::Matrix(own)) = system.definition("rows").cloned() else { panic!("no rows") };
             let mentioned: Vec<_> = full.iter().chain(&own.entries).copied().collect();
             let locus = Locus::new(&mut system, &branch, &BTreeMap::new(), &mentioned).unwrap();
-            let angles = system.angles();
-            let rows = [full, own.entries]
-                .map(|rows| expand_angles(&mut system.graph, &rows, |symbol| angles.contains(&symbol)));
+            let is_angle = &system.angle_test();
+            let rows = [full, own.entries].map(|rows| expand_angles(&mut system.graph, &rows, is_angle));
             let states = (0..count).map(|index| locus.draw(5, index).unwrap()).collect();
             Case { system: system.clone(), rows: rows.to_vec(), states }
         })
@@ -99,18 +99,18 @@ fn decide(
     state: &State,
     wanted: Certainty,
 ) -> StateReport {
-    let angles = case.system.angles();
+    let is_angle = &case.system.angle_test();
     let judge = Judge::new(
         &case.system.graph,
         Defined::default(),
         (rows, rows),
         case.system.states.len(),
-        |symbol| angles.contains(&symbol),
+        is_angle,
         (PrimeField::random(&mut rand_chacha_rng()), wanted),
     );
     match judge.decide(state) {
-        Judged::Report(report) => report,
-        Judged::Pole(pole) => panic!("{pole}"),
+        StateJudgement::Report(report) => report,
+        StateJudgement::Pole(pole) => panic!("{pole}"),
     }
 }
 
@@ -123,6 +123,27 @@ fn rand_chacha_rng() -> impl rand::Rng {
 fn unit(exponents: std::ops::RangeInclusive<i32>) -> impl Strategy<Value = RBig> {
     (11u32..99, 11u32..99, exponents)
         .prop_map(|(a, b, exponent)| RBig::from(a) / RBig::from(b) * RBig::from(10).pow(exponent as isize))
+}
+
+/// The files declare the dimensions that the table has by hand.
+#[test]
+fn the_files_declare_these_dimensions() {
+    use palmistry::system::Base;
+    for file in ["general.proof", "same_rate.proof", "one_palm_fixed.proof", "fixed_palms.proof"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(file);
+        let system = System::read(&path).unwrap();
+        assert!(system.dimensions_tell_units(), "{file}");
+        let mut count = 0;
+        for (symbol, _) in system.symbols() {
+            let declared = system.dimension_of(symbol).unwrap();
+            let powers = [Base::Length, Base::Mass, Base::Time].map(|base| declared.exponent(base).clone());
+            let name = system.symbol_name(symbol);
+            assert_eq!(powers, dimension(name).map(RBig::from), "{file}: {name}");
+            assert!([Base::Current, Base::Temperature].iter().all(|base| declared.exponent(*base).is_zero()));
+            count += 1;
+        }
+        assert!(count >= 10, "{file}: {count}");
+    }
 }
 
 proptest! {
@@ -154,13 +175,8 @@ proptest! {
 fn the_customary_threshold_depends_on_units() {
     let mut changed = 0;
     for case in case("general.proof", &[], 20) {
-        let angles = case.system.angles();
-        let program = palmistry::expression::Program::new(
-            &case.system.graph,
-            &case.rows[1],
-            |symbol| angles.contains(&symbol),
-            false,
-        );
+        let is_angle = &case.system.angle_test();
+        let program = palmistry::expression::Program::new(&case.system.graph, &case.rows[1], is_angle, false);
         let customary = |state: &State| {
             let inputs = state.inputs(&program, &Floats).unwrap();
             let values = program.load(Floats).unwrap().run(&inputs, &mut Vec::new()).unwrap();

@@ -7,7 +7,7 @@
 use palmistry::System;
 use palmistry::expression::{BlockProgram, Input, NodeId, expand_angles, gradient};
 use palmistry::observability::{Locus, lie_derivative_by_series, solve_conditions};
-use palmistry::sweep::{Certainty, Stream, Verdict, Verdicts};
+use palmistry::sweep::{Certainty, StateVerdict, Stream, Verdicts};
 use palmistry::system::Value;
 use std::collections::BTreeMap;
 use std::io::{BufRead, Write};
@@ -101,8 +101,8 @@ impl Work {
             }
             _ => return Err(format!("there is no job '{job}'").into()),
         };
-        let angles = system.angles();
-        let roots = expand_angles(&mut system.graph, &entries, |symbol| angles.contains(&symbol));
+        let is_angle = &system.angle_test();
+        let roots = expand_angles(&mut system.graph, &entries, is_angle);
         let default = |input| match input {
             Input::Plain(symbol) => system.symbol_info(symbol).and_then(|info| info.default.clone()),
             _ => None,
@@ -130,7 +130,7 @@ impl Work {
             Work::Verdicts { stream, inputs, wanted, found } => {
                 let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
                 stream.verdicts(&inputs, *wanted, found)?;
-                if found.verdicts.contains(&Verdict::NotFinite) {
+                if found.verdicts.contains(&StateVerdict::NotFinite) {
                     return Err("a value is not finite".into());
                 }
             }

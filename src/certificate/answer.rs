@@ -6,7 +6,7 @@ use crate::system::FieldRole;
 
 /// How a box stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Standing {
+pub enum BoxStanding {
     /// Full rank is proved at all its states.
     Proved,
     /// The system is defined at all its states, and a minor is proved to vanish at some of them.
@@ -58,7 +58,7 @@ pub struct PartAnswer {
 pub struct OpenBox {
     /// Name, low and high end; all other coordinates are anywhere.
     pub ranges: Vec<(String, f64, f64)>,
-    pub standing: Standing,
+    pub standing: BoxStanding,
     /// The factor that is proved to vanish in it.
     pub factor: Option<String>,
     /// Whether it is proved to contain no sampled state.
@@ -72,7 +72,7 @@ pub struct OpenBox {
 pub struct Patch {
     pub x: (f64, f64),
     pub y: (f64, f64),
-    pub standing: Standing,
+    pub standing: BoxStanding,
 }
 
 /// A plane through the box: the other coordinates of its parts are a third of their ranges from the low end.

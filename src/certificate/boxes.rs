@@ -1,9 +1,9 @@
 //! Boxes that come of halving a box again and again: each side is a dyadic part of the whole range, so that volumes are
 //! sums of powers of two and exact.
 
-use super::slots::{Slot, Slots, Wave};
+use super::slots::{CoordinateFunction, Slot, Slots};
 use crate::expression::Symbol;
-use crate::number::{Interval, Real, rational_to_f64};
+use crate::number::{Interval, RealNumber, rational_to_f64};
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
 
@@ -154,18 +154,18 @@ impl Chart {
         found.middle.clear();
         found.radii.clear();
         found.distances.clear();
-        for Slot { coordinate, wave } in self.slots.iter() {
+        for Slot { coordinate, function } in self.slots.iter() {
             let (low, high) = sides[coordinate].ends();
             let [first, last, middle] =
                 [low, high, 0.5 * (low + high)].map(|part| self.point(coordinate, part));
             let places = [first.hull(last), first, last, middle];
-            match wave {
-                Wave::Itself => found.push(places),
-                Wave::Sine => found.push_pairs(places.map(Interval::sin_cos)),
-                Wave::HalfSine => {
+            match function {
+                CoordinateFunction::Itself => found.push(places),
+                CoordinateFunction::Sine => found.push_pairs(places.map(Interval::sin_cos)),
+                CoordinateFunction::HalfSine => {
                     found.push_pairs(places.map(|place| (place * Interval::point(0.5)).sin_cos()));
                 }
-                Wave::Cosine | Wave::HalfCosine => {} // came with its sine
+                CoordinateFunction::Cosine | CoordinateFunction::HalfCosine => {} // came with its sine
             }
         }
         for (width, side) in self.widths.iter().zip(sides) {

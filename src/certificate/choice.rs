@@ -6,10 +6,11 @@
 
 use super::boxes::{Chart, Side};
 use super::collector::{Collector, Ranges};
-use super::factor::{Desk, Factor};
-use super::part::{Demand, Minor, Part};
+use super::factor::Factor;
+use super::part::{Demand, FactoredMinor, Part};
 use super::progress::{Limits, Searches};
 use super::slots::Slots;
+use super::workspace::Workspace;
 use crate::expression::{Graph, NodeId};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -35,9 +36,9 @@ pub(super) fn choose(
     collector: &Collector,
     ranges: &Ranges,
     guards: &[usize],
-    minors: Vec<Minor>,
+    minors: Vec<FactoredMinor>,
     avoid: &[NodeId],
-) -> Result<(Vec<Minor>, Vec<Part>), String> {
+) -> Result<(Vec<FactoredMinor>, Vec<Part>), String> {
     if minors.is_empty() {
         return Ok((minors, Vec::new()));
     }
@@ -51,7 +52,7 @@ pub(super) fn choose(
     let place = |factor: &usize| needed.binary_search(factor).unwrap_or(0);
     let ratios = ratios(&chart, &factors);
 
-    let size = |minor: &Minor| -> usize {
+    let size = |minor: &FactoredMinor| -> usize {
         minor.factors.iter().map(|f| factors[place(f)].tape.coordinates.len()).max().unwrap_or(0)
     };
     let mut sizes: Vec<usize> = minors.iter().map(size).collect();
@@ -59,9 +60,10 @@ pub(super) fn choose(
     sizes.dedup();
     let mut trials: Vec<Trial> = Vec::new();
     for most in sizes {
-        let pool: Vec<&Minor> = minors.iter().filter(|minor| size(minor) <= most).collect();
+        let pool: Vec<&FactoredMinor> = minors.iter().filter(|minor| size(minor) <= most).collect();
         let logarithms = distances(&pool, &ratios, place);
-        let chosen: Vec<Minor> = greedily(&logarithms).into_iter().map(|at| pool[at].clone()).collect();
+        let chosen: Vec<FactoredMinor> =
+            greedily(&logarithms).into_iter().map(|at| pool[at].clone()).collect();
         for asked_of_all in [0, 1] {
             let demand = Demand { guards, minors: &chosen, avoid, asked_of_all };
             let parts = demand.parts(graph, collector, ranges)?;
@@ -87,7 +89,7 @@ pub(super) fn choose(
 
 /// Some minors and the parts that they lead to, and a short search.
 struct Trial {
-    minors: Vec<Minor>,
+    minors: Vec<FactoredMinor>,
     parts: Vec<Part>,
     shape: Vec<(usize, usize, usize)>,
     searches: Searches,
@@ -128,8 +130,12 @@ fn greedily(distances: &[Vec<f64>]) -> Vec<usize> {
 
 /// The logarithm of the distance of each minor's zeros from each state, at most zero. Factors that all minors have are
 /// left out: they are no reason to prefer one of them.
-fn distances(minors: &[&Minor], ratios: &[Vec<f64>], place: impl Fn(&usize) -> usize) -> Vec<Vec<f64>> {
-    let of = |minor: &&Minor| {
+fn distances(
+    minors: &[&FactoredMinor],
+    ratios: &[Vec<f64>],
+    place: impl Fn(&usize) -> usize,
+) -> Vec<Vec<f64>> {
+    let of = |minor: &&FactoredMinor| {
         let own: Vec<usize> = minor
             .factors
             .iter()
@@ -145,13 +151,13 @@ fn distances(minors: &[&Minor], ratios: &[Vec<f64>], place: impl Fn(&usize) -> u
 /// For each drawn state the value of each factor over the change that its slopes would make across the whole box.
 fn ratios(chart: &Chart, factors: &[Factor]) -> Vec<Vec<f64>> {
     let mut rng = ChaCha8Rng::seed_from_u64(0x6d69_6e6f_7273); // any fixed seed: the same file gives the same minors
-    let mut desk = Desk::default();
+    let mut workspace = Workspace::default();
     let draw = |_| {
         let side = |_| Side { index: rng.random_range(0..1 << DEPTH), depth: DEPTH };
         let sides: Vec<Side> = chart.coordinates().iter().map(side).collect();
-        chart.fill(&sides, &mut desk.slots);
-        desk.slots.radii.iter_mut().for_each(|radius| *radius *= f64::from(1u32 << DEPTH));
-        factors.iter().map(|factor| factor.guess(chart, &mut desk).ratio).collect()
+        let mut at = workspace.begin(chart, &sides);
+        at.widen(f64::from(1u32 << DEPTH));
+        factors.iter().map(|factor| factor.guess(&mut at).ratio).collect()
     };
     (0..SAMPLES).map(draw).collect()
 }

@@ -33,8 +33,7 @@ pub(super) fn domain(
 ) -> Domain {
     let written = guards_of(system, rows);
     let guards = system.substitute_guards(&written, values);
-    let angles = system.angles();
-    let is_angle = |symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let mut found = Domain { guards: Vec::new(), nowhere: Vec::new(), written };
     for Guard { node, need } in guards {
         let graph = &mut system.graph;

@@ -1,9 +1,10 @@
 //! Why a box is open, and which part of the volume is sampled at all.
 
 use super::boxes::{DEEPEST, Place, Volume};
-use super::factor::Desk;
 use super::part::Part;
 use super::search::Cell;
+use super::tape::Tape;
+use super::workspace::{BoxAtWork, Workspace};
 use crate::observability::AVOIDED;
 use std::collections::VecDeque;
 
@@ -23,37 +24,36 @@ pub(super) enum Why {
 }
 
 /// Why nothing is proved on a box, and whether no sampled state lies in it.
-pub(super) fn explain(part: &Part, cell: &Cell, desk: &mut Desk) -> (Why, bool) {
-    let chart = &part.chart;
-    chart.fill(&cell.sides, &mut desk.slots);
-    let all = desk.slots.at(Place::All).to_vec();
+pub(super) fn explain(part: &Part, cell: &Cell, workspace: &mut Workspace) -> (Why, bool) {
+    let mut at = workspace.begin(&part.chart, &cell.sides);
     let mut room = Default::default();
-    let avoided = part.avoid.iter().any(|tape| tape.value(&all, &mut room).magnitude() < JUST_AVOIDED);
-    let excludes = |desk: &mut Desk, factor: usize| {
+    let mut is_avoided = |tape: &Tape| tape.value(at.at(Place::All), &mut room).magnitude() < JUST_AVOIDED;
+    let avoided = part.avoid.iter().any(&mut is_avoided);
+    let excludes = |at: &mut BoxAtWork<'_>, factor: usize| {
         let expression = &part.factors[factor];
         cell.knows(factor) || {
-            let guess = expression.guess(chart, desk);
-            expression.holds_everywhere(chart, desk, guess.value < 0.0)
+            let guess = expression.guess(at);
+            expression.holds_everywhere(at, guess.value < 0.0)
         }
     };
     for guard in &part.guards {
-        if !excludes(desk, *guard) {
+        if !excludes(&mut at, *guard) {
             let guard_factor = &part.factors[*guard];
-            let pole = guard_factor.vanishes(chart, desk) || guard_factor.fails_everywhere(desk);
+            let pole = guard_factor.vanishes(&mut at) || guard_factor.fails_everywhere(&mut at);
             return (if pole { Why::Pole { factor: *guard } } else { Why::Undecided }, avoided);
         }
     }
-    let vanishing = |desk: &mut Desk, list: &[usize]| {
-        let vanishes = |f: &&usize| !cell.knows(**f) && part.factors[**f].vanishes(chart, desk);
+    let vanishing = |at: &mut BoxAtWork<'_>, list: &[usize]| {
+        let vanishes = |f: &&usize| !cell.knows(**f) && part.factors[**f].vanishes(at);
         list.iter().find(vanishes).copied()
     };
-    if let Some(factor) = vanishing(desk, &part.common) {
+    if let Some(factor) = vanishing(&mut at, &part.common) {
         let place = part.common.iter().position(|common| *common == factor).unwrap_or(0);
         return (Why::Vanishes { minor: part.common_of[place], factor }, avoided);
     }
     for alternative in &part.alternatives {
-        if alternative.below.iter().all(|factor| excludes(desk, *factor))
-            && let Some(factor) = vanishing(desk, &alternative.factors)
+        if alternative.below.iter().all(|factor| excludes(&mut at, *factor))
+            && let Some(factor) = vanishing(&mut at, &alternative.factors)
         {
             return (Why::Vanishes { minor: alternative.minor, factor }, avoided);
         }
@@ -70,12 +70,12 @@ const NOT_AVOIDED: f64 = AVOIDED * (1.0 + 1e-9);
 pub(super) fn sampled_volume(part: &Part) -> Volume {
     let mut sampled = Volume::default();
     let mut queue = VecDeque::from([Cell::whole(part)]);
-    let mut desk = Desk::default();
+    let mut workspace = Workspace::default();
     let mut room = Default::default();
     for _ in 0..MOST_PAVED {
         let Some(cell) = queue.pop_front() else { break };
-        part.chart.fill(&cell.sides, &mut desk.slots);
-        let all = desk.slots.at(Place::All);
+        let at = workspace.begin(&part.chart, &cell.sides);
+        let all = at.at(Place::All);
         let (mut halved, mut avoided) = (None, false);
         for tape in &part.avoid {
             let value = tape.value(all, &mut room);

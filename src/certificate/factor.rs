@@ -6,8 +6,9 @@
 //! somewhere is proved by two points at which it has opposite signs. All but the first of these is true only of what is
 //! defined and continuous all over the box, so that this is asked before.
 
-use super::boxes::{Chart, Place, SlotValues};
-use super::tape::{Room, Tape};
+use super::boxes::Place;
+use super::tape::Tape;
+use super::workspace::{BoxAtWork, Workspace};
 use crate::expression::Need;
 use crate::number::Interval;
 
@@ -23,19 +24,6 @@ pub(super) struct Factor {
     pub need: Need,
 }
 
-/// Room for the work on one box, to be used again.
-#[derive(Default)]
-pub(super) struct Desk {
-    pub slots: SlotValues,
-    pub doubles: Room<f64>,
-    intervals: Room<Interval>,
-    face: Vec<Interval>,
-    slopes: Vec<Interval>,
-    places: Vec<Place>,
-    /// The derivatives by the coordinates in the middle of the box.
-    pub gradient: Vec<f64>,
-}
-
 /// What floating point suggests of a factor on a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Guess {
@@ -48,12 +36,10 @@ pub(super) struct Guess {
 }
 
 impl Factor {
-    /// What floating point suggests; `desk.gradient` is left for [`Factor::vanishes`].
-    pub fn guess(&self, chart: &Chart, desk: &mut Desk) -> Guess {
-        let value = self.tape.gradient(&desk.slots.middle, &mut desk.doubles);
-        let (gradient, radii) = (&mut desk.gradient, &desk.slots.radii);
-        gradient.resize(radii.len(), 0.0);
-        self.tape.by_coordinates(chart.slots(), &desk.doubles.by_slots, &desk.slots.middle, gradient);
+    /// What floating point suggests.
+    pub fn guess(&self, at: &mut BoxAtWork<'_>) -> Guess {
+        let value = self.slopes_in_the_middle(at);
+        let (gradient, radii) = (&at.room.gradient, &at.room.slots.radii);
         let (mut change, mut most, mut steepest) = (0.0, -1.0, None);
         for coordinate in &self.tape.coordinates {
             let part = (gradient[*coordinate] * radii[*coordinate]).abs();
@@ -64,6 +50,16 @@ impl Factor {
         }
         let ratio = if change > 0.0 { value.abs() / change } else { f64::INFINITY };
         Guess { value, ratio: if ratio.is_nan() { 0.0 } else { ratio }, steepest }
+    }
+
+    /// The value in the middle, by floating point, and in the room's gradient the derivatives there.
+    fn slopes_in_the_middle(&self, at: &mut BoxAtWork<'_>) -> f64 {
+        let slots = at.chart().slots();
+        let Workspace { slots: values, doubles, gradient, .. } = &mut *at.room;
+        let value = self.tape.gradient(&values.middle, doubles);
+        gradient.resize(values.radii.len(), 0.0);
+        self.tape.by_coordinates(slots, &doubles.by_slots, &values.middle, gradient);
+        value
     }
 
     /// Whether a value shows what is needed of the factor.
@@ -77,14 +73,14 @@ impl Factor {
     }
 
     /// Whether what is needed of the factor is so all over the box. `true` is proved; `false` says nothing.
-    pub fn holds_everywhere(&self, chart: &Chart, desk: &mut Desk, negative: bool) -> bool {
-        let all = desk.slots.at(Place::All);
-        if self.shown_by(self.tape.value(all, &mut desk.intervals)) {
+    pub fn holds_everywhere(&self, at: &mut BoxAtWork<'_>, negative: bool) -> bool {
+        if self.shown_by(self.value_on_the_box(at)) {
             return true;
         }
-        let continuous = self.tape.is_defined(&desk.intervals);
+        let continuous = self.tape.is_defined(&at.room.intervals);
         for witness in &self.witnesses {
-            if !witness.value(all, &mut desk.intervals).contains_zero() {
+            let Workspace { slots, intervals, .. } = &mut *at.room;
+            if !witness.value(slots.at(Place::All), intervals).contains_zero() {
                 return true;
             }
         }
@@ -97,31 +93,30 @@ impl Factor {
         if !by_sign || !continuous {
             return false;
         }
-        desk.face.clear();
-        desk.face.extend_from_slice(all);
-        desk.places.clear();
-        desk.places.resize(desk.slots.radii.len(), Place::All);
-        desk.slopes.resize(desk.slots.radii.len(), Interval::ZERO);
+        self.begin_face(at, Place::All);
+        let coordinates = at.room.slots.radii.len();
+        at.room.places.clear();
+        at.room.places.resize(coordinates, Place::All);
+        at.room.slopes.resize(coordinates, Interval::ZERO);
         loop {
-            self.tape.gradient(&desk.face, &mut desk.intervals);
-            self.tape.by_coordinates(chart.slots(), &desk.intervals.by_slots, &desk.face, &mut desk.slopes);
+            self.slopes_on_the_face(at);
             let mut fixed = false;
             for coordinate in &self.tape.coordinates {
-                let slope = desk.slopes[*coordinate];
-                if desk.places[*coordinate] != Place::All || slope.low() < 0.0 && slope.high() > 0.0 {
+                let slope = at.room.slopes[*coordinate];
+                if at.room.places[*coordinate] != Place::All || slope.low() < 0.0 && slope.high() > 0.0 {
                     continue;
                 }
                 // towards zero: down where it is positive and grows, or is negative and falls
                 let place = if (slope.low() >= 0.0) == negative { Place::High } else { Place::Low };
-                desk.places[*coordinate] = place;
-                put(chart, &desk.slots, *coordinate, place, &mut desk.face);
+                at.room.places[*coordinate] = place;
+                at.put(*coordinate, place);
                 fixed = true;
             }
-            let left = self.tape.coordinates.iter().any(|c| desk.places[*c] == Place::All);
-            if fixed && self.has_sign(self.tape.value(&desk.face, &mut desk.intervals), negative) {
+            let left = self.tape.coordinates.iter().any(|c| at.room.places[*c] == Place::All);
+            if fixed && self.has_sign(self.value_on_the_face(at), negative) {
                 return true;
             }
-            if left && self.by_mean_value(chart, desk, negative) {
+            if left && self.by_mean_value(at, negative) {
                 return true;
             }
             if !fixed || !left {
@@ -130,24 +125,47 @@ impl Factor {
         }
     }
 
+    /// The range over the box, enclosed as the factor is written.
+    fn value_on_the_box(&self, at: &mut BoxAtWork<'_>) -> Interval {
+        let Workspace { slots, intervals, .. } = &mut *at.room;
+        self.tape.value(slots.at(Place::All), intervals)
+    }
+
+    /// The range over the face that is being looked at.
+    fn value_on_the_face(&self, at: &mut BoxAtWork<'_>) -> Interval {
+        let Workspace { face, intervals, .. } = &mut *at.room;
+        self.tape.value(face, intervals)
+    }
+
+    fn begin_face(&self, at: &mut BoxAtWork<'_>, place: Place) {
+        let Workspace { slots, face, .. } = &mut *at.room;
+        face.clear();
+        face.extend_from_slice(slots.at(place));
+    }
+
+    /// The ranges of the derivatives by the coordinates over the face.
+    fn slopes_on_the_face(&self, at: &mut BoxAtWork<'_>) {
+        let slots = at.chart().slots();
+        let Workspace { face, intervals, slopes, .. } = &mut *at.room;
+        self.tape.gradient(face, intervals);
+        self.tape.by_coordinates(slots, &intervals.by_slots, face, slopes);
+    }
+
     /// The value in the middle of the coordinates that are left, and their slopes times their distance from it.
-    fn by_mean_value(&self, chart: &Chart, desk: &mut Desk, negative: bool) -> bool {
+    fn by_mean_value(&self, at: &mut BoxAtWork<'_>, negative: bool) -> bool {
         let mut change = Interval::ZERO;
-        let mut face = std::mem::take(&mut desk.face);
         for coordinate in &self.tape.coordinates {
-            if desk.places[*coordinate] == Place::All {
-                let distance = desk.slots.distance(*coordinate);
-                change += desk.slopes[*coordinate] * distance;
-                put(chart, &desk.slots, *coordinate, Place::Middle, &mut face);
+            if at.room.places[*coordinate] == Place::All {
+                change += at.room.slopes[*coordinate] * at.room.slots.distance(*coordinate);
+                at.put(*coordinate, Place::Middle);
             }
         }
-        let value = self.tape.value(&face, &mut desk.intervals) + change;
+        let value = self.value_on_the_face(at) + change;
         for coordinate in &self.tape.coordinates {
-            if desk.places[*coordinate] == Place::All {
-                put(chart, &desk.slots, *coordinate, Place::All, &mut face);
+            if at.room.places[*coordinate] == Place::All {
+                at.put(*coordinate, Place::All);
             }
         }
-        desk.face = face;
         self.has_sign(value, negative)
     }
 
@@ -162,30 +180,27 @@ impl Factor {
 
     /// Whether the factor is zero somewhere in the box: proved by two corners, at one of which it is not negative and at the
     /// other not positive.
-    pub fn vanishes(&self, chart: &Chart, desk: &mut Desk) -> bool {
-        self.tape.value(desk.slots.at(Place::All), &mut desk.intervals);
-        if !self.tape.is_defined(&desk.intervals) {
+    pub fn vanishes(&self, at: &mut BoxAtWork<'_>) -> bool {
+        self.value_on_the_box(at);
+        if !self.tape.is_defined(&at.room.intervals) {
             return false; // it may change its sign at a pole
         }
-        self.guess(chart, desk);
-        let gradient = std::mem::take(&mut desk.gradient);
-        let mut at = |up: bool| {
-            desk.face.clear();
-            desk.face.extend_from_slice(desk.slots.at(Place::Middle));
+        self.slopes_in_the_middle(at);
+        let mut corner = |up: bool| {
+            self.begin_face(at, Place::Middle);
             for coordinate in &self.tape.coordinates {
-                let place = if (gradient[*coordinate] > 0.0) == up { Place::High } else { Place::Low };
-                put(chart, &desk.slots, *coordinate, place, &mut desk.face);
+                let place =
+                    if (at.room.gradient[*coordinate] > 0.0) == up { Place::High } else { Place::Low };
+                at.put(*coordinate, place);
             }
-            self.tape.value(&desk.face, &mut desk.intervals)
+            self.value_on_the_face(at)
         };
-        let found = at(true).low() >= 0.0 && at(false).high() <= 0.0;
-        desk.gradient = gradient;
-        found
+        corner(true).low() >= 0.0 && corner(false).high() <= 0.0
     }
 
     /// Whether what is needed of the factor is so nowhere in the box, where it is defined.
-    pub fn fails_everywhere(&self, desk: &mut Desk) -> bool {
-        let value = self.tape.value(desk.slots.at(Place::All), &mut desk.intervals);
+    pub fn fails_everywhere(&self, at: &mut BoxAtWork<'_>) -> bool {
+        let value = self.value_on_the_box(at);
         self.need.is_met_by_interval(value) == Some(false)
     }
 
@@ -203,10 +218,3 @@ impl Factor {
 
 /// A factor is tried where floating point gives it this much of a chance.
 pub(super) const HOPE: f64 = 0.6;
-
-/// Puts a coordinate to a place of its side.
-fn put(chart: &Chart, slots: &SlotValues, coordinate: usize, place: Place, face: &mut [Interval]) {
-    for slot in chart.slots().of(coordinate) {
-        face[slot] = slots.at(place)[slot];
-    }
-}

@@ -1,6 +1,6 @@
 //! A search as text, to be taken up again.
 //!
-//! The first line names the format, the second the question; then come the tally and the open boxes, a line each, and
+//! The first line names the format, the second the question; then come the counts and the open boxes, a line each, and
 //! last the number of lines and a checksum, so that a file that was cut or changed is noticed. A box is written as the
 //! index and the depth of each of its sides; an open one with the factors that are known to vanish nowhere in it, a proved
 //! one (of these the largest) with its minor.

@@ -5,7 +5,7 @@
 //! have in common is taken out at once, so that nothing becomes longer than it has to be. A minor is then the product of
 //! its pivots and of what was taken out, over what rows were multiplied by, which all but always cancels.
 
-use super::cleared::ClearedRow;
+use super::common_denominator::ClearedRow;
 use crate::expression::{Products, Variable};
 use crate::number::polynomial::{Polynomial, Ring};
 use crate::number::split;

@@ -14,7 +14,7 @@ use crate::expression::{Graph, NodeId};
 
 /// A minor, as a product of factors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Minor {
+pub struct FactoredMinor {
     /// The rows beside the unit rows, by name, and by their places among all rows.
     pub rows: Vec<String>,
     pub(super) places: Vec<usize>,
@@ -69,7 +69,7 @@ impl Part {
 /// What has to be different from zero, before it is divided into parts.
 pub(super) struct Demand<'a> {
     pub guards: &'a [usize],
-    pub minors: &'a [Minor],
+    pub minors: &'a [FactoredMinor],
     pub avoid: &'a [NodeId],
     /// Factors of so many coordinates are asked of all minors, also where only one has them: little is lost, and the others
     /// can be looked at apart.
@@ -79,7 +79,7 @@ pub(super) struct Demand<'a> {
 impl Demand<'_> {
     /// What every minor needs to be defined, and the factors that are asked of all.
     fn in_common(&self, size: impl Fn(usize) -> usize) -> (Vec<usize>, Vec<usize>) {
-        let of_all = |list: fn(&Minor) -> &Vec<usize>| -> Vec<usize> {
+        let of_all = |list: fn(&FactoredMinor) -> &Vec<usize>| -> Vec<usize> {
             let Some((first, rest)) = self.minors.split_first() else { return Vec::new() };
             list(first).iter().copied().filter(|f| rest.iter().all(|minor| list(minor).contains(f))).collect()
         };

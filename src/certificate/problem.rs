@@ -2,14 +2,14 @@
 
 use super::boxes::FreeCoordinate;
 use super::choice::choose;
-use super::cleared::{ClearedRow, clear};
 use super::collector::{Collector, Ranges};
+use super::common_denominator::{ClearedRow, clear_denominators};
 use super::domain::{Domain, domain};
 use super::minors::minors as minors_of;
-use super::part::{Minor, Part};
+use super::part::{FactoredMinor, Part};
 use super::rows::{HeldSymbol, NamedRows, RegionRows, WrittenRows, rows_by_name};
 use crate::expression::{NodeId, Symbol, Variable, expand_angles};
-use crate::number::{Interval, Real, rational_to_f64};
+use crate::number::{Interval, RealNumber, rational_to_f64};
 use crate::observability::{Reduction, vanishes};
 use crate::system::{Assignment, FieldRole, Kind, System};
 use dashu::rational::RBig;
@@ -31,7 +31,7 @@ pub(super) struct Problem {
     /// All sides of the box, whether anything depends on them or not.
     pub ranges: Vec<FreeCoordinate>,
     /// The minors that are kept. Without any, nothing can be proved.
-    pub minors: Vec<Minor>,
+    pub minors: Vec<FactoredMinor>,
     /// The number of minors that were looked at, and whether these were all.
     pub candidates: usize,
     pub all_minors: bool,
@@ -60,8 +60,7 @@ impl Problem {
             return Err(format!("{} declares no states or no outputs", system.name));
         }
         let RangesAndValues { ranges, values, exactly } = ranges_of(system, given)?;
-        let angles = system.angles();
-        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let dimension = system.states.len();
         let NamedRows { names, entries: flat, order } = NamedRows::of(system, rows, &values)?;
         let as_written = rows_by_name(&names, &flat, dimension);
@@ -75,7 +74,7 @@ impl Problem {
         let mut cleared = Vec::new();
         let columns = block.columns.len();
         for (row, entries) in block.rows.iter().zip(block.entries.chunks(columns.max(1))) {
-            match clear(&mut collector.products, &system.graph, *row, entries, is_angle) {
+            match clear_denominators(&mut collector.products, &system.graph, *row, entries, is_angle) {
                 Ok((row, nodes)) => {
                     collector.note(&system.graph, &nodes);
                     cleared.push(row);
@@ -108,7 +107,7 @@ impl Problem {
                 continue;
             }
             let places = minor.rows.iter().map(|row| cleared[*row].row).collect();
-            minors.push(Minor { rows, places, factors, below });
+            minors.push(FactoredMinor { rows, places, factors, below });
         }
         let mut avoid = Vec::new();
         for (text, node) in system.avoid.clone() {

@@ -2,7 +2,7 @@
 
 use super::part::Part;
 use super::search::{Search, Turn};
-use crate::number::{Interval, Real};
+use crate::number::{Interval, RealNumber};
 use dashu::rational::RBig;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;

@@ -2,8 +2,9 @@
 //! first.
 
 use super::boxes::{DEEPEST, Side, Volume};
-use super::factor::{Desk, Guess, HOPE};
+use super::factor::{Guess, HOPE};
 use super::part::{Alternative, Part};
+use super::workspace::{BoxAtWork, Workspace};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
 
@@ -45,7 +46,7 @@ impl Cell {
 }
 
 /// What has come of a box.
-enum Judged {
+enum BoxJudgement {
     /// Everything is, by this minor where there are several to choose from.
     Proved(Option<usize>),
     Halved([Cell; 2]),
@@ -158,16 +159,16 @@ impl Search {
         if queue.is_empty() {
             self.open.remove(&turn.depth);
         }
-        let found: Vec<(Cell, Judged)> = block
+        let found: Vec<(Cell, BoxJudgement)> = block
             .into_par_iter()
-            .map_init(Desk::default, |desk, mut cell| {
-                let judged = judge(part, &mut cell, desk);
+            .map_init(Workspace::default, |workspace, mut cell| {
+                let judged = judge(part, &mut cell, workspace);
                 (cell, judged)
             })
             .collect();
         for (cell, judged) in found {
             match judged {
-                Judged::Proved(minor) => {
+                BoxJudgement::Proved(minor) => {
                     self.proved.add(cell.depth());
                     if self.kept.len() < self.most_kept {
                         self.kept.push(ProvedCell { sides: cell.sides.clone(), minor });
@@ -176,8 +177,8 @@ impl Search {
                         self.sections.extend(self.plane.section(&cell.sides));
                     }
                 }
-                Judged::Halved(halves) => self.open.entry(cell.depth() + 1).or_default().extend(halves),
-                Judged::Left => self.left.push(cell),
+                BoxJudgement::Halved(halves) => self.open.entry(cell.depth() + 1).or_default().extend(halves),
+                BoxJudgement::Left => self.left.push(cell),
             }
         }
         self.boxes += count as u64;
@@ -194,22 +195,21 @@ impl Search {
 }
 
 /// Looks at a box.
-fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> Judged {
-    let chart = &part.chart;
-    chart.fill(&cell.sides, &mut desk.slots);
+fn judge(part: &Part, cell: &mut Cell, workspace: &mut Workspace) -> BoxJudgement {
+    let at = &mut workspace.begin(&part.chart, &cell.sides);
     let mut guesses: Vec<Option<Guess>> = vec![None; part.factors.len()];
-    let mut least = |cell: &Cell, desk: &mut Desk, list: &mut dyn Iterator<Item = &usize>| -> f64 {
+    let mut least = |cell: &Cell, at: &mut BoxAtWork<'_>, list: &mut dyn Iterator<Item = &usize>| -> f64 {
         let mut least = f64::INFINITY;
         for factor in list.copied().filter(|factor| !cell.knows(*factor)) {
-            let guess = guesses[factor].get_or_insert_with(|| part.factors[factor].guess(chart, desk));
+            let guess = guesses[factor].get_or_insert_with(|| part.factors[factor].guess(at));
             least = least.min(guess.ratio);
         }
         least
     };
-    let required = least(cell, desk, &mut part.guards.iter().chain(&part.common));
+    let required = least(cell, at, &mut part.guards.iter().chain(&part.common));
     let mut order: Vec<(f64, Option<&Alternative>)> = Vec::with_capacity(part.alternatives.len().max(1));
     for alternative in &part.alternatives {
-        order.push((least(cell, desk, &mut alternative.all()).min(required), Some(alternative)));
+        order.push((least(cell, at, &mut alternative.all()).min(required), Some(alternative)));
     }
     if order.is_empty() {
         order.push((required, None));
@@ -229,30 +229,28 @@ fn judge(part: &Part, cell: &mut Cell, desk: &mut Desk) -> Judged {
             }
             let Some(guess) = guesses[factor] else { continue };
             let expression = &part.factors[factor];
-            if expression.is_worth_trying(guess)
-                && expression.holds_everywhere(chart, desk, guess.value < 0.0)
-            {
+            if expression.is_worth_trying(guess) && expression.holds_everywhere(at, guess.value < 0.0) {
                 cell.learn(factor);
                 continue;
             }
             proved = false;
-            if expression.fails_everywhere(desk) {
-                return Judged::Left;
+            if expression.fails_everywhere(at) {
+                return BoxJudgement::Left;
             }
             if rank == 0 && worst.is_none_or(|(ratio, _)| guess.ratio < ratio) {
                 worst = Some((guess.ratio, factor));
             }
         }
         if proved {
-            return Judged::Proved(minor);
+            return BoxJudgement::Proved(minor);
         }
     }
-    let Some((_, factor)) = worst else { return Judged::Left };
+    let Some((_, factor)) = worst else { return BoxJudgement::Left };
     let can = |coordinate: &usize| cell.sides[*coordinate].depth < DEEPEST;
     let steepest = guesses[factor].and_then(|guess| guess.steepest).filter(can);
     let coordinate = steepest.or_else(|| {
         let coordinates = part.factors[factor].tape.coordinates.iter().copied().filter(can);
         coordinates.min_by_key(|coordinate| cell.sides[*coordinate].depth)
     });
-    coordinate.map_or(Judged::Left, |coordinate| Judged::Halved(cell.halves(coordinate)))
+    coordinate.map_or(BoxJudgement::Left, |coordinate| BoxJudgement::Halved(cell.halves(coordinate)))
 }

@@ -2,7 +2,7 @@
 
 /// A function of one coordinate that is given to a tape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Wave {
+pub(super) enum CoordinateFunction {
     /// The coordinate itself.
     Itself,
     Sine,
@@ -15,7 +15,7 @@ pub(super) enum Wave {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Slot {
     pub coordinate: usize,
-    pub wave: Wave,
+    pub function: CoordinateFunction,
 }
 
 /// All inputs of the tapes of one question.
@@ -41,29 +41,34 @@ impl Slots {
         self.slots[place]
     }
 
-    pub fn place(&mut self, coordinate: usize, wave: Wave) -> usize {
-        let find = |slots: &[Slot], wave| slots.iter().position(|slot| *slot == Slot { coordinate, wave });
-        if let Some(place) = find(&self.slots, wave) {
+    pub fn place(&mut self, coordinate: usize, function: CoordinateFunction) -> usize {
+        let find =
+            |slots: &[Slot], function| slots.iter().position(|slot| *slot == Slot { coordinate, function });
+        if let Some(place) = find(&self.slots, function) {
             return place;
         }
         // a sine is never without its cosine, which is its slope, behind it
-        let pair: &[(Wave, Wave, f64)] = match wave {
-            Wave::Itself => &[],
-            Wave::Sine | Wave::Cosine => &[(Wave::Sine, Wave::Cosine, 1.0), (Wave::Cosine, Wave::Sine, -1.0)],
-            Wave::HalfSine | Wave::HalfCosine => {
-                &[(Wave::HalfSine, Wave::HalfCosine, 0.5), (Wave::HalfCosine, Wave::HalfSine, -0.5)]
-            }
+        let pair: &[(CoordinateFunction, CoordinateFunction, f64)] = match function {
+            CoordinateFunction::Itself => &[],
+            CoordinateFunction::Sine | CoordinateFunction::Cosine => &[
+                (CoordinateFunction::Sine, CoordinateFunction::Cosine, 1.0),
+                (CoordinateFunction::Cosine, CoordinateFunction::Sine, -1.0),
+            ],
+            CoordinateFunction::HalfSine | CoordinateFunction::HalfCosine => &[
+                (CoordinateFunction::HalfSine, CoordinateFunction::HalfCosine, 0.5),
+                (CoordinateFunction::HalfCosine, CoordinateFunction::HalfSine, -0.5),
+            ],
         };
         let first = self.slots.len();
         if pair.is_empty() {
-            self.slots.push(Slot { coordinate, wave });
+            self.slots.push(Slot { coordinate, function });
             self.slopes.push(None);
         }
-        for (step, (wave, _, factor)) in pair.iter().enumerate() {
-            self.slots.push(Slot { coordinate, wave: *wave });
+        for (step, (function, _, factor)) in pair.iter().enumerate() {
+            self.slots.push(Slot { coordinate, function: *function });
             self.slopes.push(Some((first + 1 - step, *factor)));
         }
-        find(&self.slots, wave).unwrap_or(first)
+        find(&self.slots, function).unwrap_or(first)
     }
 
     /// What the derivative of a slot by its coordinate is a multiple of: another slot, and the factor; `None` of the

@@ -4,9 +4,9 @@
 //! What does not depend on a coordinate is folded into constants. The sine and the cosine of a coordinate, or of half of
 //! it, are inputs of their own: the same few are needed by every expression, at the same few places.
 
-use super::slots::{Slots, Wave};
+use super::slots::{CoordinateFunction, Slots};
 use crate::expression::{Graph, Need, Node, NodeId, Symbol};
-use crate::number::{Function, Interval, Real};
+use crate::number::{Function, Interval, RealNumber};
 use std::collections::HashMap;
 
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,7 @@ pub(super) struct Tape {
 }
 
 /// Numbers that a tape computes with: their own image of its constants.
-pub(super) trait Scalar: Real {
+pub(super) trait Scalar: RealNumber {
     fn constants(tape: &Tape) -> &[Self];
 }
 
@@ -97,25 +97,25 @@ impl Tape {
             coordinates: Vec::new(),
         };
         let mut place: HashMap<NodeId, u32> = HashMap::new();
-        let mut waves: HashMap<NodeId, usize> = HashMap::new();
+        let mut functions: HashMap<NodeId, usize> = HashMap::new();
         let order = graph.reachable([root]);
         for &id in &order {
-            if let Some((symbol, wave)) = as_wave(graph, id)
+            if let Some((symbol, function)) = as_coordinate_function(graph, id)
                 && let Some(Role::Free(coordinate)) = role(symbol)
             {
-                waves.insert(id, slots.place(coordinate, wave));
+                functions.insert(id, slots.place(coordinate, function));
             }
         }
-        // what only a wave's argument needs is not computed
+        // what only a function's argument needs is not computed
         let mut needed = std::collections::BTreeSet::new();
         let mut stack = vec![root];
         while let Some(id) = stack.pop() {
-            if needed.insert(id) && !waves.contains_key(&id) {
+            if needed.insert(id) && !functions.contains_key(&id) {
                 stack.extend(graph.node(id).operands());
             }
         }
         for id in needed {
-            let operation = match (waves.get(&id), graph.node(id)) {
+            let operation = match (functions.get(&id), graph.node(id)) {
                 (Some(slot), _) => {
                     tape.slots.push(*slot);
                     Operation::Slot(*slot as u32)
@@ -255,7 +255,13 @@ impl Tape {
 
     /// What the derivatives by its slots say of the derivatives by the coordinates that it depends on. `inputs` are the
     /// values of the slots.
-    pub fn by_coordinates<T: Real>(&self, slots: &Slots, by_slots: &[T], inputs: &[T], found: &mut [T]) {
+    pub fn by_coordinates<T: RealNumber>(
+        &self,
+        slots: &Slots,
+        by_slots: &[T],
+        inputs: &[T],
+        found: &mut [T],
+    ) {
         let zero = T::from_f64(0.0);
         for coordinate in &self.coordinates {
             found[*coordinate] = zero;
@@ -296,14 +302,17 @@ fn need(operation: Operation) -> Option<(u32, Need)> {
 }
 
 /// A symbol, or the sine or cosine of one or of half of one.
-fn as_wave(graph: &Graph, id: NodeId) -> Option<(Symbol, Wave)> {
+fn as_coordinate_function(graph: &Graph, id: NodeId) -> Option<(Symbol, CoordinateFunction)> {
     let (function, argument) = match graph.node(id) {
-        Node::Symbol(symbol) => return Some((symbol, Wave::Itself)),
+        Node::Symbol(symbol) => return Some((symbol, CoordinateFunction::Itself)),
         Node::Apply(function @ (Function::Sin | Function::Cos), argument) => (function, argument),
         _ => return None,
     };
     if let Some(symbol) = graph.as_symbol(argument) {
-        return Some((symbol, if function == Function::Sin { Wave::Sine } else { Wave::Cosine }));
+        return Some((
+            symbol,
+            if function == Function::Sin { CoordinateFunction::Sine } else { CoordinateFunction::Cosine },
+        ));
     }
     let Node::Mul(a, b) = graph.node(argument) else { return None };
     let is_half = |id| graph.constant_value(id).is_some_and(|c| (c + c).is_one());
@@ -312,20 +321,23 @@ fn as_wave(graph: &Graph, id: NodeId) -> Option<(Symbol, Wave)> {
         (None, Some(symbol)) if is_half(a) => symbol,
         _ => return None,
     };
-    Some((symbol, if function == Function::Sin { Wave::HalfSine } else { Wave::HalfCosine }))
+    Some((
+        symbol,
+        if function == Function::Sin { CoordinateFunction::HalfSine } else { CoordinateFunction::HalfCosine },
+    ))
 }
 
 /// `a^n`; what is not defined is a NaN, or the whole line.
-fn power<T: Real>(a: T, n: i32) -> T {
+fn power<T: RealNumber>(a: T, n: i32) -> T {
     a.power(n).unwrap_or(T::from_f64(f64::NAN))
 }
 
-fn apply<T: Real>(function: Function, a: T) -> T {
+fn apply<T: RealNumber>(function: Function, a: T) -> T {
     a.function(function).unwrap_or(T::from_f64(f64::NAN))
 }
 
 /// The derivative of a function where its argument and its value are known.
-fn rate<T: Real>(function: Function, a: T, value: T) -> T {
+fn rate<T: RealNumber>(function: Function, a: T, value: T) -> T {
     let one = T::from_f64(1.0);
     match function {
         Function::Sin => apply(Function::Cos, a),

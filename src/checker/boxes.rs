@@ -5,7 +5,7 @@ use super::listing::{Listing, Step};
 use super::piece::{Cover, Piece};
 use super::state::Ratio;
 use super::witness::Requirement;
-use crate::number::{Interval, Real};
+use crate::number::{Interval, RealNumber};
 use dashu::rational::RBig;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

@@ -7,7 +7,7 @@
 
 use super::listing::{Listing, Step};
 use super::witness::{Requirement, RequirementKind};
-use crate::number::{Function, Interval, Real};
+use crate::number::{Function, Interval, RealNumber};
 
 /// Where a step's value comes from.
 #[derive(Clone, Copy, Debug)]

@@ -224,6 +224,7 @@ fn attempt(
     let equation = &statement.equation;
     let (left, before) = system.elaborate_guarded(&equation.left).map_err(|problem| problem.message)?;
     let (right, after) = system.elaborate_guarded(&equation.right).map_err(|problem| problem.message)?;
+    let (left, right) = Value::compared(left, right);
     let mut guards = Vec::new();
     for guard in before.into_iter().chain(after) {
         add_guard(&system.graph, &mut guards, guard);
@@ -238,7 +239,7 @@ fn attempt(
     if let Some(tolerance) = &equation.within {
         let (tolerance, needed) = system.elaborate_guarded(tolerance).map_err(|problem| problem.message)?;
         guards.extend(needed);
-        return match (left, right, tolerance) {
+        return match (left.or_number(), right.or_number(), tolerance.or_number()) {
             (Value::Scalar(l), Value::Scalar(r), Value::Scalar(t)) if statement.conditions.is_empty() => {
                 let verdict = decide_nearness(system, l, r, t, &guards, rng);
                 let near = Nearness { left: l, right: r, tolerance: t };

@@ -236,8 +236,7 @@ pub(super) fn claimed_rank(
     let Ok(on) = &OnBranch::new(system, branch, &terms) else {
         return Some(Evidence::Unchecked(NO_STATE.to_owned()));
     };
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, &matrix.entries, is_angle);
     let program = Program::new(&system.graph, &expanded, is_angle, false);
     let field = PrimeField::random(rng);

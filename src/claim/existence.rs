@@ -2,7 +2,7 @@
 
 use super::terms::OnBranch;
 use crate::expression::{
-    Guard, Need, NodeId, Program, Symbol, ZeroTest, draw_residues, expand_angles, identically_zero,
+    Guard, Need, NodeId, Program, ZeroTest, draw_residues, expand_angles, identically_zero,
 };
 use crate::number::PrimeField;
 use crate::system::System;
@@ -31,8 +31,7 @@ pub(crate) fn existence(system: &mut System, on: &OnBranch, rng: &mut impl Rng) 
             return Existence::Nowhere(guard.text(&system.graph));
         }
     }
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let nodes: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
     let expanded = expand_angles(&mut system.graph, &nodes, is_angle);
     let open: Vec<(Guard, NodeId)> = guards

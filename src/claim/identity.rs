@@ -38,8 +38,7 @@ pub(crate) fn decide_identity(
     columns: usize,
     rng: &mut impl Rng,
 ) -> OnOneBranch {
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let both: Vec<NodeId> = expand_angles(&mut system.graph, &on.terms.sides, is_angle);
     let (left, right) = both.split_at(both.len() / 2);
     let differences: Vec<NodeId> = left.iter().zip(right).map(|(l, r)| system.graph.sub(*l, *r)).collect();

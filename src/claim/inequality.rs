@@ -12,7 +12,7 @@ use crate::expression::{
     Guard, LOG2_ERROR, Need, NodeId, Related, Symbol, ZeroTest, expand_angles, identically_zero,
     zero_by_relations,
 };
-use crate::inequality::{Answer, Argument, Given, Open, Proposed, decide, vanishes_somewhere};
+use crate::inequality::{Argument, Given, InequalityAnswer, Open, Proposed, decide, vanishes_somewhere};
 use crate::number::{rational_from_f64, rational_to_f64};
 use crate::observability::{Coordinate, State, assumed};
 use crate::system::System;
@@ -108,8 +108,7 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
     if let Some(verdict) = where_equal(system, on, goal, &mut tries, solved, rng) {
         return verdict;
     }
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     // the search knows expressions only, and the graph is the system's
     let mut graph = std::mem::take(&mut system.graph);
     let answer = decide(&mut graph, goal, given, &is_angle, &mut |graph, proposed| {
@@ -124,8 +123,8 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
     system.graph = graph;
     let certain = |engine: String| Verdict::Proved { engine, log2_error: f64::NEG_INFINITY };
     match answer {
-        Answer::Holds(Argument::Signs) => certain(SIGNS.to_owned()),
-        Answer::Holds(Argument::Boxes { boxes, touches }) => {
+        InequalityAnswer::Holds(Argument::Signs) => certain(SIGNS.to_owned()),
+        InequalityAnswer::Holds(Argument::Boxes { boxes, touches }) => {
             let engine = match boxes {
                 1 => BOXES.replace("boxes", "the whole box"),
                 _ => BOXES.replace("boxes", &format!("{boxes} boxes")),
@@ -138,8 +137,8 @@ fn one(system: &mut System, on: &OnBranch, entry: usize, given: Given<'_>, rng: 
                 },
             }
         }
-        Answer::Fails => tries.verdict(system),
-        Answer::Open(open) => {
+        InequalityAnswer::Fails => tries.verdict(system),
+        InequalityAnswer::Open(open) => {
             if solved {
                 for attempt in FIRST..LAST {
                     let point = on.draw(system, attempt, rng);
@@ -169,8 +168,7 @@ fn where_equal(
     may_refute: bool,
     rng: &mut impl Rng,
 ) -> Option<Verdict> {
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, &[goal.node], is_angle);
     let (engine, log2_error) = match identically_zero(&system.graph, &expanded, is_angle, rng) {
         ZeroTest::Zero { log2_error, .. } => (RANDOM_PRIMES.to_owned(), log2_error),

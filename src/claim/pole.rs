@@ -63,8 +63,7 @@ pub fn pole_order(
             "the factor is not linear in any symbol that is free, nor the sine of an angle".into(),
         );
     };
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, &[approach.expression], is_angle);
     let program = Program::new(&system.graph, &expanded, is_angle, false);
     // the leading coefficients of numerator and denominator are polynomials of no greater degree than these

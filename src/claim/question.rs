@@ -33,7 +33,7 @@ impl Question {
         for relation in statement.relations() {
             for (side, list) in [(&relation.left, &mut entries), (&relation.right, &mut right_sides)] {
                 let (value, needed) = system.elaborate_guarded(side).map_err(|problem| problem.message)?;
-                let Value::Scalar(value) = value else {
+                let Some(value) = value.as_number() else {
                     return Err(format!("'{}' compares numbers", relation.relation.sign()));
                 };
                 list.push(value);

@@ -96,8 +96,7 @@ fn on_one_branch(
 }
 
 fn decide(system: &mut System, rows: &Rows<'_>, claimed: usize, rng: &mut impl Rng) -> Verdict {
-    let angles = system.angles();
-    let is_angle = |symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     match generic_rank(&mut system.graph, rows.entries, rows.columns, is_angle, rng) {
         GenericRank::Rank { rank, log2_error, .. } if rank == claimed => {
             let engine = if log2_error == f64::NEG_INFINITY { MINOR } else { RANDOM_PRIMES };

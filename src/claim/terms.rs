@@ -2,7 +2,7 @@
 
 use crate::expression::syntax::Relation;
 use crate::expression::{Guard, Need, NodeId, Program, Symbol, expand_angles};
-use crate::inequality::{Bound, Bounds, Range, bounds};
+use crate::inequality::{Bound, Bounds, SymbolBounds, bounds};
 use crate::number::{Enclosure, Enclosures, Function, Interval, Rationals, rational_from_f64};
 use crate::observability::{Branch, Coordinate, State, StateInWords};
 use crate::system::{Assignment, Kind, System};
@@ -105,7 +105,7 @@ impl OnBranch {
         let bounds = bounds(&mut system.graph, &here.guards);
         // points of the circle stand for angles between minus pi and pi
         let half_turn = Interval::new(-Interval::PI.low(), Interval::PI.low());
-        let is_beyond = |(symbol, range): (&Symbol, &Range)| {
+        let is_beyond = |(symbol, range): (&Symbol, &SymbolBounds)| {
             system.is_angle(*symbol) && !half_turn.encloses(range.interval())
         };
         let circular = !bounds.iter().any(is_beyond)
@@ -284,8 +284,7 @@ fn program(system: &mut System, nodes: &[NodeId], circular: bool) -> Program {
     if !circular {
         return Program::new(&system.graph, nodes, |_| false, false);
     }
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, nodes, is_angle);
     Program::new(&system.graph, &expanded, is_angle, false)
 }
@@ -316,7 +315,7 @@ fn exact_values(program: &Program, state: &State) -> Option<Vec<RBig>> {
 }
 
 /// A simple number within a range, every fifth time one of its ends; mostly near the ends where it has one or none.
-fn within(range: &Range, attempt: usize, rng: &mut impl Rng) -> Option<RBig> {
+fn within(range: &SymbolBounds, attempt: usize, rng: &mut impl Rng) -> Option<RBig> {
     let end = |bound: &Option<Bound>, down: bool| {
         let bound = bound.as_ref()?;
         let inside = if down { bound.enclosed.high() } else { bound.enclosed.low() };

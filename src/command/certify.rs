@@ -26,9 +26,9 @@ use std::time::Instant;
 /// are those in which a minor is proved to vanish somewhere, those with a pole, and those that are undecided. The
 /// proved fraction is a lower bound, and grows with the budget. Angles and parameters without a range keep their value;
 /// what the file says to avoid is part of the box, and the fraction is given without it, too.
-///
-/// Example: palmistry certify proofs/moll2002/fixed_palms.proof --box omega0=1/2..3 --budget 30
 #[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry certify proofs/moll2002/fixed_palms.proof --box omega0=1/2..3 --budget 30")]
 pub(crate) struct Certify {
     /// The proof file.
     file: PathBuf,

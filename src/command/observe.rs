@@ -8,7 +8,7 @@ use indicatif::ProgressBar;
 use palmistry::experiment::{Basin, Experiment, NoiseLevel, Scene, SceneError, basins, noise_study};
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
-use palmistry::observer::{Standing, Update};
+use palmistry::observer::{Update, UpdateEnd};
 use palmistry::report::{Observed, ended_in_words, method_name, observe_json, observe_page, observe_text};
 use std::path::PathBuf;
 
@@ -23,9 +23,9 @@ use std::path::PathBuf;
 /// With --data the readings come from a CSV or Parquet file with the columns that the model needs (time, s1, s2, phi1, ...);
 /// faulty rows are reported by number and handled as the scene says. With --studies the scene's studies run as well: the
 /// error over many seeds at several levels of noise beside the bound, and the first guesses from which each method arrives.
-///
-/// Example: palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed
 #[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed")]
 pub(crate) struct Observe {
     /// The scene.
     scene: PathBuf,
@@ -105,7 +105,8 @@ impl Observe {
             note(&format!("the motion ended early: {}", ended_in_words(simulation.ended())));
         }
         // a window that cannot be seen is part of the answer; a method that saw none has found nothing
-        let unseen = |update: &Update| matches!(update.standing, Standing::Blind { .. } | Standing::Lost(_));
+        let unseen =
+            |update: &Update| matches!(update.standing, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
         let found_nothing = |updates: &[Update]| !updates.is_empty() && updates.iter().all(unseen);
         let as_expected = !interrupted && !answers.iter().any(|answer| found_nothing(&answer.track.updates));
         let status = if as_expected { Status::AsExpected } else { Status::NotAsExpected };

@@ -20,6 +20,11 @@ use std::path::PathBuf;
 /// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
 /// the file, and the answer says which; a claim 'rank = n' in a file is about all values.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry rank mysystem.proof --samples 100000
+  palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
+  palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
+  palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain")]
 pub(crate) struct Rank {
     /// The proof file.
     file: PathBuf,
@@ -35,7 +40,8 @@ pub(crate) struct Rank {
     /// Hold these states and parameters fixed, as in omega0=0 or g=0, and sample the rest.
     #[arg(long, value_name = "NAME=VALUE,...", value_delimiter = ',')]
     at: Vec<String>,
-    /// Sample only states that meet this condition, as in 'sin(phi1) = 0' or '0 < x < 1' (may be repeated).
+    /// Sample only states that meet this condition, as in 'sin(phi1) = 0' or '0 < x < 1', or several: 'x = 0, y > 0' (may be
+    /// repeated).
     #[arg(long = "where", value_name = "CONDITION")]
     conditions: Vec<String>,
     /// What every rank has to be: 'certified', proved at the very state, or 'computed', by numbers that round. The

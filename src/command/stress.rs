@@ -8,8 +8,8 @@ use clap::{Args, ValueEnum};
 use palmistry::System;
 use palmistry::paper::Paper;
 use palmistry::report::{stress_json, stress_pictures, stress_text};
-use palmistry::tradeoff::Rows;
-use palmistry::tradeoff::stress::{Stress as Prepared, StressOptions, Study};
+use palmistry::tradeoff::LandscapeRows;
+use palmistry::tradeoff::stress::{Stress as Prepared, StressOptions, StressStudy};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -26,14 +26,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// "full" (a column of its own) is never wrong beside a set.
 ///
 /// Then every quantity is scaled from 1e-150 to 1e150, and the states are looked at in other units, which should change
-/// no verdict. Where numbers overflow or are divided by zero, what did so is named.
+/// no verdict: units of the dimensions that the file declares, or each state in a smaller unit where it declares none. Where numbers overflow or are divided by zero, what did so is named.
 ///
 /// The sets are those that a file names ('set', 'pole', and lines to infinity); where it names none, what it says to avoid,
 /// the divisors of its rows, and each quantity of its sample at zero. Without FILE these are the systems with named sets of a
 /// paper that came with the program.
-///
-/// Example: palmistry stress --out stress
 #[derive(Args, Clone)]
+#[command(after_help = "Examples:
+  palmistry stress --out stress")]
 pub(crate) struct Stress {
     /// A proof file; without one, a paper that came with the program.
     file: Option<PathBuf>,
@@ -71,7 +71,7 @@ const SAMPLES_ON_SETS: u64 = 6;
 
 impl Stress {
     pub fn run(self) -> miette::Result<Status> {
-        let done: Arc<Mutex<Vec<Study>>> = Arc::default();
+        let done: Arc<Mutex<Vec<StressStudy>>> = Arc::default();
         let (worker, filled) = (self.clone(), done.clone());
         let work = move || {
             worker.work(&filled)?;
@@ -82,7 +82,7 @@ impl Stress {
     }
 
     /// Runs the studies, one after the other.
-    fn work(&self, studies: &Mutex<Vec<Study>>) -> miette::Result<()> {
+    fn work(&self, studies: &Mutex<Vec<StressStudy>>) -> miette::Result<()> {
         let bar = progress(1, "to the extremes");
         let done = AtomicU64::new(0);
         let step = || bar.set_position(done.fetch_add(1, Ordering::Relaxed) + 1);
@@ -96,8 +96,8 @@ impl Stress {
             progress: &step,
         };
         let rows = match self.rows {
-            Which::Own => Rows::Own,
-            Which::Full => Rows::Full,
+            Which::Own => LandscapeRows::Own,
+            Which::Full => LandscapeRows::Full,
         };
         let mut systems = match &self.file {
             Some(file) => vec![System::read(file)?],
@@ -122,7 +122,7 @@ impl Stress {
     }
 
     /// Prints and writes the studies that were done.
-    fn tell(&self, studies: &Mutex<Vec<Study>>) -> miette::Result<Status> {
+    fn tell(&self, studies: &Mutex<Vec<StressStudy>>) -> miette::Result<Status> {
         let studies = std::mem::take(&mut *studies.lock().unwrap_or_else(PoisonError::into_inner));
         if studies.is_empty() && interrupted() {
             return nothing_found(Form::of(self.json));
@@ -139,7 +139,7 @@ impl Stress {
     }
 }
 
-fn write_files(folder: &Path, studies: &[Study], object: &serde_json::Value, files: &mut Files) {
+fn write_files(folder: &Path, studies: &[StressStudy], object: &serde_json::Value, files: &mut Files) {
     for study in studies {
         for (name, svg) in stress_pictures(study) {
             let path = folder.join(format!("{name}.svg"));

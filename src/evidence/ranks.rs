@@ -5,7 +5,7 @@ use super::lowering::{Lowering, exact_state};
 use super::minors::largest_minor;
 use crate::checker::{CertifiedRank, Evidence, Missing, RankedState, Ratio, VerdictRecord};
 use crate::expression::syntax::Relation;
-use crate::expression::{Guard, NodeId, Program, Symbol, expand_angles};
+use crate::expression::{Guard, NodeId, Program, expand_angles};
 use crate::number::PrimeField;
 use crate::observability::{OWN_ROWS, assumed, parse_condition};
 use crate::sweep::{RankAnswer, RecordedState, SweepReport, TakenRow};
@@ -70,8 +70,7 @@ fn certified_rank(
     (met, guards): (&[(NodeId, NodeId)], &[Guard]),
     seed: u64,
 ) -> Result<CertifiedRank, Missing> {
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let width = system.states.len();
     let entries: Vec<NodeId> = rows.iter().flat_map(|row| row.entries.iter().copied()).collect();
     let expanded = expand_angles(&mut system.graph, &entries, is_angle);

@@ -13,8 +13,8 @@ mod study;
 
 pub use run::{Answer, Experiment, NOMINAL, error};
 pub use scene::{
-    BasinStudy, Body, Data, Guess, Method, NoiseStudy, ObserverSettings, Palms, Scene, SceneError, Sensor,
-    Shape, Simulated, Study,
+    BasinStudy, Body, Data, Guess, Method, NoiseStudy, ObserverSettings, Palms, Scene, SceneError,
+    SceneOutline, Sensor, Simulated, Study,
 };
 pub use simulation::{Simulation, TOUCH, deviation};
 pub use study::{ARRIVED, Basin, NoiseLevel, basins, noise_study};

@@ -3,8 +3,8 @@
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{Simulation, TOUCH, body, constants, deviation};
 use crate::observer::{
-    Fault, Integration, Method, ModelError, MovingWindow, Observer, Reading, Record, RecordError, Signals,
-    Sought, Task, Track,
+    Fault, Integration, ModelError, MovingWindow, Observer, Record, RecordError, RecordReading, Signals,
+    Sought, Task, Track, WindowSearch,
 };
 use crate::system::{Kind, System, nearest};
 use miette::Diagnostic;
@@ -54,12 +54,12 @@ impl Experiment {
         };
         known_states(&scene, &system)?;
         let told = told(&scene, &system, simulation.as_ref())?;
-        let Reading { record, faults, .. } = match (&simulation, file) {
+        let RecordReading { record, faults, .. } = match (&simulation, file) {
             (Some(simulation), _) => {
                 let record = simulation.readings(scene.sensor.noise, scene.sensor.resolution, scene.seed);
                 let place =
                     |error: RecordError| scene.error_at("sensor", error.to_string(), "these readings", "");
-                Reading { record: record.map_err(place)?, faults: Vec::new(), left_out: Vec::new() }
+                RecordReading { record: record.map_err(place)?, faults: Vec::new(), left_out: Vec::new() }
             }
             (None, Some(file)) => {
                 let needed = needed(&scene, &system, &told);
@@ -116,8 +116,8 @@ impl Experiment {
     pub fn observer(&self, method: scene::Method) -> Box<dyn Observer> {
         let settings = &self.scene.observer;
         match method {
-            scene::Method::Newton => Box::new(self.window(Method::Newton)),
-            scene::Method::TrustRegion => Box::new(self.window(Method::TrustRegion)),
+            scene::Method::Newton => Box::new(self.window(WindowSearch::Newton)),
+            scene::Method::TrustRegion => Box::new(self.window(WindowSearch::TrustRegion)),
             scene::Method::Integration => Box::new(Integration),
             scene::Method::Kalman => Box::new(settings.kalman),
             scene::Method::HighGain => Box::new(settings.high_gain),
@@ -125,7 +125,7 @@ impl Experiment {
     }
 
     /// The observer by windows, with the scene's settings.
-    pub fn window(&self, method: Method) -> MovingWindow {
+    pub fn window(&self, method: WindowSearch) -> MovingWindow {
         let settings = &self.scene.observer;
         MovingWindow {
             method,

@@ -2,8 +2,8 @@
 
 use super::scene::{self, Scene, SceneError, Simulated};
 use crate::mechanics::moving::{
-    CentreOfMass, DEFAULT_TOLERANCE, Ended, Form, FormError, Scene as Bodies, SceneError as Refused, Shape,
-    SplineDraws, Trajectory, simulate as follow,
+    BodyForm, CentreOfMass, DEFAULT_TOLERANCE, Ended, FormError, MovingScene as Bodies,
+    SceneError as Refused, Shape, SplineDraws, Trajectory, simulate as follow,
 };
 use crate::observer::{Record, RecordError};
 use rand::SeedableRng;
@@ -198,15 +198,15 @@ pub(super) fn constants(simulated: &Simulated, shape: &Shape) -> BTreeMap<String
 fn outline(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {
     let centre = simulated.body.centre_of_mass.map_or(CentreOfMass::Uniform, CentreOfMass::At);
     let form = match &simulated.body.shape {
-        scene::Shape::Harmonics { mean, harmonics } => {
-            Form::Harmonics { mean: *mean, harmonics: harmonics.clone() }
+        scene::SceneOutline::Harmonics { mean, harmonics } => {
+            BodyForm::Harmonics { mean: *mean, harmonics: harmonics.clone() }
         }
-        scene::Shape::Ellipse { semi_axes } => Form::Ellipse { semi_axes: *semi_axes },
-        scene::Shape::Superellipse { semi_axes, exponent, rounding } => {
-            Form::Superellipse { semi_axes: *semi_axes, exponent: *exponent, rounding: *rounding }
+        scene::SceneOutline::Ellipse { semi_axes } => BodyForm::Ellipse { semi_axes: *semi_axes },
+        scene::SceneOutline::Superellipse { semi_axes, exponent, rounding } => {
+            BodyForm::Superellipse { semi_axes: *semi_axes, exponent: *exponent, rounding: *rounding }
         }
-        scene::Shape::Spline { radii, knots } => Form::Spline { radii: *radii, knots: *knots },
-        scene::Shape::RandomSpline { seed, knots } => {
+        scene::SceneOutline::Spline { radii, knots } => BodyForm::Spline { radii: *radii, knots: *knots },
+        scene::SceneOutline::RandomSpline { seed, knots } => {
             let drawn = SplineDraws::new(*seed, *knots).until_convex()?;
             return match centre {
                 CentreOfMass::Uniform => Ok((drawn.shape, Some(drawn.draws))),

@@ -3,7 +3,7 @@
 use super::run::{Experiment, error};
 use super::scene::{self, BasinStudy, NoiseStudy, SceneError};
 use super::simulation::Simulation;
-use crate::observer::{Method, MovingWindow, Order, Signals, Standing, Task, cramer_rao};
+use crate::observer::{MovingWindow, Order, Signals, Task, UpdateEnd, WindowSearch, cramer_rao};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -56,7 +56,8 @@ pub fn noise_study(
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<NoiseLevel>, SceneError> {
     let task = experiment.task(interrupt)?;
-    let observer = MovingWindow { steps: 50, blind: f64::INFINITY, ..experiment.window(Method::TrustRegion) };
+    let observer =
+        MovingWindow { steps: 50, blind: f64::INFINITY, ..experiment.window(WindowSearch::TrustRegion) };
     let mut levels = Vec::new();
     for (level, &noise) in study.levels.iter().enumerate() {
         if task.interrupted() {
@@ -75,7 +76,7 @@ pub fn noise_study(
                 (task.exact, task.sigma) = (false, noise);
                 let rows = first_window(&task, &observer);
                 let update = observer.update(&task, &task.guess, &rows, &task.clamped);
-                matches!(update.standing, Standing::Converged | Standing::Stuck).then_some(update.estimate)
+                matches!(update.standing, UpdateEnd::Converged | UpdateEnd::Stuck).then_some(update.estimate)
             })();
             done();
             Some(estimate)
@@ -183,7 +184,11 @@ pub fn basins(
 fn arrives(experiment: &Experiment, task: &Task<'_>, method: scene::Method) -> Option<bool> {
     let (time, state) = match method {
         scene::Method::Newton | scene::Method::TrustRegion => {
-            let by = if method == scene::Method::Newton { Method::Newton } else { Method::TrustRegion };
+            let by = if method == scene::Method::Newton {
+                WindowSearch::Newton
+            } else {
+                WindowSearch::TrustRegion
+            };
             let observer = experiment.window(by);
             let update = observer.update(task, &task.guess, &first_window(task, &observer), &task.clamped);
             (update.from, update.estimate)

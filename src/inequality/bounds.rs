@@ -25,15 +25,15 @@ pub struct Bound {
 
 /// Where one symbol lies.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Range {
+pub struct SymbolBounds {
     pub low: Option<Bound>,
     pub high: Option<Bound>,
 }
 
 /// Where symbols lie.
-pub type Bounds = BTreeMap<Symbol, Range>;
+pub type Bounds = BTreeMap<Symbol, SymbolBounds>;
 
-impl Range {
+impl SymbolBounds {
     /// All of it, and perhaps a little more.
     pub fn interval(&self) -> Interval {
         let low = self.low.as_ref().map_or(f64::NEG_INFINITY, |bound| bound.enclosed.low());

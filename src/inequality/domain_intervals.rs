@@ -2,7 +2,7 @@
 //! counts, and what cannot be bounded is the whole line. Nothing is refused, so that a program always has values; each
 //! encloses the values at all states of the box at which all that it needs exists.
 
-use crate::number::{Arithmetic, Function, Interval, Real, Refusal};
+use crate::number::{Arithmetic, Function, Interval, RealNumber, Refusal};
 use dashu::rational::RBig;
 
 /// The arithmetic.

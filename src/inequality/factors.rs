@@ -2,8 +2,8 @@
 //! assumed to have a sign, has coefficients of one sign in variables whose signs are known, or is a sum of squares.
 
 use super::bounds::Bounds;
-use super::reading::{LONGEST, Polynomials, Reading, Variable};
-use super::squares::{Bounded, bounded_below};
+use super::reading::{GoalVariable, LONGEST, Polynomials, Reading};
+use super::squares::{ProvedSign, bounded_below};
 use crate::expression::{Graph, Guard, Need, NodeId, Sign, Symbol};
 use crate::number::polynomial::{Polynomial, Ring};
 use crate::number::{Factorisation, Factors, Fraction, primitive, split};
@@ -259,7 +259,7 @@ impl Signs {
                 continue;
             }
             if let Some(bounded) = self.by_squares(candidate) {
-                let strict = bounded == Bounded::Positive || self.is_not_zero(polynomial);
+                let strict = bounded == ProvedSign::Positive || self.is_not_zero(polynomial);
                 return Some(Sign::new(upward, strict));
             }
         }
@@ -299,11 +299,11 @@ impl Signs {
     }
 
     /// Sums of squares: by itself; with what is assumed; and times something positive that is assumed.
-    fn by_squares(&self, polynomial: &Polynomial) -> Option<Bounded> {
+    fn by_squares(&self, polynomial: &Polynomial) -> Option<ProvedSign> {
         let assumed = self.all_assumed();
         let normal = &*self.read.normal;
         let mut found = bounded_below(polynomial, &[], &[], normal);
-        if found == Some(Bounded::Positive) || assumed.is_empty() && self.read.vanishing.is_empty() {
+        if found == Some(ProvedSign::Positive) || assumed.is_empty() && self.read.vanishing.is_empty() {
             return found;
         }
         found = bounded_below(polynomial, &assumed, &self.read.vanishing, normal).or(found);
@@ -365,8 +365,10 @@ impl Signs {
         for (place, variable) in self.read.variables.iter().enumerate() {
             let x = Polynomial::variable(place);
             let (moved, strict) = match (variable, variable.sign) {
-                (Variable { low: Some((low, strict)), .. }, _) => (Some((x, low, true)), Some(*strict)),
-                (Variable { high: Some((high, strict)), .. }, _) => (Some((x, high, false)), Some(*strict)),
+                (GoalVariable { low: Some((low, strict)), .. }, _) => (Some((x, low, true)), Some(*strict)),
+                (GoalVariable { high: Some((high, strict)), .. }, _) => {
+                    (Some((x, high, false)), Some(*strict))
+                }
                 (_, Some(sign)) if sign.is_upward() => (None, Some(sign.is_strict())),
                 (_, Some(sign)) => (Some((x, &RBig::ZERO, false)), Some(sign.is_strict())),
                 _ => (None, None),

@@ -17,7 +17,7 @@ mod space;
 mod squares;
 mod touch;
 
-pub use bounds::{Bound, Bounds, Range, bounds};
+pub use bounds::{Bound, Bounds, SymbolBounds, bounds};
 pub use boxes::Proposed;
 pub use crossing::vanishes_somewhere;
 
@@ -38,7 +38,7 @@ pub struct Given<'g> {
 
 /// What a goal came to.
 #[derive(Clone, Debug)]
-pub enum Answer {
+pub enum InequalityAnswer {
     /// It holds wherever it exists and what is given holds; by this argument.
     Holds(Argument),
     /// A proposed state was taken as a counterexample.
@@ -75,12 +75,12 @@ pub fn decide(
     given: Given<'_>,
     is_angle: &dyn Fn(Symbol) -> bool,
     refutes: &mut dyn FnMut(&mut Graph, &Proposed) -> bool,
-) -> Answer {
+) -> InequalityAnswer {
     // where terms exist is as good as what is assumed
     let all: Vec<Guard> = given.assumed.iter().chain(given.exists).copied().collect();
     let bounds = bounds(graph, &all);
     if by_signs(graph, goal, (&all, given.equations), &bounds, is_angle) {
-        return Answer::Holds(Argument::Signs);
+        return InequalityAnswer::Holds(Argument::Signs);
     }
     let question = boxes::Question {
         goal,
@@ -90,9 +90,9 @@ pub fn decide(
         bounds: &bounds,
     };
     match boxes::search(graph, &question, is_angle, refutes) {
-        boxes::Found::Holds { boxes, touches } => Answer::Holds(Argument::Boxes { boxes, touches }),
-        boxes::Found::Fails => Answer::Fails,
-        boxes::Found::Open { share, sample, boxes } => Answer::Open(Open { share, sample, boxes }),
+        boxes::Found::Holds { boxes, touches } => InequalityAnswer::Holds(Argument::Boxes { boxes, touches }),
+        boxes::Found::Fails => InequalityAnswer::Fails,
+        boxes::Found::Open { share, sample, boxes } => InequalityAnswer::Open(Open { share, sample, boxes }),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A goal and what is given, read as fractions of polynomials in the same variables: symbols, sines and cosines of angles,
 //! and the values of functions, with what is known of each.
 
-use super::bounds::{Bound, Bounds, Range};
+use super::bounds::{Bound, Bounds, SymbolBounds};
 use crate::expression::{
     Graph, Guard, Input, Node, NodeId, Program, Sign, Symbol, expand_angles, sign_given,
 };
@@ -20,7 +20,7 @@ pub struct Polynomials {
     pub goal: Fraction,
     pub assumed: Vec<Fraction>,
     pub fractions: Fractions<Polynomial>,
-    pub variables: Vec<Variable>,
+    pub variables: Vec<GoalVariable>,
     /// Sines at most to the first power.
     pub normal: Rc<dyn Fn(Polynomial) -> Polynomial>,
     /// Polynomials that are zero.
@@ -37,7 +37,7 @@ pub struct Polynomials {
 pub type End = (RBig, bool);
 
 /// A variable: its sign, and a number that it does not pass.
-pub struct Variable {
+pub struct GoalVariable {
     pub sign: Option<Sign>,
     pub low: Option<End>,
     pub high: Option<End>,
@@ -105,7 +105,7 @@ impl Reading {
         let inner = normal.clone();
         let fractions = Fractions::<Polynomial>::with_normal_form(move |p| inner(p));
         let inputs = self.program.inputs();
-        let variables = inputs.iter().map(|input| Variable::new(graph, *input, bounds, known)).collect();
+        let variables = inputs.iter().map(|input| GoalVariable::new(graph, *input, bounds, known)).collect();
         let elements: Vec<_> =
             (0..inputs.len()).map(|i| fractions.element(Polynomial::variable(i))).collect();
         let mut values = self.program.load(&fractions).ok()?.run(&elements, &mut Vec::new()).ok()?;
@@ -142,23 +142,23 @@ impl Reading {
     }
 }
 
-impl Variable {
-    fn new(graph: &mut Graph, input: Input, bounds: &Bounds, known: &HashMap<NodeId, Sign>) -> Variable {
-        let free = Variable { sign: None, low: None, high: None };
+impl GoalVariable {
+    fn new(graph: &mut Graph, input: Input, bounds: &Bounds, known: &HashMap<NodeId, Sign>) -> GoalVariable {
+        let free = GoalVariable { sign: None, low: None, high: None };
         match input {
             Input::Plain(symbol) => {
                 let node = graph.symbol(symbol);
-                let Some(Range { low, high }) = bounds.get(&symbol) else {
-                    return Variable { sign: known.get(&node).copied(), ..free };
+                let Some(SymbolBounds { low, high }) = bounds.get(&symbol) else {
+                    return GoalVariable { sign: known.get(&node).copied(), ..free };
                 };
                 let end = |bound: &Option<Bound>| {
                     bound.as_ref().and_then(|bound| Some((bound.exact.clone()?, bound.strict)))
                 };
-                Variable { sign: known.get(&node).copied(), low: end(low), high: end(high) }
+                GoalVariable { sign: known.get(&node).copied(), low: end(low), high: end(high) }
             }
             Input::Opaque(node) => {
                 let (low, high) = constant_bounds(graph.node(node));
-                Variable { sign: sign_given(graph, node, known), low, high }
+                GoalVariable { sign: sign_given(graph, node, known), low, high }
             }
             Input::Sine(_) | Input::Cosine(_) => free,
         }

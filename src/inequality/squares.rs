@@ -24,7 +24,7 @@ const PAIRED: usize = 3;
 
 /// What a sum of squares tells of a polynomial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bounded {
+pub enum ProvedSign {
     NotNegative,
     Positive,
 }
@@ -57,7 +57,7 @@ pub fn bounded_below(
     assumed: &[(Polynomial, bool)],
     equations: &[Polynomial],
     normal: &dyn Fn(Polynomial) -> Polynomial,
-) -> Option<Bounded> {
+) -> Option<ProvedSign> {
     let known = assumed.iter().map(|(g, _)| g).chain(equations);
     let degree = known.map(Polynomial::degree).fold(polynomial.degree(), u32::max);
     if polynomial.degree() > 12 {
@@ -69,7 +69,7 @@ pub fn bounded_below(
             break;
         }
         match at_degree(polynomial, (assumed, equations), normal, raised) {
-            Some(Bounded::Positive) => return Some(Bounded::Positive),
+            Some(ProvedSign::Positive) => return Some(ProvedSign::Positive),
             found => last = last.or(found),
         }
     }
@@ -81,7 +81,7 @@ fn at_degree(
     (assumed, equations): (&[(Polynomial, bool)], &[Polynomial]),
     normal: &dyn Fn(Polynomial) -> Polynomial,
     degree: u32,
-) -> Option<Bounded> {
+) -> Option<ProvedSign> {
     let mut parts = parts(polynomial, (assumed, equations), normal, degree)?;
     let mut unknowns = 0;
     for part in &mut parts {
@@ -125,7 +125,7 @@ fn at_degree(
         if let Some(strict) = are_semidefinite(&parts, &filled)
             && is_the_sum(polynomial, &products, &filled)
         {
-            return Some(if strict { Bounded::Positive } else { Bounded::NotNegative });
+            return Some(if strict { ProvedSign::Positive } else { ProvedSign::NotNegative });
         }
     }
     None
@@ -380,7 +380,7 @@ mod tests {
     fn power(a: &Polynomial, n: u32) -> Polynomial {
         (0..n).fold(number(1), |p, _| times(&p, a))
     }
-    fn plain(polynomial: &Polynomial) -> Option<Bounded> {
+    fn plain(polynomial: &Polynomial) -> Option<ProvedSign> {
         bounded_below(polynomial, &[], &[], &|p| p)
     }
 
@@ -389,24 +389,24 @@ mod tests {
         let (a, b, c) = (x(0), x(1), x(2));
         // a^2 - a b + b^2 touches zero; with one more it does not
         let form = power(&a, 2).add(&times(&a, &b).neg()).add(&power(&b, 2));
-        assert_eq!(plain(&form), Some(Bounded::NotNegative));
-        assert_eq!(plain(&form.add(&number(1))), Some(Bounded::Positive));
+        assert_eq!(plain(&form), Some(ProvedSign::NotNegative));
+        assert_eq!(plain(&form.add(&number(1))), Some(ProvedSign::Positive));
         assert_eq!(plain(&form.add(&number(1).neg())), None);
         // (a^2 - b^2)^2, of which no inner point exists
         let edge = power(&power(&a, 2).add(&power(&b, 2).neg()), 2);
-        assert_eq!(plain(&edge), Some(Bounded::NotNegative));
-        assert_eq!(plain(&edge.add(&number(1))), Some(Bounded::Positive));
+        assert_eq!(plain(&edge), Some(ProvedSign::NotNegative));
+        assert_eq!(plain(&edge.add(&number(1))), Some(ProvedSign::Positive));
         // a^4 + b^4 + c^4 + 1 >= 4 a b c
         let mean = power(&a, 4).add(&power(&b, 4)).add(&power(&c, 4)).add(&number(1));
         let product = times(&times(&a, &b), &c);
-        assert_eq!(plain(&mean.add(&times(&number(-4), &product))), Some(Bounded::NotNegative));
+        assert_eq!(plain(&mean.add(&times(&number(-4), &product))), Some(ProvedSign::NotNegative));
         assert_eq!(plain(&mean.add(&times(&number(-5), &product))), None);
         // Motzkin's polynomial is not negative, and no sum of squares
         let (aa, bb) = (power(&a, 2), power(&b, 2));
         let motzkin = times(&times(&aa, &bb), &aa.add(&bb).add(&number(-3))).add(&number(1));
         assert_eq!(plain(&motzkin), None);
         // x^4 - x + 1
-        assert_eq!(plain(&power(&a, 4).add(&a.neg()).add(&number(1))), Some(Bounded::Positive));
+        assert_eq!(plain(&power(&a, 4).add(&a.neg()).add(&number(1))), Some(ProvedSign::Positive));
     }
 
     #[test]
@@ -415,12 +415,12 @@ mod tests {
         // a b + 1 > 0 where a > 0 and b > 0
         let assumed = [(a.clone(), true), (b.clone(), true)];
         let found = bounded_below(&times(&a, &b).add(&number(1)), &assumed, &[], &|p| p);
-        assert_eq!(found, Some(Bounded::Positive));
+        assert_eq!(found, Some(ProvedSign::Positive));
         assert_eq!(bounded_below(&times(&a, &b).neg(), &assumed, &[], &|p| p), None);
         // 1 - a^2 >= 0 where 1 - a >= 0 and 1 + a >= 0
         let assumed = [(number(1).add(&a.neg()), false), (number(1).add(&a), false)];
         let found = bounded_below(&number(1).add(&power(&a, 2).neg()), &assumed, &[], &|p| p);
-        assert_eq!(found, Some(Bounded::NotNegative));
+        assert_eq!(found, Some(ProvedSign::NotNegative));
     }
 
     /// `1 - 2 a b` is `(a - b)^2` on the circle.
@@ -430,6 +430,6 @@ mod tests {
         let circle = power(&a, 2).add(&power(&b, 2)).add(&number(-1));
         let goal = number(1).add(&times(&number(-2), &times(&a, &b)));
         assert_eq!(plain(&goal), None);
-        assert_eq!(bounded_below(&goal, &[], &[circle], &|p| p), Some(Bounded::NotNegative));
+        assert_eq!(bounded_below(&goal, &[], &[circle], &|p| p), Some(ProvedSign::NotNegative));
     }
 }

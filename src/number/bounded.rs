@@ -2,11 +2,11 @@
 //! Stability of Numerical Algorithms*, 2002, section 3.3).
 //!
 //! The bound is rigorous: it holds for the exact value of the same expression, but that functions other than the square
-//! root, the sine and the cosine are believed to be accurate ([`Lanes::believed`]). It is kept in units of `2^-53` and
+//! root, the sine and the cosine are believed to be accurate ([`ErrorBounds::without_bound`]). It is kept in units of `2^-53` and
 //! itself computed with rounding, which [`Bounded::error`] makes up for.
 
 use super::Function;
-use super::lanes::{Lanes, Task};
+use super::lanes::{ErrorBounds, LaneTask, Lanes};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The unit of rounding: to the nearest double, `|fl(x) - x| <= 2^-53 |fl(x)|`.
@@ -112,6 +112,17 @@ impl<L: Lanes> Neg for Bounded<L> {
     }
 }
 
+impl<L: Lanes> ErrorBounds for Bounded<L> {
+    #[inline(always)]
+    fn within(self, units: f64) -> Self {
+        Bounded { units: self.value.splat(units), ..self }
+    }
+    #[inline(always)]
+    fn without_bound(self) -> Self {
+        self.within(f64::NAN)
+    }
+}
+
 /// Comparisons look at the values alone.
 impl<L: Lanes> Lanes for Bounded<L> {
     const COUNT: usize = L::COUNT;
@@ -119,10 +130,6 @@ impl<L: Lanes> Lanes for Bounded<L> {
     #[inline(always)]
     fn splat(self, value: f64) -> Self {
         Bounded::exact(self.value.splat(value))
-    }
-    #[inline(always)]
-    fn splat_within(self, value: f64, units: f64) -> Self {
-        Bounded { value: self.value.splat(value), units: self.value.splat(units) }
     }
     #[inline(always)]
     fn load(self, from: &[f64]) -> Self {
@@ -166,13 +173,8 @@ impl<L: Lanes> Lanes for Bounded<L> {
             Bounded { value: cosine, units: self.units + two * cosine.abs() },
         )
     }
-    fn apart<T: Task>(self, task: T) -> T::Output {
+    fn apart<T: LaneTask>(self, task: T) -> T::Output {
         self.value.apart(task)
-    }
-    #[inline(always)]
-    fn believed(self) -> Self {
-        let zero = self.value.splat(0.0);
-        Bounded { value: zero, units: self.value.splat(f64::NAN) }
     }
     #[inline(always)]
     fn apply(self, function: Function) -> Self {

@@ -19,7 +19,7 @@ mod tables;
 pub(super) use tables::SINE;
 
 use super::error_free::{fast_two_sum, two_product, two_sum};
-use super::{Function, Real, Refusal, rational_from_f64, rational_to_f64, round_to_decimal};
+use super::{Function, RealNumber, Refusal, rational_from_f64, rational_to_f64, round_to_decimal};
 use dashu::rational::RBig;
 use std::cmp::Ordering;
 use std::fmt;
@@ -169,7 +169,7 @@ impl fmt::Display for DoubleDouble {
     }
 }
 
-impl Real for DoubleDouble {
+impl RealNumber for DoubleDouble {
     fn from_rational(value: &RBig) -> Self {
         let hi = rational_to_f64(value);
         let lo = rational_from_f64(hi).map_or(0.0, |hi| rational_to_f64(&(value - hi)));

@@ -8,7 +8,7 @@
 //! A residue modulo a prime is no `DualNum`: it has no order, no magnitude and none of the functions that the trait
 //! demands. Exact derivatives are the expression graph's.
 
-use super::{Arithmetic, Function, Real, Refusal, Tower};
+use super::{Arithmetic, Function, RealNumber, Refusal, Tower};
 use dashu::rational::RBig;
 use nalgebra::allocator::Allocator;
 use nalgebra::{DefaultAllocator, Dim, U1};
@@ -18,14 +18,14 @@ use std::marker::PhantomData;
 /// A number that num-dual differentiates over or with: a plain one, or a dual of such.
 pub trait Differentiable: DualNum {
     /// The plain number at the bottom of the duals.
-    type Base: Real;
+    type Base: RealNumber;
     /// A constant.
     fn constant(value: Self::Base) -> Self;
     /// The value without its derivatives.
     fn base(&self) -> Self::Base;
 }
 
-impl<T: Real + DualNum> Differentiable for T {
+impl<T: RealNumber + DualNum> Differentiable for T {
     type Base = T;
     fn constant(value: T) -> T {
         value

@@ -11,7 +11,7 @@
 
 mod plain;
 
-use super::{DoubleDouble, Function, Interval, Real};
+use super::{DoubleDouble, Function, Interval, RealNumber};
 use num_dual::{DualNum, DualStruct, Mappable};
 use num_traits::{FromPrimitive, Inv, Num, One, Signed, Zero};
 use plain::Plain;
@@ -26,7 +26,7 @@ macro_rules! dual_number {
                 $number::ZERO
             }
             fn is_zero(&self) -> bool {
-                Real::is_zero(*self) == Some(true)
+                RealNumber::is_zero(*self) == Some(true)
             }
         }
         impl One for $number {

@@ -1,6 +1,6 @@
 //! Numbers of fixed size as an [`Arithmetic`].
 
-use super::{Arithmetic, Function, Real, Refusal};
+use super::{Arithmetic, Function, RealNumber, Refusal};
 use dashu::rational::RBig;
 use std::marker::PhantomData;
 
@@ -31,7 +31,7 @@ impl<T> Default for Floats<T> {
     }
 }
 
-impl<T: Real> Arithmetic for Floats<T> {
+impl<T: RealNumber> Arithmetic for Floats<T> {
     type Number = T;
 
     #[inline]
@@ -83,7 +83,7 @@ mod tests {
 
     /// What is common to the machine's floats: constants are rounded to nearest, a pole is named, an argument outside
     /// the domain too, and an overflow runs through.
-    fn behaves_as_a_float<T: Real>(third: T, largest: T) {
+    fn behaves_as_a_float<T: RealNumber>(third: T, largest: T) {
         let all = Floats::<T>::new();
         let number = |n: i64, d: u64| all.rational(&RBig::from_parts(n.into(), d.into())).unwrap();
         assert_eq!(number(1, 3), third);

@@ -11,7 +11,7 @@ mod circular;
 mod functions;
 mod rounding;
 
-use super::{Function, Real, Refusal, rational_from_f64, rational_to_f64};
+use super::{Function, RealNumber, Refusal, rational_from_f64, rational_to_f64};
 use dashu::rational::RBig;
 use rounding::{add_up, mul_down, mul_up};
 use std::cmp::Ordering;
@@ -21,7 +21,7 @@ use std::fmt;
 ///
 /// Always `lo <= hi`, `lo` below infinity and `hi` above minus infinity: an interval is never empty and never a NaN.
 /// Where nothing is known (a divisor that contains zero, an argument that may lie outside a function's domain, a NaN
-/// that was put in) an operator returns the whole line; [`Real::quotient`] and [`Real::function`] refuse instead.
+/// that was put in) an operator returns the whole line; [`RealNumber::quotient`] and [`RealNumber::function`] refuse instead.
 ///
 /// Two intervals are equal where they have the same ends; one is less than the other where every number of it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -226,7 +226,7 @@ impl From<f64> for Interval {
     }
 }
 
-impl Real for Interval {
+impl RealNumber for Interval {
     fn from_rational(value: &RBig) -> Self {
         // correct for whatever double the conversion returns
         let (mut lo, mut hi) = (rational_to_f64(value), rational_to_f64(value));

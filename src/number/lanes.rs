@@ -11,9 +11,29 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// No lanes hold more doubles than this.
 pub const MOST_LANES: usize = 16;
 
+/// What code that runs over any numbers tells those that keep bounds on their errors. Most have no use for that.
+pub trait ErrorBounds: Copy {
+    /// The same value, whose error is at most so many times `2^-53`.
+    #[inline(always)]
+    fn within(self, _units: f64) -> Self {
+        self
+    }
+
+    /// The same value, of whose error no bound is proved.
+    #[inline(always)]
+    fn without_bound(self) -> Self {
+        self
+    }
+}
+
 /// A number, or several numbers on which the same operations act.
 pub trait Lanes:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    ErrorBounds
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
 {
     /// How many doubles are given to it and taken from it.
     const COUNT: usize;
@@ -23,11 +43,6 @@ pub trait Lanes:
 
     /// The same exact value in every lane. (`self` only says what kind of number is wanted.)
     fn splat(self, value: f64) -> Self;
-    /// The same value in every lane, whose error is so many times `2^-53`; most numbers have no use for that.
-    #[inline(always)]
-    fn splat_within(self, value: f64, _units: f64) -> Self {
-        self.splat(value)
-    }
     /// The first values of a slice, as many as there are lanes.
     fn load(self, from: &[f64]) -> Self;
     /// Writes the values to the start of a slice.
@@ -47,21 +62,14 @@ pub trait Lanes:
 
     /// Does some work in a function of its own that is compiled for these lanes, so that it is compiled once for them
     /// and not wherever it is called.
-    fn apart<T: Task>(self, task: T) -> T::Output {
+    fn apart<T: LaneTask>(self, task: T) -> T::Output {
         called(task)
-    }
-
-    /// Zero; not a number where bounds on errors are kept and the one on this value, that of a function of the standard
-    /// library, is believed and not proved.
-    #[inline(always)]
-    fn believed(self) -> Self {
-        self.splat(0.0)
     }
 
     /// Zero where the value is finite, else not a number.
     #[inline(always)]
     #[allow(clippy::eq_op)] // infinity less infinity is not a number
-    fn lost(self) -> Self {
+    fn zero_if_finite(self) -> Self {
         self - self
     }
 
@@ -78,13 +86,13 @@ pub trait Lanes:
 }
 
 /// A piece of work; the method has to be `#[inline(always)]`, all the way down, like that of [`Vectorised`].
-pub trait Task {
+pub trait LaneTask {
     type Output;
     fn call(self) -> Self::Output;
 }
 
 #[inline(never)]
-fn called<T: Task>(task: T) -> T::Output {
+fn called<T: LaneTask>(task: T) -> T::Output {
     task.call()
 }
 

@@ -1,6 +1,6 @@
 //! What a value can be.
 //!
-//! An [`Arithmetic`] is a set of numbers together with its operations: numbers of fixed size ([`Real`]: single and
+//! An [`Arithmetic`] is a set of numbers together with its operations: numbers of fixed size ([`RealNumber`]: single and
 //! double precision, double-doubles, intervals), residues modulo a prime, exact rationals, enclosures of any precision,
 //! rounded decimals, Laurent series, dual numbers. A straight-line
 //! program is evaluated over any of them. An arithmetic may *refuse* an operation, and says why: a residue has no
@@ -46,10 +46,10 @@ pub use float::Floats;
 pub use fraction::{Factors, Fraction, Fractions};
 pub use instructions::Instructions;
 pub use interval::Interval;
-pub use lanes::{Lanes, MOST_LANES, Task, Vectorised};
+pub use lanes::{ErrorBounds, LaneTask, Lanes, MOST_LANES, Vectorised};
 pub use laurent::{Laurent, Series};
 pub use rational::{Rationals, display_rational, parse_decimal, rational_from_f64, rational_to_f64};
-pub use real::Real;
+pub use real::RealNumber;
 pub use residue::{LOG2_PRIMES, PrimeField};
 pub use rung::Rung;
 pub use taylor::{Coefficients, Recurrences};

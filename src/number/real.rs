@@ -12,7 +12,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 ///
 /// The operators answer always, if need be by a NaN or by the whole line; the methods that return a [`Result`] say
 /// where the question had no answer.
-pub trait Real:
+pub trait RealNumber:
     Copy
     + Debug
     + Display
@@ -47,7 +47,7 @@ pub trait Real:
     /// `f(self)`.
     ///
     /// # Errors
-    /// [`Refusal::OutsideDomain`] where [`Real::is_outside`], or where there is no value (the sine of an infinity).
+    /// [`Refusal::OutsideDomain`] where [`RealNumber::is_outside`], or where there is no value (the sine of an infinity).
     fn function(self, function: Function) -> Result<Self, Refusal>;
     /// Whether it is zero; `None` where that cannot be told.
     fn is_zero(self) -> Option<bool>;
@@ -70,7 +70,7 @@ pub trait Real:
     /// `self / divisor`.
     ///
     /// # Errors
-    /// As [`Real::check_divisor`].
+    /// As [`RealNumber::check_divisor`].
     #[inline]
     fn quotient(self, divisor: Self) -> Result<Self, Refusal> {
         divisor.check_divisor()?;
@@ -80,7 +80,7 @@ pub trait Real:
     /// `self^n` by repeated squaring; a negative power is the reciprocal of the positive one.
     ///
     /// # Errors
-    /// As [`Real::quotient`], where `n` is negative.
+    /// As [`RealNumber::quotient`], where `n` is negative.
     fn power(self, n: i32) -> Result<Self, Refusal> {
         let one = Self::from_f64(1.0);
         let (mut result, mut square) = (one, self);
@@ -100,7 +100,7 @@ pub trait Real:
 
 macro_rules! machine_float {
     ($float:ident, $from_rational:expr) => {
-        impl Real for $float {
+        impl RealNumber for $float {
             #[inline]
             fn from_rational(value: &RBig) -> Self {
                 $from_rational(value)

@@ -96,6 +96,8 @@ pub enum Stop {
 pub struct Codistribution {
     /// All words that were taken, shortest first, but those whose Lie derivative is constant.
     pub words: Vec<Word>,
+    /// The value of each word.
+    pub values: Vec<NodeId>,
     /// The differentials of all words, by rows of as many entries as there are states.
     pub rows: Vec<Vec<NodeId>>,
     /// The words that were needed: each of them raised the rank at a generic state of the locus.
@@ -139,6 +141,7 @@ impl Codistribution {
         };
         let mut result = Codistribution {
             words: Vec::new(),
+            values: Vec::new(),
             rows: Vec::new(),
             needed: Vec::new(),
             order: 0,
@@ -166,6 +169,7 @@ impl Codistribution {
                     continue;
                 }
                 result.words.push(word.clone());
+                result.values.push(value);
                 result.rows.push(row);
             }
             result.order = order;
@@ -284,8 +288,7 @@ fn needed(
     rows: &[Vec<NodeId>],
     conditions: &Assignment,
 ) -> Result<(Vec<usize>, bool), CodistributionError> {
-    let angles = system.angles();
-    let is_angle = |symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let as_written: Vec<NodeId> = rows.iter().flatten().copied().collect();
     let entries = system.graph.substitute(&as_written, conditions);
     let entries = expand_angles(&mut system.graph, &entries, is_angle);

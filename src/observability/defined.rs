@@ -1,7 +1,7 @@
 //! Whether what is asked about exists at a state: every guard of outputs, fields and rows holds there.
 
 use super::state::State;
-use crate::expression::{Graph, Guard, Need, NodeId, Program, Symbol, expand_angles};
+use crate::expression::{Graph, Guard, Need, NodeId, Program, expand_angles};
 use crate::number::{Arithmetic, Enclosures, Floats, Interval, Rationals};
 use crate::system::System;
 use dashu::rational::RBig;
@@ -22,8 +22,7 @@ impl Defined {
     pub fn new(system: &mut System, guards: &[Guard]) -> Defined {
         let guards: Vec<Guard> =
             guards.iter().copied().filter(|guard| guard.is_obvious(&system.graph) != Some(true)).collect();
-        let angles = system.angles();
-        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let nodes: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
         let nodes = expand_angles(&mut system.graph, &nodes, is_angle);
         Defined {

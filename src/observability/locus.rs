@@ -74,8 +74,7 @@ impl Locus {
         fixed: &BTreeMap<Symbol, RBig>,
         mentioned: &[NodeId],
     ) -> Result<Locus, LocusError> {
-        let angles = system.angles();
-        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let mut dependent: Vec<(Symbol, bool)> =
             branch.values.keys().map(|symbol| (*symbol, is_angle(*symbol))).collect();
         dependent.sort_unstable();

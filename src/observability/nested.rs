@@ -5,7 +5,7 @@
 //! taken from the expression graph; every rule of differentiation is num-dual's. The cost doubles with each level.
 
 use crate::expression::{Failure, Input, NodeId, Program, Symbol};
-use crate::number::{Differentiable, Duals, Real, Refusal, Tower};
+use crate::number::{Differentiable, Duals, RealNumber, Refusal, Tower};
 use crate::system::System;
 use nalgebra::{DVector, Dyn};
 use num_dual::{DualNum, DualVec, gradient};
@@ -77,7 +77,7 @@ fn values<T: Differentiable>(
 ///
 /// # Errors
 /// Where the point is a pole, or may be one.
-pub fn differential_by_duals<T: Real + DualNum>(
+pub fn differential_by_duals<T: RealNumber + DualNum>(
     system: &System,
     word: &[usize],
     h: NodeId,

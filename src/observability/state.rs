@@ -1,7 +1,7 @@
 //! A state in exact numbers.
 
 use crate::expression::{Input, Program, Symbol};
-use crate::number::{Arithmetic, Function, Real, Refusal, rational_to_f64};
+use crate::number::{Arithmetic, Function, RealNumber, Refusal, rational_to_f64};
 use crate::system::System;
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
@@ -107,7 +107,7 @@ fn principal_value<A: Arithmetic>(arithmetic: &A, sine: &RBig, cosine: &RBig) ->
 }
 
 /// A program's inputs at a state given in doubles, or in any other number of fixed size; angles in radians.
-pub fn float_inputs<T: Real>(program: &Program, value: impl Fn(Symbol) -> T) -> Vec<T> {
+pub fn float_inputs<T: RealNumber>(program: &Program, value: impl Fn(Symbol) -> T) -> Vec<T> {
     let nothing = T::from_f64(f64::NAN);
     let at = |function, symbol: &Symbol| value(*symbol).function(function).unwrap_or(nothing);
     let input = |input: &Input| match input {

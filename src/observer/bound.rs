@@ -10,7 +10,7 @@ const UNSEEN: f64 = 1e-10;
 /// For independent normal errors of the readings with the standard deviation `sigma` no unbiased estimate has a smaller
 /// covariance than `sigma^2 (J^T J)^-1`, `J` being the derivatives of the readings by the unknowns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Bound {
+pub struct CramerRaoBound {
     /// One an unknown, in its unit; infinite where it is not seen.
     pub deviations: Vec<f64>,
     /// The largest singular value of the scaled `J` over the smallest.
@@ -23,9 +23,9 @@ pub struct Bound {
 
 /// The bound from the derivatives of the readings, a row a reading; `sizes` are the magnitudes of the unknowns, by which
 /// they are scaled before anything is decomposed.
-pub fn cramer_rao(slopes: &DMatrix<f64>, sigma: f64, sizes: &[f64]) -> Bound {
+pub fn cramer_rao(slopes: &DMatrix<f64>, sigma: f64, sizes: &[f64]) -> CramerRaoBound {
     let p = slopes.ncols();
-    let blind = || Bound {
+    let blind = || CramerRaoBound {
         deviations: vec![f64::INFINITY; p],
         condition: f64::INFINITY,
         covariance: None,
@@ -59,7 +59,7 @@ pub fn cramer_rao(slopes: &DMatrix<f64>, sigma: f64, sizes: &[f64]) -> Bound {
         let square: f64 = seen.map(|k| (directions[(k, i)] / values[k]).powi(2)).sum();
         if hidden { f64::INFINITY } else { sigma * sizes[i] * square.sqrt() }
     };
-    Bound {
+    CramerRaoBound {
         deviations: (0..p).map(deviation).collect(),
         condition: if smallest > 0.0 { largest / smallest } else { f64::INFINITY },
         covariance: unseen.is_empty().then(|| DMatrix::from_fn(p, p, entry)),

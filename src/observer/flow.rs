@@ -51,7 +51,7 @@ pub struct Sample {
 
 /// A model with its signals, ready to be integrated.
 #[derive(Clone, Copy, Debug)]
-pub struct Flow<'a> {
+pub struct ModelFlow<'a> {
     pub model: &'a Model,
     pub signals: &'a Signals,
     /// The relative and absolute error of a step.
@@ -65,7 +65,7 @@ const MOST_EVALUATIONS: usize = 3000;
 /// The unknowns that one call can carry.
 pub const MOST_UNKNOWNS: usize = 10;
 
-impl Flow<'_> {
+impl ModelFlow<'_> {
     /// The model at some times, from a state at the first of them; `free` are the places of the states whose first values
     /// are unknown, in the order of the derivatives.
     ///

@@ -2,7 +2,7 @@
 
 use super::flow::advance;
 use super::model::{Feed, Formulas};
-use super::task::{Moment, Observer, Task, Track};
+use super::task::{Observer, SampleEstimate, Task, Track};
 use super::{Lost, Model};
 use crate::expression::{NodeId, Symbol, gradient};
 use crate::number::{Duals, Refusal};
@@ -67,7 +67,7 @@ impl Observer for HighGain {
             let read = task.readings(row);
             let seen = task.full.outputs.iter().map(|name| task.full.find(name).map(|place| state[place]));
             let surprise = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
-            track.moments.push(Moment { time, state: state[..task.sought()].to_vec(), surprise });
+            track.moments.push(SampleEstimate { time, state: state[..task.sought()].to_vec(), surprise });
         };
         record(times[0], &state, 0, &mut track);
         for row in 1..times.len() {
@@ -85,7 +85,7 @@ impl Observer for HighGain {
                     track.unseen += times.len() - row;
                     for time in &times[row..] {
                         let state = state[..task.sought()].to_vec();
-                        track.moments.push(Moment { time: *time, state, surprise: Vec::new() });
+                        track.moments.push(SampleEstimate { time: *time, state, surprise: Vec::new() });
                     }
                     break;
                 }

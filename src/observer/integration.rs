@@ -1,7 +1,7 @@
 //! Pure integration: the equations, from the first guess to the end. What the thesis resorts to where its observer cannot
 //! see, and the line below which no observer should fall.
 
-use super::task::{Moment, Observer, Task, Track};
+use super::task::{Observer, SampleEstimate, Task, Track};
 
 /// Integrates what is sought with the outputs as they are read, and never compares.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,7 +16,7 @@ impl Observer for Integration {
         let times = task.signals.times();
         let mut track = Track::default();
         let mut belief = task.guess.clone();
-        track.moments.push(Moment { time: times[0], state: belief.clone(), surprise: Vec::new() });
+        track.moments.push(SampleEstimate { time: times[0], state: belief.clone(), surprise: Vec::new() });
         for (row, &time) in times.iter().enumerate().skip(1) {
             if task.interrupted() {
                 break;
@@ -30,7 +30,7 @@ impl Observer for Integration {
                     track.unseen += 1;
                 }
             }
-            track.moments.push(Moment { time, state: belief.clone(), surprise: Vec::new() });
+            track.moments.push(SampleEstimate { time, state: belief.clone(), surprise: Vec::new() });
         }
         track
     }

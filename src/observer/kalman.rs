@@ -1,6 +1,6 @@
 //! The extended Kalman filter, the field's usual choice.
 
-use super::task::{Moment, Observer, Task, Track};
+use super::task::{Observer, SampleEstimate, Task, Track};
 use super::{Lost, Order};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Deserialize;
@@ -49,7 +49,7 @@ impl Observer for Kalman {
         let drive = |i: usize| task.sizes.get(i).map_or(0.0, |size| (self.process_noise * size).powi(2));
         let record = |time: f64, state: &DVector<f64>, surprise: Vec<f64>, track: &mut Track| {
             let state = state.as_slice()[..task.sought()].to_vec();
-            track.moments.push(Moment { time, state, surprise });
+            track.moments.push(SampleEstimate { time, state, surprise });
         };
         record(times[0], &state, Vec::new(), &mut track);
         for row in 1..times.len() {

@@ -1,7 +1,7 @@
 //! States recovered from what is measured.
 //!
 //! [`Signals`] are columns of measurements over time. A [`Model`] takes some states of a system for unknown and everything else
-//! for constants or signals; a [`Flow`] follows it through time with its exact first and second derivatives by the unknowns. A
+//! for constants or signals; a [`ModelFlow`] follows it through time with its exact first and second derivatives by the unknowns. A
 //! [`Window`] compares what the model expects with what was read, [`cramer_rao`] bounds how well that can tell the
 //! unknowns, and an [`Observer`] works through a [`Task`] and gives a [`Track`]: Newton's method and a region of trust
 //! ([`MovingWindow`]), [`Integration`], [`Kalman`], [`HighGain`].
@@ -23,16 +23,18 @@ mod task;
 mod trust_region;
 mod window;
 
-pub use bound::{Bound, cramer_rao};
-pub use flow::{Flow, Lost, MOST_UNKNOWNS, Order, Sample};
+pub use bound::{CramerRaoBound, cramer_rao};
+pub use flow::{Lost, MOST_UNKNOWNS, ModelFlow, Order, Sample};
 pub use high_gain::HighGain;
 pub use integration::Integration;
 pub use kalman::Kalman;
 pub use model::{Model, ModelError, ModelQuestion};
-pub use moving_window::{Method, MovingWindow, WhenBlind};
+pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
 pub use newton::Newton;
-pub use record::{Cell, Fault, FaultKind, FaultRules, OnFault, Reading, Record, RecordError, Rows, check};
+pub use record::{
+    Cell, Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading, RecordRows, check,
+};
 pub use signal::{SignalError, Signals};
-pub use task::{Moment, Observer, Sought, Standing, TOLERANCE, Task, Track, Update};
+pub use task::{Observer, SampleEstimate, Sought, TOLERANCE, Task, Track, Update, UpdateEnd};
 pub use trust_region::TrustRegion;
-pub use window::{Expansion, Window};
+pub use window::{Window, WindowExpansion};

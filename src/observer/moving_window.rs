@@ -1,7 +1,7 @@
 //! The observer of section 4.5: after every window of samples some steps towards the state at its beginning that explains
 //! it best, from there on by the equations.
 
-use super::task::{Moment, Observer, Standing, Task, Track, Update};
+use super::task::{Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
 use super::window::Window;
 use super::{Newton, Order, TrustRegion, cramer_rao};
 use argmin::core::{Executor, State, TerminationReason, TerminationStatus};
@@ -11,7 +11,7 @@ use std::time::Instant;
 
 /// How the smallest error of a window is sought.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum WindowSearch {
     /// 4.78, with the exact Hessian.
     Newton,
     /// Gauss and Newton's method within a region of trust.
@@ -32,7 +32,7 @@ pub enum WhenBlind {
 /// The observer by windows.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingWindow {
-    pub method: Method,
+    pub method: WindowSearch,
     /// Samples of a window.
     pub window: usize,
     /// Steps a window at most.
@@ -45,8 +45,8 @@ pub struct MovingWindow {
 impl Observer for MovingWindow {
     fn name(&self) -> &'static str {
         match self.method {
-            Method::Newton => "newton",
-            Method::TrustRegion => "trust-region",
+            WindowSearch::Newton => "newton",
+            WindowSearch::TrustRegion => "trust-region",
         }
     }
 
@@ -65,7 +65,7 @@ impl Observer for MovingWindow {
                 (rows.len() >= self.window.min(samples)).then(|| self.update(task, &belief, &rows, clamped));
             let mut start = task.full_state(&belief, row);
             if let Some(update) = update {
-                sees = !matches!(update.standing, Standing::Blind { .. } | Standing::Lost(_));
+                sees = !matches!(update.standing, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
                 belief.clone_from(&update.estimate);
                 start = [&update.estimate[..], &update.outputs].concat();
                 track.updates.push(update);
@@ -128,11 +128,11 @@ impl MovingWindow {
             steps: 0,
             troubled: 0,
             seconds: 0.0,
-            standing: Standing::Stuck,
+            standing: UpdateEnd::Stuck,
         };
         let guess = window.unknowns(&window.start);
         update.standing = match window.expand(&guess, Order::First) {
-            Err(lost) => Standing::Lost(lost),
+            Err(lost) => UpdateEnd::Lost(lost),
             Ok(expansion) => {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
                 match self.see(task, &window, &expansion.slopes, &sizes, &mut update) {
@@ -153,7 +153,7 @@ impl MovingWindow {
         slopes: &nalgebra::DMatrix<f64>,
         sizes: &[f64],
         update: &mut Update,
-    ) -> Option<Standing> {
+    ) -> Option<UpdateEnd> {
         let bound = cramer_rao(slopes, task.sigma, sizes);
         let mut blind = false;
         update.deviations = vec![0.0; task.sought()];
@@ -164,7 +164,7 @@ impl MovingWindow {
             }
         }
         update.condition = bound.condition;
-        blind.then_some(Standing::Blind { weakest: bound.weakest })
+        blind.then_some(UpdateEnd::Blind { weakest: bound.weakest })
     }
 
     fn search(
@@ -174,7 +174,7 @@ impl MovingWindow {
         guess: DVector<f64>,
         sizes: &[f64],
         update: &mut Update,
-    ) -> Standing {
+    ) -> UpdateEnd {
         macro_rules! run {
             ($solver:expr) => {
                 Executor::new(window.clone(), $solver)
@@ -184,27 +184,27 @@ impl MovingWindow {
             };
         }
         let (state, troubled) = match self.method {
-            Method::Newton => match run!(Newton::new(sizes.to_vec())) {
+            WindowSearch::Newton => match run!(Newton::new(sizes.to_vec())) {
                 Ok(result) => {
                     let troubled = result.solver.not_convex + result.solver.halved;
                     (result.state, troubled)
                 }
                 Err(error) => return lost(error, update.from),
             },
-            Method::TrustRegion => match run!(TrustRegion::new(sizes.to_vec())) {
+            WindowSearch::TrustRegion => match run!(TrustRegion::new(sizes.to_vec())) {
                 Ok(result) => (result.state, result.solver.refused),
                 Err(error) => return lost(error, update.from),
             },
         };
         update.steps = state.get_iter();
         update.troubled = troubled;
-        let Some(found) = state.get_param() else { return Standing::Stuck };
+        let Some(found) = state.get_param() else { return UpdateEnd::Stuck };
         let whole = window.state(found);
         update.estimate = whole[..task.sought()].to_vec();
         update.outputs = whole[task.sought()..].to_vec();
         // the bound belongs to where one is
         match window.expand(found, Order::First) {
-            Err(lost) => return Standing::Lost(lost),
+            Err(lost) => return UpdateEnd::Lost(lost),
             Ok(expansion) => {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
                 if let Some(blind) = self.see(task, window, &expansion.slopes, sizes, update) {
@@ -215,9 +215,9 @@ impl MovingWindow {
             }
         }
         match state.get_termination_status() {
-            TerminationStatus::Terminated(TerminationReason::SolverConverged) => Standing::Converged,
-            TerminationStatus::Terminated(TerminationReason::MaxItersReached) => Standing::StepsSpent,
-            _ => Standing::Stuck,
+            TerminationStatus::Terminated(TerminationReason::SolverConverged) => UpdateEnd::Converged,
+            TerminationStatus::Terminated(TerminationReason::MaxItersReached) => UpdateEnd::StepsSpent,
+            _ => UpdateEnd::Stuck,
         }
     }
 
@@ -243,7 +243,7 @@ impl MovingWindow {
                 let read = task.readings(row);
                 let surprise = sample.outputs.iter().zip(&read).map(|(seen, read)| seen - read).collect();
                 let state = sample.state[..task.sought()].to_vec();
-                track.moments.push(Moment { time: sample.time, state, surprise });
+                track.moments.push(SampleEstimate { time: sample.time, state, surprise });
             }
             return last.state[..task.sought()].to_vec();
         }
@@ -261,13 +261,13 @@ impl MovingWindow {
         };
         let end = states.last().cloned().unwrap_or_else(|| belief.to_vec());
         for (state, time) in states.into_iter().zip(times).skip(skipped) {
-            track.moments.push(Moment { time: *time, state, surprise: Vec::new() });
+            track.moments.push(SampleEstimate { time: *time, state, surprise: Vec::new() });
         }
         end
     }
 }
 
-fn lost(error: argmin::core::Error, time: f64) -> Standing {
+fn lost(error: argmin::core::Error, time: f64) -> UpdateEnd {
     let why = error.to_string();
-    Standing::Lost(error.downcast::<super::Lost>().unwrap_or(super::Lost { time, why }))
+    UpdateEnd::Lost(error.downcast::<super::Lost>().unwrap_or(super::Lost { time, why }))
 }

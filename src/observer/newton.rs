@@ -1,6 +1,6 @@
 //! Newton's method for the error of the output (4.78), as a solver of argmin.
 
-use super::window::{Expansion, Window};
+use super::window::{Window, WindowExpansion};
 use super::{Lost, Order};
 use argmin::core::{Error, IterState, KV, Problem, Solver, State, TerminationReason, TerminationStatus};
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -60,7 +60,7 @@ pub(super) fn length(step: &DVector<f64>, sizes: &[f64]) -> f64 {
 }
 
 impl Newton {
-    fn direction(&mut self, expansion: &Expansion) -> Option<DVector<f64>> {
+    fn direction(&mut self, expansion: &WindowExpansion) -> Option<DVector<f64>> {
         if let Some(step) = solve_definite(&expansion.hessian, &expansion.gradient, &self.sizes) {
             return Some(-step);
         }
@@ -70,7 +70,7 @@ impl Newton {
 }
 
 /// The step of Gauss and Newton with the damping `lambda` (Levenberg, Marquardt), by least squares and not by `J^T J`.
-pub(super) fn gauss_newton(expansion: &Expansion, sizes: &[f64], lambda: f64) -> Option<DVector<f64>> {
+pub(super) fn gauss_newton(expansion: &WindowExpansion, sizes: &[f64], lambda: f64) -> Option<DVector<f64>> {
     let (n, p) = expansion.slopes.shape();
     let damping = lambda.sqrt();
     let matrix = DMatrix::from_fn(n + p, p, |i, j| {

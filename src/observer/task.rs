@@ -1,6 +1,6 @@
 //! What every observer is given, and what it gives back.
 
-use super::{Flow, Lost, Model, ModelError, ModelQuestion, Order, Signals};
+use super::{Lost, Model, ModelError, ModelFlow, ModelQuestion, Order, Signals};
 use crate::system::System;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -122,8 +122,8 @@ impl<'a> Task<'a> {
         self.interrupt.load(Ordering::Relaxed)
     }
 
-    pub(super) fn full_flow(&self) -> Flow<'_> {
-        Flow { model: &self.full, signals: self.signals, tolerance: self.tolerance }
+    pub(super) fn full_flow(&self) -> ModelFlow<'_> {
+        ModelFlow { model: &self.full, signals: self.signals, tolerance: self.tolerance }
     }
 
     /// The full state at a sample: what is sought as it is believed, the outputs as they are read there.
@@ -146,7 +146,7 @@ impl<'a> Task<'a> {
         sought: &[f64],
         rows: std::ops::Range<usize>,
     ) -> Result<Vec<Vec<f64>>, Lost> {
-        let flow = Flow { model: &self.reduced, signals: self.signals, tolerance: self.tolerance };
+        let flow = ModelFlow { model: &self.reduced, signals: self.signals, tolerance: self.tolerance };
         let samples = flow.follow(sought, &[], &self.signals.times()[rows], Order::Value)?;
         Ok(samples.into_iter().map(|sample| sample.state).collect())
     }
@@ -154,7 +154,7 @@ impl<'a> Task<'a> {
 
 /// What an observer believes at a sample.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moment {
+pub struct SampleEstimate {
     /// In s.
     pub time: f64,
     /// What is sought.
@@ -165,7 +165,7 @@ pub struct Moment {
 
 /// How an update ended.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Standing {
+pub enum UpdateEnd {
     /// The last step was too short to matter.
     Converged,
     /// All steps that were allowed are done.
@@ -200,14 +200,14 @@ pub struct Update {
     pub troubled: usize,
     /// The wall time of the update, in s.
     pub seconds: f64,
-    pub standing: Standing,
+    pub standing: UpdateEnd,
 }
 
 /// What an observer makes of a task.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Track {
     /// What it believed, sample by sample.
-    pub moments: Vec<Moment>,
+    pub moments: Vec<SampleEstimate>,
     /// Its updates, where it works by windows.
     pub updates: Vec<Update>,
     /// Samples at which it could not see, or not follow its model, and held or integrated instead.
@@ -218,7 +218,7 @@ pub struct Track {
 
 impl Track {
     /// What it believed last.
-    pub fn last(&self) -> Option<&Moment> {
+    pub fn last(&self) -> Option<&SampleEstimate> {
         self.moments.last()
     }
 }

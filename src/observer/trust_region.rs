@@ -1,7 +1,7 @@
 //! Gauss and Newton's method within a region of trust, as a solver of argmin.
 
 use super::newton::{Iteration, gauss_newton, length, no_guess, settled};
-use super::window::{Expansion, Window};
+use super::window::{Window, WindowExpansion};
 use super::{Lost, Order};
 use argmin::core::{Error, KV, Problem, Solver, State, TerminationReason, TerminationStatus};
 use nalgebra::DVector;
@@ -25,7 +25,7 @@ pub struct TrustRegion {
     pub refused: usize,
     lambda: f64,
     growth: f64,
-    here: Option<Expansion>,
+    here: Option<WindowExpansion>,
     converged: bool,
     stuck: bool,
 }
@@ -38,7 +38,7 @@ impl TrustRegion {
     }
 
     /// How much smaller `2k/dt` should be after a step, by the linear model.
-    fn foretold(&self, here: &Expansion, step: &DVector<f64>) -> f64 {
+    fn foretold(&self, here: &WindowExpansion, step: &DVector<f64>) -> f64 {
         let after = &here.differences + &here.slopes * step;
         here.differences.norm_squared() - after.norm_squared()
     }
@@ -72,7 +72,7 @@ impl Solver<Window<'_>, Iteration> for TrustRegion {
         while self.lambda < STRONGEST {
             let Some(step) = gauss_newton(&here, &self.sizes, self.lambda) else { break };
             let short = length(&step, &self.sizes);
-            let tried: Result<Expansion, Lost> =
+            let tried: Result<WindowExpansion, Lost> =
                 problem.problem("expansions", |window| Ok(window.expand(&(&guess + &step), Order::First)))?;
             if let Ok(there) = tried {
                 let gain = here.differences.norm_squared() - there.differences.norm_squared();

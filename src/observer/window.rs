@@ -1,6 +1,6 @@
 //! The error of the output over a window of samples (4.77), as a function of the unknown parts of the first state.
 
-use super::{Flow, Lost, Order, Sample};
+use super::{Lost, ModelFlow, Order, Sample};
 use nalgebra::{DMatrix, DVector};
 
 /// Some samples, and the state at the first of them, of which a part is unknown.
@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 /// so that for independent errors of one size the smallest `k` is the most likely state.
 #[derive(Clone, Debug)]
 pub struct Window<'a> {
-    pub flow: Flow<'a>,
+    pub flow: ModelFlow<'a>,
     /// In s; the first is the time of the state.
     pub times: &'a [f64],
     /// What was measured: the values of the model's outputs, a row a sample.
@@ -22,7 +22,7 @@ pub struct Window<'a> {
 
 /// The error and its derivatives at one guess, `p` unknowns and `n` differences.
 #[derive(Clone, Debug)]
-pub struct Expansion {
+pub struct WindowExpansion {
     /// `k` of 4.77.
     pub cost: f64,
     /// The differences `h - y`, sample by sample.
@@ -39,7 +39,7 @@ pub struct Expansion {
     pub end_slopes: DMatrix<f64>,
 }
 
-impl Expansion {
+impl WindowExpansion {
     /// The root of the mean square of the differences.
     pub fn misfit(&self) -> f64 {
         self.differences.norm() / (self.differences.len().max(1) as f64).sqrt()
@@ -87,7 +87,7 @@ impl Window<'_> {
     ///
     /// # Errors
     /// Where the model cannot be followed to the end of the window.
-    pub fn expand(&self, unknowns: &DVector<f64>, order: Order) -> Result<Expansion, Lost> {
+    pub fn expand(&self, unknowns: &DVector<f64>, order: Order) -> Result<WindowExpansion, Lost> {
         let samples = self.flow.follow(&self.state(unknowns), &self.free, self.times, order)?;
         let p = self.free.len();
         let differences = self.differences(&samples);
@@ -103,7 +103,7 @@ impl Window<'_> {
         }
         let step = self.step();
         let end = samples.last();
-        Ok(Expansion {
+        Ok(WindowExpansion {
             cost: 0.5 * step * differences.norm_squared(),
             gradient: slopes.tr_mul(&differences) * step,
             hessian: hessian * step,

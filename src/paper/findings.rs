@@ -8,11 +8,11 @@ use crate::certificate::RegionAnswer;
 use crate::claim::Outcome;
 use crate::experiment::{Answer, Experiment};
 use crate::system::System;
-use crate::tradeoff::stress::Study;
+use crate::tradeoff::stress::StressStudy;
 use crate::tradeoff::{Growth, PrintedExpression, RouteAgreement, Trade};
 
 /// Lie derivatives of one output along one field, to high orders.
-pub struct Derivatives {
+pub struct DerivativesFound {
     pub field: String,
     pub output: String,
     /// Two routes to each, order by order.
@@ -34,11 +34,11 @@ pub struct FileFindings {
     /// Numbers in print, by formula.
     pub printed: Vec<PrintedExpression>,
     pub reductions: Vec<ReductionFound>,
-    pub derivatives: Option<Derivatives>,
+    pub derivatives: Option<DerivativesFound>,
     /// Speed against accuracy, in short.
     pub trade: Option<Trade>,
     /// The extremes, in short.
-    pub stress: Option<Study>,
+    pub stress: Option<StressStudy>,
     /// The certificate on the sample box, after a few thousand sub-boxes.
     pub certificate: Option<RegionAnswer>,
     pub left_out: Vec<LeftOut>,

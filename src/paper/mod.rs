@@ -12,10 +12,10 @@ mod reduction;
 mod verify;
 mod views;
 
-pub use findings::{Derivatives, FileFindings, Findings};
+pub use findings::{DerivativesFound, FileFindings, Findings};
 pub use folder::{MANIFEST, Paper};
 pub use left_out::LeftOut;
-pub use numbering::{Equation, Numbering};
+pub use numbering::{NumberedEquation, Numbering};
 pub use reduction::ReductionFound;
 pub use verify::{VerifyOptions, verify, verify_into};
 pub use views::{LineFound, MapFound, SetRank};

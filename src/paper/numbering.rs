@@ -11,14 +11,14 @@ pub struct Numbering(pub Vec<(String, u32)>);
 
 /// The entries of one equation.
 #[derive(Clone, Debug)]
-pub struct Equation<'o> {
+pub struct NumberedEquation<'o> {
     /// As in `4.48`.
     pub number: String,
     /// The outcomes whose ids begin with the number, and the parts of it.
     pub entries: Vec<&'o Outcome>,
 }
 
-impl Equation<'_> {
+impl NumberedEquation<'_> {
     /// One word for all entries; `no entry` where there are none. What is the matter with a form in the text comes first,
     /// then what is undecided; else it is the word of the entry that has the equation's own number, and where there are only
     /// parts, the one that claims least. That a variant is refuted, where the file expects it, says nothing against the
@@ -45,7 +45,10 @@ impl Numbering {
     }
 
     /// All equations in the order of the paper.
-    pub fn equations<'o>(&self, outcomes: impl IntoIterator<Item = &'o Outcome>) -> Vec<Equation<'o>> {
+    pub fn equations<'o>(
+        &self,
+        outcomes: impl IntoIterator<Item = &'o Outcome>,
+    ) -> Vec<NumberedEquation<'o>> {
         let mut by_number: BTreeMap<String, Vec<&Outcome>> = BTreeMap::new();
         for outcome in outcomes {
             if let Some(number) = self.number_of(&outcome.id) {
@@ -53,8 +56,10 @@ impl Numbering {
             }
         }
         let numbers = self.0.iter().flat_map(|(part, last)| (1..=*last).map(move |n| name(part, n)));
-        let equation =
-            |number: String| Equation { entries: by_number.remove(&number).unwrap_or_default(), number };
+        let equation = |number: String| NumberedEquation {
+            entries: by_number.remove(&number).unwrap_or_default(),
+            number,
+        };
         numbers.map(equation).collect()
     }
 

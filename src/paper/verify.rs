@@ -1,6 +1,6 @@
 //! A paper taken through everything, file by file.
 
-use super::findings::{Derivatives, FileFindings, Findings};
+use super::findings::{DerivativesFound, FileFindings, Findings};
 use super::folder::Paper;
 use super::left_out::LeftOut;
 use super::reduction::reduce;
@@ -9,9 +9,9 @@ use crate::certificate::certify_region;
 use crate::claim::decide_all;
 use crate::experiment::{Experiment, Scene};
 use crate::system::{ReadError, System};
-use crate::tradeoff::stress::{Stress, StressOptions, Study};
+use crate::tradeoff::stress::{Stress, StressOptions, StressStudy};
 use crate::tradeoff::{
-    Rows, TradeQuestion, compare_routes, growth_of_lie_derivatives, printed_values, trade,
+    LandscapeRows, TradeQuestion, compare_routes, growth_of_lie_derivatives, printed_values, trade,
 };
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -255,9 +255,9 @@ impl Run<'_> {
 }
 
 /// Lie derivatives of the first output along the first field that moves the states.
-fn derivatives(system: &System, seed: u64) -> Result<Derivatives, String> {
+fn derivatives(system: &System, seed: u64) -> Result<DerivativesFound, String> {
     let field = *system.moving_fields().first().ok_or("no field moves the states")?;
-    Ok(Derivatives {
+    Ok(DerivativesFound {
         field: system.fields[field].name.clone(),
         output: system.outputs[0].0.clone(),
         routes: compare_routes(system, field, 0, ROUTE_ORDERS, seed)?,
@@ -266,8 +266,8 @@ fn derivatives(system: &System, seed: u64) -> Result<Derivatives, String> {
 }
 
 /// The extremes, in short.
-fn stress(system: &System, seed: u64, interrupt: &AtomicBool) -> Result<Study, String> {
+fn stress(system: &System, seed: u64, interrupt: &AtomicBool) -> Result<StressStudy, String> {
     let (states, step, samples, samples_on_sets) = STRESS;
     let options = StressOptions { seed, states, step, samples, samples_on_sets, interrupt, progress: &|| () };
-    Ok(Stress::of_file(&mut system.clone(), Rows::Own, &options)?.run(&options))
+    Ok(Stress::of_file(&mut system.clone(), LandscapeRows::Own, &options)?.run(&options))
 }

@@ -5,7 +5,7 @@ use crate::expression::NodeId;
 use crate::observability::{Codistribution, CodistributionError, Length, OWN_ROWS};
 use crate::sweep::{BranchAnswer, RankAnswer, RankError, RankQuestion, answer_rank};
 use crate::system::{Assignment, LineView, MapView, NamedSet, System, Value};
-use crate::tradeoff::{Landscape, Map, Rows, Slope};
+use crate::tradeoff::{Landscape, LandscapeRows, Map, Slope};
 use std::sync::atomic::AtomicBool;
 
 /// States of the sample box, and of each set, at which ranks are decided.
@@ -44,6 +44,20 @@ impl SetRank {
         }
     }
 
+    /// The rank, or why there is none in words.
+    pub fn answer(&self) -> Result<&RankAnswer, String> {
+        match &self.found {
+            Err(why) => Err(why.to_string()),
+            Ok(answer) if self.is_pole() => {
+                let divisors = answer.branches.iter().flat_map(|branch| branch.full.poles.keys());
+                let divisors: std::collections::BTreeSet<&str> = divisors.map(String::as_str).collect();
+                let divisors: Vec<&str> = divisors.into_iter().collect();
+                Err(format!("every state there is a pole: {} is divided by", divisors.join(", ")))
+            }
+            Ok(answer) => Ok(answer),
+        }
+    }
+
     /// A pole where the file says so, and elsewhere a rank.
     pub fn as_expected(&self) -> bool {
         match &self.set {
@@ -56,7 +70,7 @@ impl SetRank {
 /// The smallest singular value over a plane: of the file's own rows where it has some, and of the full codistribution.
 pub struct MapFound {
     pub view: MapView,
-    pub maps: Vec<(Rows, Map)>,
+    pub maps: Vec<(LandscapeRows, Map)>,
 }
 
 /// The singular values along a line, of the file's own rows where it has some.
@@ -102,7 +116,7 @@ pub(super) fn draw(system: &System, left_out: &mut Vec<LeftOut>) -> (Vec<MapFoun
     (maps, lines)
 }
 
-fn map(system: &System, own: Option<&[NodeId]>, view: &MapView) -> Result<Vec<(Rows, Map)>, String> {
+fn map(system: &System, own: Option<&[NodeId]>, view: &MapView) -> Result<Vec<(LandscapeRows, Map)>, String> {
     let mut system = system.clone();
     let length = view.order.map_or(Length::UntilItStops, Length::Exactly);
     let full = Codistribution::new(&mut system, &Assignment::new(), length)?.entries();
@@ -112,7 +126,9 @@ fn map(system: &System, own: Option<&[NodeId]>, view: &MapView) -> Result<Vec<(R
     };
     let [x, y] = [axis(&view.axes[0]), axis(&view.axes[1])];
     let mut maps = Vec::new();
-    for (kind, rows) in own.map(|rows| (Rows::Own, rows)).into_iter().chain([(Rows::Full, &full[..])]) {
+    for (kind, rows) in
+        own.map(|rows| (LandscapeRows::Own, rows)).into_iter().chain([(LandscapeRows::Full, &full[..])])
+    {
         let mut copy = system.clone();
         let landscape = Landscape::new(&mut copy, rows, &view.at)?;
         maps.push((kind, landscape.map((&x.0, x.1, x.2), (&y.0, y.1, y.2), MAP.0, MAP.1)?));

@@ -1,6 +1,6 @@
 //! Statements and expressions of the language as mathematics: MathML for a page, LaTeX for a paper.
 
-use crate::expression::notation::{Formula, Layout, Sign, latex, mathml_in_pieces};
+use crate::expression::notation::{Formula, FormulaLayout, FormulaSign, latex, mathml_in_pieces};
 use crate::expression::parse_expression;
 use crate::expression::syntax::{Equation, Expr};
 use crate::system::{Statement, parse_statement};
@@ -11,7 +11,7 @@ const DEEPEST: usize = 60;
 /// A statement as it is written in a file, as a formula; none where the text is no statement.
 fn statement_formula(text: &str) -> Option<Formula> {
     let statement = parse_statement(text).ok()?;
-    let layout = Layout::new(text, expressions(&statement));
+    let layout = FormulaLayout::new(text, expressions(&statement));
     let relations = |equations: Vec<&Equation>| match layout.relations(&equations) {
         Formula::Row(parts) => parts,
         other => vec![other],
@@ -34,7 +34,7 @@ fn expressions(statement: &Statement) -> impl Iterator<Item = &Expr> {
 
 fn expression_formula(text: &str) -> Option<Formula> {
     let expr = parse_expression(text).ok()?;
-    Some(Layout::new(text, [&expr]).expression(&expr))
+    Some(FormulaLayout::new(text, [&expr]).expression(&expr))
 }
 
 /// A definition `name = text` as a formula.
@@ -80,7 +80,7 @@ pub fn conditions_mathml(conditions: &[String]) -> Option<String> {
     let mut row = Vec::new();
     for condition in conditions {
         if !row.is_empty() {
-            row.push(Formula::Sign(Sign::Comma));
+            row.push(Formula::Sign(FormulaSign::Comma));
         }
         match statement_formula(condition)? {
             Formula::Row(parts) => row.extend(parts),

@@ -44,7 +44,7 @@ pub struct StateReport {
 }
 
 /// What deciding at one state came to.
-pub enum Judged {
+pub enum StateJudgement {
     Report(StateReport),
     /// The divisor that is zero there, in words.
     Pole(String),
@@ -126,9 +126,9 @@ impl<'g> Judge<'g> {
     }
 
     /// The rank at a state.
-    pub fn decide(&self, state: &State) -> Judged {
+    pub fn decide(&self, state: &State) -> StateJudgement {
         if let Some(undefined) = self.defined.failure(self.graph, state) {
-            return Judged::Pole(undefined);
+            return StateJudgement::Pole(undefined);
         }
         let full = self.columns;
         let mut report = StateReport {
@@ -147,20 +147,20 @@ impl<'g> Judge<'g> {
             report.quick = std::ptr::eq(rows, &self.quick);
             report.computed = report.spectrum.as_ref().map(|s| rows.reduction.eliminated + s.rank);
             if certain == Some(full) {
-                return Judged::Report(report);
+                return StateJudgement::Report(report);
             }
             if self.wanted == Certainty::Certified && self.residue_rank(rows, state) == Some(full) {
                 report.rung = Rung::Residues;
-                return Judged::Report(report);
+                return StateJudgement::Report(report);
             }
         }
         if self.wanted == Certainty::Certified {
             match self.exact(state) {
                 Ok((rank, unseen)) => {
                     (report.rank, report.unseen, report.rung) = (rank, unseen, Rung::Exact);
-                    return Judged::Report(report);
+                    return StateJudgement::Report(report);
                 }
-                Err(Some(pole)) => return Judged::Pole(pole),
+                Err(Some(pole)) => return StateJudgement::Pole(pole),
                 Err(None) => {}
             }
         }
@@ -171,9 +171,9 @@ impl<'g> Judge<'g> {
                 if rank < full {
                     report.certainty = Certainty::Computed;
                 }
-                Judged::Report(report)
+                StateJudgement::Report(report)
             }
-            Err(pole) => Judged::Pole(pole),
+            Err(pole) => StateJudgement::Pole(pole),
         }
     }
 
@@ -182,7 +182,7 @@ impl<'g> Judge<'g> {
     /// # Errors
     /// Where digits cannot be had, and why.
     pub fn digits(&self, state: &State, digits: usize) -> Result<Digits, NoDigits> {
-        let Judged::Report(report) = self.decide(state) else { return Err(NoDigits::NoState) };
+        let StateJudgement::Report(report) = self.decide(state) else { return Err(NoDigits::NoState) };
         let rows = if report.quick { &self.quick } else { &self.all };
         digits_of(&RowsAt { judge: self, rows, state }, digits, self.wanted)
     }

@@ -8,17 +8,21 @@
 //! This floor knows nothing of claims or palms.
 
 mod certainty;
+mod deviation;
 mod digits;
 mod ladder;
 mod question;
 mod states;
 mod stream;
+mod unseen;
 
 pub use certainty::Certainty;
+pub use deviation::{NEARLY_INVISIBLE, StandardDeviation, StandardDeviations};
 pub use digits::{Digits, MOST_DIGITS, NoDigits};
-pub use ladder::{Judge, Judged, StateReport};
+pub use ladder::{Judge, StateJudgement, StateReport};
 pub use question::{BranchAnswer, RankAnswer, RankError, RankQuestion, TakenRow, answer_rank};
-pub use states::{RecordedState, SweepOptions, SweepReport, UnseenDirection, sweep};
+pub use states::{RecordedState, SweepOptions, SweepReport, sweep};
 pub use stream::{
-    DECADES, Elimination, Jacobi, StatesError, Stream, StreamOptions, StreamReport, Verdict, Verdicts,
+    DECADES, Elimination, Jacobi, StateVerdict, StatesError, Stream, StreamOptions, StreamReport, Verdicts,
 };
+pub use unseen::UnseenDirection;

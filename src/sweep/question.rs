@@ -1,5 +1,6 @@
 //! The whole question of a rank, from a system and some conditions to sweeps of every branch.
 
+use super::deviation::{StandardDeviations, standard_deviations};
 use super::states::{SweepOptions, SweepReport, sweep};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
@@ -82,6 +83,8 @@ pub struct BranchAnswer {
     pub is_final: bool,
     /// The rank of the full codistribution at the sampled states.
     pub full: SweepReport,
+    /// How well each state is seen where what is measured has noise; none where the sweep was interrupted.
+    pub deviations: Option<StandardDeviations>,
     /// The rank of the file's own choice of rows at the same states, where it defines a matrix `rows`.
     pub rows: Option<SweepReport>,
     /// The rows of the full codistribution.
@@ -230,6 +233,10 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             progress: question.progress,
         };
         let full = codistribution.sweep(system, &locus, options)?;
+        let deviations = match full.interrupted {
+            true => None,
+            false => standard_deviations(system, &locus, &codistribution, question.seed, question.samples)?,
+        };
         let rows = match &own {
             Some(own) => {
                 let silent = SweepOptions { guards: &own_guards, progress: &|_| (), ..options };
@@ -257,6 +264,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             generic_rank: codistribution.generic_rank(),
             is_final: codistribution.is_final(),
             full,
+            deviations,
             rows,
         });
     }

@@ -2,10 +2,11 @@
 
 use super::certainty::Certainty;
 use super::digits::{Digits, NoDigits};
-use super::ladder::{Judge, Judged, StateReport};
+use super::ladder::{Judge, StateJudgement, StateReport};
 use super::stream::{Stream, StreamOptions};
-use crate::expression::{Guard, NodeId, Symbol, add_guard, expand_angles};
-use crate::number::{PrimeField, Rung, rational_to_f64};
+use super::unseen::{UnseenDirection, UnseenDirections};
+use crate::expression::{Guard, NodeId, add_guard, expand_angles};
+use crate::number::{PrimeField, Rung};
 use crate::observability::{Codistribution, Defined, Locus, LocusError, Spectrum, State, StateInWords};
 use crate::system::System;
 use dashu::rational::RBig;
@@ -33,19 +34,6 @@ pub struct SweepOptions<'a> {
     pub interrupt: &'a AtomicBool,
     /// Called after every block with the number of states done.
     pub progress: &'a (dyn Fn(u64) + Sync),
-}
-
-/// Directions of one kind that are not seen, with one example.
-#[derive(Clone, Debug)]
-pub struct UnseenDirection {
-    /// The states that take part, by name.
-    pub states: Vec<String>,
-    /// At how many sampled states.
-    pub count: u64,
-    /// One of them, as `1 r1 - 0.5 omega0`.
-    pub example: String,
-    /// The index of the draw that it belongs to.
-    pub index: u64,
 }
 
 /// A state of the sweep with its certified rank.
@@ -118,8 +106,7 @@ pub fn sweep(
     options: SweepOptions<'_>,
 ) -> Result<SweepReport, LocusError> {
     let begin = Instant::now();
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let quick = expand_angles(&mut system.graph, quick, is_angle);
     let all = expand_angles(&mut system.graph, all, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
@@ -213,7 +200,7 @@ fn streamed(
         && tally.worst.as_ref().is_none_or(|(_, worst)| condition > worst.condition())
     {
         let state = state(index)?;
-        if let Judged::Report(StateReport { spectrum: Some(spectrum), .. }) = judge.decide(&state) {
+        if let StateJudgement::Report(StateReport { spectrum: Some(spectrum), .. }) = judge.decide(&state) {
             tally.worst = Some((state, spectrum));
         }
     }
@@ -243,7 +230,7 @@ fn recorded(
     let states: Vec<State> = first.into_iter().chain(drawn).take(count as usize).collect();
     let judged = states.into_par_iter().map(|state| match judge.decide(&state) {
         _ if options.interrupt.load(Ordering::Relaxed) => None,
-        Judged::Report(StateReport { rank, unseen, certainty: Certainty::Certified, .. }) => {
+        StateJudgement::Report(StateReport { rank, unseen, certainty: Certainty::Certified, .. }) => {
             Some(RecordedState { state, rank, unseen })
         }
         _ => None,
@@ -259,7 +246,7 @@ fn judge_all(
     indices: &[u64],
     state: impl Fn(u64) -> Result<State, LocusError> + Sync,
 ) -> Result<(), LocusError> {
-    let block: Vec<Result<(State, Judged), LocusError>> = indices
+    let block: Vec<Result<(State, StateJudgement), LocusError>> = indices
         .par_iter()
         .map(|index| {
             let state = state(*index)?;
@@ -284,25 +271,25 @@ struct Tally {
     computed: BTreeMap<usize, u64>,
     poles: BTreeMap<String, u64>,
     worst: Option<(State, Spectrum)>,
-    unseen: BTreeMap<Vec<String>, UnseenDirection>,
+    unseen: UnseenDirections,
     smallest_gap: Option<f64>,
 }
 
 impl Tally {
-    fn add(&mut self, system: &System, index: u64, state: State, judged: Judged) {
+    fn add(&mut self, system: &System, index: u64, state: State, judged: StateJudgement) {
         let report = match judged {
-            Judged::Pole(divisor) => {
+            StateJudgement::Pole(divisor) => {
                 *self.poles.entry(divisor).or_insert(0) += 1;
                 return;
             }
-            Judged::Report(report) => report,
+            StateJudgement::Report(report) => report,
         };
         self.samples += 1;
         *self.ranks.entry(report.rank).or_insert(0) += 1;
         self.certified += u64::from(report.certainty == Certainty::Certified);
         *self.rungs.entry(report.rung).or_insert(0) += 1;
         for direction in &report.unseen {
-            self.add_unseen(system, direction, index);
+            self.unseen.add(system, direction, &state, index);
         }
         let (Some(spectrum), Some(computed)) = (report.spectrum, report.computed) else { return };
         *self.computed.entry(computed).or_insert(0) += 1;
@@ -313,21 +300,6 @@ impl Tally {
         if report.rank == system.states.len() && worse {
             self.worst = Some((state, spectrum));
         }
-    }
-
-    fn add_unseen(&mut self, system: &System, direction: &[RBig], index: u64) {
-        let names: Vec<String> = system
-            .states
-            .iter()
-            .zip(direction)
-            .filter(|(_, part)| !part.is_zero())
-            .map(|(symbol, _)| system.symbol_name(*symbol).to_owned())
-            .collect();
-        let entry = self.unseen.entry(names.clone()).or_insert_with(|| {
-            let parts: Vec<f64> = direction.iter().filter(|p| !p.is_zero()).map(rational_to_f64).collect();
-            UnseenDirection { states: names.clone(), count: 0, example: combination(&names, &parts), index }
-        });
-        entry.count += 1;
     }
 
     fn finish(
@@ -353,34 +325,13 @@ impl Tally {
             poles: self.poles,
             digits: digits.map(digits_of_worst),
             worst: self.worst.map(|(state, spectrum)| (state.describe(system), spectrum)),
-            unseen: self.unseen.into_values().collect(),
+            unseen: self.unseen.into_list(),
             smallest_gap: self.smallest_gap.unwrap_or(f64::INFINITY),
             interrupted,
             recorded: Vec::new(),
             seconds: 0.0,
         }
     }
-}
-
-/// `r1 - 0.5 omega0`, the largest part scaled to one.
-fn combination(names: &[String], parts: &[f64]) -> String {
-    let largest = parts.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-    let mut text = String::new();
-    for (name, part) in names.iter().zip(parts) {
-        let part = part / largest;
-        let sign = match (text.is_empty(), part < 0.0) {
-            (true, true) => "-",
-            (true, false) => "",
-            (false, true) => " - ",
-            (false, false) => " + ",
-        };
-        text.push_str(sign);
-        if (part.abs() - 1.0).abs() > 5e-5 {
-            text.push_str(&format!("{:.4} ", part.abs()));
-        }
-        text.push_str(name);
-    }
-    text
 }
 
 /// The rows of a codistribution as [`sweep`] wants them.

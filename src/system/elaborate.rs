@@ -5,16 +5,30 @@ use super::matrices::transpose;
 use super::model::{Assignment, Kind, Matrix, System, Value};
 use super::problems::Cause;
 use crate::expression::syntax::{Expr, ExprKind, Name, Span};
-use crate::expression::{Need, NodeId, gradient};
+use crate::expression::{Need, NodeId, Symbol, gradient};
 use crate::number::Function;
 use dashu::rational::RBig;
 
 /// A graph with more nodes than this is no longer something a person wrote down.
-const LARGEST_GRAPH: usize = 4_000_000;
+pub(super) const LARGEST_GRAPH: usize = 4_000_000;
 
 /// The functions of the language beside [`Function::ALL`].
-const OTHER_FUNCTIONS: [&str; 13] =
-    ["tan", "cot", "sec", "csc", "L", "d", "det", "rank", "pole", "transpose", "inverse", "dot", "cross"];
+const OTHER_FUNCTIONS: [&str; 14] = [
+    "tan",
+    "cot",
+    "sec",
+    "csc",
+    "L",
+    "bracket",
+    "d",
+    "det",
+    "rank",
+    "pole",
+    "transpose",
+    "inverse",
+    "dot",
+    "cross",
+];
 
 /// What a name should have been.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -89,14 +103,11 @@ impl System {
 
     /// The value of an expression that has to be a number.
     pub(crate) fn scalar(&mut self, expr: &Expr) -> Result<NodeId, Problem> {
-        match self.elaborate(expr)? {
-            Value::Scalar(id) => Ok(id),
-            other => Err(Problem::new(
-                &expr.span,
-                format!("expected a number, found {}", other.describe()),
-                "this",
-            )),
-        }
+        let value = self.elaborate(expr)?;
+        value.as_number().ok_or_else(|| {
+            let message = format!("expected a number, found {}", value.describe());
+            Problem::new(&expr.span, message, "this")
+        })
     }
 
     /// The value of an expression that has to be an exact rational number.
@@ -222,6 +233,7 @@ impl System {
                 Ok(Value::Scalar(self.graph.div(top, bottom)))
             }
             "L" => self.lie(arguments, span),
+            "bracket" => self.bracket_column(arguments, span),
             "d" => self.differential_row(arguments, span),
             "det" | "rank" => match arguments {
                 [argument] => match self.elaborate(argument)? {
@@ -279,58 +291,20 @@ impl System {
         }
     }
 
-    /// `L(f, e)`, or `L(f, g, e)` for the Lie derivative along `f` of the one along `g`.
-    fn lie(&mut self, arguments: &[Expr], span: &Span) -> Result<Value, Problem> {
-        let [fields @ .., last] = arguments else {
-            return Err(Problem::new(span, "'L' takes a field and an expression", "here"));
-        };
-        if fields.is_empty() {
-            return Err(
-                Problem::new(span, "'L' takes a field and an expression", "here").help("as in L(f, s1)")
-            );
-        }
-        let mut value = self.elaborate(last)?;
-        for field in fields.iter().rev() {
-            let ExprKind::Name(name) = &field.kind else {
-                return Err(Problem::new(&field.span, "expected the name of a field", "this is none"));
-            };
-            if self.field_mut(name).is_none() {
-                return Err(self.unknown(name, &field.span, Wanted::Field));
-            }
-            let entries = match &value {
-                Value::Scalar(id) => vec![*id],
-                Value::Matrix(matrix) => matrix.entries.clone(),
-                _ => Vec::new(),
-            };
-            let mentioned = self.graph.symbols_of(entries);
-            self.need_all(self.rate_guards(name, &mentioned));
-            value = self.map(value, &last.span, |system, id| {
-                // the graph goes out of the system for as long as the field, which is a part of it too, is held
-                let mut graph = std::mem::take(&mut system.graph);
-                let derivative = match system.field_mut(name) {
-                    Some(field) => field.derivation.apply(&mut graph, id),
-                    None => id,
-                };
-                system.graph = graph;
-                derivative
-            })?;
-            if self.graph.len() > LARGEST_GRAPH {
-                return Err(Problem::new(
-                    span,
-                    format!("this grows beyond {LARGEST_GRAPH} operations"),
-                    "here",
-                ));
-            }
-        }
-        Ok(value)
-    }
-
-    /// `d(e)`, a row of as many entries as there are states; or `d(e, x, y)`, only the entries of `x` and `y`.
+    /// `d(e)`, a row of as many entries as there are states; or `d(e, x, y)`, only the entries of `x` and `y`. A row of one
+    /// entry is a number wherever a number is meant.
     fn differential_row(&mut self, arguments: &[Expr], span: &Span) -> Result<Value, Problem> {
         let Some((first, names)) = arguments.split_first() else {
             return Err(Problem::new(span, "'d' takes an expression", "here"));
         };
         let expression = self.scalar(first)?;
+        let states = self.states_of(names, span)?;
+        let entries = gradient(&mut self.graph, expression, &states);
+        Ok(Value::Matrix(Matrix { rows: 1, columns: entries.len(), entries }))
+    }
+
+    /// The states that are named, or all where none is.
+    pub(super) fn states_of(&mut self, names: &[Expr], span: &Span) -> Result<Vec<Symbol>, Problem> {
         let mut states = Vec::new();
         for name in names {
             let id = self.scalar(name)?;
@@ -347,7 +321,6 @@ impl System {
             return Err(Problem::new(span, "there is no state to differentiate by", "here")
                 .help("declare 'state x, ...'"));
         }
-        let entries = gradient(&mut self.graph, expression, &states);
-        Ok(Value::Matrix(Matrix { rows: 1, columns: entries.len(), entries }))
+        Ok(states)
     }
 }

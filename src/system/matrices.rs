@@ -148,7 +148,7 @@ impl System {
     }
 
     pub(super) fn entrywise(&mut self, a: Value, b: Value, span: &Span) -> Result<Value, Problem> {
-        match (a, b) {
+        match Value::compared(a, b) {
             (Value::Scalar(x), Value::Scalar(y)) => Ok(Value::Scalar(self.graph.add(x, y))),
             (Value::Matrix(x), Value::Matrix(y)) if (x.rows, x.columns) == (y.rows, y.columns) => {
                 let pairs = x.entries.iter().zip(&y.entries);
@@ -169,6 +169,17 @@ impl System {
         divides: bool,
         span: &Span,
     ) -> Result<Value, Problem> {
+        // a matrix of one entry is a number where the shapes do not fit otherwise, and as a divisor
+        let fits = match (&a, &b) {
+            (Value::Matrix(x), Value::Matrix(y)) => x.columns == y.rows && !divides,
+            _ => false,
+        };
+        let (a, b) = match (a.as_number(), b.as_number()) {
+            _ if fits => (a, b),
+            (_, Some(number)) => (a, Value::Scalar(number)),
+            (Some(number), None) => (Value::Scalar(number), b),
+            (None, None) => (a, b),
+        };
         match (a, b, divides) {
             (value, Value::Scalar(divisor), true) => {
                 self.need(divisor, Need::NotZero);

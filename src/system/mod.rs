@@ -12,7 +12,9 @@ mod domain;
 mod elaborate;
 mod error;
 mod extent;
+mod format;
 mod grammar;
+mod lie;
 mod matrices;
 mod model;
 mod problems;
@@ -26,6 +28,7 @@ mod written;
 pub use dimension::{Base, Dimension};
 pub use error::ReadError;
 pub(crate) use error::{Problem, line_and_column, nearest};
+pub use format::format_text;
 pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statement};
 pub use model::{
     Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,

@@ -137,6 +137,30 @@ pub enum Value {
 }
 
 impl Value {
+    /// The number that it is: a matrix of one row and one column is one wherever a number is meant.
+    pub fn as_number(&self) -> Option<NodeId> {
+        match self {
+            Value::Scalar(id) => Some(*id),
+            Value::Matrix(matrix) if (matrix.rows, matrix.columns) == (1, 1) => {
+                matrix.entries.first().copied()
+            }
+            _ => None,
+        }
+    }
+
+    /// The same, as a number where it is one.
+    pub(crate) fn or_number(self) -> Value {
+        self.as_number().map_or(self, Value::Scalar)
+    }
+
+    /// Two sides that are compared: a matrix of one entry beside anything but a matrix is a number.
+    pub(crate) fn compared(left: Value, right: Value) -> (Value, Value) {
+        match (&left, &right) {
+            (Value::Matrix(_), Value::Matrix(_)) => (left, right),
+            _ => (left.or_number(), right.or_number()),
+        }
+    }
+
     /// In words, for messages.
     pub fn describe(&self) -> String {
         match self {
@@ -230,6 +254,12 @@ impl System {
     /// All symbols that are angles.
     pub fn angles(&self) -> HashSet<Symbol> {
         self.symbols().filter(|(_, info)| info.is_angle).map(|(symbol, _)| symbol).collect()
+    }
+
+    /// Whether a symbol is an angle, for those who ask while the graph grows: what is an angle now.
+    pub fn angle_test(&self) -> impl Fn(Symbol) -> bool + use<> {
+        let angles = self.angles();
+        move |symbol| angles.contains(&symbol)
     }
 
     /// A symbol's name.

@@ -282,7 +282,7 @@ impl System {
             }
             Item::Sample { ranges, avoid } => self.sample(ranges, avoid)?,
             Item::Claim(claim) => self.claims.push((**claim).clone()),
-            Item::View(view) => self.enter_view((**view).clone())?,
+            Item::View(view) => self.enter_view(view)?,
         }
         Ok(())
     }
@@ -290,7 +290,7 @@ impl System {
     /// Whether a statement of a claim can be understood: its names are known and its two sides can be equal at all.
     fn check(&mut self, claim: &ClaimSyntax, statement: &Statement) -> Result<(), Problem> {
         let (left, right) = (&statement.equation.left, &statement.equation.right);
-        let values = (self.elaborate(left)?, self.elaborate(right)?);
+        let values = Value::compared(self.elaborate(left)?, self.elaborate(right)?);
         let comparable = match &values {
             (Value::Matrix(l), Value::Matrix(r)) => (l.rows, l.columns) == (r.rows, r.columns),
             (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
@@ -317,7 +317,7 @@ impl System {
             return Err(problem.because(Cause::Shape));
         }
         let relation = statement.equation.relation;
-        let of_numbers = matches!(values, (Value::Scalar(_), Value::Scalar(_)));
+        let of_numbers = values.0.as_number().is_some() && values.1.as_number().is_some();
         if relation != Relation::Equal && !of_numbers {
             let (left, right) = (values.0.describe(), values.1.describe());
             let message = format!("'{}' compares numbers, not {left} and {right}", relation.sign());
@@ -691,7 +691,7 @@ pub(super) fn with_plain_line_ends(text: &str) -> String {
 
 /// Refuses characters that make a text look other than it is read: marks of the direction of writing, behind which an
 /// editor shows a claim as a comment or a comment as a claim.
-fn refuse_reordering(text: &str) -> Result<(), Problem> {
+pub(super) fn refuse_reordering(text: &str) -> Result<(), Problem> {
     let reorders = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}');
     match text.char_indices().find(|(_, c)| reorders(*c)) {
         None => Ok(()),

@@ -47,7 +47,8 @@ impl System {
             ExprKind::Matrix(rows) => rows.iter().flatten().all(|entry| self.calculates_nothing(entry)),
             ExprKind::At(..) => false,
             ExprKind::Call(name, arguments) => match (name.as_str(), arguments.as_slice()) {
-                ("L", [_, of]) => self.are_states(of),
+                // the components of a field are looked up, those of a bracket are calculated
+                ("L", [field, of]) => matches!(field.kind, ExprKind::Name(_)) && self.are_states(of),
                 ("d", [of, ..]) => self.are_states(of),
                 ("tan" | "cot" | "sec" | "csc", [of]) => self.calculates_nothing(of),
                 (name, [of]) if Function::ALL.iter().any(|known| known.name() == name) => {
@@ -95,9 +96,10 @@ impl System {
 
     /// Whether the difference of two expressions is zero as it stands.
     fn are_equal(&mut self, left: &Expr, right: &Expr) -> bool {
-        let pairs = match (self.elaborate(left), self.elaborate(right)) {
-            (Ok(Value::Scalar(l)), Ok(Value::Scalar(r))) => vec![(l, r)],
-            (Ok(Value::Matrix(l)), Ok(Value::Matrix(r))) if (l.rows, l.columns) == (r.rows, r.columns) => {
+        let (Ok(left), Ok(right)) = (self.elaborate(left), self.elaborate(right)) else { return false };
+        let pairs = match Value::compared(left, right) {
+            (Value::Scalar(l), Value::Scalar(r)) => vec![(l, r)],
+            (Value::Matrix(l), Value::Matrix(r)) if (l.rows, l.columns) == (r.rows, r.columns) => {
                 l.entries.into_iter().zip(r.entries).collect()
             }
             _ => return false,

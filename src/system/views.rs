@@ -138,6 +138,9 @@ pub(crate) enum End {
     Infinity,
 }
 
+/// The words that begin these entries; they are names too.
+pub(super) const WORDS: [&str; 5] = ["set", "pole", "map", "line", "reduction"];
+
 /// Whether one of these entries begins here, and not a name that is one of their words: a quotation mark or `of` follows.
 pub(super) fn begins(input: &mut Text<'_>) -> bool {
     let title = |word: &'static str| (keyword(word), winnow::token::literal("\"")).void();
@@ -231,19 +234,25 @@ pub(super) fn view(input: &mut Text<'_>) -> Read<Item> {
 
 impl System {
     /// Enters a set, a map, a line or a reduction.
-    pub(super) fn enter_view(&mut self, view: View) -> Result<(), Problem> {
+    pub(super) fn enter_view(&mut self, view: &View) -> Result<(), Problem> {
         match view {
             View::Set { title, conditions, is_pole, span } => {
-                if self.sets.iter().any(|known| known.name == title) {
+                if self.sets.iter().any(|known| known.name == *title) {
                     let message = format!("there is a set \"{title}\" already");
-                    return Err(Problem::new(&span, message, "the second one"));
+                    return Err(Problem::new(span, message, "the second one"));
                 }
-                let written = self.check_conditions(&conditions)?;
-                self.sets.push(NamedSet { name: title, conditions, written, is_pole, span });
+                let written = self.check_conditions(conditions)?;
+                self.sets.push(NamedSet {
+                    name: title.clone(),
+                    conditions: conditions.clone(),
+                    written,
+                    is_pole: *is_pole,
+                    span: span.clone(),
+                });
             }
             View::Map { title, axes, at, order, caption, span } => {
                 let mut checked = Vec::new();
-                for (name, low, high) in &axes {
+                for (name, low, high) in axes {
                     self.coordinate(name)?;
                     let (least, greatest) = (self.rational(low)?, self.rational(high)?);
                     if least >= greatest {
@@ -261,15 +270,16 @@ impl System {
                     let message = "the two coordinates are one";
                     return Err(Problem::new(&axes[1].0.span, message, "the second time"));
                 }
-                let at = self.point(&at)?;
-                let order = order.map(|order| self.word_length(&order)).transpose()?;
+                let at = self.point(at)?;
+                let order = order.as_ref().map(|order| self.word_length(order)).transpose()?;
+                let (title, caption, span) = (title.clone(), caption.clone(), span.clone());
                 self.maps.push(MapView { title, axes: [x, y], at, order, caption, span });
             }
             View::Line { title, moving, end, from, span } => {
-                let symbol = self.coordinate(&moving)?;
+                let symbol = self.coordinate(moving)?;
                 let end = match end {
                     End::Value(value) => {
-                        let target = self.scalar(&value)?;
+                        let target = self.scalar(value)?;
                         let coordinate = self.graph.symbol(symbol);
                         LineEnd::Zero(self.graph.sub(coordinate, target))
                     }
@@ -280,10 +290,11 @@ impl System {
                     End::Infinity => LineEnd::Infinity,
                 };
                 let from = match from {
-                    Some(list) => self.point(&list)?,
+                    Some(list) => self.point(list)?,
                     None => self.maps.last().map(|map| map.at.clone()).unwrap_or_default(),
                 };
-                self.lines.push(LineView { title, moving: moving.text, end, from, span });
+                let (title, moving, span) = (title.clone(), moving.text.clone(), span.clone());
+                self.lines.push(LineView { title, moving, end, from, span });
             }
             View::Reduction { alias, conditions, remark } => {
                 let Some((_, path)) = self.aliases.iter().find(|(known, _)| *known == alias.text) else {
@@ -292,7 +303,8 @@ impl System {
                         .help(format!("import it: use {} = \"its file\"", alias.text)));
                 };
                 let path = path.clone();
-                let written = self.check_conditions(&conditions)?;
+                let written = self.check_conditions(conditions)?;
+                let (alias, remark) = (alias.clone(), remark.clone());
                 self.reductions.push(ReductionTo { alias, path, written, remark });
             }
         }

@@ -152,15 +152,17 @@ pub(crate) fn places_in(scope: &Scope<'_>, expr: &Expr, found: &mut Vec<Place>) 
             }
         }
         ExprKind::Call(function, arguments) => {
-            let fields = if function == "L" { arguments.len().saturating_sub(1) } else { 0 };
+            let fields = match function.as_str() {
+                "L" => arguments.len().saturating_sub(1),
+                "bracket" => arguments.len().min(2),
+                _ => 0,
+            };
             arguments[fields..].iter().for_each(&mut inner);
             for argument in &arguments[..fields] {
-                if let ExprKind::Name(name) = &argument.kind {
-                    let mention = Insert::Mention(Mention::Field(name.clone()));
-                    found.push((name_within(scope.source, argument, name), mention));
-                }
+                field_places_in(scope, argument, found);
             }
-            if let ("d", [argument]) = (function.as_str(), arguments.as_slice()) {
+            if let ("d", [argument]) | ("bracket", [_, argument]) = (function.as_str(), arguments.as_slice())
+            {
                 let end = argument.span.end;
                 found.push((end..end, Insert::States(scope.states.to_vec())));
             }
@@ -172,6 +174,18 @@ pub(crate) fn places_in(scope: &Scope<'_>, expr: &Expr, found: &mut Vec<Place>) 
             inner(value);
             list.iter().for_each(|(_, value)| inner(value));
         }
+    }
+}
+
+/// The same where an expression stands for a field: it is a name, or the bracket of two.
+fn field_places_in(scope: &Scope<'_>, field: &Expr, found: &mut Vec<Place>) {
+    match &field.kind {
+        ExprKind::Name(name) => {
+            let mention = Insert::Mention(Mention::Field(name.clone()));
+            found.push((name_within(scope.source, field, name), mention));
+        }
+        ExprKind::Call(_, fields) => fields.iter().for_each(|field| field_places_in(scope, field, found)),
+        _ => {}
     }
 }
 

@@ -11,27 +11,27 @@
 //! Reference: W. H. Press et al., *Numerical Recipes* (3rd ed. 2007), section 5.7.
 
 use super::point_programs::{LoadedPoints, PointPrograms};
-use crate::number::{Floats, Real, Refusal};
+use crate::number::{Floats, RealNumber, Refusal};
 
 /// Which difference stands for a derivative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Difference {
+pub enum FiniteDifference {
     Forward,
     Central,
 }
 
-impl Difference {
+impl FiniteDifference {
     /// The step for a derivative of this order, in numbers that lie `spacing` apart at one.
     pub fn step(self, spacing: f64, order: usize) -> f64 {
-        let loss = if self == Difference::Forward { 1 } else { 2 };
+        let loss = if self == FiniteDifference::Forward { 1 } else { 2 };
         spacing.powf(1.0 / (order + loss) as f64)
     }
 }
 
 /// Differences of a system's functions over the numbers of one type.
-pub struct Differences<'p, T: Real> {
+pub struct Differences<'p, T: RealNumber> {
     points: LoadedPoints<'p, Floats<T>>,
-    difference: Difference,
+    difference: FiniteDifference,
     spacing: f64,
 }
 
@@ -40,12 +40,16 @@ fn size(value: f64) -> f64 {
     value.abs().max(1.0)
 }
 
-impl<'p, T: Real> Differences<'p, T> {
+impl<'p, T: RealNumber> Differences<'p, T> {
     /// Differences of numbers that lie `spacing` apart at one.
     ///
     /// # Errors
     /// Where a constant has no image.
-    pub fn new(points: &'p PointPrograms, difference: Difference, spacing: f64) -> Result<Self, Refusal> {
+    pub fn new(
+        points: &'p PointPrograms,
+        difference: FiniteDifference,
+        spacing: f64,
+    ) -> Result<Self, Refusal> {
         Ok(Differences { points: points.load(Floats::new())?, difference, spacing })
     }
 
@@ -57,7 +61,7 @@ impl<'p, T: Real> Differences<'p, T> {
     pub fn differential(&self, word: &[usize], function: usize, point: &[T]) -> Result<Vec<T>, Refusal> {
         let step = self.difference.step(self.spacing, word.len() + 1);
         let value = |point: &[T]| self.lie_derivative(word, function, point, step);
-        let here = if self.difference == Difference::Forward { Some(value(point)?) } else { None };
+        let here = if self.difference == FiniteDifference::Forward { Some(value(point)?) } else { None };
         let mut moved = point.to_vec();
         let mut row = Vec::with_capacity(self.points.states().len());
         for place in self.points.states() {
@@ -94,8 +98,8 @@ impl<'p, T: Real> Differences<'p, T> {
         };
         let ahead = step_to(length)?;
         match self.difference {
-            Difference::Forward => (ahead - step_to(T::from_f64(0.0))?).quotient(length),
-            Difference::Central => (ahead - step_to(-length)?).quotient(length + length),
+            FiniteDifference::Forward => (ahead - step_to(T::from_f64(0.0))?).quotient(length),
+            FiniteDifference::Central => (ahead - step_to(-length)?).quotient(length + length),
         }
     }
 }
@@ -110,7 +114,7 @@ mod tests {
     const PLANE: &str = "system \"plane\" state x, y drift f x' = sin(x*y)/y y' = x^2/y output x*y^3";
 
     /// The errors of a differential, beside that of the graph at the same point.
-    fn errors(difference: Difference, order: usize) -> Vec<f64> {
+    fn errors(difference: FiniteDifference, order: usize) -> Vec<f64> {
         let mut system = System::parse("plane.proof", PLANE, Path::new("")).unwrap();
         let h = system.outputs[0].1;
         let points = PointPrograms::new(&system, &[h]);
@@ -134,7 +138,7 @@ mod tests {
     #[test]
     fn errors_are_what_the_step_predicts() {
         for order in 1..=3 {
-            for (difference, power) in [(Difference::Forward, 1), (Difference::Central, 2)] {
+            for (difference, power) in [(FiniteDifference::Forward, 1), (FiniteDifference::Central, 2)] {
                 let predicted = difference.step(f64::EPSILON, order).powi(power);
                 let worst = errors(difference, order).into_iter().fold(0.0, f64::max);
                 let found = format!("{difference:?} {order}: {worst:e} and {predicted:e}");
@@ -146,7 +150,7 @@ mod tests {
     #[test]
     fn the_steps_of_a_first_derivative_are_the_familiar_ones() {
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
-        assert!(near(Difference::Forward.step(f64::EPSILON, 1), f64::EPSILON.sqrt()));
-        assert!(near(Difference::Central.step(f64::EPSILON, 1), f64::EPSILON.cbrt()));
+        assert!(near(FiniteDifference::Forward.step(f64::EPSILON, 1), f64::EPSILON.sqrt()));
+        assert!(near(FiniteDifference::Central.step(f64::EPSILON, 1), f64::EPSILON.cbrt()));
     }
 }

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 /// Rows to look at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rows {
+pub enum LandscapeRows {
     /// A paper's own choice.
     Own,
     /// The full codistribution.

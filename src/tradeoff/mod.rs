@@ -13,9 +13,9 @@ pub mod stress;
 mod term_by_term;
 mod trade;
 
-pub use differences::{Difference, Differences};
+pub use differences::{Differences, FiniteDifference};
 pub use growth::{Growth, growth_of_lie_derivatives};
-pub use landscape::{Landscape, Map, Rows, Slope};
+pub use landscape::{Landscape, LandscapeRows, Map, Slope};
 pub use models::{ModelComparison, compare_models};
 pub use point_programs::{LoadedPoints, PointPrograms};
 pub use printed::{ExpandedText, PrintedExpression, PrintedValue, printed_values};
@@ -23,6 +23,6 @@ pub use rounding::{RoundingStudy, study_rounding};
 pub use routes::{RouteAgreement, compare_routes};
 pub use term_by_term::term_by_term;
 pub use trade::{
-    Combination, DIGITS_TOLERANCE, Derivative, DerivativeResult, Digits, LeftOut, Number, RankMethod,
-    RankResult, TIME_TOLERANCE, Trade, TradeQuestion, beats, trade,
+    Combination, CombinationLeftOut, CorrectDigits, DIGITS_TOLERANCE, Derivative, DerivativeResult, Number,
+    RankMethod, RankResult, TIME_TOLERANCE, Trade, TradeQuestion, beats, trade,
 };

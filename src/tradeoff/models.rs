@@ -82,8 +82,7 @@ struct Reduced {
 
 /// The program of all rows, and of what remains of them.
 fn compiled(system: &mut System, rows: &[NodeId]) -> (Program, Reduced) {
-    let angles = system.angles();
-    let is_angle = |symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let rows = expand_angles(&mut system.graph, rows, is_angle);
     let rest = Reduction::new(&system.graph, &rows, system.states.len());
     let reduced = Reduced {

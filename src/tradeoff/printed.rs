@@ -5,7 +5,7 @@ use crate::claim::{PointValue, certified_value};
 use crate::expression::syntax::{Expr, ExprKind, Name};
 use crate::expression::{Expansion, NodeId, Symbol, expand};
 use crate::number::{parse_decimal, rational_to_f64, round_to_decimal};
-use crate::system::{Assignment, Statement, System, Value, in_one_line};
+use crate::system::{Assignment, Statement, System, in_one_line};
 use crate::tradeoff::{RoundingStudy, study_rounding};
 use dashu::rational::RBig;
 use std::collections::HashMap;
@@ -90,18 +90,15 @@ pub fn printed_values(system: &System, seed: u64) -> Result<Vec<PrintedExpressio
         claim.body.statements().into_iter().filter_map(|statement| Print::of(&claim.id, statement))
     });
     let mut system = system.clone();
-    let angles = system.angles();
+    let is_angle = &system.angle_test();
     let mut expansions: HashMap<NodeId, Result<Expansion, String>> = HashMap::new();
     let mut found: Vec<PrintedExpression> = Vec::new();
     for print in statements {
         let text = in_one_line(&system.source, &print.formula.span);
-        let node = match system.elaborate(print.formula).map_err(|problem| problem.message)? {
-            Value::Scalar(node) => node,
-            other => return Err(format!("{}: {text} is {}", print.id, other.describe())),
-        };
-        let expansion = expansions
-            .entry(node)
-            .or_insert_with(|| expand(&mut system.graph, node, |symbol| angles.contains(&symbol)));
+        let value = system.elaborate(print.formula).map_err(|problem| problem.message)?;
+        let node =
+            value.as_number().ok_or_else(|| format!("{}: {text} is {}", print.id, value.describe()))?;
+        let expansion = expansions.entry(node).or_insert_with(|| expand(&mut system.graph, node, is_angle));
         let expansion = expansion.clone();
         let value = print.examine(&mut system, node, &expansion, seed)?;
         match found.iter_mut().find(|known| known.text == text) {

@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// Folders with files that need each other, and why.
 const CIRCLES: [(&str, &str); 1] =
-    [("system", "what a file says and what a system is refer to each other: the language is being extended")];
+    [("system", "what a file says and what a system is refer to each other, and are read in one pass")];
 
 fn ours() -> Crate {
     Crate::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"))
@@ -100,6 +100,19 @@ fn no_file_needs_one_beside_it_that_needs_it() {
         })
         .collect();
     assert!(lines.is_empty(), "files that need each other:\n{}", lines.join("\n"));
+}
+
+/// What is public is unique in the crate: a second thing of a name carries its noun.
+#[test]
+fn a_public_type_has_a_name_of_its_own() {
+    let modules = ours();
+    let mut places: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for (path, name) in modules.public_types() {
+        places.entry(name).or_default().push(text(path));
+    }
+    assert!(places.len() > 250 && places["System"] == ["system::model"], "{} types", places.len());
+    places.retain(|_, places| places.len() > 1);
+    assert!(places.is_empty(), "{places:#?}");
 }
 
 /// What the other tests rest on: nothing is found only where nothing is.

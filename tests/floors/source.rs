@@ -67,6 +67,18 @@ impl Crate {
         self.files.keys()
     }
 
+    /// The public types of each file, traits and aliases among them.
+    pub fn public_types(&self) -> impl Iterator<Item = (&ModulePath, &str)> {
+        self.files.iter().flat_map(|(path, file)| {
+            let words: Vec<&str> = file.text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+            let is_type = |words: &&[&str]| {
+                words[0] == "pub" && ["struct", "enum", "union", "trait", "type"].contains(&words[1])
+            };
+            let names: Vec<&str> = words.windows(3).filter(is_type).map(|words| words[2]).collect();
+            names.into_iter().map(move |name| (path, name))
+        })
+    }
+
     /// The files that hold what a file names, but for itself. A name that is passed on counts for the file that it
     /// comes from, a module that is only imported for nothing: what is taken from it is seen where it is used.
     pub fn needed(&self, from: &ModulePath) -> BTreeSet<ModulePath> {

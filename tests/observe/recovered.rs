@@ -2,7 +2,7 @@
 
 use crate::{REGIMES, answers, experiment, observe, text, with};
 use palmistry::experiment::{Answer, Experiment, Method, error};
-use palmistry::observer::{Standing, Update};
+use palmistry::observer::{Update, UpdateEnd};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -73,7 +73,7 @@ fn all_four_regimes_are_recovered_in_the_first_window_from_ten_percent_off() {
         let answers = answers(&experiment);
         for method in [Method::Newton, Method::TrustRegion] {
             let update = &answer(&answers, method).track.updates[0];
-            assert_eq!(update.standing, Standing::Converged, "{name} {method:?}");
+            assert_eq!(update.standing, UpdateEnd::Converged, "{name} {method:?}");
             let worst = worst(&experiment, update);
             assert!(worst < 1e-8, "{name} {method:?}: {worst:e}");
         }
@@ -87,7 +87,7 @@ fn spent_steps_are_not_called_convergence() {
     let answers = answers(&experiment);
     for method in [Method::Newton, Method::TrustRegion] {
         let update = &answer(&answers, method).track.updates[0];
-        assert_eq!((&update.standing, update.steps), (&Standing::StepsSpent, 2), "{method:?}");
+        assert_eq!((&update.standing, update.steps), (&UpdateEnd::StepsSpent, 2), "{method:?}");
         assert!(worst(&experiment, update) > 1e-3, "{method:?}: the test has looked at something unfinished");
     }
 }
@@ -102,7 +102,7 @@ fn section_4_6_converges_within_five_steps_from_two_and_two() {
     );
     let answers = answers(&experiment);
     let update = &answer(&answers, Method::Newton).track.updates[0];
-    assert_eq!((&update.standing, update.from), (&Standing::Converged, 0.0));
+    assert_eq!((&update.standing, update.from), (&UpdateEnd::Converged, 0.0));
     assert!(update.steps <= 5, "{}", update.steps);
     assert_eq!(update.estimate[2], 0.0, "a body at rest, clamped");
     assert!(worst(&experiment, update) < 1e-8, "{:e}", worst(&experiment, update));
@@ -126,7 +126,7 @@ fn a_turning_point_is_said_not_to_be_seen_and_is_integrated() {
     let track = &answer(&answers, Method::Newton).track;
     for update in &track.updates {
         let turns_here = update.from <= turns[0] && turns[0] <= update.to;
-        let unseen = matches!(update.standing, Standing::Blind { .. } | Standing::Lost(_));
+        let unseen = matches!(update.standing, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
         assert_eq!(unseen, turns_here, "{} to {}: {:?}", update.from, update.to, update.standing);
         if turns_here {
             let inside = track.moments.iter().filter(|m| update.from < m.time && m.time <= update.to);

@@ -6,7 +6,7 @@ use palmistry::System;
 use palmistry::experiment::{Experiment, Simulation};
 use palmistry::expression::{Input, NodeId, Program};
 use palmistry::number::Floats;
-use palmistry::observer::{Flow, Order, Sample};
+use palmistry::observer::{ModelFlow, Order, Sample};
 use std::path::Path;
 
 /// The central difference of order eight: the weights of the values one to four steps away.
@@ -94,7 +94,7 @@ fn simulated_bodies_move_as_the_thesis_says_they_do() {
 
 /// What a flow is asked for: the last of 81 samples, from a start whose places `i` and `j` are moved.
 struct Followed<'a> {
-    flow: Flow<'a>,
+    flow: ModelFlow<'a>,
     start: Vec<f64>,
     times: &'a [f64],
 }
@@ -151,7 +151,7 @@ fn followed<T>(experiment: &Experiment, ask: impl FnOnce(&Followed<'_>) -> T) ->
     let task = experiment.task(&NEVER).unwrap();
     let simulation = experiment.simulation.as_ref().unwrap();
     let start = task.full.states.iter().map(|name| simulation.truth(name).unwrap()[0]).collect();
-    let flow = Flow { model: &task.full, signals: task.signals, tolerance: 1e-13 };
+    let flow = ModelFlow { model: &task.full, signals: task.signals, tolerance: 1e-13 };
     ask(&Followed { flow, start, times: &task.signals.times()[..=80] })
 }
 

@@ -1,9 +1,9 @@
 //! What the library says: the only file of the oracle that calls it.
 
 use dashu::rational::RBig;
-use palmistry::certificate::{Limits, Region, RegionRows, Standing};
+use palmistry::certificate::{BoxStanding, Limits, Region, RegionRows};
 use palmistry::expression::Symbol;
-use palmistry::number::{Interval, Real};
+use palmistry::number::{Interval, RealNumber};
 use palmistry::sweep::{BranchAnswer, Certainty};
 use palmistry::{Outcome, RankQuestion, System, Verdict, answer_rank, decide_all};
 use std::collections::BTreeMap;
@@ -188,6 +188,6 @@ impl Certificate {
                 values.insert(*symbol, low.hull(high));
             }
         }
-        self.region.standing(|symbol| values.get(&symbol).copied()) == Some(Standing::Proved)
+        self.region.standing(|symbol| values.get(&symbol).copied()) == Some(BoxStanding::Proved)
     }
 }

@@ -12,7 +12,10 @@ mod cost;
 mod inputs;
 mod interrupts;
 mod prove;
+mod rank;
+mod shell;
 mod values;
+mod watch;
 mod writes;
 
 use std::io::Read;

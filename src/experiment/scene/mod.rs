@@ -11,7 +11,7 @@ mod simulated;
 
 pub use crate::system::ReadError as SceneError;
 pub use observing::{BasinStudy, Data, Guess, Method, NoiseStudy, ObserverSettings, Sensor, Study};
-pub use simulated::{Body, Palms, Shape, Simulated};
+pub use simulated::{Body, Palms, SceneOutline, Simulated};
 
 use crate::observer::FaultRules;
 use crate::system::{Problem, load};

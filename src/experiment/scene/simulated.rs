@@ -58,7 +58,7 @@ pub(super) const MOST_JITTER: f64 = 0.8;
 #[serde(deny_unknown_fields)]
 pub struct Body {
     /// `shape`: its outline.
-    pub shape: Shape,
+    pub shape: SceneOutline,
     /// `mass`, in kg.
     pub mass: f64,
     /// `radius_of_gyration` about the centre of mass, in m; absent: that of a uniform body.
@@ -83,7 +83,7 @@ fn downwards() -> f64 {
 /// An outline, by its `kind`. Lengths are in metres, the angle `a` is that of the outward normal.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Shape {
+pub enum SceneOutline {
     /// `harmonics`: the support function `mean + sum_k (p_k cos(k a) + q_k sin(k a))`.
     Harmonics {
         /// The mean.

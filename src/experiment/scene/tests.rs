@@ -116,7 +116,7 @@ fn every_key_arrives_where_it_belongs() {
     };
     let harmonics = vec![[0.0, 0.0], [0.1, 0.0], [0.02, -0.03]];
     let body_meant = Body {
-        shape: Shape::Harmonics { mean: 1.0, harmonics },
+        shape: SceneOutline::Harmonics { mean: 1.0, harmonics },
         mass: 1.0,
         radius_of_gyration: Some(0.7),
         centre_of_mass: Some([0.0, 0.1]),
@@ -200,21 +200,24 @@ fn every_shape_can_be_written() {
     };
     assert_eq!(
         shape("{ kind = \"superellipse\", semi_axes = [1.2, 0.9], exponent = 4, rounding = 0.1 }"),
-        Shape::Superellipse { semi_axes: [1.2, 0.9], exponent: 4, rounding: 0.1 }
+        SceneOutline::Superellipse { semi_axes: [1.2, 0.9], exponent: 4, rounding: 0.1 }
     );
-    assert_eq!(shape("{ kind = \"ellipse\", semi_axes = [1, 2] }"), Shape::Ellipse { semi_axes: [1.0, 2.0] });
+    assert_eq!(
+        shape("{ kind = \"ellipse\", semi_axes = [1, 2] }"),
+        SceneOutline::Ellipse { semi_axes: [1.0, 2.0] }
+    );
     let radii = [1.2, 1.5, 1.3];
     assert_eq!(
         shape("{ kind = \"spline\", radii = [1.2, 1.5, 1.3] }"),
-        Shape::Spline { radii, knots: Knots::Uniform }
+        SceneOutline::Spline { radii, knots: Knots::Uniform }
     );
     assert_eq!(
         shape("{ kind = \"random-spline\", seed = 3 }"),
-        Shape::RandomSpline { seed: 3, knots: Knots::Uniform }
+        SceneOutline::RandomSpline { seed: 3, knots: Knots::Uniform }
     );
     assert_eq!(
         shape("{ kind = \"harmonics\", mean = 1 }"),
-        Shape::Harmonics { mean: 1.0, harmonics: Vec::new() }
+        SceneOutline::Harmonics { mean: 1.0, harmonics: Vec::new() }
     );
 }
 
@@ -294,7 +297,7 @@ fn the_rules_of_a_scene_cope_with_its_jitter() {
     let path = folder.path().join("record.csv");
     record.write(&path).unwrap();
     let faults = |path: &Path| {
-        let rows = crate::observer::Rows::read(path, &[]).unwrap();
+        let rows = crate::observer::RecordRows::read(path, &[]).unwrap();
         crate::observer::check(&rows, &scene.fault_rules())
     };
     assert_eq!(faults(&path), []);

@@ -5,7 +5,7 @@
 //! disturb each other.
 
 use super::tape::{Instruction, Kind, Operator, Slot, Tape};
-use crate::number::{Function, Lanes, Task};
+use crate::number::{Function, LaneTask, Lanes};
 use std::cell::Cell;
 
 /// A tape with room for its registers.
@@ -43,7 +43,7 @@ impl<'t, L: Lanes> Machine<'t, L> {
         let length = lanes.next_multiple_of(2);
         let mut registers = vec![zero; (tape.registers + 1) * (length + 1)];
         for (constant, register) in tape.constants.iter().zip(registers.chunks_mut(length + 1)) {
-            register.fill(zero.splat_within(constant.value, constant.units));
+            register.fill(zero.splat(constant.value).within(constant.units));
         }
         Machine { tape, zero, length, registers, health: vec![zero; length] }
     }
@@ -71,7 +71,7 @@ impl<'t, L: Lanes> Machine<'t, L> {
     pub fn output(&self, place: usize, lane: usize) -> L {
         match self.tape.outputs[place] {
             Slot::Register(register) => self.registers[register as usize * (self.length + 1) + lane],
-            Slot::Constant(value) => self.zero.splat_within(value.value, value.units),
+            Slot::Constant(value) => self.zero.splat(value.value).within(value.units),
         }
     }
 
@@ -82,7 +82,7 @@ impl<'t, L: Lanes> Machine<'t, L> {
             Slot::Register(register) => {
                 Ok(&self.registers[register as usize * (self.length + 1)..][..self.length])
             }
-            Slot::Constant(value) => Err(self.zero.splat_within(value.value, value.units)),
+            Slot::Constant(value) => Err(self.zero.splat(value.value).within(value.units)),
         }
     }
 
@@ -101,7 +101,7 @@ impl<'t, L: Lanes> Machine<'t, L> {
 
 struct Run<'m, 't, L>(&'m mut Machine<'t, L>);
 
-impl<L: Lanes> Task for Run<'_, '_, L> {
+impl<L: Lanes> LaneTask for Run<'_, '_, L> {
     type Output = ();
 
     #[inline(always)]
@@ -295,7 +295,7 @@ fn step<L: Lanes>(i: &Instruction, cells: &[Cell<L>], health: &[Cell<L>], length
                 target[k].set(value);
                 check(x, value, &health[k]);
                 if function != Function::Sqrt {
-                    health[k].set(health[k].get() + value.believed());
+                    health[k].set(health[k].get() + value.splat(0.0).without_bound());
                 }
             }
         }
@@ -307,5 +307,5 @@ fn step<L: Lanes>(i: &Instruction, cells: &[Cell<L>], health: &[Cell<L>], length
 /// overflow by itself: one of them is small where the other is large.)
 #[inline(always)]
 fn check<L: Lanes>(argument: L, value: L, health: &Cell<L>) {
-    health.set(health.get() + (argument + value).lost());
+    health.set(health.get() + (argument + value).zero_if_finite());
 }

@@ -176,7 +176,7 @@ impl Vectorised for Evaluation<'_, '_, '_> {
                     Err(_) => continue,
                 };
                 for (lane, value) in row.iter().enumerate() {
-                    health[lane] = health[lane] + value.lost();
+                    health[lane] = health[lane] + value.zero_if_finite();
                     let first = start + lane * L::COUNT;
                     if first + L::COUNT <= count {
                         value.store(&mut values[first..]);

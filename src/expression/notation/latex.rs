@@ -1,7 +1,7 @@
 //! LaTeX, for a paper: what `amsmath` sets, without its dollar signs.
 
 use super::name::{greek, runs};
-use super::{Fence, Formula, Name, Sign};
+use super::{Fence, Formula, FormulaName, FormulaSign};
 use crate::expression::syntax::Relation;
 
 /// A formula in LaTeX.
@@ -40,7 +40,7 @@ fn write(formula: &Formula, out: &mut String) {
                 // LaTeX leaves room around the words of functions by itself
                 let beside =
                     [place.checked_sub(1).and_then(|before| parts.get(before)), parts.get(place + 1)];
-                let is_room = *part == Formula::Sign(Sign::Thin);
+                let is_room = *part == Formula::Sign(FormulaSign::Thin);
                 if !(is_room && beside.into_iter().flatten().any(has_room)) {
                     write(part, out);
                 }
@@ -57,7 +57,7 @@ fn write(formula: &Formula, out: &mut String) {
                 Formula::Name(_) | Formula::Word(_) | Formula::Number(_) | Formula::Literal(_) => {
                     write(base, out)
                 }
-                Formula::Row(parts) if parts.last() == Some(&Formula::Sign(Sign::At)) => {
+                Formula::Row(parts) if parts.last() == Some(&Formula::Sign(FormulaSign::At)) => {
                     put(out, "\\left.");
                     parts[..parts.len() - 1].iter().for_each(|part| write(part, out));
                     put(out, "\\right|");
@@ -113,7 +113,7 @@ fn has_room(formula: &Formula) -> bool {
     }
 }
 
-fn write_name(name: &Name, out: &mut String) {
+fn write_name(name: &FormulaName, out: &mut String) {
     for from in &name.from {
         put(out, &format!("\\mathrm{{{}}}.", from.replace('_', "\\_")));
     }
@@ -154,21 +154,21 @@ fn word_of(word: &str) -> String {
     }
 }
 
-fn sign_of(sign: Sign) -> &'static str {
+fn sign_of(sign: FormulaSign) -> &'static str {
     match sign {
-        Sign::Plus => " + ",
-        Sign::Minus => " - ",
-        Sign::Negative => "-",
-        Sign::Dot => " \\cdot ",
-        Sign::Cross => " \\times ",
-        Sign::Thin => "\\,",
-        Sign::Comma => ", ",
-        Sign::IndexComma => ",",
-        Sign::In => " \\in ",
-        Sign::At => "|",
-        Sign::Partial => "\\partial",
-        Sign::Transpose => "\\mathsf{T}",
-        Sign::Relation(relation) => match relation {
+        FormulaSign::Plus => " + ",
+        FormulaSign::Minus => " - ",
+        FormulaSign::Negative => "-",
+        FormulaSign::Dot => " \\cdot ",
+        FormulaSign::Cross => " \\times ",
+        FormulaSign::Thin => "\\,",
+        FormulaSign::Comma => ", ",
+        FormulaSign::IndexComma => ",",
+        FormulaSign::In => " \\in ",
+        FormulaSign::At => "|",
+        FormulaSign::Partial => "\\partial",
+        FormulaSign::Transpose => "\\mathsf{T}",
+        FormulaSign::Relation(relation) => match relation {
             Relation::Equal => " = ",
             Relation::NotEqual => " \\neq ",
             Relation::Less => " < ",

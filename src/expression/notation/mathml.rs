@@ -1,7 +1,7 @@
 //! MathML, for a page: presentation elements of the Core, which browsers set without a script and without a font to load.
 
 use super::name::{greek, runs};
-use super::{Fence, Formula, Name, Sign};
+use super::{Fence, Formula, FormulaName, FormulaSign};
 use crate::expression::syntax::Relation;
 
 /// A formula as one element.
@@ -40,7 +40,16 @@ fn is_text(part: &Formula) -> bool {
 /// A row cut where a line may break, into as few pieces as narrow screens have room for.
 fn pieces(row: &[Formula]) -> Vec<&[Formula]> {
     let breaks = |part: &Formula| {
-        matches!(part, Formula::Sign(Sign::Plus | Sign::Minus | Sign::Comma | Sign::Relation(_) | Sign::In))
+        matches!(
+            part,
+            Formula::Sign(
+                FormulaSign::Plus
+                    | FormulaSign::Minus
+                    | FormulaSign::Comma
+                    | FormulaSign::Relation(_)
+                    | FormulaSign::In
+            )
+        )
     };
     let mut found = Vec::new();
     let (mut begin, mut end, mut letters) = (0, 0, 0);
@@ -72,16 +81,16 @@ fn write_row(parts: &[Formula], out: &mut String) {
         rest = others;
         match (part, others) {
             // room around words belongs to the word, and the minus of a number to the number: one element where two would say the same
-            (Formula::Word(word), [Formula::Sign(Sign::Thin), others @ ..]) if *word != "d" => {
+            (Formula::Word(word), [Formula::Sign(FormulaSign::Thin), others @ ..]) if *word != "d" => {
                 element("mi", &format!("{word}{THIN}"), out);
                 rest = others;
             }
-            (Formula::Sign(Sign::Negative), [Formula::Number(digits), others @ ..]) => {
+            (Formula::Sign(FormulaSign::Negative), [Formula::Number(digits), others @ ..]) => {
                 element("mn", &format!("−{digits}"), out);
                 rest = others;
             }
             // behind another sign it would stand between two
-            (Formula::Sign(Sign::Negative), _) if others.len() + 1 < parts.len() => {
+            (Formula::Sign(FormulaSign::Negative), _) if others.len() + 1 < parts.len() => {
                 out.push_str("<mo form=\"prefix\">−</mo>");
             }
             (Formula::Fence(Fence::Round, inner), _) if is_flat => {
@@ -100,7 +109,9 @@ const THIN: char = '\u{2009}';
 /// Not higher than letters with their indices and exponents.
 fn is_flat(formula: &Formula) -> bool {
     match formula {
-        Formula::Fraction(..) | Formula::Root(_) | Formula::Matrix(_) | Formula::Sign(Sign::At) => false,
+        Formula::Fraction(..) | Formula::Root(_) | Formula::Matrix(_) | Formula::Sign(FormulaSign::At) => {
+            false
+        }
         Formula::Row(parts) => parts.iter().all(is_flat),
         Formula::Fence(_, inner) => is_flat(inner),
         Formula::Scripts { base, below, above } => {
@@ -175,7 +186,9 @@ fn write(formula: &Formula, out: &mut String) {
 fn one(formula: &Formula, out: &mut String) {
     match formula {
         Formula::Row(parts) if parts.len() == 1 => one(&parts[0], out),
-        Formula::Row(parts) if matches!(parts[..], [Formula::Sign(Sign::Negative), Formula::Number(_)]) => {
+        Formula::Row(parts)
+            if matches!(parts[..], [Formula::Sign(FormulaSign::Negative), Formula::Number(_)]) =>
+        {
             write_row(parts, out);
         }
         Formula::Row(parts) => {
@@ -198,7 +211,7 @@ fn element(tag: &str, text: &str, out: &mut String) {
 }
 
 /// A name, perhaps with an exponent, which then stands above its index.
-fn write_name(name: &Name, above: Option<&Formula>, out: &mut String) {
+fn write_name(name: &FormulaName, above: Option<&Formula>, out: &mut String) {
     for from in &name.from {
         element("mtext", &format!("{from}."), out);
     }
@@ -226,7 +239,7 @@ fn write_name(name: &Name, above: Option<&Formula>, out: &mut String) {
 }
 
 /// The letters of a name with its accents, and its index.
-fn write_parts(name: &Name, out: &mut String) {
+fn write_parts(name: &FormulaName, out: &mut String) {
     name.accents.iter().for_each(|_| out.push_str("<mover>"));
     letters(&name.letters, out);
     for accent in &name.accents {
@@ -238,7 +251,7 @@ fn write_parts(name: &Name, out: &mut String) {
         out.push_str(if several { "<mrow>" } else { "" });
         for (place, part) in runs.iter().enumerate() {
             if place > 0 {
-                out.push_str(sign_of(Sign::IndexComma));
+                out.push_str(sign_of(FormulaSign::IndexComma));
             }
             for run in part {
                 match run.starts_with(|c: char| c.is_ascii_digit()) {
@@ -258,20 +271,20 @@ fn letters(letters: &str, out: &mut String) {
     }
 }
 
-fn sign_of(sign: Sign) -> &'static str {
+fn sign_of(sign: FormulaSign) -> &'static str {
     match sign {
-        Sign::Plus => "<mo>+</mo>",
-        Sign::Minus | Sign::Negative => "<mo>−</mo>",
-        Sign::Dot => "<mo>·</mo>",
-        Sign::Cross => "<mo>×</mo>",
-        Sign::Thin => "<mi>\u{2009}</mi>",
-        Sign::Comma => "<mo>,</mo>",
-        Sign::IndexComma => "<mtext>,</mtext>",
-        Sign::In => "<mo>∈</mo>",
-        Sign::At => "<mo>|</mo>",
-        Sign::Partial => "<mo>∂</mo>",
-        Sign::Transpose => "<mtext>T</mtext>",
-        Sign::Relation(relation) => match relation {
+        FormulaSign::Plus => "<mo>+</mo>",
+        FormulaSign::Minus | FormulaSign::Negative => "<mo>−</mo>",
+        FormulaSign::Dot => "<mo>·</mo>",
+        FormulaSign::Cross => "<mo>×</mo>",
+        FormulaSign::Thin => "<mi>\u{2009}</mi>",
+        FormulaSign::Comma => "<mo>,</mo>",
+        FormulaSign::IndexComma => "<mtext>,</mtext>",
+        FormulaSign::In => "<mo>∈</mo>",
+        FormulaSign::At => "<mo>|</mo>",
+        FormulaSign::Partial => "<mo>∂</mo>",
+        FormulaSign::Transpose => "<mtext>T</mtext>",
+        FormulaSign::Relation(relation) => match relation {
             Relation::Equal => "<mo>=</mo>",
             Relation::NotEqual => "<mo>≠</mo>",
             Relation::Less => "<mo>&lt;</mo>",

@@ -11,7 +11,7 @@ mod name;
 mod tests;
 
 pub use latex::latex;
-pub use layout::Layout;
+pub use layout::FormulaLayout;
 pub use mathml::{mathml, mathml_in_pieces};
 pub use name::in_letters;
 
@@ -23,14 +23,14 @@ pub enum Formula {
     /// Digits, as they are written.
     Number(String),
     /// A name with its index and accents.
-    Name(Name),
+    Name(FormulaName),
     /// Upright letters: `sin`, `det`.
     Word(&'static str),
     /// A name letter by letter as in the file, where its usual look would say something else.
     Literal(String),
     /// Words of a sentence between formulas.
     Text(&'static str),
-    Sign(Sign),
+    Sign(FormulaSign),
     /// One after the other.
     Row(Vec<Formula>),
     /// Above and below the line.
@@ -50,7 +50,7 @@ pub enum Formula {
 
 /// A sign between or before parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
+pub enum FormulaSign {
     Plus,
     Minus,
     /// A minus before a first term.
@@ -83,7 +83,7 @@ pub enum Fence {
 
 /// How a name looks.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Name {
+pub struct FormulaName {
     /// The system that it comes from, of `general.f`.
     pub(super) from: Vec<String>,
     /// The letters without index and accents: `omega` of `omega0`.

@@ -1,6 +1,6 @@
 //! How names look: Greek letters, indices, accents.
 
-use super::{Accent, Name};
+use super::{Accent, FormulaName};
 
 /// The Greek letters that have a look of their own: name, letter, LaTeX.
 const GREEK: [(&str, char, &str); 34] = [
@@ -99,16 +99,17 @@ impl Accent {
     }
 }
 
-impl Name {
+impl FormulaName {
     /// The look of a name as it is written; none for one that has no parts, such as `_2` and `a__b`.
-    pub fn of(text: &str) -> Option<Name> {
+    pub fn of(text: &str) -> Option<FormulaName> {
         let mut from: Vec<String> = text.split('.').map(str::to_owned).collect();
         let own = from.pop()?;
         let mut parts = own.split('_');
         let first = parts.next()?;
         let end = first.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(first.len());
         let (letters, rest) = first.split_at(end);
-        let mut name = Name { from, letters: letters.to_owned(), index: Vec::new(), accents: Vec::new() };
+        let mut name =
+            FormulaName { from, letters: letters.to_owned(), index: Vec::new(), accents: Vec::new() };
         if letters.is_empty() {
             return None;
         }
@@ -148,8 +149,8 @@ impl Name {
 /// A name in letters alone, for places that hold no formula, such as the axis of a picture: `ω₀` for `omega0`. What has accents
 /// or an index of letters stays as it is written.
 pub fn in_letters(text: &str) -> String {
-    let plain = |name: &Name| name.accents.is_empty() && name.from.is_empty() && name.index.len() < 2;
-    let Some(name) = Name::of(text).filter(plain) else { return text.to_owned() };
+    let plain = |name: &FormulaName| name.accents.is_empty() && name.from.is_empty() && name.index.len() < 2;
+    let Some(name) = FormulaName::of(text).filter(plain) else { return text.to_owned() };
     let index = name.index.first().map_or("", String::as_str);
     match (greek(&name.letters), lowered(index)) {
         (Some((letter, _)), Some(below)) => format!("{letter}{below}"),

@@ -3,12 +3,12 @@
 use super::breach::Breach;
 use super::drive::{Drive, Oscillation};
 use super::laws::Situation;
-use super::scene::{Scene, SceneError};
+use super::scene::{MovingScene, SceneError};
 
 /// The tolerances that double precision and the method can serve.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-14..=1e-3;
 
-impl Scene {
+impl MovingScene {
     /// Whether all values can be used and both palms hold the body at the start.
     pub(super) fn check(&self) -> Result<(), SceneError> {
         let is = |holds: bool, what: &str, value: f64, wanted| match holds {

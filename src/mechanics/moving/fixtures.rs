@@ -6,11 +6,11 @@ use super::*;
 /// No ellipse, and no symmetry but for the second harmonic's own.
 pub(crate) fn shape() -> Shape {
     let harmonics = vec![[0.0, 0.0], [0.1, 0.0], [0.03, -0.04]];
-    Shape::new(&Form::Harmonics { mean: 1.2, harmonics }, CentreOfMass::Uniform).unwrap()
+    Shape::new(&BodyForm::Harmonics { mean: 1.2, harmonics }, CentreOfMass::Uniform).unwrap()
 }
 
-fn scene(shape: Shape, [orientation, rate]: [f64; 2], palms: [Course; 2]) -> Scene {
-    Scene {
+fn scene(shape: Shape, [orientation, rate]: [f64; 2], palms: [Course; 2]) -> MovingScene {
+    MovingScene {
         mass: 1.0,
         gyration: shape.gyration(),
         shape,
@@ -30,40 +30,40 @@ fn course(start: f64, rate: f64, swings: &[[f64; 3]]) -> Course {
 }
 
 /// Both palms turn at one constant rate (section 4.3).
-pub(crate) fn common_rate() -> Scene {
+pub(crate) fn common_rate() -> MovingScene {
     scene(shape(), [5.3, -0.8], [course(0.4, 0.4, &[]), course(1.8, 0.0, &[])])
 }
 
 /// Palm 1 is fixed, palm 2 turns at a constant rate (section 4.4).
-pub(crate) fn palm_2_turns() -> Scene {
+pub(crate) fn palm_2_turns() -> MovingScene {
     scene(shape(), [4.3, 1.3], [course(0.8, 0.0, &[]), course(1.8, -0.3, &[])])
 }
 
 /// Both palms are fixed (section 4.5).
-pub(crate) fn palms_fixed() -> Scene {
+pub(crate) fn palms_fixed() -> MovingScene {
     scene(shape(), [4.4, 1.4], [course(0.7, 0.0, &[]), course(1.7, 0.0, &[])])
 }
 
 /// Both palms swing, with angular accelerations (section 4.2).
-pub(crate) fn palms_swing() -> Scene {
+pub(crate) fn palms_swing() -> MovingScene {
     let palms = [course(0.6, 0.2, &[[0.1, 0.4, 6.2]]), course(1.6, 0.1, &[[0.2, 0.5, 1.4]])];
     scene(shape(), [3.4, -1.7], palms)
 }
 
 /// The palms swing, and the body starts at rest as in section 4.6.
-pub(crate) fn from_rest() -> Scene {
+pub(crate) fn from_rest() -> MovingScene {
     let palms = [course(0.8, 0.4, &[[0.2, 0.4, 1.1]]), course(1.4, -0.1, &[[0.2, 0.4, 1.4]])];
     scene(shape(), [3.9, 0.0], palms)
 }
 
 /// Both palms turn at one constant rate, and the body starts at rest.
-pub(crate) fn common_rate_from_rest() -> Scene {
+pub(crate) fn common_rate_from_rest() -> MovingScene {
     scene(shape(), [5.6, 0.0], [course(0.5, 0.5, &[]), course(1.5, 0.0, &[])])
 }
 
 /// A closed spline as in section 3.4 between palms that swing.
-pub(crate) fn spline_swings() -> Scene {
-    let form = Form::Spline { radii: [1.2, 1.6, 1.3], knots: Knots::Uniform };
+pub(crate) fn spline_swings() -> MovingScene {
+    let form = BodyForm::Spline { radii: [1.2, 1.6, 1.3], knots: Knots::Uniform };
     let palms = [course(0.7, 0.1, &[[0.1, 0.4, 2.6]]), course(1.6, 0.2, &[[0.1, 0.5, 0.1]])];
     scene(Shape::new(&form, CentreOfMass::Uniform).unwrap(), [3.6, 1.7], palms)
 }

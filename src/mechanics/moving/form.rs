@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 /// The outline of a body, in a frame of its own. Lengths are in metres, angles in radians.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Form {
+pub enum BodyForm {
     /// The support function `h(a) = mean + sum_k (p_k cos(k a) + q_k sin(k a))`, `harmonics[k - 1]` being `[p_k,
     /// q_k]`. The first harmonic moves the body without changing its form.
     Harmonics { mean: f64, harmonics: Vec<[f64; 2]> },

@@ -6,7 +6,7 @@
 //! time is not affected. So the time is integrated along with the state, and the solver's own time is not used.
 
 use super::laws::{Situation, State};
-use super::scene::Scene;
+use super::scene::MovingScene;
 use ode_solvers::{Dop853, OutputType, SVector, System};
 
 /// The state, and the time since the beginning.
@@ -16,7 +16,7 @@ type Vector = SVector<f64, 8>;
 const MOST_STEPS: u32 = 20_000;
 
 struct Laws<'a> {
-    scene: &'a Scene,
+    scene: &'a MovingScene,
     begin: f64,
 }
 
@@ -39,7 +39,7 @@ impl System<f64, Vector> for Laws<'_> {
 /// The integrator's steps from a state at time `begin` to time `end`, first and last included, none longer than
 /// `longest` seconds; and why it stopped before the end, if it did.
 pub(super) fn steps(
-    scene: &Scene,
+    scene: &MovingScene,
     (begin, from): (f64, State),
     end: f64,
     longest: f64,

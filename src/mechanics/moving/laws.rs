@@ -18,7 +18,7 @@
 use super::breach::Breach;
 use super::drive::Drive;
 use super::plane::{Plane, along, cross, dot, left_of, meet, scaled, unit};
-use super::scene::Scene;
+use super::scene::MovingScene;
 use std::f64::consts::FRAC_PI_2;
 
 /// What is integrated: `phi0`, `omega0`, `phi1`, `omega1`, `phi2`, `omega2` (these four stay as they are where the
@@ -46,7 +46,7 @@ pub(super) struct Situation {
     pub torques: [f64; 2],
 }
 
-impl Scene {
+impl MovingScene {
     /// The state at time zero.
     pub(super) fn start(&self) -> State {
         let mut state = [self.orientation, self.rate, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -61,7 +61,7 @@ impl Scene {
 
 impl Situation {
     /// The contacts, forces and accelerations that a state has at a time. Not finite where the palms are parallel.
-    pub(super) fn at(scene: &Scene, time: f64, state: &State) -> Situation {
+    pub(super) fn at(scene: &MovingScene, time: f64, state: &State) -> Situation {
         let [phi0, omega0, ..] = *state;
         // angle, rate and, where it is told, acceleration of palm 1 and of palm 2 against palm 1
         let own: [[f64; 3]; 2] = match &scene.drive {
@@ -148,7 +148,7 @@ impl Situation {
     }
 
     /// What is wrong with the contacts, if anything is.
-    pub(super) fn breach(&self, scene: &Scene) -> Option<Breach> {
+    pub(super) fn breach(&self, scene: &MovingScene) -> Option<Breach> {
         let positive = |x: f64| x > 0.0;
         if !positive((self.angles[1] - self.angles[0]).sin() - PARALLEL) {
             return Some(Breach::Parallel);

@@ -1,8 +1,8 @@
 //! Planar bodies in motion, in double precision: a smooth convex body that slides between two palms through
 //! time.
 //!
-//! A [`Form`] says how a body looks, a [`Shape`] is the body once it has been seen to be strictly convex: its
-//! support function about the centre of mass, area, perimeter, radius of gyration. A [`Scene`] adds masses,
+//! A [`BodyForm`] says how a body looks, a [`Shape`] is the body once it has been seen to be strictly convex: its
+//! support function about the centre of mass, area, perimeter, radius of gyration. A [`MovingScene`] adds masses,
 //! gravity, a start and a [`Drive`], which either tells the palms how to move or what torques to feel;
 //! [`simulate`] then gives a [`Trajectory`], what sensors and motors would report at given times, and how it
 //! [`Ended`].
@@ -41,9 +41,9 @@ mod tests;
 
 pub use breach::Breach;
 pub use drive::{Course, Drive, Oscillation, PushedPalm};
-pub use form::{CentreOfMass, Form, FormError, Knots};
+pub use form::{BodyForm, CentreOfMass, FormError, Knots};
 pub use random::{DrawnSpline, MOST_DRAWS, RADII, SplineDraws};
-pub use scene::{DEFAULT_TOLERANCE, Scene, SceneError};
+pub use scene::{DEFAULT_TOLERANCE, MovingScene, SceneError};
 pub use shape::Shape;
 pub use simulate::simulate;
 pub use trajectory::{Ended, Moment, PalmMoment, Trajectory};

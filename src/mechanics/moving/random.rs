@@ -1,6 +1,6 @@
 //! Random bodies as in section 3.4 of the thesis.
 
-use super::form::{CentreOfMass, Form, FormError, Knots};
+use super::form::{BodyForm, CentreOfMass, FormError, Knots};
 use super::shape::Shape;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -22,7 +22,7 @@ pub struct SplineDraws {
 /// A drawn body that is convex.
 #[derive(Clone, Debug)]
 pub struct DrawnSpline {
-    pub form: Form,
+    pub form: BodyForm,
     pub shape: Shape,
     /// How many forms were drawn for it, itself included.
     pub draws: usize,
@@ -35,10 +35,10 @@ impl SplineDraws {
     }
 
     /// The next form, convex or not: [`Shape::new`] says which.
-    pub fn draw(&mut self) -> Form {
+    pub fn draw(&mut self) -> BodyForm {
         let [low, high] = RADII;
         let radii = [(); 3].map(|()| self.random.random_range(low..=high));
-        Form::Spline { radii, knots: self.knots }
+        BodyForm::Spline { radii, knots: self.knots }
     }
 
     /// Draws until a form is convex; its centre of mass is its centroid.

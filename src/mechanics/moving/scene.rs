@@ -12,7 +12,7 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-12;
 /// The palms are lines through the world's origin. Palm 1 makes the angle `phi1` with the X axis, palm 2 the angle
 /// `phi2` with palm 1; the body lies between them, above both (`0 < phi2 < pi`), and is turned by `phi0`.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct MovingScene {
     pub shape: Shape,
     pub mass: f64,
     /// The body's radius of gyration about its centre of mass; that of a uniform body is [`Shape::gyration`].

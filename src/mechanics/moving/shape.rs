@@ -1,6 +1,6 @@
 //! A smooth, strictly convex body by its support function about its centre of mass.
 
-use super::form::{CentreOfMass, Form, FormError};
+use super::form::{BodyForm, CentreOfMass, FormError};
 use super::plane::{Plane, along, dot, left_of, scaled, unit};
 use super::positive::{Doubt, positive_everywhere};
 use super::quadrature::{Integrals, over_a_turn, rates};
@@ -18,14 +18,14 @@ enum Curve {
 }
 
 impl Curve {
-    fn new(form: &Form) -> Result<Self, FormError> {
+    fn new(form: &BodyForm) -> Result<Self, FormError> {
         Ok(match form {
-            Form::Harmonics { mean, harmonics } => Curve::Harmonics(Series::new(*mean, harmonics)?),
-            Form::Ellipse { semi_axes } => Curve::Superellipse(Superellipse::new(*semi_axes, 2, 0.0)?),
-            Form::Superellipse { semi_axes, exponent, rounding } => {
+            BodyForm::Harmonics { mean, harmonics } => Curve::Harmonics(Series::new(*mean, harmonics)?),
+            BodyForm::Ellipse { semi_axes } => Curve::Superellipse(Superellipse::new(*semi_axes, 2, 0.0)?),
+            BodyForm::Superellipse { semi_axes, exponent, rounding } => {
                 Curve::Superellipse(Superellipse::new(*semi_axes, *exponent, *rounding)?)
             }
-            Form::Spline { radii, knots } => Curve::Spline(ClosedSpline::new(*radii, *knots)?),
+            BodyForm::Spline { radii, knots } => Curve::Spline(ClosedSpline::new(*radii, *knots)?),
         })
     }
 
@@ -72,7 +72,7 @@ impl Shape {
     /// # Errors
     /// Where a number is not one, the outline is not strictly convex (decided up to rounding, not sampled), or the
     /// centre of mass is not inside.
-    pub fn new(form: &Form, centre: CentreOfMass) -> Result<Self, FormError> {
+    pub fn new(form: &BodyForm, centre: CentreOfMass) -> Result<Self, FormError> {
         let curve = Curve::new(form)?;
         let integrals = curve.integrals()?;
         let centre = match centre {

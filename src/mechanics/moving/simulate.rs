@@ -3,7 +3,7 @@
 use super::breach::Breach;
 use super::integrate::steps;
 use super::laws::{Situation, State};
-use super::scene::{Scene, SceneError};
+use super::scene::{MovingScene, SceneError};
 use super::trajectory::{Ended, Moment, Trajectory};
 
 /// Contacts are looked at after each step of the integrator, of which there are at least so many: a contact force
@@ -19,7 +19,7 @@ const LOCATED: f64 = 1e-14;
 ///
 /// # Errors
 /// Where a value of the scene or a time cannot be used, or a palm would have to pull at the start.
-pub fn simulate(scene: &Scene, times: &[f64]) -> Result<Trajectory, SceneError> {
+pub fn simulate(scene: &MovingScene, times: &[f64]) -> Result<Trajectory, SceneError> {
     let last = times.last().ok_or(SceneError::NoTimes)?;
     let mut before = -f64::MIN_POSITIVE;
     for (index, &time) in (1..).zip(times) {
@@ -56,12 +56,12 @@ struct Stop {
     ended: Ended,
 }
 
-fn breach((time, state): &(f64, State), scene: &Scene) -> Option<Breach> {
+fn breach((time, state): &(f64, State), scene: &MovingScene) -> Option<Breach> {
     Situation::at(scene, *time, state).breach(scene)
 }
 
 /// The state at time `end`.
-fn advance(scene: &Scene, from: (f64, State), end: f64, longest: f64) -> Result<State, Stop> {
+fn advance(scene: &MovingScene, from: (f64, State), end: f64, longest: f64) -> Result<State, Stop> {
     let (all, failure) = steps(scene, from, end, longest);
     let mut held = from;
     for step in all {
@@ -79,7 +79,7 @@ fn advance(scene: &Scene, from: (f64, State), end: f64, longest: f64) -> Result<
 
 /// Where the contacts hold for the last time between a state in which they do and a time at which they do not, by
 /// bisection; each state is integrated from the first one.
-fn locate(scene: &Scene, held: (f64, State), broken: f64, mut by: Breach) -> ((f64, State), Breach) {
+fn locate(scene: &MovingScene, held: (f64, State), broken: f64, mut by: Breach) -> ((f64, State), Breach) {
     let (mut low, mut high) = (held, broken);
     while high - low.0 > LOCATED {
         let middle = low.0 + (high - low.0) / 2.0;

@@ -2,7 +2,7 @@
 
 use super::breach::Breach;
 use super::laws::{Situation, State};
-use super::scene::Scene;
+use super::scene::MovingScene;
 
 /// One palm at one moment. SI units, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub struct Moment {
 }
 
 impl Moment {
-    pub(super) fn of(scene: &Scene, time: f64, state: &State) -> Moment {
+    pub(super) fn of(scene: &MovingScene, time: f64, state: &State) -> Moment {
         let [phi0, omega0, .., work] = *state;
         let at = Situation::at(scene, time, state);
         let relative = |pair: [f64; 2], i: usize| if i == 0 { pair[0] } else { pair[1] - pair[0] };

@@ -1,9 +1,9 @@
 //! What double-doubles and intervals do differently where num-dual's trait is concerned.
 
-use crate::number::{DoubleDouble, Function, Interval, Real};
+use crate::number::{DoubleDouble, Function, Interval, RealNumber};
 
 /// A number that holds no derivatives itself.
-pub(super) trait Plain: Real {
+pub(super) trait Plain: RealNumber {
     /// The value where there is none.
     const UNKNOWN: Self;
     /// The remainder of the division towards zero.

@@ -1,6 +1,6 @@
 //! Lanes without help from the instruction set: eight doubles side by side, and one alone.
 
-use crate::number::lanes::Lanes;
+use crate::number::lanes::{ErrorBounds, Lanes};
 use crate::number::{Function, sine};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -49,6 +49,8 @@ impl Neg for Eight {
         self
     }
 }
+
+impl ErrorBounds for Eight {}
 
 impl Lanes for Eight {
     const COUNT: usize = 8;
@@ -107,6 +109,8 @@ impl Lanes for Eight {
         self
     }
 }
+
+impl ErrorBounds for f64 {}
 
 impl Lanes for f64 {
     const COUNT: usize = 1;

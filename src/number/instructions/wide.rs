@@ -1,7 +1,7 @@
 //! Lanes in the vector registers of x86-64.
 
 use super::portable::evaluate;
-use crate::number::lanes::{Lanes, MOST_LANES, Task, Vectorised};
+use crate::number::lanes::{ErrorBounds, LaneTask, Lanes, MOST_LANES, Vectorised};
 use crate::number::{Function, sine};
 use pulp::x86::{V3, V4};
 use pulp::{NullaryFnOnce, cast};
@@ -216,7 +216,7 @@ pub(super) fn run<R: Registers, W: Vectorised>(registers: R, work: W) -> W::Outp
 }
 
 struct Apart<T>(T);
-impl<T: Task> NullaryFnOnce for Apart<T> {
+impl<T: LaneTask> NullaryFnOnce for Apart<T> {
     type Output = T::Output;
     #[inline(always)]
     fn call(self) -> T::Output {
@@ -261,6 +261,8 @@ impl<R: Registers> Neg for Two<R> {
         self.with(self.registers.neg(a), self.registers.neg(b))
     }
 }
+
+impl<R: Registers> ErrorBounds for Two<R> {}
 
 impl<R: Registers> Lanes for Two<R> {
     const COUNT: usize = 2 * R::WIDTH;
@@ -320,7 +322,7 @@ impl<R: Registers> Lanes for Two<R> {
     fn sin_cos(self) -> (Self, Self) {
         sine::sin_cos(self)
     }
-    fn apart<T: Task>(self, task: T) -> T::Output {
+    fn apart<T: LaneTask>(self, task: T) -> T::Output {
         self.registers.vectorize(Apart(task))
     }
     #[inline(always)]

@@ -8,7 +8,7 @@
 use super::Interval;
 use super::circular::circular;
 use super::rounding::{around, sqrt_down, sqrt_up};
-use crate::number::{DoubleDouble, Function, Real};
+use crate::number::{DoubleDouble, Function, RealNumber};
 
 impl Interval {
     /// The function's values on the interval; `None` where one of its numbers lies outside the function's domain.

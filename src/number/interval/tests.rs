@@ -70,7 +70,7 @@ proptest! {
             }
         }
         prop_assert!(is_well_formed(sum) && is_well_formed(product) && is_well_formed(quotient));
-        if Real::is_finite(a) && Real::is_finite(b) {
+        if RealNumber::is_finite(a) && RealNumber::is_finite(b) {
             let all = |f: &dyn Fn(&RBig, &RBig) -> RBig| -> Vec<RBig> {
                 xs[..2].iter().flat_map(|x| ys[..2].iter().map(|y| f(x, y)).collect::<Vec<_>>()).collect()
             };

@@ -21,7 +21,7 @@ pub use written::parse_condition;
 
 use crate::expression::syntax::{Equation, Relation};
 use crate::expression::{Graph, Guard, Need, NodeId, Symbol, add_guard, sign};
-use crate::system::{Assignment, System, Value};
+use crate::system::{Assignment, System};
 use single::{way, way_apart_from_turns};
 use turns::turns_do_not_matter;
 use vanishing::{is_a_constant_but_zero, vanish_where};
@@ -194,10 +194,11 @@ pub fn solve(system: &mut System, conditions: &[Equation]) -> Result<Solution, U
 fn begin(system: &mut System, conditions: &[Equation]) -> Result<Partial, Unsolved> {
     let mut partial = Partial::default();
     for condition in conditions {
-        let mut side = |expr| match system.elaborate_guarded(expr) {
-            Ok((Value::Scalar(id), guards)) => Ok((id, guards)),
-            Ok((other, _)) => Err(Unsolved::Unreadable(format!("a condition equates {}", other.describe()))),
-            Err(problem) => Err(Unsolved::Unreadable(problem.message)),
+        let mut side = |expr| {
+            let (value, guards) =
+                system.elaborate_guarded(expr).map_err(|problem| Unsolved::Unreadable(problem.message))?;
+            let found = value.as_number().map(|id| (id, guards));
+            found.ok_or_else(|| Unsolved::Unreadable(format!("a condition equates {}", value.describe())))
         };
         let ((left, before), (right, after)) = (side(&condition.left)?, side(&condition.right)?);
         for guard in before.into_iter().chain(after) {

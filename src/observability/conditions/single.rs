@@ -92,8 +92,7 @@ fn is_positive(system: &System, expression: NodeId) -> bool {
 
 /// Whether a function other than the sine or cosine of an angle is met.
 fn has_unknown_function(system: &mut System, expressions: &[NodeId]) -> bool {
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, expressions, is_angle);
     Program::new(&system.graph, &expanded, is_angle, true).unknown_function(&system.graph).is_some()
 }
@@ -127,8 +126,7 @@ pub fn also_met_otherwise(system: &mut System, expression: NodeId, symbol: Symbo
     let slope = system.partial(expression, symbol);
     let zero = system.graph.integer(0);
     let both = system.graph.substitute(&[slope, expression], &Assignment::from([(symbol, zero)]));
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let both = expand_angles(&mut system.graph, &both, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(0x6c69_6e65);
     share_a_factor(&system.graph, both[0], both[1], is_angle, &mut rng) != Some(false)

@@ -53,8 +53,7 @@ fn ingredients(system: &mut System) -> Vec<NodeId> {
 /// Whether expressions mention an angle only through sines and cosines of integer combinations, so that whole turns of
 /// it do not matter.
 pub(super) fn turns_do_not_matter(system: &mut System, expressions: &[NodeId], angle: Symbol) -> bool {
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, expressions, is_angle);
     let program = Program::new(&system.graph, &expanded, is_angle, true);
     let bare = program.inputs().contains(&Input::Plain(angle));

@@ -34,8 +34,7 @@ pub(super) fn test(system: &mut System, expressions: &[NodeId]) -> ZeroTest {
 
 /// The test for zero: functions as unknowns, and if these do not cancel, by what the functions satisfy.
 fn test_where(system: &mut System, expressions: &[NodeId], guards: &[Guard]) -> ZeroTest {
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, expressions, is_angle);
     let mut rng = ChaCha8Rng::seed_from_u64(0x7a65_726f); // any fixed seed: the same file gives the same answer
     let found = identically_zero(&system.graph, &expanded, is_angle, &mut rng);

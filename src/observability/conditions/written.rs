@@ -1,13 +1,43 @@
 //! Conditions as they are written outside of a file, on a command line.
 
-use crate::expression::parse::{Depth, equations, read_all};
+use crate::expression::parse::{Depth, Read, Text, equations, read_all, sign};
 use crate::expression::syntax::Equation;
+use winnow::combinator::{cut_err, separated};
+use winnow::prelude::*;
 
-/// Reads a condition such as `sin(phi1) = 0` or `0 < x < 1`, which is two.
+/// Reads conditions such as `sin(phi1) = 0`, `0 < x < 1`, which is two, or several between commas: `x = 0, y > 0`.
 ///
 /// # Errors
 /// In words: what was expected, and where.
 pub fn parse_condition(text: &str) -> Result<Vec<Equation>, String> {
-    read_all(text, &Depth::default(), "an operator, or the end", equations)
+    let list = |input: &mut Text<'_>| -> Read<Vec<Equation>> {
+        let found: Vec<Vec<Equation>> = separated(1.., cut_err(equations), sign(",")).parse_next(input)?;
+        Ok(found.concat())
+    };
+    read_all(text, &Depth::default(), "an operator, ',' and another condition, or the end", list)
         .map_err(|e| format!("in the condition '{text}', at column {}: {e}", e.at + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parse_condition;
+
+    /// By hand: each relation of each condition, in order.
+    #[test]
+    fn several_conditions_stand_between_commas() {
+        for (text, count) in [
+            ("x = 0", 1),
+            ("x = 0, y > 0", 2),
+            (" 0 < x < 1 , y = x # both\n, z in [0, 1]", 5),
+            ("dot([x, y], [1, 0]) = 0, x at {x = 1, y = 2} = 1", 2),
+        ] {
+            assert_eq!(parse_condition(text).map(|found| found.len()), Ok(count), "{text}");
+        }
+        for (text, column) in
+            [("x = 0,", 7), ("x = 0, y", 9), ("x = 0 y = 0", 7), (", x = 0", 1), ("", 1), ("x = 0;", 6)]
+        {
+            let why = parse_condition(text).unwrap_err();
+            assert!(why.contains(&format!("at column {column}:")), "{text}: {why}");
+        }
+    }
 }

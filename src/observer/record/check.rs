@@ -1,15 +1,15 @@
 //! Looks for what is wrong with the rows of a file.
 
 use super::spike::spikes;
-use super::{Cell, Fault, FaultKind, FaultRules, OnFault, Reading, RecordError, Rows};
+use super::{Cell, Fault, FaultKind, FaultRules, OnFault, RecordError, RecordReading, RecordRows};
 use std::collections::BTreeSet;
 
-impl Rows {
+impl RecordRows {
     /// Looks for faults and does with them what the rules say.
     ///
     /// # Errors
     /// There is a fault and the rules say to stop; or no row is left.
-    pub fn settle(self, rules: &FaultRules) -> Result<Reading, RecordError> {
+    pub fn settle(self, rules: &FaultRules) -> Result<RecordReading, RecordError> {
         let faults = check(&self, rules);
         if rules.on_fault == OnFault::Stop && !faults.is_empty() {
             return Err(RecordError::Faulty { path: self.path, faults });
@@ -19,7 +19,7 @@ impl Rows {
             return Err(RecordError::NothingLeft { path: self.path, faults });
         }
         let (record, left_out) = self.numbers(|row| !skipped.contains(&row));
-        Ok(Reading { record, faults, left_out })
+        Ok(RecordReading { record, faults, left_out })
     }
 }
 
@@ -29,7 +29,7 @@ impl Rows {
 /// when they do not, and among equals the later ones. A step in time of more than `1.5 * usual + 3 * jitter`, where
 /// `usual` is the median step, is a gap; rows in between whose times cannot be used count as usual steps. What a
 /// spike is stands at the head of `spike.rs`.
-pub fn check(rows: &Rows, rules: &FaultRules) -> Vec<Fault> {
+pub fn check(rows: &RecordRows, rules: &FaultRules) -> Vec<Fault> {
     let mut faults = unreadable(rows);
     for (row, place) in rows.rows.iter().enumerate() {
         for &column in &rows.needed {
@@ -65,7 +65,7 @@ pub fn check(rows: &Rows, rules: &FaultRules) -> Vec<Fault> {
 }
 
 /// The faults for which a row is no row of numbers at all.
-pub(super) fn unreadable(rows: &Rows) -> Vec<Fault> {
+pub(super) fn unreadable(rows: &RecordRows) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (row, place) in rows.rows.iter().enumerate() {
         if place.surplus > 0 {

@@ -1,6 +1,6 @@
 //! Measurement records: a table of times and named columns, read from CSV or Parquet and written to either.
 //!
-//! A file is read twice over: first as [`Rows`], cells as they stand there, readable or not; then, when [`check`] has
+//! A file is read twice over: first as [`RecordRows`], cells as they stand there, readable or not; then, when [`check`] has
 //! said what is wrong with them and the caller's rules have said what to do about it, as a [`Record`] of plain numbers
 //! whose times increase. This module knows nothing of palms or observers: which columns are needed is the caller's.
 
@@ -19,7 +19,7 @@ mod write;
 pub use check::check;
 pub use error::RecordError;
 pub use fault::{Fault, FaultKind, FaultRules, OnFault};
-pub use rows::Rows;
+pub use rows::RecordRows;
 pub use table::{Cell, Row};
 
 use std::path::Path;
@@ -43,7 +43,7 @@ pub struct Record {
 
 /// A record that was read by rules, with what was wrong in the file.
 #[derive(Clone, Debug)]
-pub struct Reading {
+pub struct RecordReading {
     /// The rows without fault.
     pub record: Record,
     /// All faults that were found, in the order of their rows. Rows with a fault are not in the record, but for a
@@ -81,7 +81,7 @@ impl Record {
     /// # Errors
     /// The file cannot be read, lacks a column or has no row, or a cell that is needed is no number.
     pub fn read(path: &Path, needed: &[&str]) -> Result<Record, RecordError> {
-        let rows = Rows::read(path, needed)?;
+        let rows = RecordRows::read(path, needed)?;
         let faults = check::unreadable(&rows);
         if !faults.is_empty() {
             return Err(RecordError::Faulty { path: path.to_owned(), faults });
@@ -94,8 +94,12 @@ impl Record {
     ///
     /// # Errors
     /// As [`Record::read`]; and when there is a fault and the rules say to stop, or no row is left.
-    pub fn read_checked(path: &Path, needed: &[&str], rules: &FaultRules) -> Result<Reading, RecordError> {
-        Rows::read(path, needed)?.settle(rules)
+    pub fn read_checked(
+        path: &Path,
+        needed: &[&str],
+        rules: &FaultRules,
+    ) -> Result<RecordReading, RecordError> {
+        RecordRows::read(path, needed)?.settle(rules)
     }
 
     /// Writes the record, CSV or Parquet by the extension, so that it is read back bit for bit (in CSV but for the

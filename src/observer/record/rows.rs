@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// A record as it stands in its file.
 #[derive(Clone, Debug)]
-pub struct Rows {
+pub struct RecordRows {
     pub(super) path: PathBuf,
     /// The names of the columns, the time among them.
     pub(super) names: Vec<String>,
@@ -17,13 +17,13 @@ pub struct Rows {
     pub(super) needed: Vec<usize>,
 }
 
-impl Rows {
+impl RecordRows {
     /// Reads a file, CSV or Parquet by its extension. `needed` are the columns that must be there beside the time and
     /// in which a cell that is no number is a fault; none means all.
     ///
     /// # Errors
     /// The file cannot be read, lacks a column or has no row.
-    pub fn read(path: &Path, needed: &[&str]) -> Result<Rows, RecordError> {
+    pub fn read(path: &Path, needed: &[&str]) -> Result<RecordRows, RecordError> {
         let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
         let Table { names, rows, foreign } = match extension.as_deref() {
             Some("csv") => comma_separated::read(path)?,
@@ -57,7 +57,7 @@ impl Rows {
         if rows.is_empty() {
             return Err(RecordError::NoRows { path: path.to_owned() });
         }
-        Ok(Rows { path: path.to_owned(), names, rows, needed: judged })
+        Ok(RecordRows { path: path.to_owned(), names, rows, needed: judged })
     }
 
     /// The rows, in the order of the file.

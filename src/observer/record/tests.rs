@@ -14,7 +14,7 @@ fn file(name: &str, bytes: impl AsRef<[u8]>) -> (tempfile::TempDir, PathBuf) {
 /// The faults of a text, as pairs of row and line, and what is wrong.
 fn faults(text: &str) -> Vec<(usize, Option<u64>, Option<String>, FaultKind)> {
     let (_folder, path) = file("record.csv", text);
-    let rows = Rows::read(&path, &[]).unwrap();
+    let rows = RecordRows::read(&path, &[]).unwrap();
     let told = check(&rows, &FaultRules::default());
     told.into_iter().map(|f| (f.row, f.line, f.column, f.kind)).collect()
 }
@@ -108,7 +108,7 @@ fn a_gap_is_told_from_jitter() {
         time += [0.1, 0.04, 0.16, 0.04, 0.1, 0.16][row % 6] + if row == 40 { 1.0 } else { 0.0 };
     }
     let (_folder, path) = file("record.csv", text);
-    let rows = Rows::read(&path, &[]).unwrap();
+    let rows = RecordRows::read(&path, &[]).unwrap();
     let gaps = |jitter: f64| -> Vec<usize> {
         let rules = FaultRules { jitter, spike: f64::INFINITY, ..FaultRules::default() };
         check(&rows, &rules).into_iter().map(|fault| fault.row).collect()

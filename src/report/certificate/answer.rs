@@ -1,6 +1,6 @@
 //! Certificates on regions, as JSON and as text.
 
-use crate::certificate::{OpenBox, PartAnswer, RegionAnswer, Standing, Vanishing};
+use crate::certificate::{BoxStanding, OpenBox, PartAnswer, RegionAnswer, Vanishing};
 use crate::number::rational_from_f64;
 use crate::observability::AVOIDED;
 use crate::report::names::{fields_json, fields_text};
@@ -8,12 +8,12 @@ use dashu::rational::RBig;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-fn standing_word(standing: Standing) -> &'static str {
+fn standing_word(standing: BoxStanding) -> &'static str {
     match standing {
-        Standing::Proved => "proved",
-        Standing::MinorVanishes => "minor vanishes",
-        Standing::Pole => "pole",
-        Standing::Undecided => "undecided",
+        BoxStanding::Proved => "proved",
+        BoxStanding::MinorVanishes => "minor vanishes",
+        BoxStanding::Pole => "pole",
+        BoxStanding::Undecided => "undecided",
     }
 }
 

@@ -1,6 +1,6 @@
 //! Certificates on regions, as pictures.
 
-use crate::certificate::{RegionAnswer, RegionMap, Standing};
+use crate::certificate::{BoxStanding, RegionAnswer, RegionMap};
 use crate::report::axis::{axis, number, room};
 use crate::report::drawing::{Canvas, INK, MESH, svg};
 
@@ -47,29 +47,30 @@ pub fn region_curve(answer: &RegionAnswer, title: &str) -> String {
 /// Less is not drawn.
 const SMALLEST: f64 = 1e-12;
 
-fn colour(standing: Standing) -> RGBColor {
+fn colour(standing: BoxStanding) -> RGBColor {
     match standing {
-        Standing::Proved => RGBColor(205, 228, 240),
-        Standing::MinorVanishes => RGBColor(213, 94, 0),
-        Standing::Pole => RGBColor(20, 24, 32),
-        Standing::Undecided => RGBColor(150, 150, 150),
+        BoxStanding::Proved => RGBColor(205, 228, 240),
+        BoxStanding::MinorVanishes => RGBColor(213, 94, 0),
+        BoxStanding::Pole => RGBColor(20, 24, 32),
+        BoxStanding::Undecided => RGBColor(150, 150, 150),
     }
 }
 
 /// What a box of a colour is.
-fn meaning(standing: Standing) -> &'static str {
+fn meaning(standing: BoxStanding) -> &'static str {
     match standing {
-        Standing::Proved => "full rank is proved",
-        Standing::MinorVanishes => "a minor vanishes somewhere in here",
-        Standing::Pole => "a pole runs through",
-        Standing::Undecided => "not decided",
+        BoxStanding::Proved => "full rank is proved",
+        BoxStanding::MinorVanishes => "a minor vanishes somewhere in here",
+        BoxStanding::Pole => "a pole runs through",
+        BoxStanding::Undecided => "not decided",
     }
 }
 
 /// The boxes in a plane, each with its border: pale where full rank is proved, red where a minor is proved to vanish
 /// somewhere in the box, black where a pole runs through it, grey where nothing is known.
 pub fn region_map(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> String {
-    let meanings = [Standing::Proved, Standing::MinorVanishes, Standing::Pole, Standing::Undecided];
+    let meanings =
+        [BoxStanding::Proved, BoxStanding::MinorVanishes, BoxStanding::Pole, BoxStanding::Undecided];
     let by_colour = meanings.map(|standing| (colour(standing), meaning(standing).to_owned()));
     Canvas { size: (420, 320), title, by_colour: &by_colour, is_crisp: true }.draw(|area, _| {
         let mut chart = ChartBuilder::on(area)
@@ -82,8 +83,8 @@ pub fn region_map(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> Str
         // all of one standing together, so that they are one path, and then their borders
         // most is proved: the whole first, and then the rest on it
         let whole = [(map.x.1, map.y.1), (map.x.2, map.y.2)];
-        chart.draw_series([Rectangle::new(whole, colour(Standing::Proved).filled())])?;
-        for standing in meanings.into_iter().filter(|standing| *standing != Standing::Proved) {
+        chart.draw_series([Rectangle::new(whole, colour(BoxStanding::Proved).filled())])?;
+        for standing in meanings.into_iter().filter(|standing| *standing != BoxStanding::Proved) {
             for patch in map.patches.iter().filter(|patch| patch.standing == standing) {
                 let corners = [(patch.x.0, patch.y.0), (patch.x.1, patch.y.1)];
                 chart.draw_series([Rectangle::new(corners, colour(standing).filled())])?;

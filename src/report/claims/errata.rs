@@ -2,7 +2,7 @@
 //! numbers with both values.
 
 use crate::claim::{Outcome, Verdict, Witness};
-use crate::paper::{Equation, Paper};
+use crate::paper::{NumberedEquation, Paper};
 use crate::report::claims::outcomes::{error_bound, explanations, special_text, with_decimal};
 use crate::report::claims::words::{meaning, words_markdown};
 use crate::system::{Basis, Flaw};
@@ -128,7 +128,7 @@ fn in_words(witness: &Witness) -> String {
     )
 }
 
-fn table(all: &[Equation<'_>], out: &mut String) {
+fn table(all: &[NumberedEquation<'_>], out: &mut String) {
     let _ = writeln!(out, "# All numbered equations\n");
     let counts: Vec<String> = Outcome::WORDS
         .into_iter()

@@ -2,7 +2,7 @@
 
 use crate::experiment::{Answer, Basin, Experiment, Method, NoiseLevel, error};
 use crate::mechanics::moving::Ended;
-use crate::observer::{Fault, Standing, Update};
+use crate::observer::{Fault, Update, UpdateEnd};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -37,13 +37,13 @@ pub fn method_name(method: Method) -> &'static str {
     }
 }
 
-pub(super) fn standing_name(standing: &Standing) -> String {
+pub(super) fn standing_name(standing: &UpdateEnd) -> String {
     match standing {
-        Standing::Converged => "converged".to_owned(),
-        Standing::StepsSpent => "all steps spent".to_owned(),
-        Standing::Stuck => "no step lowers the error".to_owned(),
-        Standing::Blind { .. } => "cannot see".to_owned(),
-        Standing::Lost(lost) => format!("lost: {lost}"),
+        UpdateEnd::Converged => "converged".to_owned(),
+        UpdateEnd::StepsSpent => "all steps spent".to_owned(),
+        UpdateEnd::Stuck => "no step lowers the error".to_owned(),
+        UpdateEnd::Blind { .. } => "cannot see".to_owned(),
+        UpdateEnd::Lost(lost) => format!("lost: {lost}"),
     }
 }
 
@@ -101,7 +101,7 @@ fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
         "misfit": finite(update.misfit),
         "states": states(observed, update.from, &update.estimate, Some(&update.deviations)),
     });
-    if let Standing::Blind { weakest } = &update.standing {
+    if let UpdateEnd::Blind { weakest } = &update.standing {
         found["unseen"] = json!(weakest);
     }
     found

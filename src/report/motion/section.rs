@@ -1,6 +1,6 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
-use crate::experiment::{ARRIVED, NOMINAL, Shape, error};
+use crate::experiment::{ARRIVED, NOMINAL, SceneOutline, error};
 use crate::report::motion::answers::{Observed, ended_in_words, fault_lines, method_name};
 use crate::report::motion::frames::{frames, recovered_outline};
 use crate::report::motion::plot::{errors, sensor_errors, state};
@@ -35,15 +35,15 @@ pub(in crate::report) fn observed_section(experiments: &[Observed<'_>]) -> Marku
     }
 }
 
-fn shape_in_words(shape: &Shape) -> String {
+fn shape_in_words(shape: &SceneOutline) -> String {
     match shape {
-        Shape::Harmonics { harmonics, .. } => {
+        SceneOutline::Harmonics { harmonics, .. } => {
             format!("a body whose support function has {} harmonics", harmonics.len())
         }
-        Shape::Ellipse { .. } => "an ellipse".to_owned(),
-        Shape::Superellipse { .. } => "a superellipse".to_owned(),
-        Shape::Spline { .. } => "a closed spline".to_owned(),
-        Shape::RandomSpline { seed, .. } => format!("a random closed spline (seed {seed})"),
+        SceneOutline::Ellipse { .. } => "an ellipse".to_owned(),
+        SceneOutline::Superellipse { .. } => "a superellipse".to_owned(),
+        SceneOutline::Spline { .. } => "a closed spline".to_owned(),
+        SceneOutline::RandomSpline { seed, .. } => format!("a random closed spline (seed {seed})"),
     }
 }
 

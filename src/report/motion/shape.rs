@@ -160,12 +160,12 @@ pub(super) fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::moving::{CentreOfMass, Form};
+    use crate::mechanics::moving::{BodyForm, CentreOfMass};
 
     /// A disc of radius 2 about its centre: the distance of a point is that of its radius from 2, inside and outside.
     #[test]
     fn the_distance_from_a_disc_is_known() {
-        let form = Form::Harmonics { mean: 2.0, harmonics: Vec::new() };
+        let form = BodyForm::Harmonics { mean: 2.0, harmonics: Vec::new() };
         let disc = Shape::new(&form, CentreOfMass::Uniform).unwrap();
         assert!((distance(&disc, [3.0, 4.0]) - 3.0).abs() < 1e-14);
         assert!((distance(&disc, [0.3, -0.4]) - 1.5).abs() < 1e-14);
@@ -174,7 +174,7 @@ mod tests {
     /// A point of the boundary moved out along its normal by a known length, on a body that is no disc.
     #[test]
     fn a_point_moved_along_its_normal_is_that_far() {
-        let form = Form::Harmonics { mean: 1.0, harmonics: vec![[0.0, 0.0], [0.08, 0.03]] };
+        let form = BodyForm::Harmonics { mean: 1.0, harmonics: vec![[0.0, 0.0], [0.08, 0.03]] };
         let shape = Shape::new(&form, CentreOfMass::Uniform).unwrap();
         for i in 0..50 {
             let angle = 0.1 + f64::from(i);

@@ -1,7 +1,7 @@
 //! What each observer found, as tables: at the end, update by update, and what it could not see.
 
 use crate::experiment::{Answer, error};
-use crate::observer::{Standing, Update};
+use crate::observer::{Update, UpdateEnd};
 use crate::report::axis::unit_of;
 use crate::report::motion::answers::{Observed, method_name, standing_name};
 use maud::{Markup, html};
@@ -56,7 +56,7 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
             } }
             tbody {
                 @for answer in observed.answers {
-                    @let converged = answer.track.updates.iter().filter(|u| u.standing == Standing::Converged).count();
+                    @let converged = answer.track.updates.iter().filter(|u| u.standing == UpdateEnd::Converged).count();
                     tr {
                         td { b { (method_name(answer.method)) } }
                         @if let Some(last) = answer.track.last() {
@@ -175,10 +175,10 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
         for update in &answer.track.updates {
             let from = update.from;
             match &update.standing {
-                Standing::Blind { weakest } => {
+                UpdateEnd::Blind { weakest } => {
                     lines.push(format!("{name} from {from:.3} s: {}", blind(observed, update, weakest)));
                 }
-                Standing::Converged => {}
+                UpdateEnd::Converged => {}
                 _ => lines.push(format!("{name} from {from:.3} s: {}", standing_name(&update.standing))),
             }
         }

@@ -10,7 +10,7 @@ use crate::report::trade::answer::{TRADE_FRONT_HEADINGS, trade_front_table};
 use crate::report::trade::plot::trade_plot;
 use crate::system::System;
 use crate::tradeoff::Trade;
-use crate::tradeoff::stress::Study;
+use crate::tradeoff::stress::StressStudy;
 use maud::{Markup, PreEscaped, html};
 
 /// Whether something was found of it.
@@ -20,7 +20,7 @@ pub(super) fn has_extremes(found: &Findings) -> bool {
 
 /// What was found of it, as a section of the page.
 pub(super) fn extremes(found: &Findings) -> Markup {
-    let stress: Vec<&Study> = found.files.iter().filter_map(|file| file.stress.as_ref()).collect();
+    let stress: Vec<&StressStudy> = found.files.iter().filter_map(|file| file.stress.as_ref()).collect();
     let regions: Vec<(&System, &RegionAnswer)> =
         found.files.iter().filter_map(|file| Some((&file.system, file.certificate.as_ref()?))).collect();
     html! {
@@ -65,7 +65,7 @@ fn certified(regions: &[(&System, &RegionAnswer)]) -> Markup {
     }
 }
 
-fn stressed(studies: &[&Study]) -> Markup {
+fn stressed(studies: &[&StressStudy]) -> Markup {
     html! {
         h3 { "The extremes" }
         p {

@@ -10,8 +10,8 @@ use crate::report::stress::answer::stress_json;
 use crate::report::trade::answer::trade_json;
 use crate::sweep::RankAnswer;
 use crate::system::Flaw;
-use crate::tradeoff::stress::Study;
-use crate::tradeoff::{Map, PrintedExpression, PrintedValue, Rows, Slope};
+use crate::tradeoff::stress::StressStudy;
+use crate::tradeoff::{LandscapeRows, Map, PrintedExpression, PrintedValue, Slope};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -20,9 +20,9 @@ fn four_digits(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-fn map_json(kind: Rows, map: &Map) -> Value {
+fn map_json(kind: LandscapeRows, map: &Map) -> Value {
     json!({
-        "rows": if kind == Rows::Own { "own" } else { "full" },
+        "rows": if kind == LandscapeRows::Own { "own" } else { "full" },
         "x": { "name": map.x.0, "low": map.x.1, "high": map.x.2, "cells": map.width },
         "y": { "name": map.y.0, "low": map.y.1, "high": map.y.2, "cells": map.height },
         "smallest_singular_value": map.smallest.iter().map(|v| v.map(four_digits)).collect::<Vec<_>>(),
@@ -39,10 +39,10 @@ fn line_json(title: &str, slope: &Slope) -> Value {
 }
 
 fn set_json(rank: &SetRank) -> Value {
-    let mut object = match &rank.found {
+    let mut object = match rank.answer() {
         Ok(answer) => rank_json(answer),
-        Err(why) if rank.is_pole() => json!({ "pole": why.to_string() }),
-        Err(why) => json!({ "not_decided": why.to_string() }),
+        Err(why) if rank.is_pole() => json!({ "pole": why }),
+        Err(why) => json!({ "not_decided": why }),
     };
     object["set"] = json!(rank.name());
     object["conditions"] = json!(rank.set.as_ref().map(|set| &set.written).cloned().unwrap_or_default());
@@ -147,7 +147,7 @@ pub fn printed_value_json(value: &PrintedValue) -> Value {
 pub fn findings_json(found: &Findings) -> Value {
     let paper = &found.paper;
     let words = counts(found.outcomes()).into_iter().collect::<std::collections::BTreeMap<_, _>>();
-    let stress: Vec<Study> = found.files.iter().filter_map(|file| file.stress.clone()).collect();
+    let stress: Vec<StressStudy> = found.files.iter().filter_map(|file| file.stress.clone()).collect();
     json!({
         "ok": found.ok(),
         "interrupted": found.interrupted,
@@ -207,16 +207,18 @@ fn file_text(file: &FileFindings, out: &mut String) {
         let own = file.ranks.iter().filter_map(|rank| rank.found.as_ref().ok());
         let has_own = own.flat_map(|answer| &answer.branches).any(|branch| branch.rows.is_some());
         let heading = if has_own { "the file's rows" } else { "" };
-        let _ = writeln!(out, "  {:<48} {:>16} {heading:>16}", "rank on", "full");
+        let line = format!("  {:<48} {:>16} {heading:>16}", "rank on", "full");
+        let _ = writeln!(out, "{}", line.trim_end());
         for rank in &file.ranks {
-            let (full, own) = match &rank.found {
+            let (full, own) = match rank.answer() {
+                _ if rank.is_pole() => ("a pole".to_owned(), "-".to_owned()),
                 Ok(answer) => (ranks_in_words(answer, false), ranks_in_words(answer, true)),
-                Err(_) if rank.is_pole() => ("a pole".to_owned(), "-".to_owned()),
                 Err(why) => (format!("not decided: {why}"), String::new()),
             };
             let own = if has_own { own } else { String::new() };
             let unexpected = if rank.as_expected() { "" } else { "   not as expected" };
-            let _ = writeln!(out, "  {:<48} {full:>16} {own:>16}{unexpected}", rank.name());
+            let line = format!("  {:<48} {full:>16} {own:>16}{unexpected}", rank.name());
+            let _ = writeln!(out, "{}", line.trim_end());
         }
     }
     for found in &file.reductions {

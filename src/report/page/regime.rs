@@ -3,11 +3,11 @@
 use super::entry::{explain, formula};
 use super::findings::ranks_in_words;
 use crate::claim::Outcome;
-use crate::paper::{Derivatives, FileFindings, LineFound, MapFound, ReductionFound, SetRank};
+use crate::paper::{DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank};
 use crate::report::formula::{conditions_mathml, formula_mathml};
 use crate::report::plot;
 use crate::sweep::RankAnswer;
-use crate::tradeoff::{ExpandedText, PrintedExpression, Rows};
+use crate::tradeoff::{ExpandedText, LandscapeRows, PrintedExpression};
 use maud::{Markup, PreEscaped, html};
 
 /// The unit of a name, where it is known.
@@ -43,7 +43,7 @@ fn maps(map: &MapFound, units: Units<'_>) -> Markup {
         figure {
             div.grid {
                 @for (kind, drawn) in &map.maps {
-                    @let title = if *kind == Rows::Own { "the file's own rows" } else { "the full codistribution" };
+                    @let title = if *kind == LandscapeRows::Own { "the file's own rows" } else { "the full codistribution" };
                     @let units = [units(&drawn.x.0), units(&drawn.y.0)];
                     (PreEscaped(plot::map(drawn, title, [units[0].as_deref(), units[1].as_deref()])))
                 }
@@ -143,7 +143,7 @@ fn ranks(ranks: &[SetRank]) -> Markup {
                 @for rank in ranks {
                     tr {
                         td { (rank.name()) @if let Some(set) = &rank.set { br; (conditions(&set.written)) } }
-                        @match &rank.found {
+                        @match rank.answer() {
                             Ok(answer) => {
                                 td { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
                                 td { (unseen(answer, false).join("; ")) }
@@ -257,7 +257,7 @@ fn denominator(found: &ExpandedText) -> String {
     found.denominator.iter().map(factor).collect::<Vec<_>>().join(" ")
 }
 
-fn derivatives(found: &Derivatives) -> Markup {
+fn derivatives(found: &DerivativesFound) -> Markup {
     html! {
         h3 { "Lie derivatives by two routes" }
         p {

@@ -1,5 +1,7 @@
 //! Answers about ranks, as JSON and as text.
 
+use super::seen::{deviations_json, deviations_text, direction_text, place_text};
+use crate::number::rational_to_f64;
 use crate::observability::{Spectrum, Stop};
 use crate::report::names::{fields_json, fields_text, values_json, values_text};
 use crate::sweep::{BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, SweepReport};
@@ -90,6 +92,12 @@ fn sweep_json(report: &SweepReport) -> Value {
             "count": direction.count,
             "example": direction.example,
             "sample": direction.index,
+            "at": direction.at.iter().map(|(name, exact, value)| {
+                (name.clone(), json!({ "exact": exact, "value": value }))
+            }).collect::<serde_json::Map<_, _>>(),
+            "vector": direction.states.iter().zip(&direction.vector).map(|(name, part)| {
+                (name.clone(), json!({ "exact": part.to_string(), "value": rational_to_f64(part) }))
+            }).collect::<serde_json::Map<_, _>>(),
         })).collect::<Vec<_>>(),
         "poles": report.poles,
         "seconds": report.seconds,
@@ -121,6 +129,7 @@ fn branch_json(branch: &BranchAnswer) -> Value {
     object["stopped_because"] = json!(stop_text(branch.stop));
     object["generic_rank"] = json!(branch.generic_rank);
     object["longer_words_cannot_raise_it"] = json!(branch.is_final);
+    object["standard_deviations"] = branch.deviations.as_ref().map_or(Value::Null, deviations_json);
     object["own_rows"] = branch.rows.as_ref().map_or(Value::Null, sweep_json);
     object
 }
@@ -219,6 +228,7 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
             direction.states.join(", "),
             direction.example
         );
+        let _ = writeln!(out, "    at {}: {}", place_text(&direction.at), direction_text(direction));
     }
     for (pole, count) in &report.poles {
         let _ = writeln!(out, "  {count} poles left out: {pole}");
@@ -252,6 +262,7 @@ pub fn rank_text(answer: &RankAnswer) -> String {
                 writeln!(out, "longer words may still raise the rank: nothing here says that they cannot");
         }
         sweep_text("the full codistribution", &branch.full, &mut out);
+        branch.deviations.iter().for_each(|found| deviations_text(found, &mut out));
         if let Some(rows) = &branch.rows {
             sweep_text("the file's own choice of rows", rows, &mut out);
         }

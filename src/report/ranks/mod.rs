@@ -1,5 +1,6 @@
 //! The rank at many states.
 
 pub(super) mod answer;
+mod seen;
 
 pub use answer::{rank_json, rank_text};

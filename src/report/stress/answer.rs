@@ -1,7 +1,9 @@
 //! The extremes, as JSON and as tables.
 
 use crate::report::stress::plot::{conditioning_picture, lines_picture, ranks_text, scalings_picture};
-use crate::tradeoff::stress::{Conditioning, End, First, Line, OnTheSet, Scaling, Study, UnitsRow, Way};
+use crate::tradeoff::stress::{
+    Conditioning, First, Line, LineLimit, OnTheSet, Scaling, StressStudy, UnitsRow, Way,
+};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -20,9 +22,9 @@ fn by_way(of: impl Fn(Way) -> Value) -> Value {
 
 fn line_json(line: &Line) -> Value {
     let end = match &line.end {
-        End::Ranks { ranks, certified } => json!({ "ranks": ranks, "certified": certified }),
-        End::Pole(why) => json!({ "pole": why }),
-        End::Infinity => json!({ "infinity": true }),
+        LineLimit::Ranks { ranks, certified } => json!({ "ranks": ranks, "certified": certified }),
+        LineLimit::Pole(why) => json!({ "pole": why }),
+        LineLimit::Infinity => json!({ "infinity": true }),
     };
     json!({
         "title": line.title,
@@ -103,7 +105,7 @@ fn conditioning_json(found: &Conditioning) -> Value {
     })
 }
 
-fn study_json(study: &Study) -> Value {
+fn study_json(study: &StressStudy) -> Value {
     json!({
         "file": study.file,
         "title": study.title,
@@ -121,7 +123,7 @@ fn study_json(study: &Study) -> Value {
 }
 
 /// What was found of some systems, as one object.
-pub fn stress_json(studies: &[Study], seed: u64) -> Value {
+pub fn stress_json(studies: &[StressStudy], seed: u64) -> Value {
     json!({
         "seed": seed,
         "studies": studies.iter().map(study_json).collect::<Vec<_>>(),
@@ -165,14 +167,14 @@ fn table(head: &str, columns: &[&str], rows: Vec<(String, Vec<String>)>, out: &m
     }
 }
 
-fn lines_text(study: &Study, out: &mut String) {
+fn lines_text(study: &StressStudy, out: &mut String) {
     let mut columns = vec!["rank", "on it"];
     columns.extend(Way::ALL.map(Way::name));
     let rows = study.lines.iter().map(|line| {
         let end = match &line.end {
-            End::Ranks { ranks, .. } => ranks_text(ranks.iter()),
-            End::Pole(_) => "pole".to_owned(),
-            End::Infinity => "infinite".to_owned(),
+            LineLimit::Ranks { ranks, .. } => ranks_text(ranks.iter()),
+            LineLimit::Pole(_) => "pole".to_owned(),
+            LineLimit::Infinity => "infinite".to_owned(),
         };
         let mut cells = vec![ranks_text(line.ranks.iter()), end];
         cells.extend(Way::ALL.map(|way| cell(line, way)));
@@ -191,7 +193,7 @@ fn lines_text(study: &Study, out: &mut String) {
 }
 
 /// How many verdicts are right on the sets themselves: whoever always says "full" is never wrong beside a set, and always wrong here.
-fn on_the_sets_text(study: &Study, out: &mut String) {
+fn on_the_sets_text(study: &StressStudy, out: &mut String) {
     let right = |found: &OnTheSet| match found.states() {
         0 => "-".to_owned(),
         states => format!("{}/{states}", found.right),
@@ -199,7 +201,7 @@ fn on_the_sets_text(study: &Study, out: &mut String) {
     let mut all = vec![OnTheSet::default(); Way::ALL.len()];
     let mut rows = Vec::new();
     for line in &study.lines {
-        let End::Ranks { ranks, .. } = &line.end else { continue };
+        let LineLimit::Ranks { ranks, .. } = &line.end else { continue };
         let mut cells = vec![ranks_text(ranks.iter())];
         for (way, sum) in line.ways.iter().zip(&mut all) {
             cells.push(right(&way.on_the_set));
@@ -216,7 +218,7 @@ fn on_the_sets_text(study: &Study, out: &mut String) {
     table("on the set, right at", &columns, rows, out);
 }
 
-fn scalings_text(study: &Study, out: &mut String) {
+fn scalings_text(study: &StressStudy, out: &mut String) {
     let rows = study.scalings.iter().map(|scaling| {
         let range = |way: Way| match scaling.ways[way.place()].right {
             Some((low, high)) => format!("{low}..{high}"),
@@ -238,7 +240,7 @@ fn scalings_text(study: &Study, out: &mut String) {
     }
 }
 
-fn units_text(study: &Study, out: &mut String) {
+fn units_text(study: &StressStudy, out: &mut String) {
     let rows = study.units.iter().map(|row| {
         let count = |way: Way| {
             let found = row.ways[way.place()];
@@ -283,7 +285,7 @@ fn conditioning_text(states: &str, found: &Conditioning, out: &mut String) {
 }
 
 /// What was found, as tables.
-pub fn stress_text(studies: &[Study]) -> String {
+pub fn stress_text(studies: &[StressStudy]) -> String {
     let mut out = String::from(
         "Lines: the distance at which a way first reports a wrong rank (w), has lost more than half of an entry's\n\
          digits (d), says that it cannot tell (?), refuses and names why (!), as a range over the states from which\n\
@@ -315,7 +317,7 @@ pub fn stress_text(studies: &[Study]) -> String {
 }
 
 /// The pictures of a system: a name for the file, and the SVG.
-pub fn stress_pictures(study: &Study) -> Vec<(String, String)> {
+pub fn stress_pictures(study: &StressStudy) -> Vec<(String, String)> {
     let path = std::path::Path::new(&study.file);
     let stem = path.file_stem().map_or_else(|| "system".into(), |stem| stem.to_string_lossy().into_owned());
     let mut found = Vec::new();

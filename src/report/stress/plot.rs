@@ -1,7 +1,7 @@
 //! Pictures of the extremes: for every set and every way a bar from far to near, coloured by what its verdict is worth.
 
 use crate::report::drawing::{INK, MESH, SOFT, svg};
-use crate::tradeoff::stress::{End, Mark, Study, Way};
+use crate::tradeoff::stress::{LineLimit, Mark, StressStudy, Way};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::collections::BTreeMap;
@@ -128,15 +128,15 @@ fn cut(text: &str, most: usize) -> String {
 }
 
 /// The bars from far to near.
-pub fn lines_picture(study: &Study) -> String {
+pub fn lines_picture(study: &StressStudy) -> String {
     let rows: Vec<Bars<'_>> = study
         .lines
         .iter()
         .map(|line| {
             let end = match &line.end {
-                End::Ranks { ranks, .. } => format!("on the set: rank {}", ranks_text(ranks.iter())),
-                End::Pole(why) => why.clone(),
-                End::Infinity => "the set is at infinity".to_owned(),
+                LineLimit::Ranks { ranks, .. } => format!("on the set: rank {}", ranks_text(ranks.iter())),
+                LineLimit::Pole(why) => why.clone(),
+                LineLimit::Infinity => "the set is at infinity".to_owned(),
             };
             let near = format!("true rank on the way: {}", ranks_text(line.ranks.iter()));
             Bars {
@@ -165,7 +165,7 @@ pub(super) fn ranks_text<'a>(ranks: impl Iterator<Item = &'a usize>) -> String {
 }
 
 /// The bars from small to large.
-pub fn scalings_picture(study: &Study) -> String {
+pub fn scalings_picture(study: &StressStudy) -> String {
     let rows: Vec<Bars<'_>> = study
         .scalings
         .iter()
@@ -187,7 +187,7 @@ pub fn scalings_picture(study: &Study) -> String {
 }
 
 /// How the states (of the box, on the sets and near them) are conditioned with rows of length one, and equilibrated.
-pub fn conditioning_picture(study: &Study, title: &str) -> String {
+pub fn conditioning_picture(study: &StressStudy, title: &str) -> String {
     let mut found = study.conditioning.clone();
     for (all, near) in
         [(&mut found.old, &study.conditioning_near.old), (&mut found.new, &study.conditioning_near.new)]

@@ -2,16 +2,16 @@
 
 use crate::report::names::{fields_json, fields_text};
 use crate::tradeoff::{
-    Combination, DIGITS_TOLERANCE, DerivativeResult, Digits, LeftOut, TIME_TOLERANCE, Trade,
+    Combination, CombinationLeftOut, CorrectDigits, DIGITS_TOLERANCE, DerivativeResult, TIME_TOLERANCE, Trade,
 };
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-fn digits_json(digits: Digits) -> Value {
+fn digits_json(digits: CorrectDigits) -> Value {
     match digits {
-        Digits::Exact => json!({ "kind": "exact" }),
-        Digits::Modular => json!({ "kind": "exact modulo a prime" }),
-        Digits::Measured { median, worst } => {
+        CorrectDigits::Exact => json!({ "kind": "exact" }),
+        CorrectDigits::Modular => json!({ "kind": "exact modulo a prime" }),
+        CorrectDigits::Measured { median, worst } => {
             json!({ "kind": "measured", "median": rounded(median), "worst": rounded(worst) })
         }
     }
@@ -52,7 +52,7 @@ pub fn trade_json(trade: &Trade) -> Value {
             "seconds_on_front": c.on_front,
         })
     };
-    let left_out = |left: &LeftOut| {
+    let left_out = |left: &CombinationLeftOut| {
         json!({
             "number": left.number.name(),
             "derivative": left.derivative.map(|derivative| derivative.name()),
@@ -101,11 +101,11 @@ fn time(seconds: f64) -> String {
 }
 
 /// Digits at the median and at the worst state, in words.
-pub(crate) fn digits_text(digits: Digits) -> (String, String) {
+pub(crate) fn digits_text(digits: CorrectDigits) -> (String, String) {
     match digits {
-        Digits::Exact => ("all".to_owned(), "all".to_owned()),
-        Digits::Modular => ("mod p".to_owned(), "mod p".to_owned()),
-        Digits::Measured { median, worst } => (format!("{median:.1}"), format!("{worst:.1}")),
+        CorrectDigits::Exact => ("all".to_owned(), "all".to_owned()),
+        CorrectDigits::Modular => ("mod p".to_owned(), "mod p".to_owned()),
+        CorrectDigits::Measured { median, worst } => (format!("{median:.1}"), format!("{worst:.1}")),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Speed against accuracy, as a picture.
 
 use crate::report::drawing::{INK, MESH, svg};
-use crate::tradeoff::{Combination, Derivative, Digits, Number, Trade};
+use crate::tradeoff::{Combination, CorrectDigits, Derivative, Number, Trade};
 use plotters::coord::CoordTranslate;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -25,9 +25,9 @@ fn colour(number: Number) -> RGBColor {
 
 fn height(combination: &Combination) -> f64 {
     match combination.digits {
-        Digits::Exact => ALL_DIGITS,
-        Digits::Modular => NO_DIGITS,
-        Digits::Measured { worst, .. } => worst,
+        CorrectDigits::Exact => ALL_DIGITS,
+        CorrectDigits::Modular => NO_DIGITS,
+        CorrectDigits::Measured { worst, .. } => worst,
     }
 }
 
@@ -95,7 +95,7 @@ pub fn trade_plot(trade: &Trade) -> String {
                 rimmed(chart.plotting_area(), at(combination), combination.derivative, rim)?;
             }
         }
-        if timed.iter().any(|c| c.digits == Digits::Modular) {
+        if timed.iter().any(|c| c.digits == CorrectDigits::Modular) {
             let at = (slowest * 1.3, NO_DIGITS);
             let right = Pos::new(HPos::Right, VPos::Center);
             let words = ("sans-serif", 12).into_font().color(&INK).pos(right);

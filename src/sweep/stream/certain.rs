@@ -1,6 +1,6 @@
 //! Whether a matrix, known to within bounds, has full rank for certain: elimination with the bounds carried along.
 
-use crate::number::{Bounded, Lanes, Task};
+use crate::number::{Bounded, LaneTask, Lanes};
 
 /// Room for matrices of one shape.
 pub struct Elimination<L> {
@@ -71,7 +71,7 @@ impl<L: Lanes> Elimination<L> {
 
 struct Eliminate<'e, L>(&'e mut Elimination<L>, L);
 
-impl<L: Lanes> Task for Eliminate<'_, L> {
+impl<L: Lanes> LaneTask for Eliminate<'_, L> {
     type Output = L;
 
     #[inline(always)]

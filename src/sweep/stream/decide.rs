@@ -96,8 +96,8 @@ impl<L: Lanes> Decider<L> {
                 let weight = entry.value.abs() + heavy * entry.error();
                 self.equilibrium.set(i, j, weight);
                 self.elimination.set(i, j, entry);
-                spoiled = spoiled + weight.lost();
-                infinite = infinite + entry.value.lost();
+                spoiled = spoiled + weight.zero_if_finite();
+                infinite = infinite + entry.value.zero_if_finite();
             }
         }
         self.equilibrium.solve();

@@ -5,7 +5,7 @@
 
 use super::random::{threefry, unit};
 use crate::expression::{BlockProgram, Input, Machine, Symbol};
-use crate::number::{Bounded, Lanes, MOST_LANES, Task, rational_from_f64, rational_to_f64};
+use crate::number::{Bounded, LaneTask, Lanes, MOST_LANES, rational_from_f64, rational_to_f64};
 use crate::observability::{ATTEMPTS, AVOIDED, Source};
 use dashu::rational::RBig;
 
@@ -192,7 +192,7 @@ impl<'a, L: Lanes> Drawer<'a, L> {
             let mut bad = self.avoid.health(lane);
             for place in 0..self.avoided {
                 let value = self.avoid.output(place, lane);
-                bad = bad + value.lost() + value.abs().where_less(bound, one, self.zero);
+                bad = bad + value.zero_if_finite() + value.abs().where_less(bound, one, self.zero);
             }
             let mut marks = [0.0; MOST_LANES];
             bad.store(&mut marks);
@@ -228,7 +228,7 @@ impl<'a, L: Lanes> Drawer<'a, L> {
 
 struct Draw<'d, 'a, L>(&'d mut Drawer<'a, L>, u64);
 
-impl<L: Lanes> Task for Draw<'_, '_, L> {
+impl<L: Lanes> LaneTask for Draw<'_, '_, L> {
     type Output = Result<(), usize>;
 
     #[inline(always)]

@@ -13,7 +13,7 @@
 //! A round over `m` by `n` entries takes `4mn + 10(m + n)` operations. A 4x4 matrix of the general regime needs seven
 //! rounds, and twelve to fifteen go by until the slowest of eight or sixteen lanes is done: the limit is that wait.
 
-use crate::number::{Lanes, Task};
+use crate::number::{LaneTask, Lanes};
 
 /// Scaling has converged when the squares of all lengths are as wanted to this part.
 const CONVERGED: f64 = 1e-2;
@@ -166,7 +166,7 @@ impl<L: Lanes> Equilibrium<L> {
 
 struct Solve<'e, L>(&'e mut Equilibrium<L>);
 
-impl<L: Lanes> Task for Solve<'_, L> {
+impl<L: Lanes> LaneTask for Solve<'_, L> {
     type Output = ();
 
     #[inline(always)]

@@ -12,7 +12,7 @@ use crate::sweep::Certainty;
 
 /// The verdict for one state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum StateVerdict {
     /// The rank is full, unit rows included: proved by elimination with bounds on all errors, or computed with half of
     /// the digits to spare.
     Full(Certainty),
@@ -26,7 +26,7 @@ pub enum Verdict {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdicts {
     /// One a state.
-    pub verdicts: Vec<Verdict>,
+    pub verdicts: Vec<StateVerdict>,
     /// The singular values of `r_i a_ij c_j`, the largest of all states first. `a` is the matrix that remains without
     /// unit rows.
     pub singular_values: Vec<Vec<f64>>,
@@ -82,7 +82,7 @@ impl Stream {
             arrays.resize(length, Vec::new());
             arrays.iter_mut().for_each(|array| array.resize(count, 0.0));
         }
-        found.verdicts.resize(count, Verdict::NotFinite);
+        found.verdicts.resize(count, StateVerdict::NotFinite);
         self.instructions.run(Given { stream: self, states, wanted, found });
         Ok(())
     }
@@ -161,15 +161,15 @@ impl Given<'_> {
 }
 
 /// The same words as [`StreamReport`] counts.
-fn verdict(report: &StreamReport, found: &super::decide::Found, lane: usize, finite: bool) -> Verdict {
+fn verdict(report: &StreamReport, found: &super::decide::Found, lane: usize, finite: bool) -> StateVerdict {
     if !finite {
-        Verdict::NotFinite
+        StateVerdict::NotFinite
     } else if found.certain[lane] > 0.0 {
-        Verdict::Full(Certainty::Certified)
+        StateVerdict::Full(Certainty::Certified)
     } else if found.separated[lane] > 0.0 {
-        Verdict::Full(Certainty::Computed)
+        StateVerdict::Full(Certainty::Computed)
     } else {
-        Verdict::Open(report.eliminated + found.rank[lane] as usize)
+        StateVerdict::Open(report.eliminated + found.rank[lane] as usize)
     }
 }
 

@@ -12,7 +12,7 @@
 //! double, whatever the width of the vectors, that is 240 cycles, against 105 for the operations with vectors of eight: roots
 //! and divisions are the limit, and a matrix takes less than twice as long (`cargo bench --bench sweep`).
 
-use crate::number::{Lanes, Task};
+use crate::number::{LaneTask, Lanes};
 
 /// Two columns are orthogonal when the square of the cosine between them is below this. The sweep in which that is seen
 /// is the last: convergence is quadratic, and that very sweep squares the cosines once more.
@@ -84,7 +84,7 @@ impl<L: Lanes> Jacobi<L> {
 
 struct Decompose<'j, L>(&'j mut Jacobi<L>);
 
-impl<L: Lanes> Task for Decompose<'_, L> {
+impl<L: Lanes> LaneTask for Decompose<'_, L> {
     type Output = L;
 
     #[inline(always)]

@@ -27,7 +27,7 @@ use dashu::rational::RBig;
 use decide::Decider;
 use draw::{Axis, Drawer, Wish, wishes};
 pub(super) use equilibrate::Equilibrium;
-pub use given::{StatesError, Verdict, Verdicts};
+pub use given::{StateVerdict, StatesError, Verdicts};
 pub use jacobi::Jacobi;
 use rayon::prelude::*;
 pub use report::{DECADES, StreamReport};
@@ -73,8 +73,7 @@ impl Stream {
         if locus.is_cut {
             return None;
         }
-        let angles = system.angles();
-        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let axes: Vec<Axis> =
             locus.sources.iter().filter_map(|(symbol, source)| Axis::new(*symbol, source)).collect();
         // what has one value is put in, before unit rows are looked for

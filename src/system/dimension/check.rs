@@ -11,6 +11,7 @@ use crate::expression::syntax::{Equation, Expr, Name, Span};
 use crate::system::Problem;
 use crate::system::grammar::{ClaimBody, Expectation, Item, Statement};
 use crate::system::model::{Role, System};
+use crate::system::views::{End, View};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -18,18 +19,21 @@ use std::sync::Arc;
 /// A file may cause so much work: some seconds. What is written beyond is left open.
 const MOST_WORK: usize = 20_000_000;
 
-/// What is known of the dimensions of a system. Of one that declares none nothing is.
+/// What is known of the dimensions of a system. Of one that declares none nothing is. A copy costs no more than its unknowns.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Dimensions {
     /// Whether the file, or one that it imports, declares a dimension.
     pub(super) is_declared: bool,
     pub(super) solution: Solution,
-    pub(super) symbols: BTreeMap<Symbol, Form>,
-    pub(super) definitions: HashMap<String, Quantity>,
+    pub(super) symbols: Arc<BTreeMap<Symbol, Form>>,
+    pub(super) definitions: Arc<HashMap<String, Quantity>>,
     /// The dimension by which a derivative along the field differs from what is differentiated.
-    pub(super) fields: HashMap<String, Form>,
+    pub(super) fields: Arc<HashMap<String, Form>>,
+    /// Whether some definition, field or output holds a number that stands for something with a dimension, or something of
+    /// which no dimension is known: then a change of units is not told by the dimensions of the symbols alone.
+    pub(super) holds_units: bool,
     /// The dimensions that are known in the end.
-    found: BTreeMap<Symbol, Dimension>,
+    found: Arc<BTreeMap<Symbol, Dimension>>,
 }
 
 /// What a file imports: the name that it has there, where, and its dimensions.
@@ -72,11 +76,13 @@ pub(crate) fn check(system: &System, items: &[Item], imports: &[Import]) -> (Dim
         checker.item(item);
     }
     let Checker { mut known, mut problems, .. } = checker;
-    for (symbol, form) in &known.symbols {
+    let mut found = BTreeMap::new();
+    for (symbol, form) in known.symbols.iter() {
         if let Some(dimension) = known.solution.dimension(form) {
-            known.found.insert(*symbol, dimension);
+            found.insert(*symbol, dimension);
         }
     }
+    known.found = Arc::new(found);
     problems.sort_by_key(|problem| (problem.span.start, problem.span.end));
     (known, problems)
 }
@@ -101,6 +107,7 @@ impl Checker<'_> {
 
     /// Takes over what is known of an imported file, its unknowns under new places.
     fn import(&mut self, alias: &str, span: &Span, other: &Dimensions) {
+        self.known.holds_units |= other.holds_units;
         let mut theirs = other.solution.clone();
         let mut places: BTreeMap<usize, Form> = BTreeMap::new();
         let mut moved = |form: &Form, mine: &mut Solution| {
@@ -115,11 +122,11 @@ impl Checker<'_> {
             found
         };
         let mut conflicts = Vec::new();
-        for (symbol, form) in &other.symbols {
+        for (symbol, form) in other.symbols.iter() {
             let form = moved(form, &mut self.known.solution);
             match self.known.symbols.get(symbol) {
                 None => {
-                    self.known.symbols.insert(*symbol, form);
+                    Arc::make_mut(&mut self.known.symbols).insert(*symbol, form);
                 }
                 Some(mine) => {
                     if let Err(conflict) = self.known.solution.equate(mine, &form, None) {
@@ -128,11 +135,11 @@ impl Checker<'_> {
                 }
             }
         }
-        for (name, form) in &other.fields {
+        for (name, form) in other.fields.iter() {
             let form = moved(form, &mut self.known.solution);
-            self.known.fields.entry(format!("{alias}.{name}")).or_insert(form);
+            Arc::make_mut(&mut self.known.fields).entry(format!("{alias}.{name}")).or_insert(form);
         }
-        for (name, quantity) in &other.definitions {
+        for (name, quantity) in other.definitions.iter() {
             let quantity = match quantity {
                 Quantity::Table(table) => {
                     let entries = table.entries.iter().map(|entry| match entry {
@@ -143,7 +150,7 @@ impl Checker<'_> {
                 }
                 Quantity::Open => Quantity::Open,
             };
-            self.known.definitions.insert(format!("{alias}.{name}"), quantity);
+            Arc::make_mut(&mut self.known.definitions).insert(format!("{alias}.{name}"), quantity);
         }
         for (symbol, conflict) in conflicts {
             let name = self.system.symbol_name(symbol).to_owned();
@@ -162,7 +169,7 @@ impl Checker<'_> {
                 if self.system.is_angle(symbol) {
                     self.equate(&form, &Form::number(), span, &Asked::Angle(one.name.text.clone()));
                 }
-                if let Some(known) = self.known.symbols.insert(symbol, form.clone()) {
+                if let Some(known) = Arc::make_mut(&mut self.known.symbols).insert(symbol, form.clone()) {
                     self.equate(&form, &known, span, &Asked::Imported(one.name.text.clone()));
                 }
             }
@@ -174,7 +181,7 @@ impl Checker<'_> {
                     true => Form::number(),
                     false => self.known.solution.unknown(format!("'{}'", self.system.symbol_name(symbol))),
                 };
-                self.known.symbols.insert(symbol, form);
+                Arc::make_mut(&mut self.known.symbols).insert(symbol, form);
             }
         }
     }
@@ -187,12 +194,14 @@ impl Checker<'_> {
                 if let Some(dimension) = dimension {
                     found = self.declared(found, &name.text, dimension);
                 }
-                self.known.definitions.insert(name.text.clone(), found);
+                self.note_units(&found);
+                Arc::make_mut(&mut self.known.definitions).insert(name.text.clone(), found);
             }
             Item::Field { role, name, components, .. } => self.field(*role, name, components),
             Item::Output(list) => {
                 for (expr, dimension) in list {
                     let found = self.quantity(expr);
+                    self.note_units(&found);
                     if let Some(dimension) = dimension {
                         let text = crate::system::in_one_line(&self.system.source, &expr.span);
                         self.declared(found, &text, dimension);
@@ -213,15 +222,31 @@ impl Checker<'_> {
                 | ClaimBody::Erratum { corrected: statement, .. } => self.statement(statement),
                 ClaimBody::Definition { .. } | ClaimBody::Open { .. } => {}
             },
-            // a number there is one in the unit of the other side
-            Item::View(view) => {
-                for condition in view.equations() {
-                    let left = self.quantity(&condition.left);
-                    let right = self.quantity(&condition.right);
-                    self.sides(condition, left, right, true);
+            Item::View(view) => match &**view {
+                View::Set { conditions, .. } | View::Reduction { conditions, .. } => {
+                    self.conditions(conditions);
                 }
-            }
+                View::Line { moving, end: End::Value(value), .. } => {
+                    self.at_point(&[(moving.clone(), value.clone())]);
+                }
+                View::Line { end: End::Zero(equation), .. } => {
+                    self.conditions(std::slice::from_ref(equation));
+                }
+                // ranges and the values of a point are numbers
+                View::Line { end: End::Infinity, .. } | View::Map { .. } => {}
+            },
         }
+    }
+
+    /// Conditions; whether one gives a number to something that has a dimension.
+    fn conditions(&mut self, conditions: &[Equation]) -> bool {
+        let mut at_numbers = false;
+        for condition in conditions {
+            let left = self.quantity(&condition.left);
+            let right = self.quantity(&condition.right);
+            at_numbers |= self.sides(condition, left, right, true);
+        }
+        at_numbers
     }
 
     /// What is declared of a definition or an output; a written number is one in this unit.
@@ -233,11 +258,21 @@ impl Checker<'_> {
             _ => Entry::Of(form.clone()),
         };
         let table_wanted = table.with(table.entries.iter().map(wanted).collect());
-        if !table.is_number {
+        if table.is_number {
+            self.known.holds_units |= !declared.dimension.is_none();
+        } else {
             let asked = Asked::Declared(name.to_owned());
             self.entrywise(&table_wanted, &table, &declared.span, &asked);
         }
         Quantity::Table(table_wanted)
+    }
+
+    /// Notes whether something holds numbers in units, or is not known.
+    fn note_units(&mut self, found: &Quantity) {
+        self.known.holds_units |= match found {
+            Quantity::Table(table) => table.at_numbers || table.entries.contains(&Entry::Open),
+            Quantity::Open => true,
+        };
     }
 
     fn field(&mut self, role: Role, name: &Name, components: &[(Name, Expr)]) {
@@ -247,6 +282,7 @@ impl Checker<'_> {
         };
         for (state, expr) in components {
             let found = self.quantity(expr);
+            self.note_units(&found);
             let symbol = self.system.find_symbol(&state.text);
             let form = symbol.and_then(|symbol| self.known.symbols.get(&symbol)).cloned();
             if let (Some(form), Quantity::Table(Table { entries, .. })) = (form, found)
@@ -257,16 +293,11 @@ impl Checker<'_> {
                 self.equate(&form.times(&factor), rate, &place, &asked);
             }
         }
-        self.known.fields.insert(name.text.clone(), factor);
+        Arc::make_mut(&mut self.known.fields).insert(name.text.clone(), factor);
     }
 
     fn statement(&mut self, statement: &Statement) {
-        let mut at_numbers = statement.on_sample;
-        for condition in &statement.conditions {
-            let left = self.quantity(&condition.left);
-            let right = self.quantity(&condition.right);
-            at_numbers |= self.sides(condition, left, right, true);
-        }
+        let at_numbers = self.conditions(&statement.conditions) || statement.on_sample;
         let mut left = self.quantity(&statement.equation.left);
         for equation in statement.relations() {
             let right = self.quantity(&equation.right);

@@ -57,7 +57,7 @@ impl Checker<'_> {
     }
 
     /// One entry for two that are equal or added.
-    fn joined(&mut self, a: &Entry, b: &Entry, place: &Span, asked: &Asked) -> Entry {
+    pub(super) fn joined(&mut self, a: &Entry, b: &Entry, place: &Span, asked: &Asked) -> Entry {
         match (a, b) {
             (Entry::Zero, other) | (other, Entry::Zero) => other.clone(),
             (Entry::Open, other) | (other, Entry::Open) => other.clone(),
@@ -140,85 +140,22 @@ impl Checker<'_> {
         total.map_or(Quantity::Open, |(value, _)| value)
     }
 
-    fn multiplied(&mut self, a: &Table, b: &Table, divides: bool, place: &Span) -> Quantity {
-        let (is_number, at_numbers) = (a.is_number && b.is_number, a.at_numbers || b.at_numbers);
-        let with = |table: &Table, entries: Vec<Entry>| {
-            Quantity::Table(Table { entries, is_number, at_numbers, ..*table })
-        };
-        match (a.is_scalar(), b.is_scalar(), divides) {
-            (_, true, true) => with(a, a.entries.iter().map(|entry| entry.over(&b.entries[0])).collect()),
-            (_, true, false) => with(a, a.entries.iter().map(|entry| entry.times(&b.entries[0])).collect()),
-            (true, _, false) => with(b, b.entries.iter().map(|entry| a.entries[0].times(entry)).collect()),
-            (_, _, false) if a.columns == b.rows && a.rows * b.columns <= MOST_ENTRIES => {
-                let mut entries = Vec::with_capacity(a.rows * b.columns);
-                let before = self.problems.len();
-                for row in 0..a.rows {
-                    for column in 0..b.columns {
-                        let terms = (0..a.columns).map(|k| a.at(row, k).times(b.at(k, column)));
-                        let terms: Vec<Entry> = terms.collect();
-                        entries.push(self.total(&terms, place, "the product"));
-                        if self.problems.len() > before || !self.spend(terms.len()) {
-                            return Quantity::Open;
-                        }
-                    }
-                }
-                let table = Table { rows: a.rows, columns: b.columns, entries, is_number, at_numbers };
-                Quantity::Table(table)
-            }
-            _ => Quantity::Open,
-        }
-    }
-
-    /// The sum of products.
-    fn total(&mut self, terms: &[Entry], place: &Span, what: &'static str) -> Entry {
-        let mut total = Entry::Zero;
-        for term in terms {
-            total = self.joined(&total, term, place, &Asked::Products(what));
-        }
-        // a term of which nothing is known may be any part of the sum
-        total
-    }
-
-    fn blocks(&mut self, rows: &[Vec<Expr>]) -> Quantity {
-        let mut whole =
-            Table { rows: 0, columns: 0, entries: Vec::new(), is_number: true, at_numbers: false };
-        for row in rows {
-            let mut blocks = Vec::new();
-            for block in row {
-                match self.quantity(block) {
-                    Quantity::Table(table) => blocks.push(table),
-                    Quantity::Open => blocks.push(Table { rows: 0, ..Table::scalar(Entry::Open) }),
-                }
-            }
-            let height = blocks.first().map_or(0, |block| block.rows);
-            let width: usize = blocks.iter().map(|block| block.columns).sum();
-            let fits = height > 0 && blocks.iter().all(|block| block.rows == height);
-            if !fits || (whole.rows > 0 && whole.columns != width) {
-                return Quantity::Open;
-            }
-            for line in 0..height {
-                for block in &blocks {
-                    let begin = line * block.columns;
-                    whole.entries.extend_from_slice(&block.entries[begin..begin + block.columns]);
-                }
-            }
-            if whole.entries.len() > MOST_ENTRIES {
-                return Quantity::Open;
-            }
-            whole.rows += height;
-            whole.columns = width;
-            // zeros are numbers, too
-            let is_number =
-                |block: &Table| block.is_number || block.entries.iter().all(|entry| *entry == Entry::Zero);
-            whole.is_number &= blocks.iter().all(is_number);
-            whole.at_numbers |= blocks.iter().any(|block| block.at_numbers);
-        }
-        Quantity::Table(whole)
-    }
-
     /// `e at {x = 2}`: a number is one in the file's unit of `x`.
     fn at(&mut self, inner: &Expr, list: &[(Name, Expr)]) -> Quantity {
         let inner = self.quantity(inner);
+        let at_numbers = self.at_point(list);
+        match inner {
+            Quantity::Table(table) => Quantity::Table(Table {
+                is_number: false,
+                at_numbers: at_numbers || table.at_numbers,
+                ..table
+            }),
+            Quantity::Open => Quantity::Open,
+        }
+    }
+
+    /// What symbols are replaced by; whether one that has a dimension is replaced by a number.
+    pub(super) fn at_point(&mut self, list: &[(Name, Expr)]) -> bool {
         let mut at_numbers = false;
         for (name, value) in list {
             let Quantity::Table(found) = self.quantity(value) else { continue };
@@ -233,14 +170,7 @@ impl Checker<'_> {
                 self.equate(&form, value_form, &place, &Asked::Replaced(name.text.clone()));
             }
         }
-        match inner {
-            Quantity::Table(table) => Quantity::Table(Table {
-                is_number: false,
-                at_numbers: at_numbers || table.at_numbers,
-                ..table
-            }),
-            Quantity::Open => Quantity::Open,
-        }
+        at_numbers
     }
 
     fn call(&mut self, name: &str, arguments: &[Expr], span: &Span) -> Quantity {
@@ -297,34 +227,6 @@ impl Checker<'_> {
         }
     }
 
-    fn of_two(&self, a: &Table, b: &Table, found: Table) -> Quantity {
-        let is_number = a.is_number && b.is_number;
-        Quantity::Table(Table { is_number, at_numbers: a.at_numbers || b.at_numbers, ..found })
-    }
-
-    fn cross(&mut self, a: &Table, b: &Table, place: &Span) -> Quantity {
-        let (x, y) = (&a.entries, &b.entries);
-        if x.len() != y.len() || !(2..=3).contains(&x.len()) {
-            return Quantity::Open;
-        }
-        let before = self.problems.len();
-        let mut part = |i: usize, j: usize| {
-            let terms = [x[i].times(&y[j]), x[j].times(&y[i])];
-            match self.problems.len() > before {
-                true => Entry::Open,
-                false => self.total(&terms, place, "'cross'"),
-            }
-        };
-        let found = match x.len() {
-            2 => Table::scalar(part(0, 1)),
-            _ => {
-                let entries = vec![part(1, 2), part(2, 0), part(0, 1)];
-                Table { entries, ..*a }
-            }
-        };
-        self.of_two(a, b, found)
-    }
-
     /// What a derivative along a field divides by: `L(f, e)` is `e` times this.
     fn along(&mut self, field: &Expr) -> Entry {
         match &field.kind {
@@ -352,34 +254,33 @@ impl Checker<'_> {
 
     /// The column of the rates of all states.
     fn bracket(&mut self, arguments: &[Expr]) -> Quantity {
-        let [first, second] = arguments else { return Quantity::Open };
+        let [first, second, names @ ..] = arguments else { return Quantity::Open };
         let factor = self.along(first).times(&self.along(second));
-        let states = self.system.states.clone();
-        let rate = |state| match self.known.symbols.get(state) {
-            Some(form) => factor.by(form),
-            None => Entry::Open,
-        };
-        let entries: Vec<Entry> = states.iter().map(rate).collect();
+        let entries = self.states_or(names).iter().map(|state| state.times(&factor)).collect();
         Quantity::Table(Table::row(entries).transpose())
+    }
+
+    /// The dimensions of the states that are named, or of all where none is.
+    fn states_or(&mut self, names: &[Expr]) -> Vec<Entry> {
+        if names.is_empty() {
+            let form = |state| self.known.symbols.get(state).cloned().map_or(Entry::Open, Entry::Of);
+            return self.system.states.iter().map(form).collect();
+        }
+        let mut found = Vec::with_capacity(names.len());
+        for name in names {
+            found.push(match self.quantity(name) {
+                Quantity::Table(table) if table.is_scalar() => table.entries[0].clone(),
+                _ => Entry::Open,
+            });
+        }
+        found
     }
 
     fn differential(&mut self, arguments: &[Expr]) -> Quantity {
         let Some((first, names)) = arguments.split_first() else { return Quantity::Open };
         let Quantity::Table(table) = self.quantity(first) else { return Quantity::Open };
         let [entry] = table.entries.as_slice() else { return Quantity::Open };
-        let by: Vec<Entry> = if names.is_empty() {
-            let form = |state| self.known.symbols.get(state).cloned().map_or(Entry::Open, Entry::Of);
-            self.system.states.iter().map(form).collect()
-        } else {
-            let mut by = Vec::new();
-            for name in names {
-                by.push(match self.quantity(name) {
-                    Quantity::Table(table) if table.is_scalar() => table.entries[0].clone(),
-                    _ => Entry::Open,
-                });
-            }
-            by
-        };
+        let by = self.states_or(names);
         let entries = by.iter().map(|by| entry.over(by)).collect();
         Quantity::Table(Table { at_numbers: table.at_numbers, ..Table::row(entries) })
     }

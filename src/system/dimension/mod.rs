@@ -7,13 +7,14 @@
 //! mistake. No arithmetic is done, and no verdict rests on it: dimensions are a witness of their own.
 //!
 //! The exponents are exact rationals over the seven base dimensions of the SI ([`Dimension`]); `reading` is the notation,
-//! `form` a dimension with unknowns, `solution` what is known of these, `expression` the rules, `square` those of
-//! determinants, `check` a whole file.
+//! `form` a dimension with unknowns, `solution` what is known of these, `expression` and `matrices` the rules,
+//! `square` those of determinants, `check` a whole file.
 
 mod check;
 mod exponents;
 mod expression;
 mod form;
+mod matrices;
 mod mistakes;
 mod problem;
 mod quantity;

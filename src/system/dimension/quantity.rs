@@ -57,11 +57,6 @@ impl Entry {
             (Entry::Of(a), Entry::Of(b)) => Entry::Of(a.over(b)),
         }
     }
-
-    /// With a known factor.
-    pub fn by(&self, factor: &Form) -> Entry {
-        self.times(&Entry::Of(factor.clone()))
-    }
 }
 
 impl Table {

@@ -34,6 +34,13 @@ impl System {
         self.dimensions.of(symbol)
     }
 
+    /// Whether the numbers of a state in other units are those of the file's units, each times what its dimension says, and
+    /// nothing else changes: dimensions are declared, all that the file defines has a known one, and no definition, field or
+    /// output holds a number in place of something that has a unit, as in `e at {x = 2}`.
+    pub fn dimensions_tell_units(&self) -> bool {
+        self.dimensions.is_declared && !self.dimensions.holds_units
+    }
+
     /// The mistakes in the dimensions of a statement about this system: none where nothing is declared. What an erratum
     /// prints may have some; what a file claims has none, or the file would not have been read.
     pub fn dimension_mistakes(&self, statement: &Statement) -> Vec<ReadError> {

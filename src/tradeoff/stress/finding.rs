@@ -1,34 +1,34 @@
 //! What each way makes of a state: its verdict, and the digits of its worst entry.
 
 use super::subject::{Subject, Truth};
-use super::{Mark, Verdict, Way, jacobi};
-use crate::number::{DoubleDouble, Floats, Interval, Real, rational_to_f64};
+use super::{Mark, StressVerdict, Way, jacobi};
+use crate::number::{DoubleDouble, Floats, Interval, RealNumber, rational_to_f64};
 use crate::observability::{Spectrum, State, certain_rank, customary_singular_values, singular_values};
-use crate::sweep::{Judge, Judged};
+use crate::sweep::{Judge, StateJudgement};
 use dashu::rational::RBig;
 
 /// What one way finds at a state.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
-    pub verdict: Verdict,
+pub struct StressFinding {
+    pub verdict: StressVerdict,
     /// The correct significant digits of the worst entry; of intervals those that they guarantee.
     pub digits: Option<f64>,
 }
 
-impl Finding {
+impl StressFinding {
     /// What the finding is worth beside the truth.
     pub fn mark(&self, way: Way, truth: &Truth) -> Mark {
         match self.verdict {
-            Verdict::Refused(_) => Mark::Refused,
-            Verdict::AtLeast(least) if least <= truth.rank => Mark::Open,
-            Verdict::Rank(rank) if rank == truth.rank => {
+            StressVerdict::Refused(_) => Mark::Refused,
+            StressVerdict::AtLeast(least) if least <= truth.rank => Mark::Open,
+            StressVerdict::Rank(rank) if rank == truth.rank => {
                 if self.digits.is_some_and(|digits| digits < way.digits() / 2.0) {
                     Mark::Lost
                 } else {
                     Mark::Right
                 }
             }
-            Verdict::Rank(_) | Verdict::AtLeast(_) => Mark::Wrong,
+            StressVerdict::Rank(_) | StressVerdict::AtLeast(_) => Mark::Wrong,
         }
     }
 }
@@ -42,7 +42,7 @@ impl Subject {
         state: &State,
         truth: &Truth,
         column: Option<(usize, f64)>,
-    ) -> Vec<Finding> {
+    ) -> Vec<StressFinding> {
         let singles = self.scaled(self.entries::<f32>(state), column);
         let doubles = self.scaled(self.entries::<f64>(state), column);
         let intervals = self.scaled(self.entries::<Interval>(state), column);
@@ -54,7 +54,7 @@ impl Subject {
         Way::ALL
             .iter()
             .map(|way| match way {
-                Way::AlwaysFull => Finding { verdict: Verdict::Rank(self.columns), digits: None },
+                Way::AlwaysFull => StressFinding { verdict: StressVerdict::Rank(self.columns), digits: None },
                 Way::Single => self.finding(&singles, *way, |all| {
                     let picked = self.pick(all);
                     let found = digits(&picked.iter().map(|x| f64::from(*x)).collect::<Vec<_>>());
@@ -84,7 +84,9 @@ impl Subject {
                     let worst = self.worst(&picked, truth, column, relative_error);
                     (self.by_jacobi(picked, 2f64.powi(-104)), worst)
                 }),
-                Way::Ladder => Finding { verdict: self.by_ladder(judge, state, &intervals), digits: None },
+                Way::Ladder => {
+                    StressFinding { verdict: self.by_ladder(judge, state, &intervals), digits: None }
+                }
             })
             .collect()
     }
@@ -93,18 +95,18 @@ impl Subject {
         &self,
         entries: &Result<Vec<T>, String>,
         way: Way,
-        decide: impl Fn(&[T]) -> (Verdict, Option<f64>),
-    ) -> Finding {
+        decide: impl Fn(&[T]) -> (StressVerdict, Option<f64>),
+    ) -> StressFinding {
         match entries {
-            Err(why) => Finding { verdict: Verdict::Refused(why.clone()), digits: None },
+            Err(why) => StressFinding { verdict: StressVerdict::Refused(why.clone()), digits: None },
             Ok(entries) => {
                 let (verdict, digits) = decide(entries);
-                Finding { verdict, digits: digits.map(|d| d.clamp(0.0, way.digits())) }
+                StressFinding { verdict, digits: digits.map(|d| d.clamp(0.0, way.digits())) }
             }
         }
     }
 
-    fn scaled<T: Real>(
+    fn scaled<T: RealNumber>(
         &self,
         entries: Result<Vec<T>, String>,
         column: Option<(usize, f64)>,
@@ -150,14 +152,14 @@ impl Subject {
             .reduce(f64::min)
     }
 
-    fn by_jacobi<T: Real>(&self, remaining: Vec<T>, epsilon: f64) -> Verdict {
+    fn by_jacobi<T: RealNumber>(&self, remaining: Vec<T>, epsilon: f64) -> StressVerdict {
         match jacobi::rank(remaining, self.reduction.columns.len(), epsilon) {
-            Ok(rank) => Verdict::Rank(self.reduction.eliminated + rank),
-            Err(_) => Verdict::Refused("a singular value is not finite".to_owned()),
+            Ok(rank) => StressVerdict::Rank(self.reduction.eliminated + rank),
+            Err(_) => StressVerdict::Refused("a singular value is not finite".to_owned()),
         }
     }
 
-    fn by_radii(&self, middles: &[f64], radii: &[f64]) -> Verdict {
+    fn by_radii(&self, middles: &[f64], radii: &[f64]) -> StressVerdict {
         by_spectrum(singular_values(middles, radii, self.reduction.columns.len()), self.reduction.eliminated)
     }
 
@@ -168,27 +170,27 @@ impl Subject {
         judge: &Judge<'_>,
         state: &State,
         intervals: &Result<Vec<Interval>, String>,
-    ) -> Verdict {
+    ) -> StressVerdict {
         if let Ok(intervals) = intervals
-            && let Verdict::Rank(rank) = self.by_pivots(&self.pick(intervals))
+            && let StressVerdict::Rank(rank) = self.by_pivots(&self.pick(intervals))
             && rank == self.columns
         {
-            return Verdict::Rank(rank);
+            return StressVerdict::Rank(rank);
         }
         match judge.decide(state) {
-            Judged::Report(report) => Verdict::Rank(report.rank),
-            Judged::Pole(why) => Verdict::Refused(why),
+            StateJudgement::Report(report) => StressVerdict::Rank(report.rank),
+            StateJudgement::Pole(why) => StressVerdict::Refused(why),
         }
     }
 
-    fn by_pivots(&self, remaining: &[Interval]) -> Verdict {
+    fn by_pivots(&self, remaining: &[Interval]) -> StressVerdict {
         let arithmetic = Floats::<Interval>::new();
         let full = self.reduction.rows.len().min(self.reduction.columns.len());
         match certain_rank(&arithmetic, self.matrix(remaining), |v| v.mid().abs() / v.rad()) {
             // no row or column is left: the bound is the rank
-            Ok(rank) if rank == full => Verdict::Rank(self.reduction.eliminated + rank),
-            Ok(rank) => Verdict::AtLeast(self.reduction.eliminated + rank),
-            Err(refusal) => Verdict::Refused(refusal.to_string()),
+            Ok(rank) if rank == full => StressVerdict::Rank(self.reduction.eliminated + rank),
+            Ok(rank) => StressVerdict::AtLeast(self.reduction.eliminated + rank),
+            Err(refusal) => StressVerdict::Refused(refusal.to_string()),
         }
     }
 }
@@ -211,11 +213,11 @@ fn quick_relative_error(value: DoubleDouble, exact: &RBig) -> f64 {
     }
 }
 
-fn by_spectrum(spectrum: Option<Spectrum>, eliminated: usize) -> Verdict {
+fn by_spectrum(spectrum: Option<Spectrum>, eliminated: usize) -> StressVerdict {
     match spectrum {
         Some(found) if found.tolerance.is_finite() && found.values.iter().all(|v| v.is_finite()) => {
-            Verdict::Rank(eliminated + found.rank)
+            StressVerdict::Rank(eliminated + found.rank)
         }
-        _ => Verdict::Refused("an entry, its error or a singular value is not finite".to_owned()),
+        _ => StressVerdict::Refused("an entry, its error or a singular value is not finite".to_owned()),
     }
 }

@@ -2,7 +2,7 @@
 //! orthogonal, and their lengths are then the singular values (M. R. Hestenes, "Inversion of matrices by
 //! biorthogonalization", J. SIAM 6, 1958).
 
-use crate::number::{Function, Real, Refusal};
+use crate::number::{Function, RealNumber, Refusal};
 
 const MOST_SWEEPS: usize = 40;
 const ROUNDS_OF_SCALING: usize = 20;
@@ -12,7 +12,11 @@ const ROUNDS_OF_SCALING: usize = 20;
 ///
 /// # Errors
 /// [`Refusal::NotFinite`], where an entry or a singular value is not finite.
-pub(super) fn rank<T: Real>(mut entries: Vec<T>, columns: usize, epsilon: f64) -> Result<usize, Refusal> {
+pub(super) fn rank<T: RealNumber>(
+    mut entries: Vec<T>,
+    columns: usize,
+    epsilon: f64,
+) -> Result<usize, Refusal> {
     if columns == 0 || entries.is_empty() {
         return Ok(0);
     }
@@ -30,7 +34,7 @@ pub(super) fn rank<T: Real>(mut entries: Vec<T>, columns: usize, epsilon: f64) -
 }
 
 /// Divides rows and columns in turn by the power of two next to their largest entry.
-fn scale<T: Real>(entries: &mut [T], columns: usize) {
+fn scale<T: RealNumber>(entries: &mut [T], columns: usize) {
     let rows = entries.len() / columns;
     for _ in 0..ROUNDS_OF_SCALING {
         let mut changed = false;
@@ -61,12 +65,12 @@ fn scale<T: Real>(entries: &mut [T], columns: usize) {
     }
 }
 
-fn dot<T: Real>(a: &[T], b: &[T]) -> T {
+fn dot<T: RealNumber>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::from_f64(0.0), |sum, (x, y)| sum + *x * *y)
 }
 
 /// The lengths of the columns, once they are orthogonal.
-fn lengths<T: Real>(vectors: &mut [Vec<T>], epsilon: f64) -> Result<Vec<T>, Refusal> {
+fn lengths<T: RealNumber>(vectors: &mut [Vec<T>], epsilon: f64) -> Result<Vec<T>, Refusal> {
     let one = T::from_f64(1.0);
     let magnitude = |x: T| if x < T::from_f64(0.0) { -x } else { x };
     for _ in 0..MOST_SWEEPS {

@@ -1,9 +1,9 @@
 //! Lines into a set: exact states at distances 1, 1/2, 1/4, ... from states on the set, and what each way finds at them.
 
 use super::approach::Prepared;
-use super::finding::Finding;
+use super::finding::StressFinding;
 use super::subject::Subject;
-use super::{Mark, Verdict, Way};
+use super::{Mark, StressVerdict, Way};
 use crate::number::DoubleDouble;
 use crate::observability::{Coordinate, State};
 use dashu::rational::RBig;
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 
 /// What is at the end of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum LineLimit {
     /// The ranks at the states on the set, all certified or not.
     Ranks { ranks: BTreeSet<usize>, certified: bool },
     /// There is no rank on the set: a divisor vanishes there, or nothing is certain.
@@ -105,13 +105,13 @@ pub struct Line {
     pub certified: bool,
     /// Points at which there is no truth, since another divisor vanishes.
     pub poles: usize,
-    pub end: End,
+    pub end: LineLimit,
     /// In the order of [`Way::ALL`].
     pub ways: Vec<WayOnLine>,
 }
 
 /// At each distance the true rank, whether it is certified, and what every way finds; `None` where there is no truth.
-pub(super) type Walk = Vec<Option<(usize, bool, Vec<(Finding, Mark)>)>>;
+pub(super) type Walk = Vec<Option<(usize, bool, Vec<(StressFinding, Mark)>)>>;
 
 impl Prepared {
     /// The state at a distance of `2^-halvings` from a base state.
@@ -190,7 +190,7 @@ impl Prepared {
                 walks.iter().filter_map(move |walk| walk[place].as_ref().map(|(_, _, all)| &all[way.place()]))
             };
             // where it first happens from each base state, and what is said there
-            let range = |happens: &dyn Fn(&(Finding, Mark)) -> Option<String>| {
+            let range = |happens: &dyn Fn(&(StressFinding, Mark)) -> Option<String>| {
                 let each = walks.iter().filter_map(|walk| {
                     walk.iter()
                         .enumerate()
@@ -238,9 +238,9 @@ impl Prepared {
         }
     }
 
-    fn end(&self, subject: &Subject, states: usize) -> End {
+    fn end(&self, subject: &Subject, states: usize) -> LineLimit {
         if self.to_infinity {
-            return End::Infinity;
+            return LineLimit::Infinity;
         }
         let mut ranks = BTreeSet::new();
         let mut certified = true;
@@ -250,20 +250,20 @@ impl Prepared {
                     ranks.insert(truth.rank);
                     certified &= truth.certified;
                 }
-                Err(pole) => return End::Pole(pole),
+                Err(pole) => return LineLimit::Pole(pole),
             }
         }
-        End::Ranks { ranks, certified }
+        LineLimit::Ranks { ranks, certified }
     }
 }
 
-impl Finding {
+impl StressFinding {
     /// The verdict in words.
     pub fn said(&self) -> String {
         match &self.verdict {
-            Verdict::Rank(rank) => format!("rank {rank}"),
-            Verdict::AtLeast(least) => format!("at least {least}"),
-            Verdict::Refused(why) => why.clone(),
+            StressVerdict::Rank(rank) => format!("rank {rank}"),
+            StressVerdict::AtLeast(least) => format!("at least {least}"),
+            StressVerdict::Refused(why) => why.clone(),
         }
     }
 

@@ -3,11 +3,12 @@
 //!
 //! A [`Subject`] is some rows of a system; [`Approach`]es are the sets to walk into; a [`Stress`] has both prepared and
 //! [`Stress::run`]s. An evaluation that leaves the finite numbers cannot go on from here without being named: its
-//! [`Verdict`] has no other place for it.
+//! [`StressVerdict`] has no other place for it.
 //!
 //! Nothing here knows of palms; which quantities have which dimension is given from above.
 
 mod approach;
+mod changes;
 mod finding;
 mod jacobi;
 mod line;
@@ -17,9 +18,10 @@ mod subject;
 mod units;
 
 pub use approach::{Approach, approaches_of};
-pub use finding::Finding;
-pub use line::{End, First, Line, OnTheSet, WayOnLine};
-pub use run::{Stress, StressOptions, Study, rows_of};
+pub use changes::{unit_quantities, units};
+pub use finding::StressFinding;
+pub use line::{First, Line, LineLimit, OnTheSet, WayOnLine};
+pub use run::{Stress, StressOptions, StressStudy, rows_of};
 pub use scaling::{Quantity, Scaling, WayScaled};
 pub use subject::{Subject, Truth};
 pub use units::{Conditioning, Rescaling, UnitsRow, WayInUnits};
@@ -91,7 +93,7 @@ impl Way {
 
 /// What a way says of a rank. There is no room in it for a number that is not one.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum StressVerdict {
     /// The rank.
     Rank(usize),
     /// Certainly at least so much, and it cannot tell whether more.

@@ -1,12 +1,13 @@
 //! A system prepared for the extremes, and taken to them.
 
-use super::super::landscape::Rows;
+use super::super::landscape::LandscapeRows;
 use super::approach::{Approach, Prepared, approaches_of};
+use super::changes::{unit_quantities, units};
 use super::line::{Line, OnTheSet, Walk};
 use super::scaling::{Quantity, Scaling};
 use super::subject::Subject;
 use super::units::{Conditioning, Rescaling, Seen, UnitsRow, conditioning, in_units};
-use crate::expression::NodeId;
+use crate::expression::{NodeId, Symbol};
 use crate::observability::{Branch, Codistribution, Length, Locus, OWN_ROWS, State};
 use crate::system::{Assignment, System, Value};
 use rayon::prelude::*;
@@ -44,7 +45,7 @@ pub struct StressOptions<'a> {
 
 /// What was found of one system.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Study {
+pub struct StressStudy {
     pub file: String,
     pub title: String,
     /// Which rows were taken, in words.
@@ -80,12 +81,14 @@ pub struct Stress {
 ///
 /// # Errors
 /// In words: no states or outputs, a pole everywhere.
-pub fn rows_of(system: &mut System, wanted: Rows) -> Result<(String, Vec<NodeId>), String> {
+pub fn rows_of(system: &mut System, wanted: LandscapeRows) -> Result<(String, Vec<NodeId>), String> {
     if system.states.is_empty() || system.outputs.is_empty() {
         return Err(format!("{} declares no states or no outputs", system.name));
     }
     match system.definition(OWN_ROWS) {
-        Some(Value::Matrix(matrix)) if wanted == Rows::Own && matrix.columns == system.states.len() => {
+        Some(Value::Matrix(matrix))
+            if wanted == LandscapeRows::Own && matrix.columns == system.states.len() =>
+        {
             Ok((format!("the file's own '{OWN_ROWS}'"), matrix.entries.clone()))
         }
         _ => {
@@ -96,22 +99,28 @@ pub fn rows_of(system: &mut System, wanted: Rows) -> Result<(String, Vec<NodeId>
 }
 
 impl Stress {
-    /// Prepares a system of which nothing is known but its file: see [`approaches_of`]. Each state in turn is measured in
-    /// units 2^20 and 2^40 times smaller.
+    /// Prepares a system of which nothing is known but its file: see [`approaches_of`]. Where it declares dimensions, units
+    /// are changed as these say ([`units`]); where not, each state in turn is measured in units 2^20 and 2^40 times smaller.
     ///
     /// # Errors
     /// As [`rows_of`] and [`Stress::prepare`].
-    pub fn of_file(system: &mut System, wanted: Rows, options: &StressOptions<'_>) -> Result<Stress, String> {
+    pub fn of_file(
+        system: &mut System,
+        wanted: LandscapeRows,
+        options: &StressOptions<'_>,
+    ) -> Result<Stress, String> {
         let (name, rows) = rows_of(system, wanted)?;
         let approaches = approaches_of(system, &rows);
-        let mut units = Vec::new();
-        for power in [20, 40] {
-            for (place, state) in system.states.iter().enumerate() {
+        let quantities = unit_quantities(system, &rows);
+        let others = units(system, &rows).unwrap_or_else(|| {
+            let column = |(power, (place, state)): (i32, (usize, &Symbol))| {
                 let name = format!("{} in units 2^{power} times smaller", system.symbol_name(*state));
-                units.push((name, Rescaling::Column { place, power }));
-            }
-        }
-        Stress::prepare(system, (&name, &rows), &approaches, Vec::new(), units, options)
+                (name, Rescaling::Column { place, power })
+            };
+            let states = |power| system.states.iter().enumerate().map(move |state| (power, state));
+            [20, 40].into_iter().flat_map(states).map(column).collect()
+        });
+        Stress::prepare(system, (&name, &rows), &approaches, quantities, others, options)
     }
 
     /// Prepares some rows of a system (their name and their entries) for approaches. Besides each quantity by itself
@@ -158,7 +167,7 @@ impl Stress {
     }
 
     /// Goes to the extremes. The same whatever the number of threads.
-    pub fn run(&self, options: &StressOptions<'_>) -> Study {
+    pub fn run(&self, options: &StressOptions<'_>) -> StressStudy {
         let stopped = || options.interrupt.load(Ordering::Relaxed);
         let subject = &self.subject;
         let halvings: Vec<usize> = (0..=MOST_HALVINGS).step_by(options.step.max(1)).collect();
@@ -220,7 +229,7 @@ impl Stress {
             true => (Vec::new(), Vec::new()),
             false => (self.of_box(options, options.samples * MORE_FOR_CONDITIONING), self.near(options)),
         };
-        Study {
+        StressStudy {
             file: subject.system.name.clone(),
             title: subject.system.title.clone(),
             rows: self.rows.clone(),

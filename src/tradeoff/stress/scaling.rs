@@ -1,6 +1,6 @@
 //! One quantity at a time from 1e-150 to 1e150 times its value, all others unchanged.
 
-use super::finding::Finding;
+use super::finding::StressFinding;
 use super::subject::Subject;
 use super::{Mark, Way};
 use crate::expression::Symbol;
@@ -84,7 +84,7 @@ impl Quantity {
                 let marked = findings.map(|(finding, way)| {
                     let mark = finding.mark(way, &truth);
                     let cause =
-                        (mark == Mark::Wrong).then(|| Finding::rounded(subject, &state, way)).flatten();
+                        (mark == Mark::Wrong).then(|| StressFinding::rounded(subject, &state, way)).flatten();
                     let mut said = finding.said();
                     if mark == Mark::Wrong {
                         let cause = cause.unwrap_or_else(|| "rounding".to_owned());

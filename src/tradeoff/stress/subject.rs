@@ -1,7 +1,7 @@
 //! Some rows of a system, evaluated at one exact state in every number type, and their true rank there.
 
 use crate::expression::{Failure, NodeId, Program, expand_angles};
-use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, PrimeField, Rationals, Real, Refusal};
+use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, PrimeField, Rationals, RealNumber, Refusal};
 use crate::observability::{
     Defined, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank, singular_values,
 };
@@ -60,8 +60,7 @@ impl Subject {
         if columns == 0 || rows.is_empty() {
             return Err(format!("{} has no states, or no outputs whose differentials are rows", system.name));
         }
-        let angles = system.angles();
-        let is_angle = |symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let expanded = expand_angles(&mut system.graph, rows, is_angle);
         let program = Program::new(&system.graph, &expanded, is_angle, false);
         if let Some(angle) = program.bare_angle() {
@@ -123,7 +122,7 @@ impl Subject {
     }
 
     /// All entries in a number of fixed size, every step on the way being finite.
-    pub(super) fn entries<T: Real>(&self, state: &State) -> Result<Vec<T>, String> {
+    pub(super) fn entries<T: RealNumber>(&self, state: &State) -> Result<Vec<T>, String> {
         let (entries, registers) = self.run(state, Floats::<T>::new())?;
         match registers.iter().position(|value| !value.is_finite()) {
             None => Ok(entries),
@@ -132,7 +131,7 @@ impl Subject {
     }
 
     /// The first expression that is not zero and that a number type rounds to zero.
-    pub(super) fn rounded_to_zero<T: Real>(&self, state: &State) -> Option<String> {
+    pub(super) fn rounded_to_zero<T: RealNumber>(&self, state: &State) -> Option<String> {
         let (_, rounded) = self.run(state, Floats::<T>::new()).ok()?;
         let (_, enclosed) = self.run(state, Enclosures::new(BITS)).ok()?;
         let place = rounded

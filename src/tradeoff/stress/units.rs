@@ -1,7 +1,7 @@
 //! The same states in other units: which verdicts change, and which are wrong; and what a threshold that is fixed as a
 //! part of the largest singular value would make of states as differently conditioned as these.
 
-use super::finding::Finding;
+use super::finding::StressFinding;
 use super::scaling::scaled;
 use super::subject::{Subject, Truth};
 use super::{Mark, Way};
@@ -60,7 +60,7 @@ const THRESHOLDS: [f64; 6] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14];
 pub(super) struct Seen {
     pub state: State,
     pub truth: Truth,
-    pub findings: Vec<Finding>,
+    pub findings: Vec<StressFinding>,
 }
 
 impl Seen {

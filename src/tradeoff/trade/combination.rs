@@ -151,7 +151,7 @@ impl RankMethod {
 
 /// How many decimal digits of the entries are right: of the least accurate entry at each state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Digits {
+pub enum CorrectDigits {
     /// All of them: rational numbers.
     Exact,
     /// The values modulo a prime: exact, but no digits.
@@ -160,13 +160,13 @@ pub enum Digits {
     Measured { median: f64, worst: f64 },
 }
 
-impl Digits {
+impl CorrectDigits {
     /// Those of the worst state; none where there are only residues.
     pub fn worst(self) -> f64 {
         match self {
-            Digits::Exact => f64::INFINITY,
-            Digits::Modular => 0.0,
-            Digits::Measured { worst, .. } => worst,
+            CorrectDigits::Exact => f64::INFINITY,
+            CorrectDigits::Modular => 0.0,
+            CorrectDigits::Measured { worst, .. } => worst,
         }
     }
 }
@@ -178,7 +178,7 @@ pub struct DerivativeResult {
     pub derivative: Derivative,
     /// Seconds a state, the least of all rounds.
     pub seconds: f64,
-    pub digits: Digits,
+    pub digits: CorrectDigits,
     /// States without a value: an operation was refused, or the value is infinite or not a number.
     pub failed: u64,
 }
@@ -200,7 +200,7 @@ pub struct Combination {
     pub rank: RankMethod,
     /// Seconds a state: both parts, timed apart and added.
     pub seconds: f64,
-    pub digits: Digits,
+    pub digits: CorrectDigits,
     /// Verdicts that are not the certified rank.
     pub wrong: u64,
     /// States at which it says that it cannot tell.
@@ -223,7 +223,7 @@ impl Combination {
 
 /// A combination that makes no sense, or is not possible here; `None` stands for all.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LeftOut {
+pub struct CombinationLeftOut {
     pub number: Number,
     pub derivative: Option<Derivative>,
     pub rank: Option<RankMethod>,
@@ -257,7 +257,7 @@ pub struct Trade {
     pub derivatives: Vec<DerivativeResult>,
     pub ranks: Vec<RankResult>,
     pub combinations: Vec<Combination>,
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<CombinationLeftOut>,
     /// Rounds of timing, in which all take turns.
     pub rounds: usize,
     pub interrupted: bool,

@@ -4,7 +4,7 @@
 
 use super::ways::{Way, points, rows};
 use super::work::Work;
-use crate::number::{Differentiable, Duals, Real, Refusal};
+use crate::number::{Differentiable, Duals, RealNumber, Refusal};
 use crate::tradeoff::point_programs::{LoadedPoints, PointPrograms};
 use dashu::rational::RBig;
 use nalgebra::{Const, SVector};
@@ -70,7 +70,7 @@ fn load<D: Differentiable>(points: &PointPrograms) -> Result<Bottom<'_, D>, Refu
 /// In words: rows that are no differentials of words, words that are too long, constants without an image.
 pub(super) fn duals<'w, T>(work: &'w Work, number: impl Fn(&RBig, &RBig) -> T) -> Result<Way<'w, T>, String>
 where
-    T: Real + DualNum,
+    T: RealNumber + DualNum,
 {
     let plan = work.programs.plan.as_ref().map_err(Clone::clone)?;
     if plan.rows.iter().any(|(fields, _)| fields.len() > LONGEST) {

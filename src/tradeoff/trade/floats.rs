@@ -5,14 +5,14 @@ use super::combination::{Derivative, Number, RankMethod};
 use super::duals::duals;
 use super::lanes::{certain, jacobi};
 use super::ranks::{
-    Float, RankWay, Verdict, each, elimination, equilibrated, intervals, lu, qr, svd_faer, svd_nalgebra,
+    Float, RankVerdict, RankWay, each, elimination, equilibrated, intervals, lu, qr, svd_faer, svd_nalgebra,
 };
 use super::study::{Accuracy, Setup};
 use super::truth::Exact;
 use super::ways::{differences, programs};
 use super::work::Work;
-use crate::number::{Bounded, DoubleDouble, Floats, Interval, Real, rational_from_f64};
-use crate::tradeoff::differences::Difference;
+use crate::number::{Bounded, DoubleDouble, Floats, Interval, RealNumber, rational_from_f64};
+use crate::tradeoff::differences::FiniteDifference;
 use dashu::rational::RBig;
 use num_dual::DualNum;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ fn digits(spacing: f64) -> f64 {
     -(spacing / 2.0).log10()
 }
 
-fn middle<T: Real>(low: &RBig, high: &RBig) -> T {
+fn middle<T: RealNumber>(low: &RBig, high: &RBig) -> T {
     T::from_rational(&((low + high) / RBig::from(2)))
 }
 
@@ -53,7 +53,7 @@ fn enclosed(low: f64, high: f64, exact: &Exact) -> f64 {
 }
 
 /// What every kind of number can do that stands for one real number.
-fn rounded<'w, T: Real + DualNum>(
+fn rounded<'w, T: RealNumber + DualNum>(
     work: &'w Work,
     number: Number,
     spacing: f64,
@@ -65,17 +65,18 @@ fn rounded<'w, T: Real + DualNum>(
         setup.way(derivative, way);
     }
     setup.way(Derivative::Duals, duals(work, middle::<T>));
-    setup.way(Derivative::Forward, differences(work, Difference::Forward, spacing));
-    setup.way(Derivative::Central, differences(work, Difference::Central, spacing));
+    setup.way(Derivative::Forward, differences(work, FiniteDifference::Forward, spacing));
+    setup.way(Derivative::Central, differences(work, FiniteDifference::Central, spacing));
     setup
 }
 
 /// A machine float with everything that the libraries offer.
 fn machine<'w, F: Float + DualNum + Copy>(work: &'w Work, number: Number, spacing: f64) -> Setup<'w, F> {
-    let mut setup = rounded(work, number, spacing, |value: &F, exact| error(Real::to_f64(*value), exact));
+    let mut setup =
+        rounded(work, number, spacing, |value: &F, exact| error(RealNumber::to_f64(*value), exact));
     let columns = work.block.columns;
     setup.ranks.push((RankMethod::SvdWhole, each(|matrix| svd_nalgebra(matrix, work.columns))));
-    let mut add = |method, way: fn(&[F], usize) -> Verdict| {
+    let mut add = |method, way: fn(&[F], usize) -> RankVerdict| {
         setup.ranks.push((method, nonempty(work, each(move |block| way(block, columns)))));
     };
     add(RankMethod::SvdNalgebra, svd_nalgebra);
@@ -87,7 +88,7 @@ fn machine<'w, F: Float + DualNum + Copy>(work: &'w Work, number: Number, spacin
 
 /// A block without rows or columns has the rank zero, whoever is asked.
 pub(super) fn nonempty<'w, N: 'w>(work: &Work, way: RankWay<'w, N>) -> RankWay<'w, N> {
-    if work.block.is_empty() { each(|_| Verdict::Rank(0)) } else { way }
+    if work.block.is_empty() { each(|_| RankVerdict::Rank(0)) } else { way }
 }
 
 pub(super) fn single(work: &Work) -> Setup<'_, f32> {

@@ -31,7 +31,7 @@ pub(super) fn mark_front(combinations: &mut [Combination]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::combination::{Derivative, Digits, Number, RankMethod};
+    use super::super::combination::{CorrectDigits, Derivative, Number, RankMethod};
     use super::*;
 
     fn combination(seconds: f64, worst: f64, wrong: u64) -> Combination {
@@ -40,7 +40,7 @@ mod tests {
             derivative: Derivative::Graph,
             rank: RankMethod::SvdFaer,
             seconds,
-            digits: Digits::Measured { median: worst, worst },
+            digits: CorrectDigits::Measured { median: worst, worst },
             wrong,
             undecided: 0,
             failed: 0,

@@ -2,7 +2,7 @@
 //! ranks of many small matrices at once.
 
 use super::block::Block;
-use super::ranks::{RankWay, Verdict};
+use super::ranks::{RankVerdict, RankWay};
 use crate::expression::BlockProgram;
 use crate::number::{Bounded, Instructions, Lanes, MOST_LANES, Vectorised};
 use crate::sweep::{Elimination, Jacobi};
@@ -52,7 +52,7 @@ impl Vectorised for BoundedValues<'_> {
                 let health = machine.health(lane);
                 let (mut spoiled, mut unknown) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
                 health.value.store(&mut spoiled);
-                health.error().lost().store(&mut unknown);
+                health.error().zero_if_finite().store(&mut unknown);
                 for place in 0..outputs {
                     let result = machine.output(place, lane);
                     result.value.store(&mut values);
@@ -102,7 +102,7 @@ struct Jacobis<'a> {
     blocks: &'a [Option<Vec<f64>>],
     rows: usize,
     columns: usize,
-    verdicts: &'a mut Vec<Verdict>,
+    verdicts: &'a mut Vec<RankVerdict>,
 }
 
 impl Vectorised for Jacobis<'_> {
@@ -120,7 +120,7 @@ impl Vectorised for Jacobis<'_> {
                 let mut largest = zero;
                 for (j, entry) in row.iter_mut().enumerate() {
                     *entry = gathered(zero, blocks, i * columns + j, |x| *x);
-                    spoiled = spoiled + entry.lost();
+                    spoiled = spoiled + entry.zero_if_finite();
                     largest = largest.larger(entry.abs());
                 }
                 let factor = inverse(largest);
@@ -149,10 +149,9 @@ impl Vectorised for Jacobis<'_> {
             let (mut ranks, mut lost) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
             rank.store(&mut ranks);
             failed.store(&mut lost);
-            verdicts
-                .extend((0..blocks.len()).map(|i| {
-                    if lost[i] == 0.0 { Verdict::Rank(ranks[i] as usize) } else { Verdict::Failed }
-                }));
+            verdicts.extend((0..blocks.len()).map(|i| {
+                if lost[i] == 0.0 { RankVerdict::Rank(ranks[i] as usize) } else { RankVerdict::Failed }
+            }));
         }
     }
 }
@@ -171,7 +170,7 @@ struct Eliminations<'a> {
     blocks: &'a [Option<Vec<Bounded<f64>>>],
     rows: usize,
     columns: usize,
-    verdicts: &'a mut Vec<Verdict>,
+    verdicts: &'a mut Vec<RankVerdict>,
 }
 
 impl Vectorised for Eliminations<'_> {
@@ -192,7 +191,7 @@ impl Vectorised for Eliminations<'_> {
                     let place = i * columns + j;
                     let value = gathered(zero, blocks, place, |x: &Bounded<f64>| x.value);
                     let units = gathered(zero, blocks, place, |x: &Bounded<f64>| x.units);
-                    spoiled = spoiled + value.lost();
+                    spoiled = spoiled + value.zero_if_finite();
                     of_row = of_row.larger(value.abs());
                     *of_column = of_column.larger(value.abs());
                     room.set(i, j, Bounded { value, units });
@@ -206,9 +205,9 @@ impl Vectorised for Eliminations<'_> {
             room.is_full(one).store(&mut found);
             spoiled.store(&mut lost);
             verdicts.extend((0..blocks.len()).map(|i| match (lost[i] == 0.0, found[i] == 1.0) {
-                (false, _) => Verdict::Failed,
-                (true, true) => Verdict::Rank(rows.min(columns)),
-                (true, false) => Verdict::Undecided,
+                (false, _) => RankVerdict::Failed,
+                (true, true) => RankVerdict::Rank(rows.min(columns)),
+                (true, false) => RankVerdict::Undecided,
             }));
         }
     }

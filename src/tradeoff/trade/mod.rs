@@ -25,7 +25,8 @@ mod ways;
 mod work;
 
 pub use combination::{
-    Combination, Derivative, DerivativeResult, Digits, LeftOut, Number, RankMethod, RankResult, Trade,
+    Combination, CombinationLeftOut, CorrectDigits, Derivative, DerivativeResult, Number, RankMethod,
+    RankResult, Trade,
 };
 pub use front::{DIGITS_TOLERANCE, TIME_TOLERANCE, beats};
 

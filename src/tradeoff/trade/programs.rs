@@ -1,6 +1,6 @@
 //! The programs that the ways to a derivative run.
 
-use crate::expression::{BlockProgram, NodeId, Program, Symbol, expand_angles, gradient};
+use crate::expression::{BlockProgram, NodeId, Program, expand_angles, gradient};
 use crate::observability::{Word, lie_derivative_by_series};
 use crate::system::System;
 use crate::tradeoff::point_programs::PointPrograms;
@@ -39,8 +39,7 @@ impl Programs {
         varying: &[usize],
         words: &Result<Vec<Word>, String>,
     ) -> Programs {
-        let angles = system.angles();
-        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         let roots: Vec<NodeId> = varying.iter().map(|place| entries[*place]).collect();
         let by_series = words.as_ref().map_err(Clone::clone).and_then(|words| series(system, words, varying));
         let expanded = term_by_term(&mut system.graph, &roots, is_angle, MOST_MONOMIALS);
@@ -69,8 +68,8 @@ fn series(system: &mut System, words: &[Word], varying: &[usize]) -> Result<Vec<
         rows.push(gradient(&mut system.graph, value, &states));
     }
     let picked: Vec<NodeId> = plan.picks.iter().map(|(row, column)| rows[*row][*column]).collect();
-    let angles = system.angles();
-    Ok(expand_angles(&mut system.graph, &picked, |symbol| angles.contains(&symbol)))
+    let is_angle = &system.angle_test();
+    Ok(expand_angles(&mut system.graph, &picked, is_angle))
 }
 
 fn plan(words: &[Word], varying: &[usize], columns: usize) -> RowPlan {

@@ -2,9 +2,10 @@
 
 use super::block::Block;
 use super::combination::{
-    Combination, Derivative, DerivativeResult, Digits, LeftOut, Number, RankMethod, RankResult,
+    Combination, CombinationLeftOut, CorrectDigits, Derivative, DerivativeResult, Number, RankMethod,
+    RankResult,
 };
-use super::ranks::{RankWay, Verdict};
+use super::ranks::{RankVerdict, RankWay};
 use super::sense::{no_derivative, no_rank};
 use super::timing::{Job, Part};
 use super::truth::{Exact, Truth};
@@ -79,8 +80,9 @@ impl<'w, N> Setup<'w, N> {
     }
 
     /// Everything that is not combined, and why.
-    fn left_out(&self) -> Vec<LeftOut> {
-        let leave_out = |derivative, rank, reason| LeftOut { number: self.number, derivative, rank, reason };
+    fn left_out(&self) -> Vec<CombinationLeftOut> {
+        let leave_out =
+            |derivative, rank, reason| CombinationLeftOut { number: self.number, derivative, rank, reason };
         let taken = |wanted: &Derivative| self.ways.iter().any(|(derivative, _)| derivative == wanted);
         let mut found = Vec::new();
         for derivative in Derivative::ALL.into_iter().filter(|derivative| !taken(derivative)) {
@@ -104,7 +106,7 @@ impl<'w, N> Setup<'w, N> {
 pub(super) struct Findings {
     pub derivatives: Vec<DerivativeResult>,
     pub ranks: Vec<RankResult>,
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<CombinationLeftOut>,
     verdicts: Vec<Combination>,
 }
 
@@ -227,7 +229,7 @@ fn in_chunks<T: Send>(count: usize, chunk: &(dyn Fn(Range<usize>) -> Vec<T> + Sy
 }
 
 /// The digits at the median and at the worst state, and how many states have no value.
-fn digits<N: Sync>(work: &Work, setup: &Setup<'_, N>, entries: &[Option<Vec<N>>]) -> (Digits, u64) {
+fn digits<N: Sync>(work: &Work, setup: &Setup<'_, N>, entries: &[Option<Vec<N>>]) -> (CorrectDigits, u64) {
     let most = if let Accuracy::Digits(most) = setup.accuracy { most } else { f64::INFINITY };
     let at_a_state = |(values, truth): (&Option<Vec<N>>, &Truth)| {
         let errors =
@@ -241,16 +243,16 @@ fn digits<N: Sync>(work: &Work, setup: &Setup<'_, N>, entries: &[Option<Vec<N>>]
     });
     let failed = found.iter().filter(|digits| digits.is_none()).count() as u64;
     match setup.accuracy {
-        Accuracy::Exact if failed == 0 => return (Digits::Exact, 0),
-        Accuracy::Modular => return (Digits::Modular, failed),
+        Accuracy::Exact if failed == 0 => return (CorrectDigits::Exact, 0),
+        Accuracy::Modular => return (CorrectDigits::Modular, failed),
         _ => {}
     }
     found.sort_by(|a, b| a.unwrap_or(0.0).total_cmp(&b.unwrap_or(0.0)));
     let at = |place: usize| found.get(place).copied().flatten().unwrap_or(0.0);
-    (Digits::Measured { median: at(found.len() / 2), worst: at(0) }, failed)
+    (CorrectDigits::Measured { median: at(found.len() / 2), worst: at(0) }, failed)
 }
 
-fn verdicts<N: Sync>(blocks: &[Option<Vec<N>>], decide: &RankWay<'_, N>) -> Vec<Verdict> {
+fn verdicts<N: Sync>(blocks: &[Option<Vec<N>>], decide: &RankWay<'_, N>) -> Vec<RankVerdict> {
     in_chunks(blocks.len(), &|states| {
         let mut found = Vec::with_capacity(states.len());
         decide(&blocks[states], &mut |verdict| found.push(verdict));
@@ -258,20 +260,20 @@ fn verdicts<N: Sync>(blocks: &[Option<Vec<N>>], decide: &RankWay<'_, N>) -> Vec<
     })
 }
 
-fn count(work: &Work, block: &Block, tally: &mut Combination, verdicts: &[Verdict]) {
+fn count(work: &Work, block: &Block, tally: &mut Combination, verdicts: &[RankVerdict]) {
     for (verdict, truth) in verdicts.iter().zip(&work.truths) {
         match verdict {
-            Verdict::Rank(rank) if block.eliminated + rank != truth.rank => tally.wrong += 1,
+            RankVerdict::Rank(rank) if block.eliminated + rank != truth.rank => tally.wrong += 1,
             // a nonzero minor modulo a prime is one for certain; that there is none is not
-            Verdict::Rank(rank) => {
+            RankVerdict::Rank(rank) => {
                 tally.certified += u64::from(match tally.number {
                     Number::Rational | Number::Interval | Number::Bounded => true,
                     Number::Residue => *rank == block.rows.min(block.columns),
                     Number::Single | Number::Double | Number::DoubleDouble => false,
                 });
             }
-            Verdict::Undecided => tally.undecided += 1,
-            Verdict::Failed => tally.failed += 1,
+            RankVerdict::Undecided => tally.undecided += 1,
+            RankVerdict::Failed => tally.failed += 1,
         }
     }
 }

@@ -4,8 +4,8 @@ use super::combination::Derivative;
 use super::programs::RowPlan;
 use super::work::{Work, inputs};
 use crate::expression::Program;
-use crate::number::{Arithmetic, Real, Refusal};
-use crate::tradeoff::differences::{Difference, Differences};
+use crate::number::{Arithmetic, RealNumber, Refusal};
+use crate::tradeoff::differences::{Differences, FiniteDifference};
 use dashu::rational::RBig;
 use std::ops::Range;
 
@@ -93,9 +93,9 @@ pub(super) fn rows<'w, N: Clone + Send + Sync + 'w>(
 ///
 /// # Errors
 /// In words: rows that are no differentials of words, constants without an image.
-pub(super) fn differences<'w, T: Real>(
+pub(super) fn differences<'w, T: RealNumber>(
     work: &'w Work,
-    difference: Difference,
+    difference: FiniteDifference,
     spacing: f64,
 ) -> Result<Way<'w, T>, String> {
     let plan = work.programs.plan.as_ref().map_err(Clone::clone)?;

@@ -5,7 +5,7 @@ use super::block::Block;
 use super::programs::Programs;
 use super::rows::Rows;
 use super::truth::{Truth, radians};
-use crate::expression::{Input, Program, Symbol, expand_angles};
+use crate::expression::{Input, Program, expand_angles};
 use crate::number::{Arithmetic, Refusal};
 use crate::observability::{Branch, Locus, State};
 use crate::system::System;
@@ -44,8 +44,7 @@ impl Work {
         system.require_motion()?;
         let columns = system.states.len();
         let rows = Rows::of(&mut system)?;
-        let angles = system.angles();
-        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let is_angle = &system.angle_test();
         if rows.entries.is_empty() {
             let why = "no output changes with the states: there are no rows, their rank is 0, and nothing is to be traded";
             return Err(format!("{}: {why}", system.name));

@@ -2,7 +2,7 @@
 
 use super::super::keys::PalmsKeys;
 use super::super::simulated::MOST_JITTER;
-use super::super::{Body, Palms, Sensor, Shape};
+use super::super::{Body, Palms, SceneOutline, Sensor};
 use super::{Checks, MOST_SAMPLES, Problem, Simulated};
 use crate::mechanics::moving::{Drive, Oscillation};
 use std::f64::consts::PI;
@@ -94,9 +94,9 @@ impl Checks<'_> {
         self.finite("body.gravity", body.gravity)
     }
 
-    fn shape(&self, shape: &Shape) -> Result<(), Problem> {
+    fn shape(&self, shape: &SceneOutline) -> Result<(), Problem> {
         match shape {
-            Shape::Harmonics { mean, harmonics } => {
+            SceneOutline::Harmonics { mean, harmonics } => {
                 self.positive("body.shape.mean", *mean, "m")?;
                 if harmonics.len() > 64 {
                     let message = format!("{} harmonics are too many", harmonics.len());
@@ -107,8 +107,8 @@ impl Checks<'_> {
                 }
                 Ok(())
             }
-            Shape::Ellipse { semi_axes } => self.all_positive("body.shape.semi_axes", semi_axes, "m"),
-            Shape::Superellipse { semi_axes, exponent, rounding } => {
+            SceneOutline::Ellipse { semi_axes } => self.all_positive("body.shape.semi_axes", semi_axes, "m"),
+            SceneOutline::Superellipse { semi_axes, exponent, rounding } => {
                 self.all_positive("body.shape.semi_axes", semi_axes, "m")?;
                 if !(2..=64).contains(exponent) || exponent % 2 == 1 {
                     let message = format!("an exponent of {exponent} gives no smooth body");
@@ -120,8 +120,8 @@ impl Checks<'_> {
                 }
                 self.not_negative("body.shape.rounding", *rounding, "m")
             }
-            Shape::Spline { radii, .. } => self.all_positive("body.shape.radii", radii, "m"),
-            Shape::RandomSpline { .. } => Ok(()),
+            SceneOutline::Spline { radii, .. } => self.all_positive("body.shape.radii", radii, "m"),
+            SceneOutline::RandomSpline { .. } => Ok(()),
         }
     }
 

@@ -1,8 +1,8 @@
 //! Functions of arguments, and powers.
 
 use super::parts::{commas, round, scripts};
-use super::{Binding, Layout};
-use crate::expression::notation::{Fence, Formula, Name, Sign};
+use super::{Binding, FormulaLayout};
+use crate::expression::notation::{Fence, Formula, FormulaName, FormulaSign};
 use crate::expression::syntax::{Expr, ExprKind, Relation};
 
 /// Functions whose names stand as they are, or with another word.
@@ -20,12 +20,12 @@ const FUNCTIONS: [(&str, &str); 11] = [
     ("log", "log"),
 ];
 
-impl Layout<'_> {
+impl FormulaLayout<'_> {
     pub(super) fn power(&self, base: &Expr, exponent: i32) -> Formula {
         let above = match exponent {
             0.. => Formula::Number(exponent.to_string()),
             _ => Formula::Row(vec![
-                Formula::Sign(Sign::Negative),
+                Formula::Sign(FormulaSign::Negative),
                 Formula::Number(exponent.unsigned_abs().to_string()),
             ]),
         };
@@ -54,23 +54,23 @@ impl Layout<'_> {
                 (Formula::Fence(Fence::Bars, Box::new(self.expression(inner))), Binding::Atom)
             }
             ("transpose", [inner]) => {
-                let above = Some(Formula::Sign(Sign::Transpose));
+                let above = Some(Formula::Sign(FormulaSign::Transpose));
                 (scripts(self.at_least(inner, Binding::Atom), None, above), Binding::Power)
             }
             ("inverse", [inner]) => {
                 let minus_one =
-                    Formula::Row(vec![Formula::Sign(Sign::Negative), Formula::Number("1".into())]);
+                    Formula::Row(vec![Formula::Sign(FormulaSign::Negative), Formula::Number("1".into())]);
                 (scripts(self.at_least(inner, Binding::Atom), None, Some(minus_one)), Binding::Power)
             }
             ("dot" | "cross", [a, b]) => {
-                let sign = if name == "dot" { Sign::Dot } else { Sign::Cross };
+                let sign = if name == "dot" { FormulaSign::Dot } else { FormulaSign::Cross };
                 let [a, b] = [a, b].map(|side| self.at_least(side, Binding::Power));
                 (Formula::Row(vec![a, Formula::Sign(sign), b]), Binding::Vectors)
             }
             ("L", [fields @ .., last]) if !fields.is_empty() => self.lie(fields, last, closed),
             ("d", [inner]) => self.applied(Formula::Word("d"), inner, closed),
             ("d", [inner, by @ ..]) => {
-                let partial = || Formula::Sign(Sign::Partial);
+                let partial = || Formula::Sign(FormulaSign::Partial);
                 let top = Formula::Row(vec![partial(), self.at_least(inner, Binding::Atom)]);
                 let by = commas(by.iter().map(|state| self.expression(state)).collect());
                 let bottom = Formula::Row(vec![partial(), round(by)]);
@@ -79,7 +79,8 @@ impl Layout<'_> {
             ("det", [inner]) => self.applied(Formula::Word("det"), inner, closed),
             ("rank", [inner]) => self.applied(Formula::Word("rank"), inner, closed),
             ("pole", [inner, factor]) => {
-                let zero = [Formula::Sign(Sign::Relation(Relation::Equal)), Formula::Number("0".into())];
+                let zero =
+                    [Formula::Sign(FormulaSign::Relation(Relation::Equal)), Formula::Number("0".into())];
                 let place = Formula::Row([self.expression(factor)].into_iter().chain(zero).collect());
                 let word = scripts(Formula::Word("pole"), Some(place), None);
                 (Formula::Row(vec![word, round(self.expression(inner))]), Binding::Prefix)
@@ -97,7 +98,7 @@ impl Layout<'_> {
         let parts = if closed || binding < Binding::Atom || matches!(inner, Formula::Number(_)) {
             vec![function, round(inner)]
         } else {
-            vec![function, Formula::Sign(Sign::Thin), inner]
+            vec![function, Formula::Sign(FormulaSign::Thin), inner]
         };
         (Formula::Row(parts), Binding::Prefix)
     }
@@ -106,7 +107,7 @@ impl Layout<'_> {
     fn lie(&self, fields: &[Expr], last: &Expr, closed: bool) -> (Formula, Binding) {
         let mut row = Vec::new();
         for field in fields {
-            let letter = Name::of("L").map_or(Formula::Word("L"), Formula::Name);
+            let letter = FormulaName::of("L").map_or(Formula::Word("L"), Formula::Name);
             row.push(scripts(letter, Some(self.expression(field)), None));
         }
         match &last.kind {

@@ -3,7 +3,7 @@
 mod call;
 mod parts;
 
-use super::{Fence, Formula, Name, Sign, latex::latex};
+use super::{Fence, Formula, FormulaName, FormulaSign, latex::latex};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Relation};
 use crate::number::parse_decimal;
 use call::is_function;
@@ -30,13 +30,13 @@ const WORDS: [&str; 17] = [
 ];
 
 /// Lays out the expressions of one text.
-pub struct Layout<'a> {
+pub struct FormulaLayout<'a> {
     source: &'a str,
     /// The names that are set as they are written: their looks would be those of others.
     alike: BTreeSet<String>,
 }
 
-impl<'a> Layout<'a> {
+impl<'a> FormulaLayout<'a> {
     /// A layout for expressions that were read from a text and stand in one formula.
     pub fn new<'e>(source: &'a str, expressions: impl IntoIterator<Item = &'e Expr>) -> Self {
         let mut names = BTreeSet::new();
@@ -44,12 +44,12 @@ impl<'a> Layout<'a> {
         expressions.into_iter().for_each(|expression| collect(expression, &mut names, &mut derives));
         let mut looks: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for name in names {
-            if let Some(look) = Name::of(&name) {
+            if let Some(look) = FormulaName::of(&name) {
                 looks.entry(latex(&Formula::Name(look))).or_default().push(name);
             }
         }
         let means_something = |name: &str| {
-            Name::of(name).is_some_and(|look| {
+            FormulaName::of(name).is_some_and(|look| {
                 look.from.is_empty()
                     && (WORDS.contains(&look.letters.as_str()) && name != "rank"
                         || look.letters == "L" && derives && !look.index.is_empty())
@@ -59,7 +59,7 @@ impl<'a> Layout<'a> {
             let alike = names.len() > 1;
             names.into_iter().filter(move |name| alike || means_something(name)).collect::<Vec<_>>()
         };
-        Layout { source, alike: looks.into_iter().flat_map(shared).collect() }
+        FormulaLayout { source, alike: looks.into_iter().flat_map(shared).collect() }
     }
 
     /// An expression.
@@ -72,7 +72,7 @@ impl<'a> Layout<'a> {
         let mut row = Vec::new();
         for (place, chain) in equations.chunk_by(|a, b| a.span == b.span).enumerate() {
             if place > 0 {
-                row.push(Formula::Sign(Sign::Comma));
+                row.push(Formula::Sign(FormulaSign::Comma));
             }
             self.chain(chain, &mut row);
         }
@@ -88,16 +88,19 @@ impl<'a> Layout<'a> {
             && low.left.span == high.left.span
         {
             put(self.expression(&low.left));
-            put(Formula::Sign(Sign::In));
-            let ends =
-                [self.expression(&low.right), Formula::Sign(Sign::Comma), self.expression(&high.right)];
+            put(Formula::Sign(FormulaSign::In));
+            let ends = [
+                self.expression(&low.right),
+                Formula::Sign(FormulaSign::Comma),
+                self.expression(&high.right),
+            ];
             return put(Formula::Fence(Fence::Square, Box::new(Formula::Row(ends.into()))));
         }
         for (place, link) in chain.iter().enumerate() {
             if place == 0 {
                 put(self.expression(&link.left));
             }
-            put(Formula::Sign(Sign::Relation(link.relation)));
+            put(Formula::Sign(FormulaSign::Relation(link.relation)));
             put(self.expression(&link.right));
             if let Some(within) = &link.within {
                 put(Formula::Text("within"));
@@ -130,19 +133,19 @@ impl<'a> Layout<'a> {
                 let mut values = Vec::new();
                 for (place, (name, value)) in list.iter().enumerate() {
                     if place > 0 {
-                        values.push(Formula::Sign(Sign::Comma));
+                        values.push(Formula::Sign(FormulaSign::Comma));
                     }
-                    let equal = Formula::Sign(Sign::Relation(Relation::Equal));
+                    let equal = Formula::Sign(FormulaSign::Relation(Relation::Equal));
                     values.extend([self.name(&name.text), equal, self.expression(value)]);
                 }
-                let inner = Formula::Row(vec![round(self.expression(value)), Formula::Sign(Sign::At)]);
+                let inner = Formula::Row(vec![round(self.expression(value)), Formula::Sign(FormulaSign::At)]);
                 (scripts(inner, Some(Formula::Row(values)), None), Binding::Power)
             }
         }
     }
 
     fn name(&self, text: &str) -> Formula {
-        match Name::of(text) {
+        match FormulaName::of(text) {
             Some(name) if !self.alike.contains(text) => match text {
                 "rank" => Formula::Word("rank"),
                 _ => Formula::Name(name),
@@ -161,13 +164,13 @@ impl<'a> Layout<'a> {
         let mut row = Vec::new();
         for (place, (minus, term)) in terms.iter().enumerate() {
             let (formula, binding) = self.lay(term);
-            let led_by_minus = matches!(&formula, Formula::Row(parts) if parts.first() == Some(&Formula::Sign(Sign::Negative)));
+            let led_by_minus = matches!(&formula, Formula::Row(parts) if parts.first() == Some(&Formula::Sign(FormulaSign::Negative)));
             let brackets = binding == Binding::Sum && (*minus || (place > 0 && led_by_minus));
             match (place, minus) {
                 (0, false) => {}
-                (0, true) => row.push(Formula::Sign(Sign::Negative)),
-                (_, true) => row.push(Formula::Sign(Sign::Minus)),
-                (_, false) => row.push(Formula::Sign(Sign::Plus)),
+                (0, true) => row.push(Formula::Sign(FormulaSign::Negative)),
+                (_, true) => row.push(Formula::Sign(FormulaSign::Minus)),
+                (_, false) => row.push(Formula::Sign(FormulaSign::Plus)),
             }
             match formula {
                 formula if brackets => row.push(round(formula)),

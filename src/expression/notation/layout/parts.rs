@@ -1,7 +1,7 @@
 //! Formulas put together: in brackets, with scripts, side by side; and numbers.
 
 use super::Binding;
-use crate::expression::notation::{Fence, Formula, Sign};
+use crate::expression::notation::{Fence, Formula, FormulaSign};
 
 pub(super) fn round(inner: Formula) -> Formula {
     Formula::Fence(Fence::Round, Box::new(inner))
@@ -15,7 +15,7 @@ pub(super) fn commas(parts: Vec<Formula>) -> Formula {
     let mut row = Vec::new();
     for part in parts {
         if !row.is_empty() {
-            row.push(Formula::Sign(Sign::Comma));
+            row.push(Formula::Sign(FormulaSign::Comma));
         }
         row.push(part);
     }
@@ -29,9 +29,9 @@ pub(super) fn joined(factors: Vec<Formula>) -> Formula {
         let (first, last) = (first_of(&factor), row.last().map(last_of));
         let sign = match (last, first) {
             (None, _) => None,
-            (Some(_), Formula::Number(_)) => Some(Sign::Dot),
-            (Some(Formula::Number(_)), Formula::Fraction(..)) => Some(Sign::Dot),
-            (Some(last), first) if is_wide(last) || is_wide(first) => Some(Sign::Thin),
+            (Some(_), Formula::Number(_)) => Some(FormulaSign::Dot),
+            (Some(Formula::Number(_)), Formula::Fraction(..)) => Some(FormulaSign::Dot),
+            (Some(last), first) if is_wide(last) || is_wide(first) => Some(FormulaSign::Thin),
             _ => None,
         };
         row.extend(sign.map(Formula::Sign));
@@ -74,14 +74,16 @@ pub(super) fn number(written: &str) -> (Formula, Binding) {
     };
     let exponent = exponent.trim_start_matches('+');
     let above = match exponent.strip_prefix('-') {
-        Some(size) => Formula::Row(vec![Formula::Sign(Sign::Negative), Formula::Number(size.to_owned())]),
+        Some(size) => {
+            Formula::Row(vec![Formula::Sign(FormulaSign::Negative), Formula::Number(size.to_owned())])
+        }
         None => Formula::Number(exponent.to_owned()),
     };
     let power = scripts(Formula::Number("10".to_owned()), None, Some(above));
     match digits {
         "1" => (power, Binding::Power),
         _ => {
-            let row = vec![Formula::Number(digits.to_owned()), Formula::Sign(Sign::Dot), power];
+            let row = vec![Formula::Number(digits.to_owned()), Formula::Sign(FormulaSign::Dot), power];
             (Formula::Row(row), Binding::Product)
         }
     }
@@ -97,7 +99,7 @@ pub(super) fn rational(value: &dashu::rational::RBig) -> (Formula, Binding) {
         bottom => Formula::Fraction(Box::new(size), Box::new(number(bottom.to_owned()))),
     };
     match (top.to_string().starts_with('-'), &formula) {
-        (true, _) => (Formula::Row(vec![Formula::Sign(Sign::Negative), formula]), Binding::Sum),
+        (true, _) => (Formula::Row(vec![Formula::Sign(FormulaSign::Negative), formula]), Binding::Sum),
         (false, Formula::Number(_)) => (formula, Binding::Atom),
         (false, _) => (formula, Binding::Product),
     }

@@ -10,7 +10,7 @@ use reader::{Values, function, one, xml};
 
 fn set(text: &str) -> Formula {
     let expr = parse_expression(text).unwrap();
-    Layout::new(text, [&expr]).expression(&expr)
+    FormulaLayout::new(text, [&expr]).expression(&expr)
 }
 
 fn in_latex(text: &str) -> String {
@@ -128,7 +128,7 @@ proptest! {
         let shown: Values = NAMES.iter().flat_map(|(name, look, value)| [((*name).to_owned(), *value), ((*look).to_owned(), *value)])
             .chain([("a1".to_owned(), 0.6)]).collect();
         let expected = value(&expr, &plain);
-        let formula = Layout::new(&text, [&expr]).expression(&expr);
+        let formula = FormulaLayout::new(&text, [&expr]).expression(&expr);
         let written = mathml(&formula);
         let only_second = text.contains("a_1") && !text.contains("a1");
         let shown = if only_second { Values::from_iter(shown.into_iter().chain([("𝑎₁".to_owned(), 1.1)])) } else { shown };
@@ -204,6 +204,7 @@ fn markup_is_escaped() {
     let depth = crate::expression::parse::Depth::default();
     let all =
         crate::expression::parse::read_all(text, &depth, "", crate::expression::parse::equations).unwrap();
-    let formula = Layout::new(text, [&all[0].left, &all[0].right]).relations(&all.iter().collect::<Vec<_>>());
+    let formula =
+        FormulaLayout::new(text, [&all[0].left, &all[0].right]).relations(&all.iter().collect::<Vec<_>>());
     assert_eq!(mathml(&formula), "<math><mi>a</mi><mo>&lt;</mo><mi>b</mi></math>");
 }

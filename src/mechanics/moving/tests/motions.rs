@@ -6,8 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-fn disc(radius: f64, palms: [Course; 2]) -> Scene {
-    let form = Form::Harmonics { mean: radius, harmonics: vec![] };
+fn disc(radius: f64, palms: [Course; 2]) -> MovingScene {
+    let form = BodyForm::Harmonics { mean: radius, harmonics: vec![] };
     let shape = Shape::new(&form, CentreOfMass::Uniform).unwrap();
     let mut scene = palms_fixed();
     (scene.gyration, scene.shape, scene.drive) = (shape.gyration(), shape, Drive::Prescribed(palms));
@@ -242,7 +242,7 @@ fn palms_that_are_too_short_or_too_open_end_the_motion() {
 
 #[test]
 fn a_scene_that_cannot_begin_says_why() {
-    let refused = |change: &dyn Fn(&mut Scene), times: &[f64]| {
+    let refused = |change: &dyn Fn(&mut MovingScene), times: &[f64]| {
         let mut scene = palms_fixed();
         change(&mut scene);
         simulate(&scene, times).unwrap_err().to_string()

@@ -10,7 +10,7 @@ fn close(value: f64, exact: f64, tolerance: f64) {
 }
 
 fn harmonics(mean: f64, harmonics: &[[f64; 2]], centre: CentreOfMass) -> Result<Shape, FormError> {
-    Shape::new(&Form::Harmonics { mean, harmonics: harmonics.to_vec() }, centre)
+    Shape::new(&BodyForm::Harmonics { mean, harmonics: harmonics.to_vec() }, centre)
 }
 
 /// A disc of the radius 1.5 whose middle is at (0.3, -0.2): its support function is `1.5 + 0.3 cos a - 0.2 sin a`.
@@ -38,7 +38,7 @@ fn a_disc_off_its_origin() {
 /// it is 9.688448220547676 (OEIS A274014).
 #[test]
 fn an_ellipse() {
-    let ellipse = Shape::new(&Form::Ellipse { semi_axes: [2.0, 1.0] }, CentreOfMass::Uniform).unwrap();
+    let ellipse = Shape::new(&BodyForm::Ellipse { semi_axes: [2.0, 1.0] }, CentreOfMass::Uniform).unwrap();
     close(ellipse.area(), TAU, 1e-14);
     close(ellipse.gyration(), 5f64.sqrt() / 2.0, 1e-15);
     close(ellipse.perimeter(), 9.688_448_220_547_676, 1e-14);
@@ -53,7 +53,7 @@ fn an_ellipse() {
 #[test]
 fn a_superellipse_is_rounded_by_a_disc() {
     let made = |exponent, rounding| {
-        let form = Form::Superellipse { semi_axes: [1.3, 0.8], exponent, rounding };
+        let form = BodyForm::Superellipse { semi_axes: [1.3, 0.8], exponent, rounding };
         Shape::new(&form, CentreOfMass::Uniform).unwrap()
     };
     for (exponent, less) in [(2, 0.0), (4, 0.1), (64, 0.05)] {
@@ -72,8 +72,9 @@ fn a_superellipse_is_rounded_by_a_disc() {
 /// area and radius of gyration follow from that one, and the centroid is the mean of the points.
 #[test]
 fn a_uniform_spline_is_an_affine_image() {
-    let spline =
-        |radii| Shape::new(&Form::Spline { radii, knots: Knots::Uniform }, CentreOfMass::Uniform).unwrap();
+    let spline = |radii| {
+        Shape::new(&BodyForm::Spline { radii, knots: Knots::Uniform }, CentreOfMass::Uniform).unwrap()
+    };
     let corners =
         |radii: [f64; 3]| [0, 1, 2].map(|i: usize| unit(TAU * i as f64 / 3.0).map(|x| radii[i] * x));
     let doubled_area = |p: [[f64; 2]; 3]| {
@@ -102,7 +103,7 @@ fn a_uniform_spline_is_an_affine_image() {
 #[test]
 fn a_spline_measured_twice() {
     for (knots, radii) in [(Knots::Uniform, [1.2, 1.6, 1.3]), (Knots::Chord, [1.2, 1.5, 1.3])] {
-        let shape = Shape::new(&Form::Spline { radii, knots }, CentreOfMass::Uniform).unwrap();
+        let shape = Shape::new(&BodyForm::Spline { radii, knots }, CentreOfMass::Uniform).unwrap();
         let count = 20_000;
         let step = TAU / f64::from(count);
         let supports = (0..count).map(|i| shape.support(f64::from(i) * step));
@@ -120,9 +121,9 @@ fn a_spline_measured_twice() {
 #[test]
 fn the_outline_has_the_support_function() {
     for form in [
-        Form::Harmonics { mean: 1.2, harmonics: vec![[0.1, 0.2], [0.1, 0.0], [0.03, -0.04]] },
-        Form::Superellipse { semi_axes: [1.2, 1.0], exponent: 4, rounding: 0.3 },
-        Form::Spline { radii: [1.2, 1.6, 1.3], knots: Knots::Centripetal },
+        BodyForm::Harmonics { mean: 1.2, harmonics: vec![[0.1, 0.2], [0.1, 0.0], [0.03, -0.04]] },
+        BodyForm::Superellipse { semi_axes: [1.2, 1.0], exponent: 4, rounding: 0.3 },
+        BodyForm::Spline { radii: [1.2, 1.6, 1.3], knots: Knots::Centripetal },
     ] {
         let shape = Shape::new(&form, CentreOfMass::Uniform).unwrap();
         let count = 4000;
@@ -156,7 +157,7 @@ fn draws_are_reproducible_and_convex() {
         for _ in 0..300 {
             let (a, b) = (one.until_convex().unwrap(), other.until_convex().unwrap());
             assert_eq!((&a.form, a.draws), (&b.form, b.draws));
-            let Form::Spline { radii, .. } = a.form else { panic!() };
+            let BodyForm::Spline { radii, .. } = a.form else { panic!() };
             assert!(radii.iter().all(|q| (RADII[0]..=RADII[1]).contains(q)));
             draws += a.draws;
         }

@@ -24,7 +24,7 @@ fn body(shape: &Shape) -> PlanarBody {
 }
 
 /// The greatest difference between a moment and what the 320-bit floor says of it.
-fn difference(scene: &Scene, body: &PlanarBody, moment: &Moment) -> f64 {
+fn difference(scene: &MovingScene, body: &PlanarBody, moment: &Moment) -> f64 {
     let swing = |i: usize| {
         let palm = &moment.palms[i];
         Swing { value: real(palm.angle), rate: real(palm.rate), acceleration: real(palm.acceleration) }

@@ -77,7 +77,7 @@ fn parquet_columns_of_other_types_are_numbers_or_refused() {
     }
     writer.close().unwrap();
 
-    let rows = Rows::read(&path, &["s1", "s2", "count"]).unwrap();
+    let rows = RecordRows::read(&path, &["s1", "s2", "count"]).unwrap();
     let told: Vec<_> =
         check(&rows, &FaultRules::default()).into_iter().map(|f| (f.row, f.column, f.kind)).collect();
     let says = i64::MAX.to_string();

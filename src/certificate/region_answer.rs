@@ -1,84 +1,18 @@
-//! From boxes to an answer: volumes are added exactly, and rounded once, in the end.
+//! The answer so far: the volumes of the parts multiplied exactly, and rounded once, in the end.
 
-use super::answer::{OpenBox, PartAnswer, Patch, RegionAnswer, RegionMap, RegionMinor, Standing, Vanishing};
-use super::boxes::{FreeCoordinate, Side, Volume};
-use super::explain::{Why, explain, sampled_volume};
+use super::answer::{BoxStanding, Patch, RegionAnswer, RegionMap, RegionMinor};
+use super::boxes::Side;
+use super::explain::{Why, explain};
 use super::part::Part;
+use super::part_volumes::{PartVolumes, part_answer, standing};
 use super::region::Region;
 use super::search::Search;
 use crate::expression::Symbol;
-use crate::number::{Interval, Real};
+use crate::number::{Interval, RealNumber};
 use dashu::rational::RBig;
-use rayon::prelude::*;
-use std::collections::BTreeMap;
 
-/// Open boxes that are listed.
-const LISTED: usize = 5;
 /// A map has no more rectangles.
 const MOST_PATCHES: usize = 40_000;
-
-/// What is known of a part.
-struct Tally {
-    /// By why a box is open, and whether it is avoided.
-    open: BTreeMap<(Why, bool), Volume>,
-    sampled: RBig,
-    largest: Vec<(OpenBox, usize)>,
-    /// What open boxes cut out of the map.
-    sections: Vec<([Side; 2], Standing)>,
-}
-
-impl Tally {
-    fn new(part: &Part, search: &Search) -> Tally {
-        let cells = search.unproved();
-        let whys: Vec<(Why, bool)> =
-            cells.par_iter().map_init(Default::default, |desk, cell| explain(part, cell, desk)).collect();
-        let mut open: BTreeMap<(Why, bool), Volume> = BTreeMap::new();
-        let mut sections = Vec::new();
-        for (cell, why) in cells.iter().zip(&whys) {
-            open.entry(*why).or_default().add(cell.depth());
-            sections.extend(search.plane.section(&cell.sides).map(|section| (section, standing(why.0))));
-        }
-        let describe = |(cell, (why, avoided)): (&&super::search::Cell, &(Why, bool))| {
-            let mut volume = Volume::default();
-            volume.add(cell.depth());
-            let halved = |(_, side): &(&FreeCoordinate, &Side)| side.depth > 0;
-            let sides = part.chart.coordinates().iter().zip(cell.sides.iter()).filter(halved);
-            let open = OpenBox {
-                ranges: sides.map(|(c, side)| (c.name.clone(), c.ends(*side).0, c.ends(*side).1)).collect(),
-                standing: standing(*why),
-                factor: factor_of(part, *why),
-                avoided: *avoided,
-                fraction: volume.at_least(),
-            };
-            (open, cell.depth())
-        };
-        // what is avoided comes last: nobody samples there
-        let mut order: Vec<usize> = (0..cells.len()).collect();
-        order.sort_by_key(|place| (whys[*place].1, cells[*place].depth()));
-        let largest = order.into_iter().take(LISTED).map(|place| describe((&cells[place], &whys[place])));
-        Tally { largest: largest.collect(), open, sampled: sampled_volume(part).exact(), sections }
-    }
-
-    fn sum(&self, of: impl Fn(Why, bool) -> bool) -> RBig {
-        let chosen = self.open.iter().filter(|((why, avoided), _)| of(*why, *avoided));
-        chosen.fold(RBig::ZERO, |sum, (_, volume)| sum + volume.exact())
-    }
-}
-
-fn standing(why: Why) -> Standing {
-    match why {
-        Why::Vanishes { .. } => Standing::MinorVanishes,
-        Why::Pole { .. } => Standing::Pole,
-        Why::Undecided => Standing::Undecided,
-    }
-}
-
-fn factor_of(part: &Part, why: Why) -> Option<String> {
-    match why {
-        Why::Vanishes { factor, .. } | Why::Pole { factor } => Some(part.factors[factor].text.clone()),
-        Why::Undecided => None,
-    }
-}
 
 fn down(value: &RBig) -> f64 {
     Interval::from_rational(value).low().clamp(0.0, 1.0)
@@ -92,29 +26,30 @@ impl Region {
     /// What is known so far. Takes a few microseconds for each open box.
     pub fn answer(&self) -> RegionAnswer {
         let (problem, searches) = (&self.problem, &self.searches);
-        let tallies: Vec<Tally> = problem
+        let volumes: Vec<PartVolumes> = problem
             .parts
             .iter()
             .zip(&searches.searches)
-            .map(|(part, search)| Tally::new(part, search))
+            .map(|(part, search)| PartVolumes::new(part, search))
             .collect();
         // a state is the product of what it is in each part
         let nothing = problem.parts.is_empty();
-        let product = |of: &dyn Fn(&Tally, &Search) -> RBig| -> RBig {
-            let factors = tallies.iter().zip(&searches.searches).map(|(tally, search)| of(tally, search));
+        let product = |of: &dyn Fn(&PartVolumes, &Search) -> RBig| -> RBig {
+            let factors =
+                volumes.iter().zip(&searches.searches).map(|(part_volumes, search)| of(part_volumes, search));
             if nothing { RBig::ZERO } else { factors.fold(RBig::ONE, |product, factor| product * factor) }
         };
         let vanishes = |why: Why, _: bool| matches!(why, Why::Vanishes { .. });
         let proved = searches.exact();
-        let defined = product(&|tally, search| search.proved.exact() + tally.sum(vanishes));
-        let of_sampled = product(&|tally, _| {
-            if tally.sampled.is_zero() {
+        let defined = product(&|part_volumes, search| search.proved.exact() + part_volumes.sum(vanishes));
+        let of_sampled = product(&|part_volumes, _| {
+            if part_volumes.sampled.is_zero() {
                 return RBig::ZERO; // nothing is known to be sampled
             }
-            let unproved = tally.sum(|_, avoided| !avoided) / &tally.sampled;
+            let unproved = part_volumes.sum(|_, avoided| !avoided) / &part_volumes.sampled;
             if unproved < RBig::ONE { RBig::ONE - unproved } else { RBig::ZERO }
         });
-        let parts = problem.parts.iter().zip(&tallies).zip(&searches.searches);
+        let parts = problem.parts.iter().zip(&volumes).zip(&searches.searches);
         RegionAnswer {
             file: problem.file.clone(),
             title: problem.title.clone(),
@@ -133,7 +68,9 @@ impl Region {
             minors: self.minors(),
             candidates: problem.candidates,
             all_minors: problem.all_minors,
-            parts: parts.map(|((part, tally), search)| part_answer(part, tally, search)).collect(),
+            parts: parts
+                .map(|((part, part_volumes), search)| part_answer(part, part_volumes, search))
+                .collect(),
             proved: down(&proved),
             proved_of_sampled: down(&of_sampled),
             minor_vanishes: down(&(&defined - &proved)),
@@ -144,11 +81,11 @@ impl Region {
             seconds: searches.seconds,
             finished: self.is_finished(),
             curve: searches.whole_curve(),
-            largest: tallies
+            largest: volumes
                 .iter()
-                .flat_map(|tally| tally.largest.iter().map(|(open, _)| open.clone()))
+                .flat_map(|part_volumes| part_volumes.largest.iter().map(|(open, _)| open.clone()))
                 .collect(),
-            map: self.map(&tallies),
+            map: self.map(&volumes),
             remarks: self.remarks(),
             nowhere: problem.nowhere.clone(),
         }
@@ -171,7 +108,7 @@ impl Region {
             let varies = |factor: &&usize| !part.factors[**factor].tape.coordinates.is_empty();
             list.iter().filter(varies).map(|factor| part.factors[*factor].text.clone()).collect()
         };
-        let of = |(place, minor): (usize, &super::part::Minor)| {
+        let of = |(place, minor): (usize, &super::part::FactoredMinor)| {
             let mut factors: Vec<String> = parts.iter().flat_map(|part| texts(part, &part.common)).collect();
             for part in parts {
                 let own = part.alternatives.iter().filter(|alternative| alternative.minor == place);
@@ -184,8 +121,9 @@ impl Region {
 
     /// How the boxes stand in which a state may lie; the worst of them, where these are several. `at` encloses the state's
     /// coordinates. `None` where one of them is not given, or lies outside of the box.
-    pub fn standing(&self, at: impl Fn(Symbol) -> Option<Interval>) -> Option<Standing> {
-        let mut worst = if self.problem.parts.is_empty() { Standing::Undecided } else { Standing::Proved };
+    pub fn standing(&self, at: impl Fn(Symbol) -> Option<Interval>) -> Option<BoxStanding> {
+        let mut worst =
+            if self.problem.parts.is_empty() { BoxStanding::Undecided } else { BoxStanding::Proved };
         for range in &self.problem.ranges {
             let whole = Interval::from_rational(&range.low).hull(Interval::from_rational(&range.high));
             at(range.symbol).filter(|value| whole.encloses(*value))?;
@@ -194,14 +132,14 @@ impl Region {
             let values: Option<Vec<Interval>> =
                 part.chart.coordinates().iter().map(|c| at(c.symbol)).collect();
             let values = values?;
-            let mut desk = Default::default();
+            let mut workspace = Default::default();
             for cell in search.unproved() {
                 let sides = cell.sides.iter().enumerate();
                 let meets = |(place, side): (usize, &Side)| {
                     values[place].intersection(part.chart.side(place, *side)).is_some()
                 };
                 if sides.into_iter().all(meets) {
-                    worst = worst.max(standing(explain(part, cell, &mut desk).0));
+                    worst = worst.max(standing(explain(part, cell, &mut workspace).0));
                 }
             }
         }
@@ -209,18 +147,21 @@ impl Region {
     }
 
     /// The map: what the boxes of the parts of its coordinates cut out of it.
-    fn map(&self, tallies: &[Tally]) -> Option<RegionMap> {
+    fn map(&self, volumes: &[PartVolumes]) -> Option<RegionMap> {
         let (x, y) = self.map?;
         let ranges = &self.problem.ranges;
-        let mut patches = vec![([Side::WHOLE; 2], Standing::Proved)];
+        let mut patches = vec![([Side::WHOLE; 2], BoxStanding::Proved)];
         let mut at = Vec::new();
-        for ((part, tally), search) in self.problem.parts.iter().zip(tallies).zip(&self.searches.searches) {
+        for ((part, part_volumes), search) in
+            self.problem.parts.iter().zip(volumes).zip(&self.searches.searches)
+        {
             let plane = search.plane;
             if plane.x.is_none() && plane.y.is_none() {
                 continue;
             }
-            let proved = search.sections.iter().map(|section| (*section, Standing::Proved));
-            let all: Vec<([Side; 2], Standing)> = proved.chain(tally.sections.iter().copied()).collect();
+            let proved = search.sections.iter().map(|section| (*section, BoxStanding::Proved));
+            let all: Vec<([Side; 2], BoxStanding)> =
+                proved.chain(part_volumes.sections.iter().copied()).collect();
             if patches.len() * all.len() > MOST_PATCHES {
                 return None;
             }
@@ -241,40 +182,11 @@ impl Region {
             let (low, high) = ranges[place].ends(Side::WHOLE);
             (ranges[place].name.clone(), low, high)
         };
-        let patch = |([a, b], standing): ([Side; 2], Standing)| Patch {
+        let patch = |([a, b], standing): ([Side; 2], BoxStanding)| Patch {
             x: ranges[x].ends(a),
             y: ranges[y].ends(b),
             standing,
         };
         Some(RegionMap { x: range(x), y: range(y), patches: patches.into_iter().map(patch).collect(), at })
-    }
-}
-
-fn part_answer(part: &Part, tally: &Tally, search: &Search) -> PartAnswer {
-    let texts = |list: &[usize]| list.iter().map(|factor| part.factors[*factor].text.clone()).collect();
-    let mut vanishing: BTreeMap<(Option<usize>, String), Volume> = BTreeMap::new();
-    for ((why, _), volume) in &tally.open {
-        let key = match *why {
-            Why::Vanishes { minor, factor } => (Some(minor), part.factors[factor].text.clone()),
-            Why::Pole { factor } => (None, part.factors[factor].text.clone()),
-            Why::Undecided => continue,
-        };
-        vanishing.entry(key).or_default().merge(volume);
-    }
-    let vanishing = vanishing.into_iter().map(|((minor, factor), volume)| Vanishing {
-        factor,
-        minor,
-        boxes: volume.boxes(),
-        fraction: volume.at_least(),
-    });
-    PartAnswer {
-        coordinates: part.chart.coordinates().iter().map(|coordinate| coordinate.name.clone()).collect(),
-        guards: part.guards.iter().map(|guard| part.factors[*guard].needed_text()).collect(),
-        common: texts(&part.common),
-        alternatives: part.alternatives.len(),
-        proved: search.proved.at_least(),
-        boxes: search.boxes,
-        open_boxes: search.unproved_boxes() as u64,
-        vanishing: vanishing.collect(),
     }
 }

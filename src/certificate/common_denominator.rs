@@ -26,7 +26,7 @@ impl ClearedRow {
 ///
 /// # Errors
 /// In words, where its entries are no rational expressions or too long.
-pub(super) fn clear(
+pub(super) fn clear_denominators(
     products: &mut Products,
     graph: &Graph,
     row: usize,

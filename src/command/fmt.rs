@@ -1,0 +1,68 @@
+//! `palmistry fmt`: proof files in their normal form.
+
+use super::interrupt::interrupted;
+use super::output::{Files, Form, proof_files};
+use super::{Status, Unusable};
+use clap::Args;
+use palmistry::file;
+use palmistry::system::format_text;
+use serde_json::json;
+use std::path::PathBuf;
+
+/// Files longer than this are refused, as by every command that reads them.
+const LONGEST_FILE: u64 = 16 << 20;
+
+/// Brings proof files into their normal form: entries at the left edge and what belongs to them further in, columns of '=' in
+/// fields and of 'in' in samples, no blanks at the ends of lines, at most one empty line.
+///
+/// Nothing else is touched: no sign, no comment, no text in quotation marks. A file that cannot be read is left as it is.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry fmt mysystem.proof
+  palmistry fmt proofs/ --check             exit status 1 where something would change; nothing is written")]
+pub(crate) struct Fmt {
+    /// Proof files, or folders in which every .proof file is taken.
+    #[arg(required = true, value_name = "FILE-OR-FOLDER")]
+    paths: Vec<PathBuf>,
+    /// Write nothing; say which files are not in normal form.
+    #[arg(long)]
+    check: bool,
+    /// Print one JSON object: 'ok' and 'changed', the files that were or would be changed.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Fmt {
+    pub fn run(self) -> miette::Result<Status> {
+        // all are read before any is written: a mistake in one leaves all as they are
+        let mut changed: Vec<(PathBuf, String)> = Vec::new();
+        for path in proof_files(&self.paths)? {
+            let shown = path.display().to_string();
+            let text = file::read_text(&path, LONGEST_FILE)
+                .map_err(|why| Unusable::report(format!("cannot read {shown}: {why}"), ""))?;
+            let formatted = format_text(&shown, &text)?;
+            if formatted != text {
+                changed.push((path, formatted));
+            }
+        }
+        let mut files = Files::default();
+        if !self.check && !interrupted() {
+            for (path, text) in &changed {
+                files.text(path, text);
+            }
+        }
+        let paths: Vec<&PathBuf> = changed.iter().map(|(path, _)| path).collect();
+        let ok = !self.check || changed.is_empty();
+        let status = if ok { Status::AsExpected } else { Status::NotAsExpected };
+        let words = || {
+            let what = if self.check { "not in normal form" } else { "changed" };
+            let mut lines: Vec<String> =
+                paths.iter().map(|path| format!("{what}: {}", path.display())).collect();
+            if lines.is_empty() {
+                lines.push("all files are in normal form".to_owned());
+            }
+            lines.join("\n")
+        };
+        files.print(Form::of(self.json), json!({ "ok": ok, "changed": paths }), words, status)
+    }
+}

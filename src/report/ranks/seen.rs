@@ -1,0 +1,102 @@
+//! What is not seen at a state, and how well everything else is.
+
+use crate::number::rational_to_f64;
+use crate::observability::StateInWords;
+use crate::report::names::plain_number;
+use crate::sweep::{NEARLY_INVISIBLE, StandardDeviations, UnseenDirection};
+use dashu::rational::RBig;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// Numbers of more characters than these are shown rounded.
+const LONGEST: usize = 12;
+
+/// A state in words: exactly where its numbers are short, angles in radians.
+pub(super) fn place_text(state: &StateInWords) -> String {
+    let coordinate = |(name, exact, value): &(String, String, f64)| match exact.len() <= LONGEST {
+        true => format!("{name} = {exact}"),
+        false => format!("{name} = {value:.6}"),
+    };
+    state.iter().map(coordinate).collect::<Vec<_>>().join(", ")
+}
+
+/// A direction as a vector: `(r1, r2) += t (1, -2), that is d/dr1 - 2 d/dr2`.
+pub(super) fn direction_text(direction: &UnseenDirection) -> String {
+    let parts: Vec<String> = direction.vector.iter().map(part_text).collect();
+    let mut field = String::new();
+    for (name, part) in direction.states.iter().zip(&parts) {
+        let size = part.trim_start_matches('-');
+        let sign = match (field.is_empty(), part.starts_with('-')) {
+            (true, true) => "-",
+            (true, false) => "",
+            (false, true) => " - ",
+            (false, false) => " + ",
+        };
+        let factor = if size == "1" { String::new() } else { format!("{size} ") };
+        let _ = write!(field, "{sign}{factor}d/d{name}");
+    }
+    let (states, parts) = (direction.states.join(", "), parts.join(", "));
+    match direction.states.len() {
+        1 => format!("{states} += t, that is {field}"),
+        _ => format!("({states}) += t ({parts}), that is {field}"),
+    }
+}
+
+fn part_text(part: &RBig) -> String {
+    let exact = plain_number(part);
+    if exact.len() <= LONGEST { exact } else { format!("{:.6}", rational_to_f64(part)) }
+}
+
+/// Standard deviations as a table.
+pub(super) fn deviations_text(found: &StandardDeviations, out: &mut String) {
+    let _ = writeln!(
+        out,
+        "how well each state is seen, computed at {} states: its standard deviation, in parts of its spread over the box, \
+         where each word that was needed is known up to its own spread",
+        found.states
+    );
+    let width = found.list.iter().map(|row| row.state.chars().count()).max().unwrap_or(0).max(5);
+    let _ = writeln!(out, "  {:<width$}  {:>10}  {:>10}  {:>10}", "state", "spread", "median", "worst");
+    for row in &found.list {
+        let remark = match (row.infinite, row.median >= NEARLY_INVISIBLE) {
+            (0, true) => "  nearly invisible".to_owned(),
+            (0, false) => String::new(),
+            (count, _) if count == found.states => String::new(),
+            (count, _) => format!("  not seen at {count} of them"),
+        };
+        let line = format!(
+            "  {:<width$}  {:>10}  {:>10}  {:>10}{remark}",
+            row.state,
+            deviation_text(row.spread),
+            deviation_text(row.median),
+            deviation_text(row.worst)
+        );
+        let _ = writeln!(out, "{}", line.trim_end());
+    }
+}
+
+fn deviation_text(value: f64) -> String {
+    match value {
+        value if value.is_infinite() => "not seen".to_owned(),
+        value if (0.01..1e4).contains(&value) => format!("{value:.3}"),
+        value => format!("{value:.2e}"),
+    }
+}
+
+/// The same as JSON: `null` where a state is not seen.
+pub(super) fn deviations_json(found: &StandardDeviations) -> Value {
+    let finite = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
+    json!({
+        "states": found.states,
+        "units_of_noise": found.words.iter().map(|(word, unit)| (word.clone(), json!(unit)))
+            .collect::<serde_json::Map<_, _>>(),
+        "of": found.list.iter().map(|row| json!({
+            "state": row.state,
+            "spread": row.spread,
+            "median": finite(row.median),
+            "worst": finite(row.worst),
+            "not_seen_at": row.infinite,
+            "nearly_invisible": row.median.is_finite() && row.median >= NEARLY_INVISIBLE,
+        })).collect::<Vec<_>>(),
+    })
+}
