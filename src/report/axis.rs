@@ -79,8 +79,8 @@ mod tests {
 
     #[test]
     fn units_are_those_that_a_file_declares() {
-        let text = "system \"a\"\nstate x : length, v, phi, other\nparam g : acceleration = 1\nangle phi\n\
-                    drift f\n  x' = v\n  v' = g*sin(phi)\n  phi' = v/x\n  other' = other\n";
+        let text = "system \"a\"\nstate x : length, v, phi\nparam g : acceleration = 1, other = 1\nangle phi\n\
+                    drift f\n  x' = v\n  v' = g*sin(phi)\n  phi' = v/x\n";
         let system = System::parse("a.proof", text, Path::new("")).unwrap();
         let unit = |name: &str| unit_of(&system, name);
         assert_eq!((unit("x").as_deref(), unit("v").as_deref()), (Some("m"), Some("m/s")));

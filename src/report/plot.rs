@@ -275,16 +275,19 @@ pub(crate) fn rounding(study: &RoundingStudy, printed_error: f64, title: &str) -
 /// Operations against order, both axes logarithmic, beside a line of slope three.
 pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
     let points: Vec<(f64, f64)> = growth.iter().map(|g| (g.order as f64, g.operations as f64)).collect();
-    let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
+    let Some(last) = points.last().copied() else {
         return String::new();
     };
+    // a derivative may cost less than the one before it
+    let sizes = || points.iter().map(|point| point.1.max(1.0));
+    let (least, most) = (sizes().fold(f64::INFINITY, f64::min) / 2.0, sizes().fold(1.0, f64::max) * 4.0);
     svg((420, 300), title, |area| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
             .x_label_area_size(38)
-            .y_label_area_size(room((first.1, last.1 * 4.0), |v| format!("{v:.0}")))
-            .build_cartesian_2d((1.0..last.0 * 1.1).log_scale(), (first.1 / 2.0..last.1 * 4.0).log_scale())?;
+            .y_label_area_size(room((least, most), |v| format!("{v:.0}")))
+            .build_cartesian_2d((1.0..last.0 * 1.1).log_scale(), (least..most).log_scale())?;
         chart
             .configure_mesh()
             .light_line_style(WHITE)
@@ -298,10 +301,8 @@ pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
             .y_desc("operations")
             .axis_desc_style(("sans-serif", 12))
             .draw()?;
-        let cubic = points
-            .iter()
-            .map(|(k, _)| (*k, last.1 * (k / last.0).powi(3)))
-            .filter(|(_, v)| *v >= first.1 / 2.0);
+        let cubic =
+            points.iter().map(|(k, _)| (*k, last.1 * (k / last.0).powi(3))).filter(|(_, v)| *v >= least);
         chart.draw_series(LineSeries::new(cubic, RGBColor(150, 155, 162).stroke_width(1)))?;
         chart.draw_series(LineSeries::new(points.iter().copied(), BAR.stroke_width(2)))?;
         chart.draw_series(points.iter().map(|point| Circle::new(*point, 3, BAR.filled())))?;

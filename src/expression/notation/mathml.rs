@@ -89,6 +89,10 @@ fn write_row(parts: &[Formula], out: &mut String) {
                 element("mn", &format!("−{digits}"), out);
                 rest = others;
             }
+            // behind another sign it would stand between two
+            (Formula::Sign(FormulaSign::Negative), _) if others.len() + 1 < parts.len() => {
+                out.push_str("<mo form=\"prefix\">−</mo>");
+            }
             (Formula::Fence(Fence::Round, inner), _) if is_flat => {
                 out.push_str("<mo>(</mo>");
                 write(inner, out);

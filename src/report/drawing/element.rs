@@ -2,6 +2,24 @@
 
 use super::track::{simplified, track};
 
+/// Left, top, right, bottom, in pixels.
+pub(super) type Corners = [i32; 4];
+
+/// A shape that is drawn.
+pub(super) struct Shape {
+    pub look: Look,
+    /// Its part of a path.
+    pub part: String,
+    /// Around everything that it covers.
+    pub corners: Corners,
+}
+
+fn around(points: &[(i32, i32)]) -> Corners {
+    let least = |of: fn(&(i32, i32)) -> i32| points.iter().map(of).min().unwrap_or(0);
+    let most = |of: fn(&(i32, i32)) -> i32| points.iter().map(of).max().unwrap_or(0);
+    [least(|p| p.0), least(|p| p.1), most(|p| p.0), most(|p| p.1)]
+}
+
 /// How shapes look; those of one look are one path.
 #[derive(Clone, PartialEq, Eq)]
 pub(super) struct Look {
@@ -52,8 +70,53 @@ impl Element<'_> {
         self.attribute(name).parse().unwrap_or(0)
     }
 
-    /// How it looks, and its part of a path.
-    pub fn shape(&self) -> Option<(Look, String)> {
+    /// How it looks, its part of a path, and where it is.
+    pub fn shape(&self) -> Option<Shape> {
+        let (look, part) = self.look_and_part()?;
+        let width = match &look.kind {
+            Kind::Stroke(width) => width.parse::<f64>().unwrap_or(1.0).ceil() as i32,
+            _ => 0,
+        };
+        let [left, top, right, bottom] = self.corners();
+        let corners = [left - width, top - width, right + width, bottom + width];
+        Some(Shape { look, part, corners })
+    }
+
+    /// Around everything that it covers.
+    fn corners(&self) -> Corners {
+        let number = |name: &str| self.number(name);
+        match self.tag {
+            "rect" => {
+                let (x, y) = (number("x"), number("y"));
+                [x, y, x + number("width"), y + number("height")]
+            }
+            "circle" => {
+                let (x, y, r) = (number("cx"), number("cy"), number("r"));
+                [x - r, y - r, x + r, y + r]
+            }
+            // more than the words cover, wherever they begin and however they are turned
+            "text" => {
+                let size = self.attribute("font-size").parse::<f64>().unwrap_or(10.0) * 1.24;
+                let reach = (size * (0.7 * self.words.chars().count() as f64 + 1.0)).ceil() as i32;
+                let (x, y, high) = (number("x"), number("y"), (1.5 * size).ceil() as i32);
+                match self.attribute("transform") {
+                    "" => {
+                        let [before, behind] = match self.attribute("text-anchor") {
+                            "start" => [0, reach],
+                            "end" => [reach, 0],
+                            _ => [reach / 2 + 1, reach / 2 + 1],
+                        };
+                        [x - before, y - high, x + behind, y + high]
+                    }
+                    _ => [x - reach, y - reach, x + reach, y + reach],
+                }
+            }
+            "line" => around(&[(number("x1"), number("y1")), (number("x2"), number("y2"))]),
+            _ => around(&self.points()),
+        }
+    }
+
+    fn look_and_part(&self) -> Option<(Look, String)> {
         let opacity = match self.attribute("opacity") {
             "" => "1".to_owned(),
             other => other.to_owned(),

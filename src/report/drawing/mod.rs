@@ -2,9 +2,11 @@
 //! follow the page, and numbers to be read under the pointer.
 
 mod element;
+mod layer;
 mod track;
 
 use element::{Kind, Look, elements};
+use layer::{Layer, layers};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::fmt::Write;
@@ -95,18 +97,9 @@ impl Canvas<'_> {
         if let Some(cells) = cells {
             self.cells(cells, &mut out);
         }
-        let mut last: Option<Look> = None;
-        let mut path = String::new();
-        for element in elements(text) {
-            let Some((look, part)) = element.shape() else { continue };
-            // what is half transparent adds up where it overlaps: each for itself
-            if last.as_ref() != Some(&look) || look.opacity != "1" {
-                self.finish(last.take(), &mut path, &mut out);
-            }
-            path.push_str(&part);
-            last = Some(look);
+        for Layer { look, drawn, .. } in layers(elements(text).filter_map(|element| element.shape())) {
+            self.finish(&look, &drawn, &mut out);
         }
-        self.finish(last, &mut path, &mut out);
         if !hovers.is_empty() {
             out.push_str("<g fill=\"#0000\">");
             for Hover { corners: [left, top, right, bottom], text } in hovers {
@@ -161,17 +154,23 @@ impl Canvas<'_> {
     }
 
     /// Writes down the shapes of one look.
-    fn finish(&self, look: Option<Look>, path: &mut String, out: &mut String) {
-        let Some(look) = look else { return };
-        let drawn = std::mem::take(path);
+    fn finish(&self, look: &Look, drawn: &str, out: &mut String) {
         let opacity =
             if look.opacity == "1" { String::new() } else { format!(" opacity=\"{}\"", look.opacity) };
         let _ = match &look.kind {
             Kind::Fill => {
                 let known = self.by_colour.iter().find(|(colour, _)| hex(*colour) == look.colour);
-                let title =
-                    known.map_or(String::new(), |(_, text)| format!("<title>{}</title>", escaped(text)));
-                write!(out, "<path fill=\"{}\"{opacity} d=\"{drawn}\">{title}</path>", paint(&look.colour))
+                let colour = paint(&look.colour);
+                match known {
+                    Some((_, text)) => {
+                        let title = escaped(text);
+                        write!(
+                            out,
+                            "<path fill=\"{colour}\"{opacity} d=\"{drawn}\"><title>{title}</title></path>"
+                        )
+                    }
+                    None => write!(out, "<path fill=\"{colour}\"{opacity} d=\"{drawn}\"/>"),
+                }
             }
             Kind::Dots(width) => {
                 let colour = paint(&look.colour);
@@ -274,7 +273,7 @@ mod tests {
             elements(&format!("<polygon opacity=\"1\" fill=\"#112233\" points=\"{around}\"/>"))
                 .next()
                 .and_then(|e| e.shape())
-                .map(|s| s.1)
+                .map(|s| s.part)
         };
         assert_eq!(square("0,0 4,0 4,4 0,4 "), Some("M0 0l4 0 0 4-4 0z".to_owned()));
         assert_eq!(square("0,4 4,4 4,0 0,0 "), Some("M0 0l4 0 0 4-4 0z".to_owned()));

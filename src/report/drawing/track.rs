@@ -38,6 +38,11 @@ fn distance(point: (i32, i32), from: (i32, i32), to: (i32, i32)) -> f64 {
 pub(super) fn track(points: &[(i32, i32)]) -> String {
     let Some(first) = points.first() else { return String::new() };
     let mut path = format!("M{} {}", first.0, first.1);
+    match points {
+        [_, last] if last.0 == first.0 => return format!("{path}v{}", last.1 - first.1),
+        [_, last] if last.1 == first.1 => return format!("{path}h{}", last.0 - first.0),
+        _ => {}
+    }
     let mut steps = String::new();
     for (from, to) in points.iter().zip(&points[1..]) {
         for value in [to.0 - from.0, to.1 - from.1] {
