@@ -20,6 +20,9 @@ pub struct PointValue {
     pub certainty: Certainty,
     /// The numbers that sufficed.
     pub rung: Rung,
+    /// How wide the interval is that encloses the value, both ends of which round to the decimal, to two digits; zero where the value is
+    /// known exactly. Nothing where no interval was needed: two kinds of numbers that round agree.
+    pub width: Option<String>,
     /// How many rungs had been tried before and did not suffice.
     pub climbed: usize,
 }
@@ -217,8 +220,9 @@ pub fn certified_value(
 ) -> Result<PointValue, ValueError> {
     let program = Program::plain(graph, &[expression]);
     let mut climbed = 0;
-    let found = |decimal, exact, rung, climbed| {
-        Ok(PointValue { decimal, exact, certainty: Certainty::Certified, rung, climbed })
+    let found = |decimal, exact, (rung, width), climbed| {
+        let (certainty, width) = (Certainty::Certified, Some(round_to_decimal(&width, 2)));
+        Ok(PointValue { decimal, exact, certainty, rung, width, climbed })
     };
     if digits <= DIGITS_OF_A_DOUBLE {
         let interval = evaluate(graph, &program, values, Floats::<Interval>::new())?;
@@ -227,20 +231,24 @@ pub fn certified_value(
         if let Some((low, high)) = ends
             && let Some(decimal) = common_decimal(&low, &high, digits)
         {
-            let exact = (low == high).then_some(low);
-            return found(decimal, exact, Rung::Intervals, climbed);
+            let width = &high - &low;
+            let exact = width.is_zero().then_some(low);
+            return found(decimal, exact, (Rung::Intervals, width), climbed);
         }
         climbed += 1;
     }
     if let Some(value) = evaluate(graph, &program, values, Rationals::default())? {
-        return found(round_to_decimal(&value, digits), Some(value), Rung::Exact, climbed);
+        return found(round_to_decimal(&value, digits), Some(value), (Rung::Exact, RBig::ZERO), climbed);
     }
     let mut bits = bits_of(digits);
     let most = MOST_BITS.max(2 * bits);
     loop {
         let complaint = match enclose(graph, &program, values, bits) {
             Ok(enclosure) => match enclosure[0].decimal(digits) {
-                Some(decimal) => return found(decimal, None, Rung::Enclosures(bits), climbed),
+                Some(decimal) => {
+                    let width = enclosure[0].high() - enclosure[0].low();
+                    return found(decimal, None, (Rung::Enclosures(bits), width), climbed);
+                }
                 None if enclosure[0].contains_zero() => {
                     let bound = round_to_decimal(&enclosure[0].high().max(-enclosure[0].low()), 2);
                     ValueError::PerhapsZero { bound, bits }
@@ -285,7 +293,8 @@ pub fn computed_value(
             && let Some(decimal) = common_decimal(&rough, &fine, digits)
         {
             let certainty = Certainty::Computed;
-            return Ok(PointValue { decimal, exact: None, certainty, rung: Rung::DoubleDoubles, climbed });
+            let (exact, width, rung) = (None, None, Rung::DoubleDoubles);
+            return Ok(PointValue { decimal, exact, certainty, rung, width, climbed });
         }
         climbed = 1;
     }

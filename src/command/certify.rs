@@ -12,7 +12,7 @@ use palmistry::certificate::{Limits, Progress, Region, RegionAnswer, RegionRows}
 use palmistry::evidence::{WrittenBoxes, certificate_file};
 use palmistry::expression::Symbol;
 use palmistry::file::{note, read_text};
-use palmistry::report::{percent, region_curve, region_json, region_map, region_text};
+use palmistry::report::{percent, region_curve, region_json, region_map, region_text, unit_of};
 use palmistry::system::Kind;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -26,9 +26,9 @@ use std::time::Instant;
 /// are those in which a minor is proved to vanish somewhere, those with a pole, and those that are undecided. The
 /// proved fraction is a lower bound, and grows with the budget. Angles and parameters without a range keep their value;
 /// what the file says to avoid is part of the box, and the fraction is given without it, too.
-///
-/// Example: palmistry certify proofs/moll2002/fixed_palms.proof --box omega0=1/2..3 --budget 30
 #[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry certify proofs/moll2002/fixed_palms.proof --box omega0=1/2..3 --budget 30")]
 pub(crate) struct Certify {
     /// The proof file.
     file: PathBuf,
@@ -109,6 +109,8 @@ impl Certify {
             (Rows::Codistribution, order) => RegionRows::Codistribution(order.map(usize::from)),
         };
         let map = self.map_of(&system)?;
+        let unit = |symbol| unit_of(&system, system.symbol_name(symbol));
+        let units = map.map_or([None, None], |(x, y)| [unit(x), unit(y)]);
         let mut region =
             Region::new(&mut system, rows, &ranges, map).map_err(|why| Unusable::report(why, ""))?;
         if self.verdicts.is_some() {
@@ -128,7 +130,7 @@ impl Certify {
         let mut object = region_json(&answer);
         object["interrupted"] = json!(interrupted());
         if let Some(folder) = &self.out {
-            pictures(&answer, folder, &mut files);
+            pictures(&answer, &units, folder, &mut files);
             files.json(&folder.join("certify.json"), &object);
         }
         let written = self.write_verdicts(&system, &region, &mut files);
@@ -214,10 +216,11 @@ fn show(bar: &ProgressBar, now: Progress) {
     bar.set_message(format!("{} proved, {:.1e} boxes", percent(now.proved), now.boxes as f64));
 }
 
-fn pictures(answer: &RegionAnswer, folder: &Path, files: &mut Files) {
+fn pictures(answer: &RegionAnswer, units: &[Option<String>; 2], folder: &Path, files: &mut Files) {
     files.text(&folder.join("curve.svg"), &region_curve(answer, &answer.title));
     if let Some(map) = &answer.map {
-        files.text(&folder.join("map.svg"), &region_map(map, &answer.title, [None, None]));
+        let units = [units[0].as_deref(), units[1].as_deref()];
+        files.text(&folder.join("map.svg"), &region_map(map, &answer.title, units));
     }
 }
 

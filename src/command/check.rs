@@ -48,13 +48,12 @@ impl Check {
             "errors": examined.iter().flat_map(errors_json).collect::<Vec<_>>(),
             "more": examined.iter().any(|file| file.more),
         });
-        let files = examined.len();
         let status = match (errors, interrupted()) {
             (0, false) => Status::AsExpected,
             (0, true) => Status::NotAsExpected,
             _ => Status::Unusable,
         };
-        Files::default().print(Form::of(self.json), object, || in_words(examined, files), status)
+        Files::default().print(Form::of(self.json), object, || in_words(&examined), status)
     }
 }
 
@@ -64,18 +63,19 @@ pub(crate) fn errors_json(file: &Examination) -> impl Iterator<Item = Value> + '
 }
 
 /// The problems of a file, each with the text around it.
-pub(crate) fn problems_text(file: Examination) -> String {
+pub(crate) fn problems_text(file: &Examination) -> String {
     let more = file.more.then(|| format!("and more: the first {MOST_PROBLEMS} are listed\n"));
-    let each = file.problems.into_iter().map(|problem| format!("{:?}", miette::Report::new(problem)));
+    let each = file.problems.iter().map(|problem| format!("{:?}", miette::Report::new(problem.clone())));
     each.chain(more).collect::<Vec<_>>().join("\n")
 }
 
-fn in_words(examined: Vec<Examination>, files: usize) -> String {
+fn in_words(examined: &[Examination]) -> String {
+    let files = examined.len();
     let errors = examined.iter().map(|file| file.problems.len()).sum::<usize>();
     let with_errors = examined.iter().filter(|file| !file.problems.is_empty()).count();
     let number = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let mut parts: Vec<String> =
-        examined.into_iter().filter(|file| !file.problems.is_empty()).map(problems_text).collect();
+        examined.iter().filter(|file| !file.problems.is_empty()).map(problems_text).collect();
     parts.push(match errors {
         0 => format!("{} can be read", number(files, "file")),
         _ => format!("{} in {with_errors} of {}", number(errors, "error"), number(files, "file")),

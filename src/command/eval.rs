@@ -8,6 +8,8 @@ use clap::Args;
 use dashu::rational::RBig;
 use palmistry::claim::{PointValue, computed_value, exists_at};
 use palmistry::expression::{NodeId, Symbol};
+use palmistry::file;
+use palmistry::number::Rung;
 use palmistry::report::expression_latex;
 use palmistry::sweep::Certainty;
 use palmistry::{System, ValueError, certified_value, system::Value};
@@ -16,9 +18,10 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 /// Evaluates an expression of the language at a point, to as many digits as you like, all of them certain.
-///
-/// Example: palmistry eval proofs/moll2002/same_rate.proof 'L(f, s1)' --at r1=1,omega0=1/2,s1=1,s2=2,phi1=.3
 #[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry eval mysystem.proof 'L(f, x)' --at x=1/3,y=.5
+  palmistry eval mysystem.proof 'det(rows)' --at x=1,y=2 --digits 40")]
 pub(crate) struct Eval {
     /// The proof file whose names the expression uses.
     file: PathBuf,
@@ -36,7 +39,8 @@ pub(crate) struct Eval {
     /// double-doubles. The cheapest numbers that suffice are taken; 'climbed' says how many were tried before.
     #[arg(long, value_enum, default_value_t = Wanted::Certified, value_name = "HOW")]
     verdict: Wanted,
-    /// Print one JSON object with 'value' (a string), 'exact' where the value is rational, 'numbers' and 'at'.
+    /// Print one JSON object with 'value' (a string), 'exact' where the value is rational, 'how' its digits are certain,
+    /// 'numbers', 'width' of the interval that encloses it, and 'at'.
     #[arg(long)]
     pub json: bool,
     /// Give the expression in LaTeX too: a line before the value, or 'latex' in the JSON.
@@ -61,20 +65,24 @@ impl Eval {
             }
             .map_err(explain)
         };
+        let how: String;
         let shown = match &value {
             Value::Scalar(id) => {
                 let value = one(*id)?;
+                how = how_certain(&value, digits);
                 json!({
                     "value": value.decimal,
                     "exact": value.exact.map(|q| q.to_string()),
                     "verdict": if value.certainty == Certainty::Certified { "certified" } else { "computed" },
                     "numbers": value.rung.name(),
+                    "width": value.width,
                     "climbed": value.climbed,
                 })
             }
             Value::Matrix(matrix) => {
                 let entries: Vec<PointValue> =
                     matrix.entries.iter().map(|id| one(*id)).collect::<Result<_, _>>()?;
+                how = how_certain_all(&entries, digits);
                 let decimals: Vec<&str> = entries.iter().map(|value| value.decimal.as_str()).collect();
                 json!({
                     "value": decimals.chunks(matrix.columns).collect::<Vec<_>>(),
@@ -82,6 +90,7 @@ impl Eval {
                 })
             }
             Value::Rank(matrix) => {
+                how = "certain: by elimination in rational numbers".to_owned();
                 json!({ "value": rank_at(&mut system, matrix.entries.clone(), matrix.columns, &point)?.to_string() })
             }
             other => {
@@ -94,6 +103,7 @@ impl Eval {
             let mut object = shown;
             object["expression"] = json!(self.expression);
             object["digits"] = json!(digits);
+            object["how"] = json!(how);
             if self.latex {
                 object["latex"] = json!(expression_latex(&self.expression));
             }
@@ -106,10 +116,53 @@ impl Eval {
             let formula = self.latex.then(|| expression_latex(&self.expression)).flatten();
             let formula = formula.map_or(String::new(), |latex| format!("{latex}\n"));
             print_text(&format!("{formula}{}", in_lines(&shown["value"])))?;
+            // beside the value and not behind it: what is printed is what others read
+            file::note(&format!("({how})"));
         }
         Ok(Status::AsExpected)
     }
 }
+
+/// Whether the digits of a value are certain, and why.
+fn how_certain(value: &PointValue, digits: usize) -> String {
+    let width = value.width.as_deref().unwrap_or_default();
+    match (&value.exact, value.certainty, value.rung) {
+        (Some(exact), ..) => {
+            let exact = exact.to_string();
+            let equal =
+                if exact.len() <= LONGEST_EXACT { format!(", which is {exact}") } else { String::new() };
+            format!("{digits} digits, certain: rounded from the exact value{equal}")
+        }
+        (None, Certainty::Computed, _) => {
+            format!(
+                "{digits} digits, computed: doubles and double-doubles agree on them, which proves nothing"
+            )
+        }
+        (None, Certainty::Certified, rung) => format!(
+            "{digits} digits, certain: the value is enclosed by an interval of width {width}, both ends of which round to \
+             them; {}",
+            match rung {
+                Rung::Intervals => "by doubles, each operation rounded outward".to_owned(),
+                rung => format!("by {}, each operation rounded outward", rung.name()),
+            }
+        ),
+    }
+}
+
+/// The same of the entries of a matrix.
+fn how_certain_all(values: &[PointValue], digits: usize) -> String {
+    let mut numbers: Vec<String> = values.iter().map(|value| value.rung.name()).collect();
+    numbers.sort();
+    numbers.dedup();
+    let numbers = numbers.join(", ");
+    match values.iter().all(|value| value.certainty == Certainty::Certified) {
+        true => format!("{digits} digits of each entry, certain: enclosed or exact, by {numbers}"),
+        false => format!("{digits} digits of each entry, not all of them certain: by {numbers}"),
+    }
+}
+
+/// Longer fractions than this are not shown beside their decimals.
+const LONGEST_EXACT: usize = 60;
 
 /// A value as it is printed: a matrix by rows, a line each.
 fn in_lines(value: &Json) -> String {

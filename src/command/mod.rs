@@ -7,6 +7,8 @@
 mod arguments;
 mod certify;
 mod check;
+mod claims;
+mod completions;
 mod eval;
 mod fmt;
 mod interrupt;
@@ -21,8 +23,9 @@ mod terminal;
 mod threads;
 mod trade;
 mod verify;
+mod watch;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use miette::{Diagnostic, Report};
 use output::Form;
 use palmistry::file;
@@ -31,11 +34,20 @@ use std::process::ExitCode;
 /// Checks mathematics about systems that are seen only through their outputs.
 ///
 /// Write down a control system and what you claim of it in a .proof file (the README has the grammar); palmistry says,
-/// claim by claim, proved, refuted (with a witness) or undecided. Without a command it runs 'verify'.
+/// claim by claim, proved, refuted (with a witness) or undecided.
 #[derive(Parser)]
 #[command(name = "palmistry", version, max_term_width = 110)]
 #[command(
-    after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written."
+    after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written.",
+    after_long_help = "Where to begin:
+  palmistry new mypaper                     a folder with a small paper that proves, a comment on each line
+  palmistry check mysystem.proof            is it a proof file? every mistake, each at its place
+  palmistry prove mysystem.proof --watch    decide its claims, and again whenever it is changed
+  palmistry rank mysystem.proof             is the state seen in the outputs? what is not, and how well what is
+  palmistry eval mysystem.proof 'L(f, x)' --at x=1/3 --digits 40
+  palmistry verify mypaper                  a folder of proof files taken through everything, as a page with pictures
+
+Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -56,6 +68,7 @@ enum Verb {
     Observe(observe::Observe),
     New(new::New),
     Fmt(fmt::Fmt),
+    Completions(completions::Completions),
 }
 
 /// What a command has come to.
@@ -91,8 +104,12 @@ pub fn run() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return not_understood(&error),
     };
+    let Some(verb) = cli.verb else {
+        // who says nothing asks what there is to say
+        let help = Cli::command().render_long_help().to_string();
+        return asked_for(help.trim_end_matches('\n'));
+    };
     interrupt::stop_on_interrupt();
-    let verb = cli.verb.unwrap_or_else(|| Verb::Verify(verify::Verify::default()));
     let form = verb.form();
     let result = threads::prepare().and_then(|()| verb.run());
     match result {
@@ -114,7 +131,7 @@ impl Verb {
     fn form(&self) -> Form {
         Form::of(match self {
             Verb::Verify(verb) => verb.json,
-            Verb::Prove(verb) => verb.json,
+            Verb::Prove(verb) => verb.claims.json,
             Verb::Check(verb) => verb.json,
             Verb::Rank(verb) => verb.json,
             Verb::Recheck(verb) => verb.json,
@@ -125,6 +142,7 @@ impl Verb {
             Verb::Observe(verb) => verb.json,
             Verb::New(verb) => verb.json,
             Verb::Fmt(verb) => verb.json,
+            Verb::Completions(_) => false,
         })
     }
 
@@ -145,6 +163,7 @@ impl Verb {
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::New(verb) => verb.run(),
             Verb::Fmt(verb) => verb.run(),
+            Verb::Completions(verb) => verb.run(),
         }
     }
 }
@@ -153,13 +172,7 @@ impl Verb {
 fn not_understood(error: &clap::Error) -> ExitCode {
     let text = error.render().to_string();
     if !error.use_stderr() {
-        return match output::print_text(text.trim_end_matches('\n')) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(report) => {
-                file::note(&format!("{report:?}"));
-                ExitCode::from(2)
-            }
-        };
+        return asked_for(text.trim_end_matches('\n'));
     }
     // the arguments are not understood, so what they ask for has to be looked for by hand
     if std::env::args_os()
@@ -171,4 +184,15 @@ fn not_understood(error: &clap::Error) -> ExitCode {
     }
     file::note(text.trim_end_matches('\n'));
     ExitCode::from(2)
+}
+
+/// Prints help or a version, which were asked for.
+fn asked_for(text: &str) -> ExitCode {
+    match output::print_text(text) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(report) => {
+            file::note(&format!("{report:?}"));
+            ExitCode::from(2)
+        }
+    }
 }

@@ -23,9 +23,9 @@ use std::path::PathBuf;
 /// With --data the readings come from a CSV or Parquet file with the columns that the model needs (time, s1, s2, phi1, ...);
 /// faulty rows are reported by number and handled as the scene says. With --studies the scene's studies run as well: the
 /// error over many seeds at several levels of noise beside the bound, and the first guesses from which each method arrives.
-///
-/// Example: palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed
 #[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed")]
 pub(crate) struct Observe {
     /// The scene.
     scene: PathBuf,

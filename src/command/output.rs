@@ -95,11 +95,16 @@ impl Files {
             Form::Json => print_json(&object)?,
             Form::Text => print_text(&text())?,
         }
+        self.note_failures();
+        Ok(if self.whole() { status } else { Status::Unwritten })
+    }
+
+    /// Says on standard error what could not be written.
+    pub fn note_failures(&self) {
         for failure in &self.failures {
             let help = "the results are printed; name a place that can be written, or free some space";
             file::note(&format!("{:?}", Unusable::report(failure.why.clone(), help)));
         }
-        Ok(if self.whole() { status } else { Status::Unwritten })
     }
 }
 

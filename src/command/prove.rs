@@ -1,17 +1,15 @@
 //! `palmistry prove`: every claim of some files.
 
-use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
-use super::output::{Files, Form, progress, proof_files};
-use super::terminal::layout;
+use super::claims::Claims;
+use super::interrupt::{INTERRUPTED, begin_to_tell, watched};
+use super::output::{Form, progress};
+use super::watch::Watch;
 use super::{Status, Unusable};
 use clap::Args;
-use palmistry::checker::VerdictFile;
-use palmistry::claim::{Kept, Selection, decide_all_keeping};
-use palmistry::report::{ClaimsForm, ClaimsSummary, Shown, claim_json, claims_text, junit, statement_latex};
-use palmistry::{Outcome, System};
-use serde_json::json;
+use palmistry::Outcome;
+use palmistry::claim::decide_all_keeping;
+use palmistry::report::ClaimsSummary;
 use std::collections::HashMap;
-use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
@@ -22,33 +20,19 @@ use std::time::Instant;
 /// 'loose'. A claim whose sides are one expression is 'restated' and not 'proved', which is as expected. A claim is about all values of its symbols, whatever
 /// values the file gives to parameters; where the verdict at these is another one, that is said too.
 #[derive(Args, Clone)]
+#[command(after_help = "Examples:
+  palmistry prove mysystem.proof            each claim with its verdict
+  palmistry prove proofs/ -q                only what is not as expected: statement, place, both sides at a witness
+  palmistry prove mysystem.proof --only 4.48 --only 'reduce.*'
+  palmistry prove mysystem.proof --watch    again whenever the file is changed
+  palmistry prove proofs/ --junit claims.xml --verdicts claims.json")]
 pub(crate) struct Prove {
-    /// Proof files, or folders in which every .proof file is taken.
-    #[arg(required = true, value_name = "FILE-OR-FOLDER")]
-    paths: Vec<PathBuf>,
-    /// Decide only these claims: by id, by the part of ids before a dot ('4.44' is '4.44.r1' too), or with '*' for any
-    /// characters (may be repeated).
-    #[arg(long, value_name = "ID")]
-    only: Vec<String>,
-    /// Print only what is not as expected, and the summary.
-    #[arg(short, long)]
-    quiet: bool,
-    /// Print one JSON object: 'claims' with id, file, line, column, statement, verdict, expected, ok, engine, and error_bound
-    /// or witness.
+    #[command(flatten)]
+    pub claims: Claims,
+    /// Decide again whenever a file is changed, or one that it imports, until it is interrupted. Only files that are changed,
+    /// or import what is changed, are decided again. With --json each report is one line.
     #[arg(long)]
-    pub json: bool,
-    /// Write the outcomes as JUnit XML, for a CI system.
-    #[arg(long, value_name = "FILE")]
-    junit: Option<PathBuf>,
-    /// Write what the verdicts rest on to a file that 'palmistry recheck' checks alone.
-    #[arg(long, value_name = "FILE")]
-    verdicts: Option<PathBuf>,
-    /// Give each statement in LaTeX too: a line of its own, or 'latex' in the JSON.
-    #[arg(long)]
-    latex: bool,
-    /// Seed of the random points.
-    #[arg(long, default_value_t = 1, value_name = "S")]
-    seed: u64,
+    watch: bool,
 }
 
 /// What is decided so far.
@@ -64,6 +48,10 @@ struct Decided {
 
 impl Prove {
     pub fn run(self) -> miette::Result<Status> {
+        if self.watch {
+            // what was told stays told
+            return watched(move || Watch::of(self.claims).run(), || Ok(Status::NotAsExpected));
+        }
         let decided = Arc::new(Mutex::new(Decided::default()));
         let (worker, filled) = (self.clone(), decided.clone());
         let begin = Instant::now();
@@ -75,28 +63,9 @@ impl Prove {
         watched(work, || self.tell(&decided, begin))
     }
 
-    /// Reads all files, and keeps the claims that are asked for.
-    fn read(&self) -> miette::Result<Vec<System>> {
-        // read everything before deciding anything: a mistake in the last file should not cost the first ones' time
-        let mut systems: Vec<System> = proof_files(&self.paths)?
-            .iter()
-            .map(|file| System::read(file).map_err(miette::Report::new))
-            .collect::<Result<_, _>>()?;
-        let selection = Selection::new(&self.only);
-        let ids = systems.iter().flat_map(|system| &system.claims).map(|claim| claim.id.as_str());
-        if let Some(unmet) = selection.unmet(ids) {
-            let help = unmet.nearest.as_ref().map(|near| format!("perhaps you meant '{near}'"));
-            return Err(Unusable::report(unmet.to_string(), help.unwrap_or_default()));
-        }
-        for system in &mut systems {
-            system.claims.retain(|claim| selection.keeps(&claim.id));
-        }
-        Ok(systems)
-    }
-
     /// Decides all claims.
     fn decide(&self, decided: &Mutex<Decided>) -> miette::Result<()> {
-        let systems = self.read()?;
+        let systems = self.claims.read()?;
         let names: Vec<(String, String)> = systems
             .iter()
             .flat_map(|system| system.claims.iter().map(|claim| (system.name.clone(), claim.id.clone())))
@@ -113,29 +82,16 @@ impl Prove {
             decided.claims = claims;
             decided.places = names.into_iter().zip(0..).collect();
         }
-        let kept = if self.verdicts.is_some() { Kept::Evidence } else { Kept::Verdicts };
         let bar = progress(claims as u64, "deciding claims");
         for system in &systems {
             let done = |outcome: &Outcome| {
                 hold(decided).outcomes.push(outcome.clone());
                 bar.inc(1);
             };
-            decide_all_keeping(kept, system, self.seed, &INTERRUPTED, &done);
+            decide_all_keeping(self.claims.kept(), system, self.claims.seed, &INTERRUPTED, &done);
         }
         bar.finish_and_clear();
         Ok(())
-    }
-
-    /// An outcome as JSON, with its formulas where they are asked for.
-    fn claim(&self, outcome: &Outcome) -> serde_json::Value {
-        let mut object = claim_json(outcome);
-        if self.latex {
-            object["latex"] = json!(statement_latex(&outcome.statement));
-            if let Some((printed, _)) = &outcome.printed {
-                object["printed"]["latex"] = json!(statement_latex(printed));
-            }
-        }
-        object
     }
 
     /// Prints and writes what is decided, in the order of the files.
@@ -143,29 +99,12 @@ impl Prove {
         let Decided { claims, places, mut outcomes } = std::mem::take(&mut *hold(decided));
         outcomes
             .sort_by_cached_key(|outcome| places.get(&(outcome.file.clone(), outcome.id.clone())).copied());
-        let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
-        let mut files = Files::default();
-        if let Some(path) = &self.junit {
-            files.text_or(path, junit(&outcomes));
-        }
-        if let Some(path) = &self.verdicts {
-            let records = outcomes.iter().flat_map(|outcome| outcome.evidence.iter().cloned()).collect();
-            let text = VerdictFile::new(self.seed, records).text();
-            files.text_or(path, text);
-        }
-        let object = json!({
-            "ok": failed == 0 && !interrupted(),
-            "interrupted": interrupted(),
-            "seed": self.seed,
-            "seconds": begin.elapsed().as_secs_f64(),
-            "claims": outcomes.iter().map(|outcome| self.claim(outcome)).collect::<Vec<_>>(),
-        });
-        let all = failed == 0 && claims > 0 && outcomes.len() == claims;
+        let all = outcomes.iter().all(|outcome| outcome.ok) && claims > 0 && outcomes.len() == claims;
         let status = if all { Status::AsExpected } else { Status::NotAsExpected };
         let summary = ClaimsSummary { claims, seconds: begin.elapsed().as_secs_f64() };
-        let shown = if self.quiet { Shown::Unexpected } else { Shown::All };
-        let form = ClaimsForm { shown, latex: self.latex };
-        files.print(Form::of(self.json), object, || claims_text(&outcomes, summary, form, &layout()), status)
+        let object = self.claims.object(&outcomes, summary.seconds);
+        let in_words = || self.claims.in_words(&outcomes, summary);
+        self.claims.written(&outcomes).print(Form::of(self.claims.json), object, in_words, status)
     }
 }
 

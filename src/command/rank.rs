@@ -20,6 +20,11 @@ use std::path::PathBuf;
 /// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
 /// the file, and the answer says which; a claim 'rank = n' in a file is about all values.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry rank mysystem.proof --samples 100000
+  palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
+  palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
+  palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain")]
 pub(crate) struct Rank {
     /// The proof file.
     file: PathBuf,

@@ -16,6 +16,9 @@ use std::path::PathBuf;
 /// A proof cannot be repeated by evaluation: it is consistent where both sides agree at further states. Exit status 0 only
 /// when nothing failed.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry prove mysystem.proof --verdicts claims.json && palmistry recheck claims.json
+  palmistry recheck claims.json --seed 2                   proofs are tried at other states")]
 pub(crate) struct Recheck {
     /// The verdict file.
     file: PathBuf,

@@ -31,9 +31,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// The sets are those that a file names ('set', 'pole', and lines to infinity); where it names none, what it says to avoid,
 /// the divisors of its rows, and each quantity of its sample at zero. Without FILE these are the systems with named sets of a
 /// paper that came with the program.
-///
-/// Example: palmistry stress --out stress
 #[derive(Args, Clone)]
+#[command(after_help = "Examples:
+  palmistry stress --out stress")]
 pub(crate) struct Stress {
     /// A proof file; without one, a paper that came with the program.
     file: Option<PathBuf>,

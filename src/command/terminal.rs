@@ -17,6 +17,11 @@ pub(crate) fn layout() -> Layout {
     Layout { width: asked.or_else(shown), colour }
 }
 
+/// Whether standard output is a terminal, so that it can be cleared.
+pub(crate) fn is_terminal() -> bool {
+    std::io::stdout().is_terminal()
+}
+
 fn colour(variable: impl Fn(&str) -> Option<String>, is_terminal: bool) -> Colour {
     let is = |name: &str, value: &str| variable(name).is_some_and(|found| found == value);
     let is_set = |name: &str| variable(name).is_some_and(|found| !found.is_empty());

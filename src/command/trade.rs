@@ -19,6 +19,8 @@ const ROUNDS: usize = 15;
 /// that very state. The Pareto front are the combinations that no other beats in time, digits and verdicts. States of
 /// the sample box keep away from singular sets: what happens on the way into one is another question.
 #[derive(Args)]
+#[command(after_help = "Examples:
+  palmistry trade mysystem.proof --out trade")]
 pub(crate) struct Trade {
     /// The proof file.
     file: PathBuf,

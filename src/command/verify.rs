@@ -18,9 +18,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 ///
 /// Exit status 0 only when every claim has the verdict that its file expects, every named set has a rank or is the pole that it
 /// is said to be, and every reduction is proved.
-///
-/// Example: palmistry verify mypaper --out report
 #[derive(Args, Clone)]
+#[command(after_help = "Examples:
+  palmistry verify mypaper --out report")]
 pub(crate) struct Verify {
     /// A folder of proof files, or one proof file.
     #[arg(value_name = "FOLDER-OR-FILE", conflicts_with = "paper")]
@@ -37,12 +37,6 @@ pub(crate) struct Verify {
     /// Print everything that was found as one JSON object.
     #[arg(long)]
     pub json: bool,
-}
-
-impl Default for Verify {
-    fn default() -> Self {
-        Verify { path: None, paper: None, out: "verify".into(), seed: 1, json: false }
-    }
 }
 
 impl Verify {

@@ -4,12 +4,10 @@
 
 use super::left_out::LeftOut;
 use crate::claim::{Outcome, decide_all};
-use crate::expression::NodeId;
 use crate::expression::syntax::Relation;
-use crate::observability::{Branch, Codistribution, Length, Locus, Word, parse_condition, solve_conditions};
-use crate::system::{Assignment, ReadError, ReductionTo, Role, System};
-use crate::tradeoff::{ModelComparison, compare_models};
-use std::collections::BTreeMap;
+use crate::observability::{Codistribution, Length, parse_condition};
+use crate::system::{Assignment, ReadError, ReductionTo, System};
+use crate::tradeoff::{ModelComparison, compare_reduction};
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -33,9 +31,6 @@ impl ReductionFound {
         !self.claims.is_empty() && self.claims.iter().all(|outcome| outcome.ok)
     }
 }
-
-/// States at which the two models are timed.
-const STATES_TO_TIME: u64 = 400;
 
 /// The ids of the claims that are made for a reduction begin so.
 const PREFIX: &str = "reduction";
@@ -65,7 +60,7 @@ pub(super) fn reduce(
     longer.claims.drain(..system.claims.len());
     longer.name.clone_from(&system.name);
     let outcomes = decide_all(&longer, seed, interrupt, &|_| ());
-    let comparison = compare(system, &large, reduction, seed);
+    let comparison = compare_reduction(system, &large, &reduction.written, seed);
     Ok(ReductionFound {
         reduction: reduction.clone(),
         of: large.title,
@@ -163,45 +158,4 @@ fn claims(small: &System, large: &System, reduction: &ReductionTo) -> Result<(St
         claim("differentials", format!("{own} = {other} {under}"));
     }
     Ok((text, left_out))
-}
-
-/// The same rows, once with the smaller system's states and once with the larger one's.
-fn compare(
-    small: &System,
-    large: &System,
-    reduction: &ReductionTo,
-    seed: u64,
-) -> Result<ModelComparison, String> {
-    let (mut small, mut large) = (small.clone(), large.clone());
-    let equations =
-        reduction.written.iter().map(|text| parse_condition(text)).collect::<Result<Vec<_>, _>>()?.concat();
-    let branches = solve_conditions(&mut large, &equations).map_err(|e| e.to_string())?;
-    let branch: Branch = branches.into_iter().next().ok_or("no state meets the conditions")?;
-    let (own, rows) = counterparts(&mut small, &mut large)?;
-    let locus = Locus::new(&mut large, &branch, &BTreeMap::new(), &rows).map_err(|e| e.to_string())?;
-    compare_models((&mut small, &own), (&mut large, &rows, &locus), STATES_TO_TIME, seed)
-}
-
-/// The rows that the smaller system's codistribution needs, and in the larger one the differentials of all outputs and of the
-/// same Lie derivatives.
-fn counterparts(small: &mut System, large: &mut System) -> Result<(Vec<NodeId>, Vec<NodeId>), String> {
-    let words = Codistribution::new(small, &Assignment::new(), Length::UntilItStops)?;
-    let mut rows: Vec<NodeId> = Vec::new();
-    for output in large.outputs.clone() {
-        rows.extend(large.differential(output.1));
-    }
-    let longer = |word: &&Word| !word.fields.is_empty();
-    for word in words.needed.iter().map(|index| &words.words[*index]).filter(longer) {
-        let output = &small.outputs[word.output].0;
-        let place = large.outputs.iter().position(|(name, _)| name == output);
-        let mut value = large.outputs[place.ok_or_else(|| format!("no output {output}"))?].1;
-        for field in word.fields.iter().rev() {
-            let name = &small.fields[*field].name;
-            let place =
-                large.fields.iter().position(|field| field.name == *name && field.role != Role::Other);
-            value = large.lie_derivative(place.ok_or_else(|| format!("no field {name}"))?, value);
-        }
-        rows.extend(large.differential(value));
-    }
-    Ok((words.needed_entries(), rows))
 }

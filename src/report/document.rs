@@ -1,5 +1,6 @@
 //! The frame of every page: one file, with its style and its script, and nothing from elsewhere.
 
+use crate::report::drawing::STANDALONE;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");
@@ -25,4 +26,5 @@ pub(super) fn document(title: &str, content: &Markup, has_claims: bool) -> Strin
         }
     }
     .into_string()
+    .replace(STANDALONE, "")
 }

@@ -89,8 +89,12 @@ mod tests {
         let layout = Layout { width: Some(40), colour: Colour::Ansi };
         let painted = layout.paint(Tone::Bad, "alpha");
         assert_eq!(painted, "\u{1b}[1m\u{1b}[31malpha\u{1b}[0m");
-        let line = layout.wrap("", 0, &format!("{painted} beta gamma delta epsilon zeta eta"));
-        assert_eq!(line.lines().next(), Some(format!("{painted} beta gamma delta epsilon zeta").as_str()));
+        // 39 columns that are seen fit into 40, and one more word does not
+        let line = layout.wrap("", 0, &format!("{painted} beta gamma delta epsilon zeta eta theta"));
+        assert_eq!(
+            line.lines().next(),
+            Some(format!("{painted} beta gamma delta epsilon zeta eta").as_str())
+        );
         assert_eq!(Layout::default().paint(Tone::Bad, "alpha"), "alpha");
     }
 }

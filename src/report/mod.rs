@@ -2,6 +2,7 @@
 //!
 //! Nothing is decided here.
 
+mod axis;
 mod certificate;
 mod claims;
 mod document;
@@ -16,6 +17,7 @@ mod ranks;
 mod stress;
 mod trade;
 
+pub use axis::unit_of;
 pub use certificate::{percent, region_curve, region_json, region_map, region_text};
 pub use claims::{
     ClaimsForm, ClaimsSummary, Shown, claim_json, claim_line, claim_text, claims_text, counts_text,

@@ -1,7 +1,7 @@
 //! Fields with their roles and symbols with their values, as JSON and in words.
 
 use crate::number::{parse_decimal, round_to_decimal};
-use crate::system::{FieldRole, System};
+use crate::system::FieldRole;
 use dashu::rational::RBig;
 use serde_json::{Value, json};
 
@@ -38,15 +38,4 @@ pub(crate) fn plain_number(value: &RBig) -> String {
         false => decimal,
     };
     if parse_decimal(&short).as_ref() == Some(value) { short } else { value.to_string() }
-}
-
-/// The unit in which a system has a symbol: that of the dimension that its file declares or that follows from it; radians
-/// of an angle. `None` where nothing is known, of a number, and of a name that is none of its symbols.
-pub(crate) fn unit_of(system: &System, name: &str) -> Option<String> {
-    let symbol = system.find_symbol(name)?;
-    if system.is_angle(symbol) {
-        return Some("rad".to_owned());
-    }
-    let unit = system.dimension_of(symbol)?.unit();
-    (unit != "1").then_some(unit)
 }

@@ -1,10 +1,10 @@
 //! Plots as SVG, to be put into a page.
 
-use crate::expression::notation::in_letters;
+use crate::report::axis::{axis, number, power, room};
 use crate::report::drawing::{Canvas, Cells, Hover, INK, MESH, escaped, svg};
 use crate::tradeoff::{Growth, Map, RoundingStudy, Slope};
 use plotters::prelude::{
-    ChartBuilder, Circle, Color, IntoFont, IntoLogRange, LineSeries, RGBColor, Rectangle, WHITE,
+    ChartBuilder, Circle, Color, IntoFont, IntoLogRange, LineSeries, RGBColor, Rectangle, Text, WHITE,
 };
 
 /// Colours of singular values, from small (dark) to large (light).
@@ -30,7 +30,7 @@ fn level(value: f64, lowest: f64, highest: f64) -> usize {
     ((part * SHADES as f64).floor().max(0.0) as usize).min(SHADES - 1)
 }
 
-const SHADES: usize = 18;
+const SHADES: usize = 12;
 
 fn shade(level: usize) -> RGBColor {
     let part = level as f64 / (SHADES - 1) as f64 * (SCALE.len() - 1) as f64;
@@ -44,11 +44,8 @@ fn shade(level: usize) -> RGBColor {
 const NOTHING: &str =
     "there is no singular value above zero to draw: poles, or nothing that remains without unit rows";
 
-/// A name along an axis, with the unit of what it means where that is known.
-pub(crate) fn axis(name: &str, unit: Option<&str>) -> String {
-    let name = in_letters(name);
-    unit.filter(|unit| !unit.is_empty()).map_or(name.clone(), |unit| format!("{name}, {unit}"))
-}
+/// Values whose logarithms differ by less are one value, and the rest rounding errors.
+const NO_DIFFERENCE: f64 = 1e-6;
 
 /// The smallest singular value over two coordinates; dark where it is small, white at poles. Under the pointer stand the
 /// values between which a cell's lies. `units` are those of the two coordinates.
@@ -60,26 +57,38 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
     if found.is_empty() {
         return format!("<p>{}: {NOTHING}</p>", escaped(title));
     }
-    let at = |step: usize| lowest + (highest - lowest) * step as f64 / SHADES as f64;
-    let short = |log: f64| format!("{:.2e}", 10f64.powf(log));
+    let is_singular = map.smallest.iter().flatten().any(|value| *value <= 0.0);
+    let everywhere = highest - lowest < NO_DIFFERENCE && !is_singular;
+    let span = (highest - lowest).max(NO_DIFFERENCE);
+    let at = |step: usize| lowest + span * step as f64 / SHADES as f64;
     let values = |step: usize| match step {
-        0 => format!("smallest singular value below {}", short(at(1))),
-        _ => format!("smallest singular value {} to {}", short(at(step)), short(at(step + 1))),
+        _ if everywhere => format!("smallest singular value {:.3e}", 10f64.powf(highest)),
+        0 => format!("smallest singular value below {}", power(at(1), span / 10.0)),
+        _ => format!(
+            "smallest singular value {} to {}",
+            power(at(step), span / 10.0),
+            power(at(step + 1), span / 10.0)
+        ),
     };
     let mut by_colour: Vec<(RGBColor, String)> =
         (0..SHADES).map(|step| (shade(step), values(step))).collect();
     by_colour.push((POLE, "a pole".to_owned()));
     let canvas = Canvas { size: (420, 330), title, by_colour: &by_colour, is_crisp: true };
     canvas.draw(|area, extras| {
-        let (plot, legend) = area.split_horizontally(345);
+        let scale_room = room((lowest, lowest + span), |v| power(v, span));
+        let (plot, legend) = area.split_horizontally(420 - scale_room.max(60) as i32 - 20);
+        let spans = [map.x.2 - map.x.1, map.y.2 - map.y.1];
         let mut chart = ChartBuilder::on(&plot)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
+            .margin_right(16)
             .x_label_area_size(38)
-            .y_label_area_size(48)
+            .y_label_area_size(room((map.y.1, map.y.2), |v| number(v, spans[1])))
             .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
-        let colour = |cell: &Option<f64>| {
-            cell.map_or(POLE, |value| shade(level(value.max(f64::MIN_POSITIVE), lowest, highest)))
+        let colour = |cell: &Option<f64>| match cell {
+            None => POLE,
+            Some(_) if everywhere => shade(SHADES / 2),
+            Some(value) => shade(level(value.max(f64::MIN_POSITIVE), lowest, lowest + span)),
         };
         let (low, high) =
             (chart.backend_coord(&(map.x.1, map.y.1)), chart.backend_coord(&(map.x.2, map.y.2)));
@@ -91,19 +100,28 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
         chart
             .configure_mesh()
             .disable_mesh()
-            .x_labels(6)
+            .x_labels(5)
             .y_labels(6)
+            .x_label_formatter(&|v| number(*v, spans[0]))
+            .y_label_formatter(&|v| number(*v, spans[1]))
             .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_desc(axis(&map.x.0, units[0]))
             .y_desc(axis(&map.y.0, units[1]))
             .axis_desc_style(("sans-serif", 13))
             .draw()?;
+        if everywhere {
+            let words = ("sans-serif", 12).into_font().color(&INK);
+            for (row, line) in ["everywhere", &format!("{:.3e}", 10f64.powf(highest))].iter().enumerate() {
+                legend.draw(&Text::new((*line).to_owned(), (4, 60 + 18 * row as i32), words.clone()))?;
+            }
+            return Ok(());
+        }
         let mut scale = ChartBuilder::on(&legend)
             .margin_top(34)
             .margin_bottom(46)
             .margin_right(8)
-            .y_label_area_size(44)
-            .build_cartesian_2d(0.0..1.0, lowest..highest)?;
+            .y_label_area_size(scale_room - 18)
+            .build_cartesian_2d(0.0..1.0, lowest..lowest + span)?;
         for step in 0..SHADES {
             scale.draw_series([Rectangle::new(
                 [(0.0, at(step)), (1.0, at(step + 1))],
@@ -116,7 +134,7 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
             .disable_x_axis()
             .y_labels(7)
             .y_label_style(("sans-serif", 12).into_font().color(&INK))
-            .y_label_formatter(&|v| format!("{:.0e}", 10f64.powf(*v)))
+            .y_label_formatter(&|v| power(*v, span))
             .draw()?;
         Ok(())
     })
@@ -193,7 +211,7 @@ const LINES: [RGBColor; 4] =
     [RGBColor(112, 90, 200), RGBColor(0, 135, 190), RGBColor(0, 150, 110), RGBColor(150, 130, 60)];
 
 /// The stripes of a line, which are as wide as a finger.
-const STRIPES: usize = 22;
+const STRIPES: usize = 16;
 
 /// A stripe around every few distances, and what stands there.
 fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -> Vec<Hover> {
@@ -205,7 +223,7 @@ fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -
         let here = places[i];
         let half = |other: Option<&i32>| other.map_or(here, |other| (other + here) / 2);
         let ends = [half(i.checked_sub(1).and_then(|i| places.get(i))), half(places.get(i + 1))];
-        let values: Vec<String> = values.iter().map(|value| format!("{value:.2e}")).collect();
+        let values: Vec<String> = values.iter().map(|value| format!("{value:.1e}")).collect();
         let text = match values.is_empty() {
             true => format!("{distance:.0e}: a pole"),
             false => format!("{distance:.0e}: {}", values.join(", ")),
@@ -257,16 +275,19 @@ pub(crate) fn rounding(study: &RoundingStudy, printed_error: f64, title: &str) -
 /// Operations against order, both axes logarithmic, beside a line of slope three.
 pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
     let points: Vec<(f64, f64)> = growth.iter().map(|g| (g.order as f64, g.operations as f64)).collect();
-    let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
+    let Some(last) = points.last().copied() else {
         return String::new();
     };
+    // a derivative may cost less than the one before it
+    let sizes = || points.iter().map(|point| point.1.max(1.0));
+    let (least, most) = (sizes().fold(f64::INFINITY, f64::min) / 2.0, sizes().fold(1.0, f64::max) * 4.0);
     svg((420, 300), title, |area| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
             .x_label_area_size(38)
-            .y_label_area_size(56)
-            .build_cartesian_2d((1.0..last.0 * 1.1).log_scale(), (first.1 / 2.0..last.1 * 4.0).log_scale())?;
+            .y_label_area_size(room((least, most), |v| format!("{v:.0}")))
+            .build_cartesian_2d((1.0..last.0 * 1.1).log_scale(), (least..most).log_scale())?;
         chart
             .configure_mesh()
             .light_line_style(WHITE)
@@ -280,10 +301,8 @@ pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
             .y_desc("operations")
             .axis_desc_style(("sans-serif", 12))
             .draw()?;
-        let cubic = points
-            .iter()
-            .map(|(k, _)| (*k, last.1 * (k / last.0).powi(3)))
-            .filter(|(_, v)| *v >= first.1 / 2.0);
+        let cubic =
+            points.iter().map(|(k, _)| (*k, last.1 * (k / last.0).powi(3))).filter(|(_, v)| *v >= least);
         chart.draw_series(LineSeries::new(cubic, RGBColor(150, 155, 162).stroke_width(1)))?;
         chart.draw_series(LineSeries::new(points.iter().copied(), BAR.stroke_width(2)))?;
         chart.draw_series(points.iter().map(|point| Circle::new(*point, 3, BAR.filled())))?;
@@ -294,6 +313,24 @@ pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What differs by rounding alone is one value, said once; what differs by little has a scale that tells.
+    #[test]
+    fn a_constant_map_says_its_value() {
+        let axis = |name: &str| (name.to_owned(), -10_000.0, 10_000.0);
+        let of = |smallest: Vec<f64>| {
+            let smallest = smallest.into_iter().map(Some).collect();
+            super::map(&Map { x: axis("x"), y: axis("y"), width: 2, height: 2, smallest }, "a map", [None; 2])
+        };
+        let flat = of(vec![0.5, 0.5 + 1e-14, 0.5, 0.5 - 1e-14]);
+        assert!(flat.contains(">everywhere<") && flat.contains(">5.000e-1<"), "{flat}");
+        assert!(flat.contains(">-10000<") && !flat.contains("5e-1<"), "{flat}");
+        let sloped = of(vec![0.5, 0.5001, 0.5002, 0.5003]);
+        let labels: Vec<&str> = sloped.split("</text>").filter_map(|part| part.rsplit('>').next()).collect();
+        let scale: Vec<&&str> = labels.iter().filter(|label| label.ends_with("e-1")).collect();
+        let distinct: std::collections::BTreeSet<_> = scale.iter().collect();
+        assert!(scale.len() > 2 && distinct.len() == scale.len(), "{labels:?}");
+    }
 
     /// By hand: three by three cells, of which the lowest row is the last that is drawn.
     #[test]

@@ -5,7 +5,7 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 use std::sync::Arc;
 
 /// A file that could not be used: what, where, and what to do.
-#[derive(Debug, Diagnostic, thiserror::Error)]
+#[derive(Clone, Debug, Diagnostic, thiserror::Error)]
 #[error("{message}")]
 pub struct ReadError {
     /// What is wrong.

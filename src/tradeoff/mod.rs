@@ -16,7 +16,7 @@ mod trade;
 pub use differences::{Differences, FiniteDifference};
 pub use growth::{Growth, growth_of_lie_derivatives};
 pub use landscape::{Landscape, LandscapeRows, Map, Slope};
-pub use models::{ModelComparison, compare_models};
+pub use models::{ModelComparison, compare_reduction};
 pub use point_programs::{LoadedPoints, PointPrograms};
 pub use printed::{ExpandedText, PrintedExpression, PrintedValue, printed_values};
 pub use rounding::{RoundingStudy, study_rounding};

@@ -2,8 +2,12 @@
 
 use crate::expression::{NodeId, Program, expand_angles};
 use crate::number::Floats;
-use crate::observability::{Locus, Reduction, State, singular_values};
-use crate::system::System;
+use crate::observability::{
+    Branch, Codistribution, Length, Locus, Reduction, State, Word, parse_condition, singular_values,
+    solve_conditions,
+};
+use crate::system::{Assignment, Role, System};
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Two models of the same states, timed on the same work: the rows of a codistribution and their singular values.
@@ -22,6 +26,8 @@ pub struct ModelComparison {
 }
 
 const ROUNDS: usize = 9;
+/// States at which a reduction is timed.
+const STATES_TO_TIME: u64 = 400;
 
 /// Compares the rows `small_rows` of one system with the rows `large_rows` of another at states drawn for the large
 /// one; the small one is given the values of the symbols that it shares. `shared` pairs the columns of the first rows
@@ -29,7 +35,7 @@ const ROUNDS: usize = 9;
 ///
 /// # Errors
 /// In words, where a state cannot be drawn or evaluated.
-pub fn compare_models(
+fn compare_models(
     small: (&mut System, &[NodeId]),
     large: (&mut System, &[NodeId], &Locus),
     states: u64,
@@ -72,6 +78,51 @@ pub fn compare_models(
         large_seconds: median(&mut large_times),
         largest_difference,
     })
+}
+
+/// The rows that a smaller system needs, once with its own states and once with those of a larger one that it is under
+/// conditions.
+///
+/// # Errors
+/// In words: conditions that cannot be solved, outputs or fields that the larger system has not, states that cannot be drawn.
+pub fn compare_reduction(
+    small: &System,
+    large: &System,
+    conditions: &[String],
+    seed: u64,
+) -> Result<ModelComparison, String> {
+    let (mut small, mut large) = (small.clone(), large.clone());
+    let equations =
+        conditions.iter().map(|text| parse_condition(text)).collect::<Result<Vec<_>, _>>()?.concat();
+    let branches = solve_conditions(&mut large, &equations).map_err(|e| e.to_string())?;
+    let branch: Branch = branches.into_iter().next().ok_or("no state meets the conditions")?;
+    let (own, rows) = counterparts(&mut small, &mut large)?;
+    let locus = Locus::new(&mut large, &branch, &BTreeMap::new(), &rows).map_err(|e| e.to_string())?;
+    compare_models((&mut small, &own), (&mut large, &rows, &locus), STATES_TO_TIME, seed)
+}
+
+/// The rows that the smaller system's codistribution needs, and in the larger one the differentials of all outputs and of the
+/// same Lie derivatives.
+fn counterparts(small: &mut System, large: &mut System) -> Result<(Vec<NodeId>, Vec<NodeId>), String> {
+    let words = Codistribution::new(small, &Assignment::new(), Length::UntilItStops)?;
+    let mut rows: Vec<NodeId> = Vec::new();
+    for output in large.outputs.clone() {
+        rows.extend(large.differential(output.1));
+    }
+    let longer = |word: &&Word| !word.fields.is_empty();
+    for word in words.needed.iter().map(|index| &words.words[*index]).filter(longer) {
+        let output = &small.outputs[word.output].0;
+        let place = large.outputs.iter().position(|(name, _)| name == output);
+        let mut value = large.outputs[place.ok_or_else(|| format!("no output {output}"))?].1;
+        for field in word.fields.iter().rev() {
+            let name = &small.fields[*field].name;
+            let place =
+                large.fields.iter().position(|field| field.name == *name && field.role != Role::Other);
+            value = large.lie_derivative(place.ok_or_else(|| format!("no field {name}"))?, value);
+        }
+        rows.extend(large.differential(value));
+    }
+    Ok((words.needed_entries(), rows))
 }
 
 /// What remains of some rows without unit rows.

@@ -222,6 +222,10 @@ fn proof() {
             if let Some(first) = first.filter(|_| !all.more) {
                 assert!(all.problems.iter().any(|problem| problem.message == first.message), "{first:?}");
             }
+            // a form that is found is one, and stays
+            if let Ok(form) = palmistry::system::format_text("damaged.proof", text) {
+                assert_eq!(palmistry::system::format_text("damaged.proof", &form).ok().as_ref(), Some(&form));
+            }
         }
     });
     // the long ones are as slow to read as they are long, and have no other entries

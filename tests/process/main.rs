@@ -13,7 +13,9 @@ mod inputs;
 mod interrupts;
 mod prove;
 mod rank;
+mod shell;
 mod values;
+mod watch;
 mod writes;
 
 use std::io::Read;

@@ -12,9 +12,33 @@ pub fn mathml(formula: &Formula) -> String {
     out
 }
 
-/// A formula as elements between which a line may break: behind the relations, signs and commas that stand in no bracket.
+/// Pieces are put together up to this many letters and signs: a narrow screen has room for them.
+const PIECE: usize = 28;
+
+/// A formula as elements between which a line may break: behind the relations, signs and commas that stand in no bracket. Words
+/// stand between them.
 pub fn mathml_in_pieces(formula: &Formula) -> String {
     let Formula::Row(parts) = formula else { return mathml(formula) };
+    let mut written = Vec::new();
+    for run in parts.chunk_by(|a, b| !is_text(a) && !is_text(b)) {
+        match &run[0] {
+            Formula::Text(words) => written.push((*words).to_owned()),
+            _ => written.extend(pieces(run).into_iter().map(|piece| {
+                let mut text = String::from("<math>");
+                write_row(piece, &mut text);
+                text + "</math>"
+            })),
+        }
+    }
+    written.join(" ")
+}
+
+fn is_text(part: &Formula) -> bool {
+    matches!(part, Formula::Text(_))
+}
+
+/// A row cut where a line may break, into as few pieces as narrow screens have room for.
+fn pieces(row: &[Formula]) -> Vec<&[Formula]> {
     let breaks = |part: &Formula| {
         matches!(
             part,
@@ -27,38 +51,86 @@ pub fn mathml_in_pieces(formula: &Formula) -> String {
             )
         )
     };
-    let mut pieces = Vec::new();
-    let mut piece = String::new();
-    let mut finish = |piece: &mut String| {
-        if !piece.is_empty() {
-            pieces.push(format!("<math>{piece}</math>"));
-            piece.clear();
+    let mut found = Vec::new();
+    let (mut begin, mut end, mut letters) = (0, 0, 0);
+    for stretch in row.split_inclusive(breaks) {
+        let mut text = String::new();
+        write_row(stretch, &mut text);
+        let more = letters_of(&text);
+        if letters + more > PIECE && end > begin {
+            found.push(&row[begin..end]);
+            (begin, letters) = (end, 0);
         }
-    };
-    for part in parts {
-        let is_text = matches!(part, Formula::Text(_));
-        if is_text {
-            finish(&mut piece);
-        }
-        write(part, &mut piece);
-        if is_text || breaks(part) {
-            finish(&mut piece);
+        (end, letters) = (end + stretch.len(), letters + more);
+    }
+    found.push(&row[begin..end]);
+    found
+}
+
+/// How many letters and signs an element shows.
+fn letters_of(element: &str) -> usize {
+    element.split('<').map(|part| part.rsplit('>').next().unwrap_or_default().chars().count()).sum()
+}
+
+/// Parts side by side.
+fn write_row(parts: &[Formula], out: &mut String) {
+    // brackets grow with what stands beside them, unless they are a group of their own; where nothing is high they need none
+    let is_flat = parts.iter().all(is_flat);
+    let mut rest = parts;
+    while let [part, others @ ..] = rest {
+        rest = others;
+        match (part, others) {
+            // room around words belongs to the word, and the minus of a number to the number: one element where two would say the same
+            (Formula::Word(word), [Formula::Sign(FormulaSign::Thin), others @ ..]) if *word != "d" => {
+                element("mi", &format!("{word}{THIN}"), out);
+                rest = others;
+            }
+            (Formula::Sign(FormulaSign::Negative), [Formula::Number(digits), others @ ..]) => {
+                element("mn", &format!("−{digits}"), out);
+                rest = others;
+            }
+            // behind another sign it would stand between two
+            (Formula::Sign(FormulaSign::Negative), _) if others.len() + 1 < parts.len() => {
+                out.push_str("<mo form=\"prefix\">−</mo>");
+            }
+            (Formula::Fence(Fence::Round, inner), _) if is_flat => {
+                out.push_str("<mo>(</mo>");
+                write(inner, out);
+                out.push_str("<mo>)</mo>");
+            }
+            _ => write(part, out),
         }
     }
-    finish(&mut piece);
-    pieces.join(" ")
+}
+
+/// A narrow space.
+const THIN: char = '\u{2009}';
+
+/// Not higher than letters with their indices and exponents.
+fn is_flat(formula: &Formula) -> bool {
+    match formula {
+        Formula::Fraction(..) | Formula::Root(_) | Formula::Matrix(_) | Formula::Sign(FormulaSign::At) => {
+            false
+        }
+        Formula::Row(parts) => parts.iter().all(is_flat),
+        Formula::Fence(_, inner) => is_flat(inner),
+        Formula::Scripts { base, below, above } => {
+            is_flat(base) && [below, above].into_iter().flatten().all(|script| is_flat(script))
+        }
+        _ => true,
+    }
 }
 
 fn write(formula: &Formula, out: &mut String) {
     match formula {
         Formula::Number(digits) => element("mn", digits, out),
         Formula::Name(name) => write_name(name, None, out),
-        Formula::Word("d") => out.push_str("<mi mathvariant=\"normal\">d</mi>"),
+        Formula::Word("d") => element("mtext", "d", out),
         Formula::Word(word) => element("mi", word, out),
         Formula::Literal(text) => element("mtext", text, out),
         Formula::Text(text) => element("mtext", text, out),
         Formula::Sign(sign) => out.push_str(sign_of(*sign)),
-        Formula::Row(parts) => parts.iter().for_each(|part| write(part, out)),
+        Formula::Row(parts) => write_row(parts, out),
         Formula::Fraction(top, bottom) => {
             out.push_str("<mfrac>");
             one(top, out);
@@ -114,9 +186,14 @@ fn write(formula: &Formula, out: &mut String) {
 fn one(formula: &Formula, out: &mut String) {
     match formula {
         Formula::Row(parts) if parts.len() == 1 => one(&parts[0], out),
+        Formula::Row(parts)
+            if matches!(parts[..], [Formula::Sign(FormulaSign::Negative), Formula::Number(_)]) =>
+        {
+            write_row(parts, out);
+        }
         Formula::Row(parts) => {
             out.push_str("<mrow>");
-            parts.iter().for_each(|part| write(part, out));
+            write_row(parts, out);
             out.push_str("</mrow>");
         }
         Formula::Name(name) if !name.from.is_empty() => {
@@ -138,7 +215,8 @@ fn write_name(name: &FormulaName, above: Option<&Formula>, out: &mut String) {
     for from in &name.from {
         element("mtext", &format!("{from}."), out);
     }
-    let tag = match (name.index.is_empty(), above) {
+    let symbol = name.symbol();
+    let tag = match (name.index.is_empty() || symbol.is_some(), above) {
         (true, None) => None,
         (true, Some(_)) => Some("msup"),
         (false, None) => Some("msub"),
@@ -147,6 +225,21 @@ fn write_name(name: &FormulaName, above: Option<&Formula>, out: &mut String) {
     if let Some(tag) = tag {
         out.push_str(&format!("<{tag}>"));
     }
+    match symbol {
+        // one element where several would say the same: a page has thousands of them
+        Some(symbol) => element("mi", &symbol, out),
+        None => write_parts(name, out),
+    }
+    if let Some(above) = above {
+        one(above, out);
+    }
+    if let Some(tag) = tag {
+        out.push_str(&format!("</{tag}>"));
+    }
+}
+
+/// The letters of a name with its accents, and its index.
+fn write_parts(name: &FormulaName, out: &mut String) {
     name.accents.iter().for_each(|_| out.push_str("<mover>"));
     letters(&name.letters, out);
     for accent in &name.accents {
@@ -169,12 +262,6 @@ fn write_name(name: &FormulaName, above: Option<&Formula>, out: &mut String) {
         }
         out.push_str(if several { "</mrow>" } else { "" });
     }
-    if let Some(above) = above {
-        one(above, out);
-    }
-    if let Some(tag) = tag {
-        out.push_str(&format!("</{tag}>"));
-    }
 }
 
 fn letters(letters: &str, out: &mut String) {
@@ -190,13 +277,13 @@ fn sign_of(sign: FormulaSign) -> &'static str {
         FormulaSign::Minus | FormulaSign::Negative => "<mo>−</mo>",
         FormulaSign::Dot => "<mo>·</mo>",
         FormulaSign::Cross => "<mo>×</mo>",
-        FormulaSign::Thin => "<mspace width=\".2em\"/>",
+        FormulaSign::Thin => "<mi>\u{2009}</mi>",
         FormulaSign::Comma => "<mo>,</mo>",
-        FormulaSign::IndexComma => "<mo rspace=\"0\">,</mo>",
+        FormulaSign::IndexComma => "<mtext>,</mtext>",
         FormulaSign::In => "<mo>∈</mo>",
         FormulaSign::At => "<mo>|</mo>",
         FormulaSign::Partial => "<mo>∂</mo>",
-        FormulaSign::Transpose => "<mi mathvariant=\"normal\">T</mi>",
+        FormulaSign::Transpose => "<mtext>T</mtext>",
         FormulaSign::Relation(relation) => match relation {
             Relation::Equal => "<mo>=</mo>",
             Relation::NotEqual => "<mo>≠</mo>",

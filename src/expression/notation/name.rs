@@ -45,6 +45,26 @@ pub(super) fn greek(letters: &str) -> Option<(char, &'static str)> {
     GREEK.iter().find(|(name, _, _)| *name == letters).map(|(_, letter, latex)| (*letter, *latex))
 }
 
+/// A letter in the slanted alphabet of mathematics (Unicode, Mathematical Alphanumeric Symbols): what MathML makes of a single
+/// letter by itself, for places where more stands beside it.
+fn slanted(letter: char) -> Option<char> {
+    let (first, alphabet) = match letter {
+        // the one letter that had a place already
+        'h' => return Some('\u{210e}'),
+        'A'..='Z' => ('A', 0x1d434),
+        'a'..='z' => ('a', 0x1d44e),
+        'Α'..='Ω' => ('Α', 0x1d6e2),
+        'α'..='ω' => ('α', 0x1d6fc),
+        _ => return None,
+    };
+    char::from_u32(alphabet + (u32::from(letter) - u32::from(first)))
+}
+
+/// Digits below the line; none where something else stands among them.
+fn lowered(digits: &str) -> Option<String> {
+    digits.chars().map(|c| char::from_u32(0x2080 + c.to_digit(10)?)).collect()
+}
+
 impl Accent {
     /// The accent that the last part of a name says.
     fn of(part: &str) -> Option<Accent> {
@@ -106,6 +126,20 @@ impl FormulaName {
         Some(name)
     }
 
+    /// A letter without accents and the digits of its index as one symbol: `𝜔₀`.
+    pub(super) fn symbol(&self) -> Option<String> {
+        let mut letters = self.letters.chars();
+        let letter = match (greek(&self.letters), letters.next(), letters.next()) {
+            (Some((letter, _)), _, _) => letter,
+            (None, Some(letter), None) => letter,
+            _ => return None,
+        };
+        match &self.index[..] {
+            [index] if self.accents.is_empty() => Some(format!("{}{}", slanted(letter)?, lowered(index)?)),
+            _ => None,
+        }
+    }
+
     /// Whether its letters are more than one, so that they stand upright and need room.
     pub(super) fn is_wide(&self) -> bool {
         !self.from.is_empty() || (self.letters.len() > 1 && greek(&self.letters).is_none())
@@ -118,8 +152,7 @@ pub fn in_letters(text: &str) -> String {
     let plain = |name: &FormulaName| name.accents.is_empty() && name.from.is_empty() && name.index.len() < 2;
     let Some(name) = FormulaName::of(text).filter(plain) else { return text.to_owned() };
     let index = name.index.first().map_or("", String::as_str);
-    let below: Option<String> = index.chars().map(|c| char::from_u32(0x2080 + c.to_digit(10)?)).collect();
-    match (greek(&name.letters), below) {
+    match (greek(&name.letters), lowered(index)) {
         (Some((letter, _)), Some(below)) => format!("{letter}{below}"),
         (None, Some(below)) if name.letters.len() == 1 => format!("{}{below}", name.letters),
         _ => text.to_owned(),

@@ -1,8 +1,9 @@
 //! Certificates on regions, as pictures.
 
 use crate::certificate::{BoxStanding, RegionAnswer, RegionMap};
+use crate::report::axis::{axis, number, room};
 use crate::report::drawing::{Canvas, INK, MESH, svg};
-use crate::report::plot::axis;
+
 use plotters::prelude::*;
 
 const LINE: RGBColor = RGBColor(0, 114, 178);
@@ -76,7 +77,7 @@ pub fn region_map(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> Str
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
             .x_label_area_size(38)
-            .y_label_area_size(50)
+            .y_label_area_size(room((map.y.1, map.y.2), |v| number(v, map.y.2 - map.y.1)))
             .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
         let smallest = ((map.x.2 - map.x.1) / 100.0, (map.y.2 - map.y.1) / 70.0);
         // all of one standing together, so that they are one path, and then their borders
@@ -98,8 +99,10 @@ pub fn region_map(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> Str
         chart
             .configure_mesh()
             .disable_mesh()
-            .x_labels(6)
+            .x_labels(5)
             .y_labels(6)
+            .x_label_formatter(&|v| number(*v, map.x.2 - map.x.1))
+            .y_label_formatter(&|v| number(*v, map.y.2 - map.y.1))
             .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_desc(axis(&map.x.0, units[0]))
             .y_desc(axis(&map.y.0, units[1]))

@@ -63,8 +63,7 @@ pub fn claims_text(
     let unexpected = layout.paint(tone, &format!("{failed} not as expected"));
     let counts = counts_text(outcomes);
     let colon = if counts.is_empty() { "" } else { ": " };
-    let total =
-        format!("{} claims{colon}{counts}; {unexpected}, {}", outcomes.len(), seconds(summary.seconds));
+    let total = format!("{} claims{colon}{counts}; {unexpected}, {:.1} s", outcomes.len(), summary.seconds);
     lines.push(layout.wrap("", 2, &total));
     if outcomes.len() < summary.claims {
         lines.push(format!("interrupted: {} claims are not decided", summary.claims - outcomes.len()));
@@ -72,10 +71,6 @@ pub fn claims_text(
         lines.push("interrupted while the files were read".to_owned());
     }
     lines.join("\n")
-}
-
-fn seconds(seconds: f64) -> String {
-    if seconds < 1.0 { format!("{seconds:.2} s") } else { format!("{seconds:.1} s") }
 }
 
 /// An outcome: a line where it is as expected, with further ones where there is something to explain; otherwise where it

@@ -1,6 +1,7 @@
 //! Curves of several observers in one frame: their looks, the axes, and what of a curve fits between these.
 
 use crate::experiment::Method;
+use crate::report::axis::number;
 use crate::report::drawing::{Drawing, INK, MESH, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -287,16 +288,6 @@ fn cut(points: &[(f64, f64)], (low, high): (f64, f64)) -> Vec<Vec<(f64, f64)>> {
     runs
 }
 
-/// A number along an axis of some span.
-pub(super) fn number(value: f64, span: f64) -> String {
-    let value = if value.abs() < 1e-9 * span { 0.0 } else { value };
-    if !(1e-2..1e5).contains(&span) {
-        return if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") };
-    }
-    let decimals = (1.0 - span.log10().floor()).max(0.0) as usize;
-    format!("{value:.decimals$}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -319,13 +310,5 @@ mod tests {
         assert!(kept.contains(&points[4321]) && kept.contains(&points[7777]));
         assert!(kept.contains(&points[0]) && kept.contains(&points[9999]));
         assert!(kept.windows(2).all(|pair| pair[0].0 < pair[1].0));
-    }
-
-    #[test]
-    fn an_axis_has_sensible_numbers() {
-        assert_eq!(number(0.30000000000000004, 1.4), "0.3");
-        assert_eq!(number(-1e-17, 1.0), "0.0");
-        assert_eq!(number(2e-8, 1e-7), "2.0e-8");
-        assert_eq!(number(150.0, 400.0), "150");
     }
 }

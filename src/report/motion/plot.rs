@@ -1,21 +1,18 @@
 //! What observers made of an experiment, over time: as figure 4.4, and the errors beside the bound.
 
 use crate::experiment::Answer;
+use crate::report::axis::{axis, unit_of};
 use crate::report::motion::answers::Observed;
 use crate::report::motion::curves::{Curve, Frame, Shown, draw};
-use crate::report::names::unit_of;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
 /// Errors below this are drawn there.
 const LEAST: f64 = 1e-17;
 
-/// A name with its unit, where that is known.
-fn with_unit(observed: &Observed<'_>, name: &str) -> String {
-    match unit_of(&observed.experiment.system, name) {
-        Some(unit) => format!("{name}, {unit}"),
-        None => name.to_owned(),
-    }
+/// A name with the unit that its model declares for it.
+pub(super) fn with_unit(observed: &Observed<'_>, name: &str) -> String {
+    axis(name, unit_of(&observed.experiment.system, name).as_deref())
 }
 
 fn times(observed: &Observed<'_>) -> (f64, f64) {

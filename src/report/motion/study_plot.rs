@@ -1,10 +1,10 @@
 //! Studies of observers as pictures: the error over noise beside its bound, and the first guesses from which a method arrives.
 
 use crate::experiment::Basin;
+use crate::report::axis::number;
 use crate::report::drawing::{Canvas, INK, MESH, svg};
 use crate::report::motion::answers::Observed;
-use crate::report::motion::curves::number;
-use crate::report::names::unit_of;
+use crate::report::motion::plot::with_unit;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -50,7 +50,6 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
             .x_label_area_size(36)
             .y_label_area_size(64)
             .build_cartesian_2d((left..right).log_scale(), (low..high).log_scale())?;
-        let unit = unit_of(&observed.experiment.system, name);
         chart
             .configure_mesh()
             .light_line_style(WHITE)
@@ -61,7 +60,7 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
             .x_label_formatter(&|v| format!("{v:.0e}"))
             .y_label_formatter(&|v| format!("{v:.0e}"))
             .x_desc("standard deviation of a reading, m")
-            .y_desc(unit.map_or_else(|| (*name).to_owned(), |unit| format!("{name}, {unit}")))
+            .y_desc(with_unit(observed, name))
             .axis_desc_style(("sans-serif", 12))
             .draw()?;
         chart.draw_series(LineSeries::new(bounds.iter().copied(), BOUND.stroke_width(2)))?;
@@ -128,8 +127,8 @@ pub(super) fn basin(observed: &Observed<'_>, basin: &Basin) -> String {
             .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_label_formatter(&|v| number(*v, x.1 - x.0))
             .y_label_formatter(&|v| number(*v, y.1 - y.0))
-            .x_desc(format!("first guess of {}", basin.names[0]))
-            .y_desc(format!("first guess of {}", basin.names[1]))
+            .x_desc(format!("first guess of {}", with_unit(observed, &basin.names[0])))
+            .y_desc(format!("first guess of {}", with_unit(observed, &basin.names[1])))
             .axis_desc_style(("sans-serif", 12))
             .draw()?;
         if let Some((a, b)) = truth

@@ -2,8 +2,8 @@
 
 use crate::experiment::{Answer, error};
 use crate::observer::{Update, UpdateEnd};
+use crate::report::axis::unit_of;
 use crate::report::motion::answers::{Observed, standing_name};
-use crate::report::names::unit_of;
 use maud::{Markup, html};
 
 /// More updates than these are in the JSON only.

@@ -44,9 +44,17 @@ impl Anchors {
         for file in files {
             anchors.files.push(unique(plain(stem(&file.system.name)), &mut taken));
         }
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for claim in files.iter().flat_map(|file| &file.system.claims) {
+            *counts.entry(&claim.id).or_default() += 1;
+        }
         for (place, file) in files.iter().enumerate() {
             for claim in &file.system.claims {
-                let wish = format!("{}-{}", anchors.files[place], plain(&claim.id));
+                // short addresses: the file only where two have a claim of the same name
+                let wish = match counts.get(claim.id.as_str()) {
+                    Some(1) => plain(&claim.id),
+                    _ => format!("{}-{}", anchors.files[place], plain(&claim.id)),
+                };
                 anchors.claims.insert((place, claim.id.clone()), unique(wish, &mut taken));
                 let before = file.system.source.get(..claim.span.start).unwrap_or_default();
                 let line = 1 + before.bytes().filter(|byte| *byte == b'\n').count();
@@ -71,9 +79,9 @@ impl Anchors {
         self.lines.get(&(file, id.to_owned())).copied()
     }
 
-    /// The name of a line.
-    pub fn line_name(&self, file: usize, line: usize) -> String {
-        format!("{}:{line}", self.file(file))
+    /// The name of a line: in a name of the others there is no colon.
+    pub fn line_name(file: usize, line: usize) -> String {
+        format!("{file}:{line}")
     }
 
     /// The lines of a file that something points to.

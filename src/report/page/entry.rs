@@ -16,10 +16,10 @@ pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>)
     html! {
         article #(anchor) data-w=(outcome.word()) class=[(!outcome.ok).then_some("bad")] {
             h4 {
-                i { (outcome.id) } " " b.v { (outcome.word()) } " "
-                @if !outcome.ok { b { "expected: " (outcome.expected_word()) } " " }
+                i { (outcome.id) } " " b { (outcome.word()) } " "
+                @if !outcome.ok { em { "expected: " (outcome.expected_word()) } " " }
                 @if let Some(line) = anchors.line(file, &outcome.id) {
-                    a href=(format!("#{}", anchors.line_name(file, line))) { "line " (line) }
+                    a href=(format!("#{}", Anchors::line_name(file, line))) { (line) }
                 }
             }
             @match outcome.fault {
@@ -58,8 +58,8 @@ fn faulty(outcome: &Outcome, fault: Flaw, engines: &Engines<'_>) -> Markup {
 pub(super) fn formula(text: &str) -> Markup {
     html! {
         @match formula_mathml(text) {
-            Some(formula) => { div.f { (PreEscaped(formula)) } }
-            None => { div.f { code { (text) } } }
+            Some(formula) => { div { (PreEscaped(formula)) } }
+            None => { div { code { (text) } } }
         }
     }
 }
@@ -71,6 +71,9 @@ fn restated(outcome: &Outcome) -> Markup {
         }
     }
 }
+
+/// Names are letters.
+pub(super) const ENGINES: usize = 26;
 
 /// What decides claims: a name for each that decides several, so that it need not be said a thousand times.
 pub(super) struct Engines<'a>(Vec<&'a str>);
@@ -86,7 +89,7 @@ impl<'a> Engines<'a> {
         }
         let mut found: Vec<(&str, usize)> = counts.into_iter().filter(|(_, count)| *count > 3).collect();
         found.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-        found.truncate(26);
+        found.truncate(ENGINES);
         Engines(found.into_iter().map(|(engine, _)| engine).collect())
     }
 
@@ -106,7 +109,7 @@ impl<'a> Engines<'a> {
         match verdict {
             Verdict::Proved { engine, log2_error } => match self.0.iter().position(|known| known == engine) {
                 Some(place) => html! {
-                    "by " a href=(format!("#{}", name(place))) { (char::from(b'A' + place as u8)) } (certainty(*log2_error))
+                    "by " a href=(format!("#{}", name(place))) { (name(place)) } (certainty(*log2_error))
                 },
                 None => explain(verdict),
             },
@@ -115,15 +118,28 @@ impl<'a> Engines<'a> {
     }
 }
 
-fn name(engine: usize) -> String {
-    format!("by{engine}")
+/// What an engine is called on the page.
+pub(super) fn name(engine: usize) -> String {
+    char::from(b'A' + engine as u8).to_string()
 }
 
 fn certainty(log2_error: f64) -> Markup {
     html! {
         @if log2_error == f64::NEG_INFINITY { "; certain" }
-        @else { "; error below 2" sup { (error_bound(log2_error).trim_start_matches("2^")) } }
+        @else { "; error below " (raised(&error_bound(log2_error))) }
     }
+}
+
+/// A power as it is written, its exponent above the line: `2⁻¹⁰¹` for `2^-101`.
+fn raised(power: &str) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let Some((base, exponent)) = power.split_once('^') else { return power.to_owned() };
+    let raise = |c: char| match c.to_digit(10) {
+        Some(digit) => DIGITS[digit as usize],
+        None if c == '-' => '⁻',
+        None => c,
+    };
+    base.chars().chain(exponent.chars().map(raise)).collect()
 }
 
 /// What stands behind a verdict.

@@ -2,11 +2,13 @@
 
 use crate::certificate::RegionAnswer;
 use crate::paper::Findings;
+use crate::report::axis::unit_of;
 use crate::report::certificate::answer::region_text;
 use crate::report::certificate::plot::{region_curve, region_map};
 use crate::report::stress::answer::stress_pictures;
 use crate::report::trade::answer::{TRADE_FRONT_HEADINGS, trade_front_table};
 use crate::report::trade::plot::trade_plot;
+use crate::system::System;
 use crate::tradeoff::Trade;
 use crate::tradeoff::stress::StressStudy;
 use maud::{Markup, PreEscaped, html};
@@ -19,8 +21,8 @@ pub(super) fn has_extremes(found: &Findings) -> bool {
 /// What was found of it, as a section of the page.
 pub(super) fn extremes(found: &Findings) -> Markup {
     let stress: Vec<&StressStudy> = found.files.iter().filter_map(|file| file.stress.as_ref()).collect();
-    let regions: Vec<&RegionAnswer> =
-        found.files.iter().filter_map(|file| file.certificate.as_ref()).collect();
+    let regions: Vec<(&System, &RegionAnswer)> =
+        found.files.iter().filter_map(|file| Some((&file.system, file.certificate.as_ref()?))).collect();
     html! {
         section #extremes {
             h2 { "Speed against accuracy" }
@@ -33,14 +35,14 @@ pub(super) fn extremes(found: &Findings) -> Markup {
     }
 }
 
-fn certified(regions: &[&RegionAnswer]) -> Markup {
+fn certified(regions: &[(&System, &RegionAnswer)]) -> Markup {
     html! {
         h3 { "Between the samples" }
         p {
             "Full rank proved on whole sub-boxes of the sample box by interval arithmetic, the largest halved first; a short "
             "version. " code { "palmistry certify" } " goes on for as long as it is given."
         }
-        @for answer in regions {
+        @for (system, answer) in regions {
             details {
                 summary { (region_text(answer).lines().take(2).collect::<Vec<_>>().join(": ")) }
                 pre { (region_text(answer)) }
@@ -48,7 +50,9 @@ fn certified(regions: &[&RegionAnswer]) -> Markup {
                     div.grid {
                         (PreEscaped(region_curve(answer, "proved")))
                         @if let Some(map) = &answer.map {
-                            (PreEscaped(region_map(map, "the box, in two coordinates", [None, None])))
+                            @let units = [unit_of(system, &map.x.0), unit_of(system, &map.y.0)];
+                            @let units = [units[0].as_deref(), units[1].as_deref()];
+                            (PreEscaped(region_map(map, "the box, in two coordinates", units)))
                         }
                     }
                     figcaption {

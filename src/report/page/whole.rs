@@ -2,11 +2,13 @@
 
 use super::anchors::{Anchors, placed, stem};
 use super::claims::{all_claims, equations, faults, tally};
+use super::entry::{ENGINES, name};
 use super::extremes::{extremes, has_extremes};
 use super::regime::{file_section, has_a_section};
 use super::source::sources;
 use crate::claim::Outcome;
 use crate::paper::Findings;
+use crate::report::axis::unit_of;
 use crate::report::document::document;
 use crate::report::motion::answers::Observed;
 use crate::report::motion::section::observed_section;
@@ -31,7 +33,7 @@ const SECTIONS: [&str; 12] = [
 /// The page as HTML.
 pub fn page(found: &Findings) -> String {
     let names: Vec<String> = (0..found.files.len()).map(|place| format!("file{place}")).collect();
-    let engines: Vec<String> = (0..26).map(|place| format!("by{place}")).collect();
+    let engines: Vec<String> = (0..ENGINES).map(name).collect();
     let reserved: Vec<&str> = SECTIONS
         .into_iter()
         .chain(["shown"])
@@ -58,7 +60,7 @@ pub fn page(found: &Findings) -> String {
         main {
             @if numbering.count() > 0 { (equations(numbering, &claims, &anchors)) }
             (faults(numbering, &claims, &anchors))
-            @for (file, name) in sections() { (file_section(name, file, &|_| None)) }
+            @for (file, name) in sections() { (file_section(name, file, &|name| unit_of(&file.system, name))) }
             @if has_extremes(found) { (extremes(found)) }
             @if !experiments.is_empty() { (observed_section(&experiments)) }
             (all_claims(&claims, &anchors, &files))

@@ -1,9 +1,19 @@
 //! A picture as SVG for pages in light and dark: what plotters draws, with shapes of one look written as one path, colours that
 //! follow the page, and numbers to be read under the pointer.
 
+mod element;
+mod layer;
+mod track;
+
+use element::{Kind, Look, elements};
+use layer::{Layer, layers};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::fmt::Write;
+
+/// What a picture has that stands alone; on a page the page has it.
+pub(super) const STANDALONE: &str =
+    " xmlns=\"http://www.w3.org/2000/svg\" color=\"#282c34\" font-family=\"system-ui,sans-serif\"";
 
 /// What is drawn on.
 pub(super) type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -79,26 +89,17 @@ impl Canvas<'_> {
     fn written(&self, text: &str, Extras { hovers, cells }: &Extras) -> String {
         let (width, height) = self.size;
         let mut out = format!(
-            "<svg role=\"img\" aria-label=\"{}\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
-             width=\"{width}\" height=\"{height}\" color=\"#282c34\" font-family=\"system-ui,sans-serif\"{}>",
+            "<svg role=\"img\" aria-label=\"{}\"{STANDALONE} viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
+             height=\"{height}\"{}>",
             escaped(self.title),
             if self.is_crisp { " shape-rendering=\"crispEdges\"" } else { "" }
         );
         if let Some(cells) = cells {
             self.cells(cells, &mut out);
         }
-        let mut last: Option<Look> = None;
-        let mut path = String::new();
-        for element in elements(text) {
-            let Some((look, part)) = element.shape() else { continue };
-            // what is half transparent adds up where it overlaps: each for itself
-            if last.as_ref() != Some(&look) || look.opacity != "1" {
-                self.finish(last.take(), &mut path, &mut out);
-            }
-            path.push_str(&part);
-            last = Some(look);
+        for Layer { look, drawn, .. } in layers(elements(text).filter_map(|element| element.shape())) {
+            self.finish(&look, &drawn, &mut out);
         }
-        self.finish(last, &mut path, &mut out);
         if !hovers.is_empty() {
             out.push_str("<g fill=\"#0000\">");
             for Hover { corners: [left, top, right, bottom], text } in hovers {
@@ -153,17 +154,30 @@ impl Canvas<'_> {
     }
 
     /// Writes down the shapes of one look.
-    fn finish(&self, look: Option<Look>, path: &mut String, out: &mut String) {
-        let Some(look) = look else { return };
-        let drawn = std::mem::take(path);
+    fn finish(&self, look: &Look, drawn: &str, out: &mut String) {
         let opacity =
             if look.opacity == "1" { String::new() } else { format!(" opacity=\"{}\"", look.opacity) };
         let _ = match &look.kind {
             Kind::Fill => {
                 let known = self.by_colour.iter().find(|(colour, _)| hex(*colour) == look.colour);
-                let title =
-                    known.map_or(String::new(), |(_, text)| format!("<title>{}</title>", escaped(text)));
-                write!(out, "<path fill=\"{}\"{opacity} d=\"{drawn}\">{title}</path>", paint(&look.colour))
+                let colour = paint(&look.colour);
+                match known {
+                    Some((_, text)) => {
+                        let title = escaped(text);
+                        write!(
+                            out,
+                            "<path fill=\"{colour}\"{opacity} d=\"{drawn}\"><title>{title}</title></path>"
+                        )
+                    }
+                    None => write!(out, "<path fill=\"{colour}\"{opacity} d=\"{drawn}\"/>"),
+                }
+            }
+            Kind::Dots(width) => {
+                let colour = paint(&look.colour);
+                write!(
+                    out,
+                    "<path stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linecap=\"round\"{opacity} d=\"{drawn}\"/>"
+                )
             }
             Kind::Stroke(width) => {
                 let colour = paint(&look.colour);
@@ -178,151 +192,6 @@ impl Canvas<'_> {
             }
         };
     }
-}
-
-#[derive(Clone, PartialEq, Eq)]
-struct Look {
-    kind: Kind,
-    colour: String,
-    opacity: String,
-}
-
-#[derive(Clone, PartialEq, Eq)]
-enum Kind {
-    Fill,
-    Stroke(String),
-    Words { size: i32, anchor: String },
-}
-
-/// An element of the SVG of plotters.
-struct Element<'a> {
-    tag: &'a str,
-    attributes: Vec<(&'a str, &'a str)>,
-    words: &'a str,
-}
-
-/// The elements of a flat SVG, in order.
-fn elements(text: &str) -> impl Iterator<Item = Element<'_>> {
-    text.split('<').skip(1).filter_map(|part| {
-        let (head, words) = part.split_once('>')?;
-        let (tag, rest) = head.split_once(' ')?;
-        let mut attributes = Vec::new();
-        let mut quoted = rest.split('"');
-        while let (Some(name), Some(value)) = (quoted.next(), quoted.next()) {
-            attributes.push((name.trim().trim_end_matches('='), value));
-        }
-        (tag != "svg").then_some(Element { tag, attributes, words: words.trim() })
-    })
-}
-
-impl Element<'_> {
-    fn attribute(&self, name: &str) -> &str {
-        self.attributes.iter().find(|(known, _)| *known == name).map_or("", |(_, value)| value)
-    }
-
-    fn number(&self, name: &str) -> i32 {
-        self.attribute(name).parse().unwrap_or(0)
-    }
-
-    /// How it looks, and its part of a path.
-    fn shape(&self) -> Option<(Look, String)> {
-        let opacity = match self.attribute("opacity") {
-            "" => "1".to_owned(),
-            other => other.to_owned(),
-        };
-        let (fill, stroke) = (self.attribute("fill"), self.attribute("stroke"));
-        let look =
-            |kind: Kind, colour: &str| Look { kind, colour: colour.to_owned(), opacity: opacity.clone() };
-        let lined = || match self.attribute("stroke-width") {
-            "" => "1".to_owned(),
-            width => width.to_owned(),
-        };
-        let outline = |path: String| match fill {
-            "none" => (look(Kind::Stroke(lined()), stroke), path),
-            _ => (look(Kind::Fill, fill), path),
-        };
-        Some(match self.tag {
-            "rect" => {
-                let [x, y, width, height] = ["x", "y", "width", "height"].map(|name| self.number(name));
-                outline(format!("M{x} {y}h{width}v{height}h{}z", -width))
-            }
-            "line" => {
-                let ends = [("x1", "y1"), ("x2", "y2")].map(|(x, y)| (self.number(x), self.number(y)));
-                (look(Kind::Stroke(lined()), stroke), track(&ends))
-            }
-            "polyline" => (look(Kind::Stroke(lined()), stroke), track(&self.points())),
-            "polygon" => {
-                let mut points = self.points();
-                // all one way around, so that shapes of one path that overlap do not cut holes
-                let turned = |pair: (&(i32, i32), &(i32, i32))| pair.0.0 * pair.1.1 - pair.1.0 * pair.0.1;
-                let around = points.iter().zip(points.iter().cycle().skip(1)).map(turned).sum::<i32>();
-                if around < 0 {
-                    points.reverse();
-                }
-                (look(Kind::Fill, fill), track(&points) + "z")
-            }
-            "circle" => {
-                let [x, y, r] = ["cx", "cy", "r"].map(|name| self.number(name));
-                let twice = 2 * r;
-                outline(format!("M{} {y}a{r} {r} 0 1 1 {twice} 0a{r} {r} 0 1 1-{twice} 0z", x - r))
-            }
-            "text" => self.words(&look),
-            _ => return None,
-        })
-    }
-
-    fn points(&self) -> Vec<(i32, i32)> {
-        let pair = |text: &str| {
-            let (x, y) = text.split_once(',')?;
-            Some((x.parse().ok()?, y.parse().ok()?))
-        };
-        self.attribute("points").split_whitespace().filter_map(pair).collect()
-    }
-
-    fn words(&self, look: &impl Fn(Kind, &str) -> Look) -> (Look, String) {
-        // plotters takes a font's height for 1.24 of its size
-        let size = (self.attribute("font-size").parse::<f64>().unwrap_or(10.0) * 1.24).round();
-        let [x, y] = [self.number("x"), self.number("y")];
-        let down = match self.attribute("dy") {
-            "0.76em" => 0.76,
-            "0.5ex" => 0.33,
-            _ => -0.25,
-        };
-        let turn = self.attribute("transform").split(['(', ',']).nth(1).unwrap_or_default();
-        let words = self.words;
-        let (down, kind) = (
-            (down * size).round() as i32,
-            Kind::Words { size: size as i32, anchor: self.attribute("text-anchor").to_owned() },
-        );
-        let placed = match turn {
-            "" => format!("<text x=\"{x}\" y=\"{}\">{words}</text>", y + down),
-            turn => {
-                format!(
-                    "<text x=\"{x}\" y=\"{y}\" dy=\"{down}\" transform=\"rotate({turn} {x} {y})\">{words}</text>"
-                )
-            }
-        };
-        (look(kind, self.attribute("fill")), placed)
-    }
-}
-
-/// A line through points, by steps.
-fn track(points: &[(i32, i32)]) -> String {
-    let Some(first) = points.first() else { return String::new() };
-    let mut path = format!("M{} {}", first.0, first.1);
-    let mut steps = String::new();
-    for (from, to) in points.iter().zip(&points[1..]) {
-        for value in [to.0 - from.0, to.1 - from.1] {
-            if value >= 0 && !steps.is_empty() {
-                steps.push(' ');
-            }
-            let _ = write!(steps, "{value}");
-        }
-    }
-    if !steps.is_empty() {
-        let _ = write!(path, "l{steps}");
-    }
-    path
 }
 
 fn hex(colour: RGBColor) -> String {
@@ -404,7 +273,7 @@ mod tests {
             elements(&format!("<polygon opacity=\"1\" fill=\"#112233\" points=\"{around}\"/>"))
                 .next()
                 .and_then(|e| e.shape())
-                .map(|s| s.1)
+                .map(|s| s.part)
         };
         assert_eq!(square("0,0 4,0 4,4 0,4 "), Some("M0 0l4 0 0 4-4 0z".to_owned()));
         assert_eq!(square("0,4 4,4 4,0 0,0 "), Some("M0 0l4 0 0 4-4 0z".to_owned()));

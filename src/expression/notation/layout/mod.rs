@@ -1,8 +1,13 @@
 //! From syntax to what is set: brackets where they are needed, quotients as fractions, products side by side.
 
+mod call;
+mod parts;
+
 use super::{Fence, Formula, FormulaName, FormulaSign, latex::latex};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Relation};
 use crate::number::parse_decimal;
+use call::is_function;
+use parts::{joined, number, rational, round, scripts};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How tightly a formula holds together.
@@ -17,21 +22,6 @@ enum Binding {
     Power,
     Atom,
 }
-
-/// Functions whose names stand as they are, or with another word.
-const FUNCTIONS: [(&str, &str); 11] = [
-    ("sin", "sin"),
-    ("cos", "cos"),
-    ("tan", "tan"),
-    ("cot", "cot"),
-    ("sec", "sec"),
-    ("csc", "csc"),
-    ("asin", "arcsin"),
-    ("acos", "arccos"),
-    ("atan", "arctan"),
-    ("exp", "exp"),
-    ("log", "log"),
-];
 
 /// Upright words with a meaning: a name may not look like one.
 const WORDS: [&str; 17] = [
@@ -237,111 +227,6 @@ impl<'a> FormulaLayout<'a> {
         };
         factors.iter().enumerate().map(one).collect()
     }
-
-    fn power(&self, base: &Expr, exponent: i32) -> Formula {
-        let above = match exponent {
-            0.. => Formula::Number(exponent.to_string()),
-            _ => Formula::Row(vec![
-                Formula::Sign(FormulaSign::Negative),
-                Formula::Number(exponent.unsigned_abs().to_string()),
-            ]),
-        };
-        match &base.kind {
-            // not of a negative exponent: that would be read as the inverse function
-            ExprKind::Call(name, arguments) if is_function(base) && exponent > 1 => {
-                let word = scripts(Formula::Word(function_word(name)), None, Some(above));
-                let arguments = arguments.iter().map(|argument| self.expression(argument)).collect();
-                Formula::Row(vec![word, round(commas(arguments))])
-            }
-            _ => match self.at_least(base, Binding::Atom) {
-                Formula::Scripts { base, below, above: None } => {
-                    Formula::Scripts { base, below, above: Some(Box::new(above)) }
-                }
-                base => scripts(base, None, Some(above)),
-            },
-        }
-    }
-
-    /// A function of its arguments; `closed` where something follows, so that brackets have to say where they end.
-    fn call(&self, name: &str, arguments: &[Expr], closed: bool) -> (Formula, Binding) {
-        let all = || commas(arguments.iter().map(|argument| self.expression(argument)).collect());
-        match (name, arguments) {
-            ("sqrt", [inner]) => (Formula::Root(Box::new(self.expression(inner))), Binding::Atom),
-            ("abs", [inner]) => {
-                (Formula::Fence(Fence::Bars, Box::new(self.expression(inner))), Binding::Atom)
-            }
-            ("transpose", [inner]) => {
-                let above = Some(Formula::Sign(FormulaSign::Transpose));
-                (scripts(self.at_least(inner, Binding::Atom), None, above), Binding::Power)
-            }
-            ("inverse", [inner]) => {
-                let minus_one =
-                    Formula::Row(vec![Formula::Sign(FormulaSign::Negative), Formula::Number("1".into())]);
-                (scripts(self.at_least(inner, Binding::Atom), None, Some(minus_one)), Binding::Power)
-            }
-            ("dot" | "cross", [a, b]) => {
-                let sign = if name == "dot" { FormulaSign::Dot } else { FormulaSign::Cross };
-                let [a, b] = [a, b].map(|side| self.at_least(side, Binding::Power));
-                (Formula::Row(vec![a, Formula::Sign(sign), b]), Binding::Vectors)
-            }
-            ("L", [fields @ .., last]) if !fields.is_empty() => self.lie(fields, last, closed),
-            ("bracket", [_, _]) => (Formula::Fence(Fence::Square, Box::new(all())), Binding::Atom),
-            ("d", [inner]) => self.applied(Formula::Word("d"), inner, closed),
-            ("d", [inner, by @ ..]) => {
-                let partial = || Formula::Sign(FormulaSign::Partial);
-                let top = Formula::Row(vec![partial(), self.at_least(inner, Binding::Atom)]);
-                let by = commas(by.iter().map(|state| self.expression(state)).collect());
-                let bottom = Formula::Row(vec![partial(), round(by)]);
-                (Formula::Fraction(Box::new(top), Box::new(bottom)), Binding::Product)
-            }
-            ("det", [inner]) => self.applied(Formula::Word("det"), inner, closed),
-            ("rank", [inner]) => self.applied(Formula::Word("rank"), inner, closed),
-            ("pole", [inner, factor]) => {
-                let zero =
-                    [Formula::Sign(FormulaSign::Relation(Relation::Equal)), Formula::Number("0".into())];
-                let place = Formula::Row([self.expression(factor)].into_iter().chain(zero).collect());
-                let word = scripts(Formula::Word("pole"), Some(place), None);
-                (Formula::Row(vec![word, round(self.expression(inner))]), Binding::Prefix)
-            }
-            (name, [inner]) if FUNCTIONS.iter().any(|(known, _)| *known == name) => {
-                self.applied(Formula::Word(function_word(name)), inner, closed)
-            }
-            _ => (Formula::Row(vec![self.name(name), round(all())]), Binding::Prefix),
-        }
-    }
-
-    /// A function before its argument.
-    fn applied(&self, function: Formula, argument: &Expr, closed: bool) -> (Formula, Binding) {
-        let (inner, binding) = self.lay(argument);
-        let parts = if closed || binding < Binding::Atom || matches!(inner, Formula::Number(_)) {
-            vec![function, round(inner)]
-        } else {
-            vec![function, Formula::Sign(FormulaSign::Thin), inner]
-        };
-        (Formula::Row(parts), Binding::Prefix)
-    }
-
-    /// `L(f, g, h)` as the derivative along `f` of the one along `g` of `h`.
-    fn lie(&self, fields: &[Expr], last: &Expr, closed: bool) -> (Formula, Binding) {
-        let mut row = Vec::new();
-        for field in fields {
-            let letter = FormulaName::of("L").map_or(Formula::Word("L"), Formula::Name);
-            row.push(scripts(letter, Some(self.expression(field)), None));
-        }
-        match &last.kind {
-            ExprKind::Call(name, inner) if name == "L" && inner.len() > 1 => {
-                match self.call(name, inner, closed).0 {
-                    Formula::Row(parts) => row.extend(parts),
-                    other => row.push(other),
-                }
-            }
-            _ => match self.lay(last) {
-                (inner, Binding::Atom) if !closed && !matches!(inner, Formula::Number(_)) => row.push(inner),
-                (inner, _) => row.push(round(inner)),
-            },
-        }
-        (Formula::Row(row), Binding::Prefix)
-    }
 }
 
 /// The names in an expression, and whether something is differentiated along a field in it.
@@ -377,115 +262,5 @@ fn flatten<'e>(factors: &'e [(bool, Expr)], flat: &mut Vec<(bool, &'e Expr)>) {
             ExprKind::Product(inner) if !divides => flatten(inner, flat),
             _ => flat.push((*divides, factor)),
         }
-    }
-}
-
-fn is_function(expr: &Expr) -> bool {
-    matches!(&expr.kind, ExprKind::Call(name, arguments) if arguments.len() == 1 && FUNCTIONS.iter().any(|(known, _)| known == name))
-}
-
-fn function_word(name: &str) -> &'static str {
-    FUNCTIONS.iter().find(|(known, _)| *known == name).map_or("", |(_, word)| word)
-}
-
-fn round(inner: Formula) -> Formula {
-    Formula::Fence(Fence::Round, Box::new(inner))
-}
-
-fn scripts(base: Formula, below: Option<Formula>, above: Option<Formula>) -> Formula {
-    Formula::Scripts { base: Box::new(base), below: below.map(Box::new), above: above.map(Box::new) }
-}
-
-fn commas(parts: Vec<Formula>) -> Formula {
-    let mut row = Vec::new();
-    for part in parts {
-        if !row.is_empty() {
-            row.push(Formula::Sign(FormulaSign::Comma));
-        }
-        row.push(part);
-    }
-    Formula::Row(row)
-}
-
-/// Factors one after the other, with a sign or some room where they would run together.
-fn joined(factors: Vec<Formula>) -> Formula {
-    let mut row: Vec<Formula> = Vec::new();
-    for factor in factors {
-        let (first, last) = (first_of(&factor), row.last().map(last_of));
-        let sign = match (last, first) {
-            (None, _) => None,
-            (Some(_), Formula::Number(_)) => Some(FormulaSign::Dot),
-            (Some(Formula::Number(_)), Formula::Fraction(..)) => Some(FormulaSign::Dot),
-            (Some(last), first) if is_wide(last) || is_wide(first) => Some(FormulaSign::Thin),
-            _ => None,
-        };
-        row.extend(sign.map(Formula::Sign));
-        match factor {
-            Formula::Row(parts) => row.extend(parts),
-            other => row.push(other),
-        }
-    }
-    Formula::Row(row)
-}
-
-fn first_of(formula: &Formula) -> &Formula {
-    match formula {
-        Formula::Row(parts) => parts.first().map_or(formula, first_of),
-        Formula::Scripts { base, .. } => first_of(base),
-        other => other,
-    }
-}
-
-fn last_of(formula: &Formula) -> &Formula {
-    match formula {
-        Formula::Row(parts) => parts.last().map_or(formula, last_of),
-        other => other,
-    }
-}
-
-fn is_wide(formula: &Formula) -> bool {
-    match formula {
-        Formula::Word(_) | Formula::Literal(_) => true,
-        Formula::Name(name) => name.is_wide(),
-        Formula::Scripts { base, .. } => is_wide(base),
-        _ => false,
-    }
-}
-
-/// A decimal as it is written, its exponent as a power of ten.
-fn number(written: &str) -> (Formula, Binding) {
-    let Some((digits, exponent)) = written.split_once(['e', 'E']) else {
-        return (Formula::Number(written.to_owned()), Binding::Atom);
-    };
-    let exponent = exponent.trim_start_matches('+');
-    let above = match exponent.strip_prefix('-') {
-        Some(size) => {
-            Formula::Row(vec![Formula::Sign(FormulaSign::Negative), Formula::Number(size.to_owned())])
-        }
-        None => Formula::Number(exponent.to_owned()),
-    };
-    let power = scripts(Formula::Number("10".to_owned()), None, Some(above));
-    match digits {
-        "1" => (power, Binding::Power),
-        _ => {
-            let row = vec![Formula::Number(digits.to_owned()), Formula::Sign(FormulaSign::Dot), power];
-            (Formula::Row(row), Binding::Product)
-        }
-    }
-}
-
-/// A number that stands nowhere in the text.
-fn rational(value: &dashu::rational::RBig) -> (Formula, Binding) {
-    let (top, bottom) = (value.numerator(), value.denominator());
-    let number = |text: String| Formula::Number(text);
-    let size = number(top.to_string().trim_start_matches('-').to_owned());
-    let formula = match bottom.to_string().as_str() {
-        "1" => size,
-        bottom => Formula::Fraction(Box::new(size), Box::new(number(bottom.to_owned()))),
-    };
-    match (top.to_string().starts_with('-'), &formula) {
-        (true, _) => (Formula::Row(vec![Formula::Sign(FormulaSign::Negative), formula]), Binding::Sum),
-        (false, Formula::Number(_)) => (formula, Binding::Atom),
-        (false, _) => (formula, Binding::Product),
     }
 }

@@ -1,0 +1,67 @@
+//! Shapes of one look put together wherever that changes nothing: a shape may be drawn earlier than it was where it touches nothing
+//! that was drawn in between.
+
+use super::element::{Corners, Kind, Look, Shape};
+
+/// Shapes of one look.
+pub(super) struct Layer {
+    pub look: Look,
+    pub drawn: String,
+    places: Vec<Corners>,
+}
+
+/// Layers that are seen as the shapes one after the other are.
+pub(super) fn layers(shapes: impl Iterator<Item = Shape>) -> Vec<Layer> {
+    let mut found: Vec<Layer> = Vec::new();
+    for Shape { look, part, corners } in shapes {
+        // thin lines in the colour of the page are a mesh that is not to be seen
+        if look.kind == Kind::Stroke("1".to_owned()) && look.colour == "#FFFFFF" {
+            continue;
+        }
+        match home(&found, &look, &corners) {
+            Some(place) => {
+                found[place].drawn.push_str(&part);
+                found[place].places.push(corners);
+            }
+            None => found.push(Layer { look, drawn: part, places: vec![corners] }),
+        }
+    }
+    found
+}
+
+/// The last layer of a look, where nothing behind it is in the way.
+fn home(layers: &[Layer], look: &Look, corners: &Corners) -> Option<usize> {
+    // what is half transparent adds up where it overlaps: each for itself
+    if look.opacity != "1" {
+        return None;
+    }
+    let place = layers.iter().rposition(|layer| layer.look == *look)?;
+    let in_the_way = |layer: &Layer| layer.places.iter().any(|other| touch(other, corners));
+    (!layers[place + 1..].iter().any(in_the_way)).then_some(place)
+}
+
+/// Whether two rectangles have something in common.
+fn touch(a: &Corners, b: &Corners) -> bool {
+    a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shape(colour: &str, corners: Corners) -> Shape {
+        let look = Look { kind: Kind::Fill, colour: colour.to_owned(), opacity: "1".to_owned() };
+        Shape { look, part: colour.to_owned(), corners }
+    }
+
+    /// A red square beside a blue one joins the red one before it; one on the blue one stays on it.
+    #[test]
+    fn what_lies_on_another_stays_there() {
+        let squares = |last: Corners| {
+            let shapes = [shape("r", [0, 0, 4, 4]), shape("b", [10, 0, 14, 4]), shape("r", last)];
+            layers(shapes.into_iter()).into_iter().map(|layer| layer.drawn).collect::<Vec<_>>()
+        };
+        assert_eq!(squares([20, 0, 24, 4]), ["rr", "b"]);
+        assert_eq!(squares([12, 2, 20, 4]), ["r", "b", "r"]);
+    }
+}
