@@ -462,11 +462,13 @@ fn pictures_are_written() {
     let written: Value = serde_json::from_str(&read("certify.json")).unwrap();
     assert!(fraction(&written) > 0.9);
 
-    // a line through as many points as there are entries, with powers of ten up to the 3000 boxes below it
+    // one line, of no more points than there are entries (those on straight stretches are left out), with powers of ten up to
+    // the 3000 boxes below it
     let curve = Picture::read(&read("curve.svg"));
     assert_eq!(curve.title, written["title"].as_str().unwrap());
     let points = written["curve"].as_array().unwrap().len();
-    assert_eq!(curve.lines_of("#0072b2"), [points]);
+    let lines = curve.lines_of("#0072b2");
+    assert!(matches!(lines[..], [drawn] if drawn > points / 2 && drawn <= points), "{lines:?} of {points}");
     for label in ["boxes", "part of the volume that is open", "1e0", "1e3"] {
         assert!(curve.texts.contains(&label.to_owned()), "{label}: {:?}", curve.texts);
     }
