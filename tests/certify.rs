@@ -474,9 +474,9 @@ fn pictures_are_written() {
     }
     assert!(!curve.texts.contains(&"1e4".to_owned()));
 
-    // s1 from 1/2 to 3 below, phi2 from 4/5 to 12/5 beside it; a minor vanishes on a curve, which takes many boxes
+    // s1 from 1/2 to 3 below, phi2 from 4/5 to 12/5 beside it, in the units that the file declares; a minor vanishes on a curve, which takes many boxes
     let map = Picture::read(&read("map.svg"));
-    let expected = ["φ₂", "s₁", "1.0", "1.5", "2.0", "0.5", "1.0", "1.5", "2.0", "2.5", "3.0"];
+    let expected = ["φ₂, rad", "s₁, m", "1.0", "1.5", "2.0", "1.0", "2.0", "3.0"];
     assert_eq!(map.texts[1..], expected);
     assert!(map.boxes_of("#d55e00") > 100, "{}", map.boxes_of("#d55e00"));
     assert_eq!(map.boxes_of("#cde4f0"), 1);
