@@ -462,19 +462,21 @@ fn pictures_are_written() {
     let written: Value = serde_json::from_str(&read("certify.json")).unwrap();
     assert!(fraction(&written) > 0.9);
 
-    // a line through as many points as there are entries, with powers of ten up to the 3000 boxes below it
+    // one line, of no more points than there are entries (those on straight stretches are left out), with powers of ten up to
+    // the 3000 boxes below it
     let curve = Picture::read(&read("curve.svg"));
     assert_eq!(curve.title, written["title"].as_str().unwrap());
     let points = written["curve"].as_array().unwrap().len();
-    assert_eq!(curve.lines_of("#0072b2"), [points]);
+    let lines = curve.lines_of("#0072b2");
+    assert!(matches!(lines[..], [drawn] if drawn > points / 2 && drawn <= points), "{lines:?} of {points}");
     for label in ["boxes", "part of the volume that is open", "1e0", "1e3"] {
         assert!(curve.texts.contains(&label.to_owned()), "{label}: {:?}", curve.texts);
     }
     assert!(!curve.texts.contains(&"1e4".to_owned()));
 
-    // s1 from 1/2 to 3 below, phi2 from 4/5 to 12/5 beside it; a minor vanishes on a curve, which takes many boxes
+    // s1 from 1/2 to 3 below, phi2 from 4/5 to 12/5 beside it, in the units that the file declares; a minor vanishes on a curve, which takes many boxes
     let map = Picture::read(&read("map.svg"));
-    let expected = ["φ₂", "s₁", "1.0", "1.5", "2.0", "0.5", "1.0", "1.5", "2.0", "2.5", "3.0"];
+    let expected = ["φ₂, rad", "s₁, m", "1.0", "1.5", "2.0", "1.0", "2.0", "3.0"];
     assert_eq!(map.texts[1..], expected);
     assert!(map.boxes_of("#d55e00") > 100, "{}", map.boxes_of("#d55e00"));
     assert_eq!(map.boxes_of("#cde4f0"), 1);

@@ -32,8 +32,8 @@ fn text(name: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text =
         std::fs::read_to_string(root.join("proofs/moll2002/scenes").join(format!("{name}.toml"))).unwrap();
-    let proofs = format!("\"{}/", root.join("proofs").display());
-    let whole = text.replace("\"../proofs/", &proofs);
+    let proofs = format!("\"{}/", root.join("proofs/moll2002").display());
+    let whole = text.replace("\"../", &proofs);
     whole.split("[study.").next().unwrap().to_owned()
 }
 
