@@ -5,12 +5,9 @@ use super::interrupt::{begin_to_tell, interrupted};
 use super::output::{Files, Form, proof_files, read_error_json};
 use clap::Args;
 use palmistry::System;
-use palmistry::system::Examination;
+use palmistry::system::{Examination, MOST_PROBLEMS};
 use serde_json::{Value, json};
 use std::path::PathBuf;
-
-/// No more problems than this are told of one file: behind so many, most are one and the same.
-pub(crate) const MOST_PROBLEMS: usize = 100;
 
 /// Reads proof files, and says all that is wrong with each: syntax, names, kinds of values, references. Decides nothing.
 ///

@@ -5,14 +5,14 @@
 //! that are mounted over a network or into a container. Looking at a few hundred files costs less than a millisecond.
 
 use super::Status;
-use super::check::{MOST_PROBLEMS, errors_json, problems_text};
+use super::check::{errors_json, problems_text};
 use super::claims::{Claims, no_such_claim};
 use super::interrupt::{INTERRUPTED, interrupted};
 use super::output::{Form, print_text, progress, proof_files};
 use super::terminal::is_terminal;
 use palmistry::claim::decide_all_keeping;
 use palmistry::report::ClaimsSummary;
-use palmistry::system::Examination;
+use palmistry::system::{Examination, MOST_PROBLEMS};
 use palmistry::{Outcome, System, file};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

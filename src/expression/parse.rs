@@ -130,6 +130,33 @@ pub(crate) const RESERVED: [&str; 30] = [
     "expect",
 ];
 
+/// Words with a meaning at some places; elsewhere they are names.
+pub(crate) const SPECIAL: [&str; 23] = [
+    "proved",
+    "refuted",
+    "restates",
+    "consequence",
+    "example",
+    "follows",
+    "reads",
+    "meant",
+    "as",
+    "on",
+    "carrying",
+    "digits",
+    "others",
+    "set",
+    "pole",
+    "map",
+    "line",
+    "reduction",
+    "of",
+    "order",
+    "to",
+    "from",
+    "infinity",
+];
+
 /// Letters, digits and underscores, beginning with a letter.
 pub(crate) fn word<'a>(input: &mut Text<'a>) -> Read<(&'a str, Span)> {
     (
@@ -146,8 +173,9 @@ fn closing<'a>(text: &'static str) -> impl Parser<Text<'a>, usize, ErrMode<Expec
     (literal(text).span(), blank).map(|(span, ())| span.end)
 }
 
-/// One of the reserved words, and the blank after it.
+/// One of the words of the language, and the blank after it.
 pub(crate) fn keyword<'a>(text: &'static str) -> impl Parser<Text<'a>, Span, ErrMode<Expected>> {
+    debug_assert!(RESERVED.contains(&text) || SPECIAL.contains(&text), "'{text}' is in no list of words");
     move |input: &mut Text<'a>| {
         let start = input.checkpoint();
         match word.parse_next(input) {

@@ -13,7 +13,7 @@ use dashu::rational::RBig;
 pub(super) const LARGEST_GRAPH: usize = 4_000_000;
 
 /// The functions of the language beside [`Function::ALL`].
-const OTHER_FUNCTIONS: [&str; 14] = [
+pub(super) const OTHER_FUNCTIONS: [&str; 14] = [
     "tan",
     "cot",
     "sec",

@@ -414,7 +414,7 @@ fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {
 
 /// Reads a whole file.
 pub(crate) fn parse_file(text: &str) -> Result<Vec<Item>, Expected> {
-    let (items, mut damage) = parse_entries(text, 1);
+    let Entries { items, mut damage, .. } = parse_entries(text, 1);
     if damage.is_empty() { Ok(items) } else { Err(damage.remove(0).expected) }
 }
 
@@ -424,10 +424,21 @@ fn never_closed(at: usize) -> Expected {
     Expected { what: "a closing quotation mark for this one".to_owned(), at, help: Some(help.to_owned()) }
 }
 
+/// What could be read of a file.
+#[derive(Default)]
+pub(super) struct Entries {
+    /// The entries that could be.
+    pub items: Vec<Item>,
+    /// Where each of them stands, with the blanks and comments behind it.
+    pub spans: Vec<Span>,
+    /// What is no entry.
+    pub damage: Vec<Damage>,
+}
+
 /// Reads what can be read of a file: its entries, and up to `most` parts of it that are none. Behind the last of those
 /// nothing is read.
-pub(super) fn parse_entries(text: &str, most: usize) -> (Vec<Item>, Vec<Damage>) {
-    let mut damage = Vec::new();
+pub(super) fn parse_entries(text: &str, most: usize) -> Entries {
+    let (mut damage, mut spans) = (Vec::new(), Vec::new());
     let all = |input: &mut Text<'_>| -> Read<Vec<Item>> {
         let mut items = Vec::new();
         // where the last entry begins
@@ -437,6 +448,7 @@ pub(super) fn parse_entries(text: &str, most: usize) -> (Vec<Item>, Vec<Damage>)
             let expected = match item.parse_next(input) {
                 Ok(found) => {
                     items.push(found);
+                    spans.push(begin..input.current_token_start());
                     before = (start, begin);
                     continue;
                 }
@@ -451,6 +463,7 @@ pub(super) fn parse_entries(text: &str, most: usize) -> (Vec<Item>, Vec<Damage>)
             let (start, begin, damaged, expected) = match swallowed {
                 Some(quote) if after(before.1) < begin => {
                     items.pop();
+                    spans.pop();
                     (before.0, before.1, before.1, never_closed(before.1 + quote))
                 }
                 _ => (start, begin, if behind { before.1 } else { begin }, expected),
@@ -462,9 +475,11 @@ pub(super) fn parse_entries(text: &str, most: usize) -> (Vec<Item>, Vec<Damage>)
         }
         Ok(items)
     };
-    let items = read_all(text, &Depth::default(), ENTRY, all);
-    items.map_or_else(
-        |expected| (Vec::new(), vec![Damage { expected, left_out: 0..text.len() }]),
-        |items| (items, damage),
-    )
+    match read_all(text, &Depth::default(), ENTRY, all) {
+        Ok(items) => Entries { items, spans, damage },
+        Err(expected) => {
+            let damage = vec![Damage { expected, left_out: 0..text.len() }];
+            Entries { damage, ..Entries::default() }
+        }
+    }
 }

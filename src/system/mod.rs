@@ -17,12 +17,15 @@ mod grammar;
 mod lie;
 mod matrices;
 mod model;
+mod outline;
 mod problems;
 mod read;
 mod references;
 mod restates;
 mod standing;
 mod views;
+#[doc(hidden)]
+pub mod vocabulary;
 mod written;
 
 pub use dimension::{Base, Dimension};
@@ -33,8 +36,10 @@ pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statemen
 pub use model::{
     Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,
 };
+pub(crate) use outline::{Declaration, DeclarationKind, Outline};
+pub use problems::MOST_PROBLEMS;
 pub use read::Examination;
-pub(crate) use read::load;
+pub(crate) use read::{load, with_plain_line_ends};
 pub use standing::{Basis, Flaw, Reference};
 pub use views::{LineEnd, LineView, MapView, NamedSet, Point, ReductionTo};
 pub(crate) use written::in_one_line;

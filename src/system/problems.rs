@@ -13,6 +13,9 @@ use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Equation, Expr, ExprKind, Span};
 use std::collections::HashSet;
 
+/// Who asks for all mistakes of a file is told no more than this many: behind so many, most are one and the same.
+pub const MOST_PROBLEMS: usize = 100;
+
 /// On what a problem may rest, so that it says nothing where that is broken itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Cause {
@@ -86,7 +89,8 @@ impl Problems {
             // what is imported has the name of its system before a dot
             Cause::Unknown(name) => {
                 let parts = name.match_indices('.').map(|(at, _)| &name[..at]);
-                parts.chain([name.as_str()]).any(|part| self.broken.contains(part))
+                // and a symbol that comes with an import has no other sign of it
+                failed(&["use"]) || parts.chain([name.as_str()]).any(|part| self.broken.contains(part))
             }
             Cause::Motion => failed(&["drift", "input", "field"]),
             Cause::Shape => failed(&["state", "use"]),

@@ -4,7 +4,7 @@ use super::dimension::{self, Declared};
 use super::domain::Domain;
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
-use super::grammar::{ClaimSyntax, Item, Statement, parse_entries};
+use super::grammar::{ClaimSyntax, Entries, Item, Statement, parse_entries};
 use super::model::{Field, FieldPlace, Kind, Matrix, Range, Role, SymbolInfo, System, Value};
 use super::problems::{Cause, Full, Problems, Remnant, names_of_text};
 use super::written::{Scope, Written, in_one_line, places_in};
@@ -66,6 +66,14 @@ impl System {
 
     /// The same of a text; imports are looked for in `folder`.
     pub fn examine_text(name: &str, text: &str, folder: &Path, most: usize) -> Examination {
+        let mut found = System::examine_draft(name, text, folder, most);
+        found.system = found.system.filter(|_| found.problems.is_empty());
+        found
+    }
+
+    /// The same of a text on which somebody is at work: the system is what could be understood, also where something is
+    /// wrong. Nothing is decided of such a one.
+    pub(crate) fn examine_draft(name: &str, text: &str, folder: &Path, most: usize) -> Examination {
         let text = with_plain_line_ends(text);
         let mut reading = Reading::default();
         reading.open.extend(file::identity(Path::new(name)));
@@ -81,7 +89,6 @@ impl System {
         let mut problems: Vec<ReadError> =
             found.into_iter().map(|problem| problem.locate_in(&source)).collect();
         problems.sort_by_key(|problem| problem.span.offset());
-        let system = system.filter(|_| problems.is_empty());
         Examination { system, problems, more, files: reading.files }
     }
 
@@ -103,6 +110,7 @@ impl System {
         self.elaborate_guarded(&expr).map_err(|problem| problem.locate("expression", text))
     }
 
+    /// Reads a text into a graph; where the reading ends before the text does, that is given back.
     fn build(
         name: &str,
         text: &str,
@@ -110,17 +118,7 @@ impl System {
         graph: Graph,
         reading: &mut Reading,
         problems: &mut Problems,
-    ) -> Result<System, Full> {
-        if let Err(problem) = refuse_reordering(text) {
-            problems.add(problem)?;
-        }
-        let (items, damage) = parse_entries(text, problems.room());
-        for part in damage {
-            problems.add(expected(part.expected))?;
-            if let Some((word, names)) = names_of_text(&text[part.left_out]) {
-                problems.break_names(word, names);
-            }
-        }
+    ) -> Result<System, Graph> {
         let mut system = System {
             title: String::new(),
             cite: None,
@@ -152,6 +150,25 @@ impl System {
             dimensions: Default::default(),
             imported_dimensions: Vec::new(),
         };
+        match system.fill(folder, reading, problems) {
+            Ok(()) => Ok(system),
+            Err(Full) => Err(system.graph),
+        }
+    }
+
+    /// Enters all that stands in the text.
+    fn fill(&mut self, folder: &Path, reading: &mut Reading, problems: &mut Problems) -> Result<(), Full> {
+        let text = self.source.clone();
+        if let Err(problem) = refuse_reordering(&text) {
+            problems.add(problem)?;
+        }
+        let Entries { items, damage, .. } = parse_entries(&text, problems.room());
+        for part in damage {
+            problems.add(expected(part.expected))?;
+            if let Some((word, names)) = names_of_text(&text[part.left_out]) {
+                problems.break_names(word, names);
+            }
+        }
         let mut ids = HashSet::new();
         for item in &items {
             if let Item::Claim(claim) = item
@@ -161,33 +178,33 @@ impl System {
                 problems.add(Problem::new(&claim.span, message, "the second one"))?;
             }
             let remnant = Remnant::of(item, problems);
-            if let Err(problem) = system.enter(item, folder, reading) {
-                system.entry_failed(problem, remnant, problems)?;
+            if let Err(problem) = self.enter(item, folder, reading) {
+                self.entry_failed(problem, remnant, problems)?;
             }
         }
-        for claim in system.claims.clone() {
+        for claim in self.claims.clone() {
             for statement in claim.body.statements() {
-                if let Err(problem) = system.check(&claim, statement) {
+                if let Err(problem) = self.check(&claim, statement) {
                     let remnant = Remnant::of_statement(statement, problems);
-                    system.entry_failed(problem, remnant, problems)?;
+                    self.entry_failed(problem, remnant, problems)?;
                 }
             }
         }
-        system.domain = Default::default();
-        if system.title.is_empty() {
+        self.domain = Default::default();
+        if self.title.is_empty() {
             problems.add(
                 Problem::new(&(0..0), "the file does not name a system", "here")
                     .help("begin with: system \"what it is\"")
                     .because(Cause::Title),
             )?;
         }
-        let imports = std::mem::take(&mut system.imported_dimensions);
-        let (dimensions, mistakes) = dimension::check(&system, &items, &imports);
-        system.dimensions = Arc::new(dimensions);
+        let imports = std::mem::take(&mut self.imported_dimensions);
+        let (dimensions, mistakes) = dimension::check(self, &items, &imports);
+        self.dimensions = Arc::new(dimensions);
         for mistake in mistakes {
             problems.add(mistake)?;
         }
-        Ok(system)
+        Ok(())
     }
 
     fn enter(&mut self, item: &Item, folder: &Path, reading: &mut Reading) -> Result<(), Problem> {
@@ -611,7 +628,9 @@ impl System {
         // what is wrong with an imported file is told of that file: here is said that something is
         let mut problems = Problems::up_to(1);
         let built = System::build(&name, &text, folder, graph, reading, &mut problems);
-        let mut other = built.map_err(|Full| {
+        let mut other = built.map_err(|graph| {
+            // what was declared above the import is in it
+            self.graph = graph;
             let first = problems.into_found().into_iter().next();
             let problem = first.unwrap_or_else(|| Problem::new(&(0..0), "the file cannot be read", ""));
             let inner = problem.locate(&name, &text);
@@ -677,7 +696,7 @@ fn name_of(path: &Path) -> String {
 
 /// A text in which every line ends with a line feed, whatever its editor took for the end of a line, and without a
 /// byte-order mark: so that the reader, the error and the person who looks count the same lines.
-pub(super) fn with_plain_line_ends(text: &str) -> String {
+pub(crate) fn with_plain_line_ends(text: &str) -> String {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut plain = String::with_capacity(text.len());
     let mut characters = text.chars().peekable();

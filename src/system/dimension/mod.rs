@@ -29,3 +29,4 @@ pub(crate) use check::{Dimensions, Import};
 pub use exponents::{Base, Dimension};
 pub(crate) use reading::{Declared, DeclaredDimension};
 pub(super) use reading::{annotation, declared};
+pub(super) use words::all as words;

@@ -97,6 +97,6 @@ pub(super) fn meaning(word: &str) -> Meaning {
 }
 
 /// All words that mean something.
-pub(super) fn all() -> impl Iterator<Item = &'static str> {
+pub(in crate::system) fn all() -> impl Iterator<Item = &'static str> {
     MEANINGS.iter().flat_map(|(words, _)| words.iter().copied())
 }
