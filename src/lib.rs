@@ -84,6 +84,10 @@ pub mod paper;
 // the page, the plots, the JSON
 pub mod report;
 
+// what an editor asks while a file is written
+#[doc(hidden)]
+pub mod lsp;
+
 pub use claim::{Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all};
 pub use sweep::{RankAnswer, RankQuestion, answer_rank};
 pub use system::{ReadError, System};

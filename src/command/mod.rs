@@ -12,6 +12,8 @@ mod completions;
 mod eval;
 mod fmt;
 mod interrupt;
+mod lsp;
+mod man;
 mod new;
 mod observe;
 mod output;
@@ -68,7 +70,9 @@ enum Verb {
     Observe(observe::Observe),
     New(new::New),
     Fmt(fmt::Fmt),
+    Lsp(lsp::Lsp),
     Completions(completions::Completions),
+    Man(man::Man),
 }
 
 /// What a command has come to.
@@ -142,7 +146,7 @@ impl Verb {
             Verb::Observe(verb) => verb.json,
             Verb::New(verb) => verb.json,
             Verb::Fmt(verb) => verb.json,
-            Verb::Completions(_) => false,
+            Verb::Lsp(_) | Verb::Completions(_) | Verb::Man(_) => false,
         })
     }
 
@@ -163,7 +167,9 @@ impl Verb {
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::New(verb) => verb.run(),
             Verb::Fmt(verb) => verb.run(),
+            Verb::Lsp(verb) => verb.run(),
             Verb::Completions(verb) => verb.run(),
+            Verb::Man(verb) => verb.run(),
         }
     }
 }
