@@ -151,11 +151,13 @@ pub(super) fn begins(input: &mut Text<'_>) -> bool {
 
 fn title(input: &mut Text<'_>) -> Read<(String, Span)> {
     let begin = input.current_token_start();
-    let title = quoted(input)?;
+    let (title, taken) = quoted.with_taken().parse_next(input)?;
     if title.is_empty() {
         return stop(begin, "a name between the quotation marks", None);
     }
-    let span = begin..begin + title.len() + 2;
+    // as it is written, with all its blanks
+    let length = taken[1..].find('"').map_or(taken.len(), |end| end + 2);
+    let span = begin..begin + length;
     cut_err(sign(":")).context("':' behind the name").parse_next(input)?;
     Ok((title, span))
 }
