@@ -89,8 +89,7 @@ impl Problems {
             // what is imported has the name of its system before a dot
             Cause::Unknown(name) => {
                 let parts = name.match_indices('.').map(|(at, _)| &name[..at]);
-                // and a symbol that comes with an import has no other sign of it
-                failed(&["use"]) || parts.chain([name.as_str()]).any(|part| self.broken.contains(part))
+                parts.chain([name.as_str()]).any(|part| self.broken.contains(part))
             }
             Cause::Motion => failed(&["drift", "input", "field"]),
             Cause::Shape => failed(&["state", "use"]),

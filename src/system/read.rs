@@ -118,7 +118,7 @@ impl System {
         graph: Graph,
         reading: &mut Reading,
         problems: &mut Problems,
-    ) -> Result<System, Graph> {
+    ) -> Result<System, Box<Graph>> {
         let mut system = System {
             title: String::new(),
             cite: None,
@@ -152,7 +152,7 @@ impl System {
         };
         match system.fill(folder, reading, problems) {
             Ok(()) => Ok(system),
-            Err(Full) => Err(system.graph),
+            Err(Full) => Err(Box::new(system.graph)),
         }
     }
 
@@ -630,7 +630,7 @@ impl System {
         let built = System::build(&name, &text, folder, graph, reading, &mut problems);
         let mut other = built.map_err(|graph| {
             // what was declared above the import is in it
-            self.graph = graph;
+            self.graph = *graph;
             let first = problems.into_found().into_iter().next();
             let problem = first.unwrap_or_else(|| Problem::new(&(0..0), "the file cannot be read", ""));
             let inner = problem.locate(&name, &text);

@@ -71,18 +71,17 @@ fn every_mistake_is_told_once_and_at_its_line() {
 }
 
 /// The first problem that `prove` tells is among them, for each file with one mistake.
-/// A file that cannot be imported is one mistake: what stands above the import is known below it, and what may have come with
-/// it is not told.
+/// A file that cannot be imported is one mistake: what stands above the import is known below it.
 #[test]
 fn behind_an_import_that_fails_the_names_above_it_are_known() {
     let folder = folder();
     write(&folder, "broken.proof", "system \"b\"\nstate q\nlet a = b\n");
     let head = "system \"s\"\nstate x : length, y\nparam k : time\nuse o = \"broken.proof\"\n";
-    let rest = "let z = k*x + y*o.a + q\ndrift f\n  x' = y\n  y' = sin(x)\nclaim 1: z = z\nclaim 2: [z, z] = [z; z]\n";
+    let rest = "let z = k*x\nlet w = y*o.a\ndrift f\n  x' = y\n  y' = y/k + sin(x)\nclaim 1: z = k*x\nclaim 2: z = nobody\n";
     let file = write(&folder, "a.proof", format!("{head}{rest}"));
     let found = errors(&file);
-    // the import, the sine of a length, two matrices of two shapes
-    assert_eq!(found.iter().map(|(line, _)| *line).collect::<Vec<_>>(), [4, 8, 10], "{found:?}");
+    // the import, the sine of a length, a number added to an acceleration, a name
+    assert_eq!(found.iter().map(|(line, _)| *line).collect::<Vec<_>>(), [4, 9, 9, 11], "{found:?}");
     assert!(found[0].1.contains("broken.proof:3:9: unknown name 'b'"), "{found:?}");
 }
 
