@@ -5,7 +5,7 @@
 //! a place in one is a place in the other.
 
 use crate::expression::syntax::Span;
-use crate::system::{Outline, with_plain_line_ends};
+use crate::system::{Outline, boundary, with_plain_line_ends};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -66,7 +66,7 @@ impl Source {
     pub fn position(&self, at: usize) -> Value {
         let before = self.shifts.partition_point(|(from, _)| *from <= at);
         let at = at + before.checked_sub(1).map_or(0, |last| self.shifts[last].1);
-        let at = self.text.floor_char_boundary(at);
+        let at = boundary(&self.text, at);
         let line = self.lines.partition_point(|begin| *begin <= at).saturating_sub(1);
         let units = self.text[self.lines[line]..at].encode_utf16().count();
         json!({ "line": line, "character": units })
@@ -98,7 +98,7 @@ impl Source {
             at += c.len_utf8();
         }
         let before = self.shifts.partition_point(|(from, ahead)| from + ahead <= at);
-        self.plain.floor_char_boundary(at - before.checked_sub(1).map_or(0, |last| self.shifts[last].1))
+        boundary(&self.plain, at - before.checked_sub(1).map_or(0, |last| self.shifts[last].1))
     }
 
     /// The lines that a part of the plain text touches, at most so many.

@@ -79,19 +79,13 @@ impl Problem {
     /// The same with a text that several errors share.
     pub fn locate_in(self, source: &Arc<NamedSource<String>>) -> ReadError {
         let text = source.inner();
-        let floor = |mut at: usize| {
-            at = at.min(text.len());
-            while !text.is_char_boundary(at) {
-                at -= 1;
-            }
-            at
-        };
-        let (mut begin, mut end) = (floor(self.span.start), floor(self.span.end.max(self.span.start)));
+        let (mut begin, mut end) =
+            (boundary(text, self.span.start), boundary(text, self.span.end.max(self.span.start)));
         let mut label = self.label;
         if begin == text.len() && !text.is_empty() {
             // there is nothing to mark at the end of the text: mark the last thing before it
             end = text.trim_end().len();
-            begin = floor(end.saturating_sub(1));
+            begin = boundary(text, end.saturating_sub(1));
             label = "the text ends after this".to_owned();
         }
         ReadError {
@@ -102,6 +96,15 @@ impl Problem {
             help: self.help,
         }
     }
+}
+
+/// The last boundary between characters of a text that is not behind a place.
+pub(crate) fn boundary(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
 }
 
 /// The known name nearest to one that is not known, for "perhaps you meant".

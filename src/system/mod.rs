@@ -30,7 +30,7 @@ mod written;
 
 pub use dimension::{Base, Dimension};
 pub use error::ReadError;
-pub(crate) use error::{Problem, line_and_column, nearest};
+pub(crate) use error::{Problem, boundary, line_and_column, nearest};
 pub use format::format_text;
 pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statement};
 pub use model::{

@@ -109,9 +109,7 @@ impl Outline {
 
     fn enter(&mut self, text: &str, item: &Item, entry: &Span) {
         let mut add = |kind: DeclarationKind, name: &str, span: &Span| {
-            // titles are told without the blanks that are written in them, and so are shorter than what is written
-            let span = text.floor_char_boundary(span.start)..text.floor_char_boundary(span.end);
-            let (name, entry) = (name.to_owned(), entry.clone());
+            let (name, span, entry) = (name.to_owned(), span.clone(), entry.clone());
             self.declarations.push(Declaration { kind, name, span, entry });
         };
         match item {
