@@ -102,6 +102,28 @@ fn no_file_needs_one_beside_it_that_needs_it() {
     assert!(lines.is_empty(), "files that need each other:\n{}", lines.join("\n"));
 }
 
+/// The page for contributors names every floor, and no file that is not there.
+#[test]
+fn the_house_in_one_page_is_this_house() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(root.join("CONTRIBUTING.md")).expect("the page");
+    let words: Vec<&str> = page.split('`').skip(1).step_by(2).collect();
+    for floor in ours().floors().iter().map(String::as_str).chain(["command"]) {
+        assert!(words.contains(&floor), "'{floor}' is not named");
+    }
+    let is_path = |word: &&&str| {
+        word.contains('/') && !word.contains([' ', '=']) && !word.contains(|c: char| c.is_ascii_uppercase())
+    };
+    let paths: Vec<&&str> = words.iter().filter(is_path).collect();
+    assert!(paths.len() > 25, "{paths:?}");
+    for path in paths {
+        let places = ["", "src", "src/system", "src/number", "src/observability", "tests/claims"];
+        let is_there = places.iter().any(|folder| root.join(folder).join(path).exists());
+        // a folder that is left out of the package
+        assert!(is_there || path.starts_with(".ci/"), "'{path}' is not there");
+    }
+}
+
 /// What is public is unique in the crate: a second thing of a name carries its noun.
 #[test]
 fn a_public_type_has_a_name_of_its_own() {

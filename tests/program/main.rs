@@ -5,6 +5,7 @@ mod common;
 
 mod appendix;
 mod damaged;
+mod editors;
 mod page;
 mod paper;
 mod papers;

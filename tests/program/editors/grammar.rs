@@ -1,8 +1,8 @@
 //! The grammar for highlighting knows every word that the reader knows, and colours what the reader reads so.
 
+use super::shipped;
+use super::textmate::Grammar;
 use crate::common::{folder, palmistry, write};
-use crate::shipped;
-use crate::textmate::Grammar;
 use palmistry::System;
 use palmistry::system::vocabulary::{CONSTANTS, ENTRIES, RESERVED, SPECIAL, VIEWS, dimensions, functions};
 use std::collections::BTreeSet;

@@ -2,12 +2,10 @@
 //!
 //! Oracles: `palmistry check` for mistakes; positions counted by hand; the words of the reader itself.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod damaged;
 mod grammar;
 mod manual;
+#[cfg(unix)]
 mod session;
 mod textmate;
 

@@ -1,6 +1,6 @@
 //! A server that is given damaged texts and asked about any place answers each time.
 
-use crate::shipped;
+use super::shipped;
 use lsp_server::{Connection, Message, Notification, Request};
 use palmistry::lsp::{SessionEnd, serve};
 use proptest::prelude::*;
