@@ -38,16 +38,16 @@ pub(super) fn equations(numbering: &Numbering, claims: &[Placed<'_>], anchors: &
             }
             div.cells {
                 @for equation in &all {
-                    @let ids = equation.entries.iter().map(|o| format!("{} {}", o.id, o.word())).collect::<Vec<_>>().join("; ");
+                    @let ids = equation.entries.iter().map(|o| o.id.as_str()).collect::<Vec<_>>().join(", ");
                     // the entry that gives the equation its word, or the first one
                     @let first = equation.entries.iter().find(|o| o.word() == equation.word()).or(equation.entries.first());
                     @match first.and_then(|outcome| place(outcome)) {
                         Some(claim) => {
-                            a.cell data-w=(equation.word()) href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) title=(ids) {
+                            a data-w=(equation.word()) href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) title=[(equation.entries.len() > 1).then_some(ids)] {
                                 (equation.number)
                             }
                         }
-                        None => { span.cell data-w="no entry" title="no entry" { (equation.number) } }
+                        None => { span data-w="no entry" { (equation.number) } }
                     }
                 }
             }
