@@ -69,8 +69,10 @@ pub(super) fn faults(numbering: &Numbering, claims: &[Placed<'_>], anchors: &Anc
                 @for fault in Flaw::ALL {
                     @let found = of_kind(fault);
                     @if !found.is_empty() {
-                        h3 data-w=(fault.word()) { span.v { (errors(numbering, outcomes(), fault).text(fault.word())) } }
-                        p { (meaning(fault.word())) "." }
+                        @let text = errors(numbering, outcomes(), fault).text(fault.word());
+                        @let (count, following) = text.split_once(": ").unwrap_or((&text, ""));
+                        h3 data-w=(fault.word()) { span.v { (count) } }
+                        p { (meaning(fault.word())) "." @if !following.is_empty() { " Not on their own: " (following) "." } }
                         p.links {
                             @for claim in found.into_iter().filter_map(place) {
                                 a href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) { (claim.outcome.id) } " "
