@@ -82,7 +82,7 @@ impl Watch {
                     let decided = self.decide(path);
                     self.files.insert(path.clone(), decided);
                     if interrupted() {
-                        return Ok(Status::NotAsExpected);
+                        return Ok(Status::CutOff);
                     }
                 }
                 status = Some(self.tell(&paths, &stale, begin)?);
@@ -90,7 +90,7 @@ impl Watch {
             let wait = Instant::now();
             while wait.elapsed() < PAUSE {
                 if interrupted() {
-                    return Ok(status.unwrap_or(Status::NotAsExpected));
+                    return Ok(status.unwrap_or(Status::CutOff));
                 }
                 std::thread::sleep(GLANCE);
             }
