@@ -1,7 +1,7 @@
 //! `palmistry verify`: a paper taken through everything.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
-use super::output::{Files, Form, progress};
+use super::output::{Files, Form, progress, versioned};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::file;
@@ -77,7 +77,7 @@ impl Verify {
     fn tell(&self, found: &Mutex<Findings>) -> miette::Result<Status> {
         let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
         found.interrupted |= interrupted();
-        let json = findings_json(&found);
+        let json = versioned(findings_json(&found));
         let (html_file, json_file) = (self.out.join("index.html"), self.out.join("verify.json"));
         let mut files = Files::default();
         files.text(&html_file, &page(&found));

@@ -1,0 +1,91 @@
+//! What the book has to name: every entry of the language, every command with its options, every field of the JSON.
+
+use crate::blocks::blocks;
+use crate::common::{folder, json, palmistry, write};
+use std::collections::BTreeSet;
+
+fn chapter(name: &str) -> String {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("book/src").join(name);
+    std::fs::read_to_string(path).expect("a chapter")
+}
+
+/// A file that begins with no entry is told which words begin one.
+#[test]
+fn the_grammar_has_every_entry() {
+    let why = palmistry::System::parse("a.proof", "nothing", std::path::Path::new("")).expect_err("no entry");
+    let all = format!("{:?}", miette::Report::new(why));
+    let all = all.split_once("one of:").expect("a list").1;
+    let names: Vec<&str> =
+        all.split(|c: char| !c.is_ascii_lowercase()).filter(|word| !word.is_empty()).take_while(|word| *word != "help").collect();
+    let language = chapter("language.md");
+    let grammar = blocks(&language).into_iter().find(|block| block.text.contains("file       = ")).expect("a grammar");
+    assert!(names.contains(&"system") && names.contains(&"reduction"), "{names:?}");
+    for name in names.iter().take_while(|name| **name != "reduction").chain(&["reduction"]) {
+        assert!(grammar.text.contains(&format!("\"{name}\"")), "the grammar lacks '{name}'");
+        assert!(language.contains(&format!("`{name} ")), "no entry '{name}' is explained");
+    }
+}
+
+#[test]
+fn every_command_is_listed_with_its_options() {
+    let text = |arguments: &[&str]| String::from_utf8(palmistry(arguments).stdout).expect("a text");
+    let commands = chapter("commands.md");
+    let help = text(&["--help"]);
+    let list = help.split("Commands:").nth(1).unwrap().split("Options:").next().unwrap();
+    let names = list.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    let names: Vec<&str> = names.filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(names.len() > 12, "{names:?}");
+    for name in names.into_iter().filter(|name| *name != "help") {
+        let row = commands.lines().find(|line| line.starts_with(&format!("| `{name} ")));
+        let row = row.unwrap_or_else(|| panic!("'{name}' is not listed"));
+        let listed: BTreeSet<&str> =
+            row.rsplit('|').nth(1).unwrap().split('`').filter(|word| word.starts_with("--")).collect();
+        let help = text(&[name, "--help"]);
+        let options = help.lines().filter_map(|line| {
+            let line = line.trim_start();
+            let long = line.split_whitespace().take(2).find(|word| word.starts_with("--"))?;
+            (line.starts_with('-')).then_some(long.trim_end_matches(','))
+        });
+        let known: BTreeSet<&str> = options.filter(|option| *option != "--help").collect();
+        assert_eq!(listed, known, "{name}");
+    }
+}
+
+/// The fields of each object, first level, stand in the part on its command.
+#[test]
+fn every_field_of_the_json_is_named() {
+    let folder = folder();
+    let text = "system \"small\"\nstate x, y\ndrift f\n  x' = y\n  y' = -x + x^2\noutput x\nsample x in [1/2, 1] y in [1/2, 1]\n\
+                claim 1: L(f, x) = y\n";
+    let file = write(&folder, "small.proof", text);
+    let file = file.to_str().unwrap();
+    let [verdicts, paper, out] = ["v.json", "paper", "out"].map(|name| folder.path().join(name).display().to_string());
+    let chapter = chapter("json.md");
+    let begin = chapter.split_once("\n## ").expect("parts").0;
+    let runs: [&[&str]; 12] = [
+        &["prove", file, "--verdicts", &verdicts],
+        &["recheck", &verdicts],
+        &["rank", file, "--samples", "20", "--digits", "5"],
+        &["eval", file, "x", "--at", "x=1", "--latex"],
+        &["certify", file, "--boxes", "20"],
+        &["trade", file, "--samples", "20"],
+        &["stress", file, "--samples", "20", "--states", "1"],
+        &["observe", "proofs/moll2002/scenes/section_4_6.toml"],
+        &["verify", file, "--out", &out],
+        &["check", file],
+        &["fmt", file],
+        &["new", &paper],
+    ];
+    for run in runs {
+        let found = json(&palmistry(&[run, &["--json"]].concat()));
+        assert_eq!(found["version"], 1, "{run:?}");
+        let part = chapter
+            .split("\n## ")
+            .find(|part| part.lines().next().is_some_and(|title| title.contains(&format!("`{}`", run[0]))))
+            .unwrap_or_else(|| panic!("no part on {}", run[0]));
+        for field in found.as_object().expect("an object").keys() {
+            let named = |text: &str| text.contains(&format!("`{field}`"));
+            assert!(named(part) || named(begin), "{}: '{field}' is not told", run[0]);
+        }
+    }
+}
