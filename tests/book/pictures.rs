@@ -15,7 +15,7 @@ fn alone(page: &Path, title: &str) -> String {
     let (tag, inside) = svg.split_once('>').expect("a tag");
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" color=\"#282c34\" font-family=\"system-ui,sans-serif\" {tag}>\
-         <rect width=\"100%\" height=\"100%\" rx=\"8\" fill=\"#fff\"/>{inside}</svg>\n"
+         <rect width=\"100%\" height=\"100%\" rx=\"8\" shape-rendering=\"auto\" fill=\"#fff\"/>{inside}</svg>\n"
     )
 }
 
