@@ -51,7 +51,7 @@ claim 2: (omega*g) at {omega = 2, g = 1.5} = 3.01 within 0.02 carrying 3 digits
 "#;
 
 fn found(folder: &Path) -> Findings {
-    let options = VerifyOptions { seed: 1, interrupt: &false.into(), progress: &|_, _, _| () };
+    let options = VerifyOptions { seed: 1, interrupt: &false.into(), progress: &|_, _, _| (), timed: true };
     verify(&Paper::read(folder).unwrap(), &options).unwrap()
 }
 

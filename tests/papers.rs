@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{folder, json, palmistry};
+use common::{folder, json, palmistry, with_threads};
 use serde_json::Value;
 
 /// A named set of a file, the rank there of all words and of the file's own rows; nothing for a pole.
@@ -182,6 +182,25 @@ fn seen(found: &Value) -> [usize; 3] {
         }
     }
     counts
+}
+
+/// Without times two runs write the same, whatever the number of threads.
+#[test]
+fn without_times_nothing_changes() {
+    let run = |threads: &str| {
+        let out = folder();
+        let to = out.path().to_str().unwrap();
+        let output =
+            with_threads(&["verify", "proofs/martinelli2005", "--no-times", "--out", to], Some(threads));
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        ["index.html", "verify.json", "errata.md"]
+            .map(|name| std::fs::read_to_string(out.path().join(name)).unwrap())
+    };
+    let (one, two) = (run("1"), run("2"));
+    for (a, b) in one.iter().zip(&two) {
+        assert_eq!(a, b);
+    }
+    assert!(!one[1].contains("seconds") && !one[0].contains(" in all."), "a time is told");
 }
 
 #[test]

@@ -5,6 +5,7 @@
 mod axis;
 mod certificate;
 mod claims;
+mod compact;
 mod document;
 mod drawing;
 mod formula;
@@ -26,7 +27,7 @@ pub use claims::{
 pub use formula::{conditions_mathml, definition_mathml, expression_latex, formula_mathml, statement_latex};
 pub use layout::{Colour, Layout, Tone};
 pub use motion::{Observed, ended_in_words, fault_lines, observe_json, observe_page, observe_text};
-pub use page::{findings_json, findings_text, page, printed_value_json};
+pub use page::{findings_json, findings_text, forget_seconds, page, printed_value_json};
 pub use ranks::{rank_json, rank_text};
 pub use stress::{
     conditioning_picture, lines_picture, scalings_picture, stress_json, stress_pictures, stress_text,

@@ -15,10 +15,14 @@ fn the_grammar_has_every_entry() {
     let why = palmistry::System::parse("a.proof", "nothing", std::path::Path::new("")).expect_err("no entry");
     let all = format!("{:?}", miette::Report::new(why));
     let all = all.split_once("one of:").expect("a list").1;
-    let names: Vec<&str> =
-        all.split(|c: char| !c.is_ascii_lowercase()).filter(|word| !word.is_empty()).take_while(|word| *word != "help").collect();
+    let names: Vec<&str> = all
+        .split(|c: char| !c.is_ascii_lowercase())
+        .filter(|word| !word.is_empty())
+        .take_while(|word| *word != "help")
+        .collect();
     let language = chapter("language.md");
-    let grammar = blocks(&language).into_iter().find(|block| block.text.contains("file       = ")).expect("a grammar");
+    let grammar =
+        blocks(&language).into_iter().find(|block| block.text.contains("file       = ")).expect("a grammar");
     assert!(names.contains(&"system") && names.contains(&"reduction"), "{names:?}");
     for name in names.iter().take_while(|name| **name != "reduction").chain(&["reduction"]) {
         assert!(grammar.text.contains(&format!("\"{name}\"")), "the grammar lacks '{name}'");
@@ -59,7 +63,8 @@ fn every_field_of_the_json_is_named() {
                 claim 1: L(f, x) = y\n";
     let file = write(&folder, "small.proof", text);
     let file = file.to_str().unwrap();
-    let [verdicts, paper, out] = ["v.json", "paper", "out"].map(|name| folder.path().join(name).display().to_string());
+    let [verdicts, paper, out] =
+        ["v.json", "paper", "out"].map(|name| folder.path().join(name).display().to_string());
     let chapter = chapter("json.md");
     let begin = chapter.split_once("\n## ").expect("parts").0;
     let runs: [&[&str]; 12] = [

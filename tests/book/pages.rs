@@ -141,7 +141,10 @@ impl Page<'_> {
                 shown.output.iter().for_each(|line| now.push_str(&format!("{line}\n")));
             } else {
                 all_like = false;
-                self.wrong(block, format!("$ {}\nshown:\n{}\nnow:\n{output}", shown.command, shown.output.join("\n")));
+                self.wrong(
+                    block,
+                    format!("$ {}\nshown:\n{}\nnow:\n{output}", shown.command, shown.output.join("\n")),
+                );
                 lines.iter().for_each(|line| now.push_str(&format!("{line}\n")));
             }
         }
