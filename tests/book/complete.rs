@@ -94,3 +94,30 @@ fn every_field_of_the_json_is_named() {
         }
     }
 }
+
+/// Each file of tests stands in the map of them, by itself or with its folder.
+#[test]
+fn every_test_file_is_on_the_map() {
+    let map = chapter("tests.md");
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let names = |folder: &str| -> Vec<String> {
+        let entries = std::fs::read_dir(root.join(folder)).expect("a folder");
+        entries
+            .map(|entry| format!("{folder}/{}", entry.expect("an entry").file_name().to_string_lossy()))
+            .collect()
+    };
+    let told = |path: &str| map.contains(&format!("`{path}`")) || map.contains(&format!("`{path}/`"));
+    let helpers = ["tests/common", "tests/corpus"];
+    let mut missing = Vec::new();
+    for group in names("tests").into_iter().filter(|path| !helpers.contains(&path.as_str()) && !told(path)) {
+        let files = names(&group)
+            .into_iter()
+            .filter(|path| !path.ends_with("/main.rs") && !path.ends_with("/snapshots"));
+        missing.extend(files.filter(|path| !told(path)));
+    }
+    assert!(missing.is_empty(), "{missing:?} on no map");
+    // and what the map names is there
+    let named = map.split('`').filter(|word| word.starts_with("tests/"));
+    let gone: Vec<&str> = named.filter(|path| !root.join(path).exists()).collect();
+    assert!(gone.is_empty(), "{gone:?} are gone");
+}
