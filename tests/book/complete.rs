@@ -121,3 +121,41 @@ fn every_test_file_is_on_the_map() {
     let gone: Vec<&str> = named.filter(|path| !root.join(path).exists()).collect();
     assert!(gone.is_empty(), "{gone:?} are gone");
 }
+
+/// Each chapter stands in the summary, each link leads somewhere, and the README stays short.
+#[test]
+fn links_lead_somewhere() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let summary = chapter("SUMMARY.md");
+    for path in crate::pages::pages() {
+        let text = std::fs::read_to_string(&path).expect("a page");
+        let name = path.file_name().expect("a name").to_string_lossy();
+        if path.starts_with(root.join("book")) && name != "SUMMARY.md" {
+            assert!(summary.contains(&format!("({name})")), "{name} is in no summary");
+        }
+        let folder = path.parent().expect("a folder");
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let (file, place) = link.split_once('#').unwrap_or((link, ""));
+            if file.starts_with("http") {
+                continue;
+            }
+            let target = if file.is_empty() { path.clone() } else { folder.join(file) };
+            assert!(target.exists(), "{name}: {link} leads nowhere");
+            if !place.is_empty() {
+                let to = std::fs::read_to_string(&target).expect("a page");
+                let headings = to.lines().filter_map(|line| line.strip_prefix('#'));
+                let anchors: Vec<String> = headings.map(anchor).collect();
+                assert!(anchors.iter().any(|anchor| anchor == place), "{name}: no {place} among {anchors:?}");
+            }
+        }
+    }
+    let length = std::fs::metadata(root.join("README.md")).expect("a README").len();
+    assert!(length < 8000, "the README has {length} bytes");
+}
+
+/// What a heading is called in a link.
+fn anchor(heading: &str) -> String {
+    let words = heading.trim_start_matches('#').trim().to_lowercase();
+    let kept = words.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+}

@@ -28,11 +28,22 @@ const NOT_RUN: usize = 6;
 fn every_block_is_run_and_shows_its_output() {
     let renew = std::env::var("PALMISTRY_BOOK").is_ok_and(|word| word == "renew");
     let (mut wrong, mut not_run, mut run) = (Vec::new(), Vec::new(), 0);
-    for path in pages() {
-        let folder = common::folder();
-        let found = go_through(&path, folder.path());
+    let all = pages();
+    let findings: Vec<_> = std::thread::scope(|scope| {
+        let begun: Vec<_> = all
+            .iter()
+            .map(|path| {
+                scope.spawn(|| {
+                    let folder = common::folder();
+                    go_through(path, folder.path())
+                })
+            })
+            .collect();
+        begun.into_iter().map(|page| page.join().expect("a page is gone through")).collect()
+    });
+    for (path, found) in all.iter().zip(findings) {
         if renew {
-            std::fs::write(&path, &found.renewed).expect("a page is written");
+            std::fs::write(path, &found.renewed).expect("a page is written");
         }
         wrong.extend(found.wrong);
         not_run.extend(found.not_run);
