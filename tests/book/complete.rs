@@ -140,7 +140,9 @@ fn links_lead_somewhere() {
                 continue;
             }
             let target = if file.is_empty() { path.clone() } else { folder.join(file) };
-            assert!(target.exists(), "{name}: {link} leads nowhere");
+            // a package goes without most of the reports
+            let packed = !root.join(".ci").exists() && file.contains("reports/");
+            assert!(packed || target.exists(), "{name}: {link} leads nowhere");
             if !place.is_empty() {
                 let to = std::fs::read_to_string(&target).expect("a page");
                 let headings = to.lines().filter_map(|line| line.strip_prefix('#'));
