@@ -131,7 +131,7 @@ def arguments():
     parser.add_argument("--seed", type=int, default=1, help="of the states (default %(default)s)")
     parser.add_argument("--quick", action="store_true", help="2000 states, 3 rounds, 10 s: whether all works")
     form = parser.add_mutually_exclusive_group()
-    form.add_argument("--markdown", action="store_true", help="the README's table")
+    form.add_argument("--markdown", action="store_true", help="the table of book/src/measurements.md")
     form.add_argument("--json", action="store_true", help="everything, for programs")
     options = parser.parse_args()
     if options.quick:

@@ -47,7 +47,7 @@ impl Check {
         });
         let status = match (errors, interrupted()) {
             (0, false) => Status::AsExpected,
-            (0, true) => Status::NotAsExpected,
+            (0, true) => Status::CutOff,
             _ => Status::Unusable,
         };
         Files::default().print(Form::of(self.json), object, || in_words(&examined), status)

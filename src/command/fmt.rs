@@ -53,7 +53,7 @@ impl Fmt {
         }
         let paths: Vec<&PathBuf> = changed.iter().map(|(path, _)| path).collect();
         let ok = !self.check || changed.is_empty();
-        let status = if ok { Status::AsExpected } else { Status::NotAsExpected };
+        let status = Status::of(ok);
         let words = || {
             let what = if self.check { "not in normal form" } else { "changed" };
             let mut lines: Vec<String> =

@@ -136,5 +136,5 @@ pub(crate) fn nothing_found(form: Form) -> miette::Result<Status> {
         Form::Json => print_json(&json!({ "interrupted": true, "found": null }))?,
         Form::Text => print_text("interrupted before anything was found")?,
     }
-    Ok(Status::NotAsExpected)
+    Ok(Status::CutOff)
 }

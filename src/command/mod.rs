@@ -1,8 +1,8 @@
 //! The command line. A file a verb: it reads its arguments, calls the library, and prints.
 //!
 //! Results go to standard output (as JSON with `--json`), progress and words to standard error. The exit status is 0
-//! when all is as expected, 1 when something is not or the work was interrupted, 2 when the input could not be used or
-//! the results could not be written.
+//! when all is as expected, 1 when something is not, 2 when the input could not be used or the results could not be
+//! written, and 3 when the work was cut off by a signal and nothing that was found until then is wrong.
 
 mod arguments;
 mod certify;
@@ -35,12 +35,12 @@ use std::process::ExitCode;
 
 /// Checks mathematics about systems that are seen only through their outputs.
 ///
-/// Write down a control system and what you claim of it in a .proof file (the README has the grammar); palmistry says,
+/// Write down a control system and what you claim of it in a .proof file (the book has the grammar); palmistry says,
 /// claim by claim, proved, refuted (with a witness) or undecided.
 #[derive(Parser)]
 #[command(name = "palmistry", version, max_term_width = 110)]
 #[command(
-    after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written.",
+    after_help = "Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written, 3 cut off by a signal before the end.",
     after_long_help = "Where to begin:
   palmistry new mypaper                     a folder with a small paper that proves, a comment on each line
   palmistry check mysystem.proof            is it a proof file? every mistake, each at its place
@@ -49,7 +49,7 @@ use std::process::ExitCode;
   palmistry eval mysystem.proof 'L(f, x)' --at x=1/3 --digits 40
   palmistry verify mypaper                  a folder of proof files taken through everything, as a page with pictures
 
-Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written."
+Exit status: 0 all as expected, 1 something is not, 2 input that cannot be used or output that cannot be written, 3 cut off by a signal before the end."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -80,10 +80,24 @@ enum Verb {
 pub(crate) enum Status {
     AsExpected,
     NotAsExpected,
+    /// A signal has ended the work early; what was found until then is as expected, and is not all.
+    CutOff,
     /// A file could not be used; what is wrong with it is printed.
     Unusable,
     /// The results are printed, but a file that was asked for could not be written.
     Unwritten,
+}
+
+impl Status {
+    /// What a run has come to in which what was found is as expected or not. A signal takes nothing back that is wrong, and
+    /// makes nothing whole that is right.
+    pub fn of(as_expected: bool) -> Status {
+        match (as_expected, interrupt::interrupted()) {
+            (false, _) => Status::NotAsExpected,
+            (true, true) => Status::CutOff,
+            (true, false) => Status::AsExpected,
+        }
+    }
 }
 
 /// Input that could not be used, in words.
@@ -119,6 +133,7 @@ pub fn run() -> ExitCode {
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,
         Ok(Status::NotAsExpected) => ExitCode::from(1),
+        Ok(Status::CutOff) => ExitCode::from(3),
         Ok(Status::Unusable | Status::Unwritten) => ExitCode::from(2),
         Err(report) => {
             if form == Form::Json {

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 /// motion.
 ///
 /// SCENE is a TOML file: the body, the palms and how they move, the sensors, and the observers with what they seek, what
-/// they are told and where they begin (the README has all keys). The motion follows from Newton's laws and the
+/// they are told and where they begin (the book has all keys). The motion follows from Newton's laws and the
 /// contacts; the observers know only the readings and the equations of the scene's proof file. For each update there are the true and
 /// the recovered states, the error, the bound of Cramér and Rao below which no unbiased estimate can be, steps and time.
 ///
@@ -117,8 +117,8 @@ impl Observe {
         let unseen =
             |update: &Update| matches!(update.standing, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
         let found_nothing = |updates: &[Update]| !updates.is_empty() && updates.iter().all(unseen);
-        let as_expected = !interrupted && !answers.iter().any(|answer| found_nothing(&answer.track.updates));
-        let status = if as_expected { Status::AsExpected } else { Status::NotAsExpected };
+        let as_expected = !answers.iter().any(|answer| found_nothing(&answer.track.updates));
+        let status = Status::of(as_expected);
         files.print(Form::of(self.json), json, || observe_text(&observed), status)
     }
 }

@@ -8,9 +8,19 @@ use palmistry::{ReadError, file};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Prints a value to standard output, indented.
-pub(crate) fn print_json(value: &Value) -> miette::Result<()> {
-    print_text(&serde_json::to_string_pretty(value).unwrap_or_default())
+/// The version of all objects that are printed and written as JSON: another one where a field goes, or means something else. A
+/// field that is added is no other version. `book/src/json.md` tells the fields.
+const JSON_VERSION: u32 = 1;
+
+/// An object with its version.
+pub(crate) fn versioned(mut object: Value) -> Value {
+    object["version"] = json!(JSON_VERSION);
+    object
+}
+
+/// Prints an object to standard output, indented, with its version.
+pub(crate) fn print_json(object: &Value) -> miette::Result<()> {
+    print_text(&serde_json::to_string_pretty(&versioned(object.clone())).unwrap_or_default())
 }
 
 /// Prints a text and the end of its line to standard output. A reader that has gone away is no error of ours.
@@ -48,9 +58,10 @@ impl Files {
         }
     }
 
-    /// Writes a value as JSON, indented.
-    pub fn json(&mut self, path: &Path, value: &Value) {
-        self.text(path, &format!("{}\n", serde_json::to_string_pretty(value).unwrap_or_default()));
+    /// Writes an object as JSON, indented, with its version.
+    pub fn json(&mut self, path: &Path, object: &Value) {
+        let object = versioned(object.clone());
+        self.text(path, &format!("{}\n", serde_json::to_string_pretty(&object).unwrap_or_default()));
     }
 
     /// Writes a record, CSV or Parquet by the extension.

@@ -1,7 +1,7 @@
 //! `palmistry prove`: every claim of some files.
 
 use super::claims::Claims;
-use super::interrupt::{INTERRUPTED, begin_to_tell, watched};
+use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
 use super::output::{Form, progress};
 use super::watch::Watch;
 use super::{Status, Unusable};
@@ -50,7 +50,7 @@ impl Prove {
     pub fn run(self) -> miette::Result<Status> {
         if self.watch {
             // what was told stays told
-            return watched(move || Watch::of(self.claims).run(), || Ok(Status::NotAsExpected));
+            return watched(move || Watch::of(self.claims).run(), || Ok(Status::CutOff));
         }
         let decided = Arc::new(Mutex::new(Decided::default()));
         let (worker, filled) = (self.clone(), decided.clone());
@@ -99,8 +99,9 @@ impl Prove {
         let Decided { claims, places, mut outcomes } = std::mem::take(&mut *hold(decided));
         outcomes
             .sort_by_cached_key(|outcome| places.get(&(outcome.file.clone(), outcome.id.clone())).copied());
-        let all = outcomes.iter().all(|outcome| outcome.ok) && claims > 0 && outcomes.len() == claims;
-        let status = if all { Status::AsExpected } else { Status::NotAsExpected };
+        let whole = claims > 0 && outcomes.len() == claims;
+        let as_expected = outcomes.iter().all(|outcome| outcome.ok) && (whole || interrupted());
+        let status = Status::of(as_expected);
         let summary = ClaimsSummary { claims, seconds: begin.elapsed().as_secs_f64() };
         let object = self.claims.object(&outcomes, summary.seconds);
         let in_words = || self.claims.in_words(&outcomes, summary);

@@ -96,7 +96,7 @@ impl Rank {
             });
             files.text_or(path, text);
         }
-        let status = if answer.interrupted() { Status::NotAsExpected } else { Status::AsExpected };
+        let status = if answer.interrupted() { Status::CutOff } else { Status::AsExpected };
         files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
     }
 }

@@ -64,7 +64,7 @@ impl Recheck {
             let lines: Vec<String> = checked.iter().map(verdict_line).collect();
             format!("{}\n{} verdicts: {}", lines.join("\n"), checked.len(), counts.join(", "))
         };
-        let status = if failed == 0 && !interrupted() { Status::AsExpected } else { Status::NotAsExpected };
+        let status = Status::of(failed == 0);
         Files::default().print(Form::of(self.json), object, in_words, status)
     }
 }

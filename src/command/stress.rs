@@ -134,7 +134,7 @@ impl Stress {
         if let Some(folder) = &self.out {
             write_files(folder, &studies, &object, &mut files);
         }
-        let status = if whole { Status::AsExpected } else { Status::NotAsExpected };
+        let status = if whole { Status::AsExpected } else { Status::CutOff };
         files.print(Form::of(self.json), object, || stress_text(&studies), status)
     }
 }

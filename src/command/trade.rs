@@ -64,7 +64,7 @@ impl Trade {
             files.text(&folder.join("trade.svg"), &trade_plot(&found));
             files.json(&folder.join("trade.json"), &json);
         }
-        let status = if found.interrupted { Status::NotAsExpected } else { Status::AsExpected };
+        let status = if found.interrupted { Status::CutOff } else { Status::AsExpected };
         files.print(Form::of(self.json), json, || trade_text(&found), status)
     }
 }

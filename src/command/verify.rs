@@ -1,7 +1,7 @@
 //! `palmistry verify`: a paper taken through everything.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
-use super::output::{Files, Form, progress};
+use super::output::{Files, Form, progress, versioned};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::file;
@@ -81,7 +81,7 @@ impl Verify {
     fn tell(&self, found: &Mutex<Findings>) -> miette::Result<Status> {
         let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
         found.interrupted |= interrupted();
-        let mut json = findings_json(&found);
+        let mut json = versioned(findings_json(&found));
         if self.no_times {
             found.forget_times();
             forget_seconds(&mut json);
@@ -93,7 +93,13 @@ impl Verify {
         files.text(&self.out.join("errata.md"), &errata_markdown(&found.paper, found.outcomes()));
         files.announce(&html_file);
         files.announce(&json_file);
-        let status = if found.ok() { Status::AsExpected } else { Status::NotAsExpected };
+        // a run that is cut off leaves out ranks and more, which is no fault of theirs
+        let claims_hold = || found.outcomes().all(|outcome| outcome.ok);
+        let status = match found.interrupted {
+            true if claims_hold() => Status::CutOff,
+            _ if found.ok() => Status::AsExpected,
+            _ => Status::NotAsExpected,
+        };
         files.print(Form::of(self.json), json, || findings_text(&found), status)
     }
 }

@@ -8,7 +8,7 @@ use super::Status;
 use super::check::{errors_json, problems_text};
 use super::claims::{Claims, no_such_claim};
 use super::interrupt::{INTERRUPTED, interrupted};
-use super::output::{Form, print_text, progress, proof_files};
+use super::output::{Form, print_text, progress, proof_files, versioned};
 use super::terminal::is_terminal;
 use palmistry::claim::decide_all_keeping;
 use palmistry::report::ClaimsSummary;
@@ -82,7 +82,7 @@ impl Watch {
                     let decided = self.decide(path);
                     self.files.insert(path.clone(), decided);
                     if interrupted() {
-                        return Ok(Status::NotAsExpected);
+                        return Ok(Status::CutOff);
                     }
                 }
                 status = Some(self.tell(&paths, &stale, begin)?);
@@ -90,7 +90,7 @@ impl Watch {
             let wait = Instant::now();
             while wait.elapsed() < PAUSE {
                 if interrupted() {
-                    return Ok(status.unwrap_or(Status::NotAsExpected));
+                    return Ok(status.unwrap_or(Status::CutOff));
                 }
                 std::thread::sleep(GLANCE);
             }
@@ -143,7 +143,7 @@ impl Watch {
                     again.iter().map(|path| json!(path.display().to_string())).collect();
                 object["errors"] =
                     wrong.iter().flat_map(|file| errors_json(file)).collect::<Vec<Value>>().into();
-                print_text(&object.to_string())?;
+                print_text(&versioned(object).to_string())?;
             }
             Form::Text => {
                 let names: Vec<String> = again.iter().map(|path| path.display().to_string()).collect();

@@ -170,6 +170,14 @@ fn held_parameters<'a>(
     system.symbols().filter_map(held).collect()
 }
 
+/// What outputs and fields divide by, and take roots and logarithms of: a state has to have values for it too, also where no entry
+/// of the codistribution mentions it, as the mass in `v' = -x/m` where `x` and `v` are seen.
+fn guarded(system: &System) -> Vec<NodeId> {
+    let guards = system.smooth_guards(&system.moving_fields());
+    let open = guards.iter().filter(|guard| guard.is_obvious(&system.graph) != Some(true));
+    open.map(|guard| guard.node).collect()
+}
+
 /// Answers a question about the rank of a system's observability codistribution.
 ///
 /// # Errors
@@ -221,6 +229,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         let all = codistribution.entries();
         let mut mentioned: Vec<NodeId> = all.clone();
         mentioned.extend(own.iter().flatten());
+        mentioned.extend(guarded(system));
         let locus = Locus::new(system, &branch, &question.fixed, &mentioned)?;
         let options = SweepOptions {
             samples: question.samples,

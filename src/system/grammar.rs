@@ -1,4 +1,4 @@
-//! The grammar of a proof file, without the meaning of its names. The README documents it; it is a public interface.
+//! The grammar of a proof file, without the meaning of its names. `book/src/language.md` documents it; it is a public interface.
 
 use super::dimension::{Declared, DeclaredDimension, annotation, declared};
 use super::model::Role;

@@ -204,11 +204,12 @@ fn an_unexpected_verdict_is_exit_status_one() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("1 not as expected"));
 }
 
-/// The README's example says what is true.
+/// The first example of the book's chapter on the language says what is true.
 #[test]
-fn the_example_of_the_readme_holds() {
-    let readme = include_str!("../../README.md");
-    let example = readme.split("```").find(|block| block.contains("system \"A pendulum")).unwrap();
+fn the_example_of_the_book_holds() {
+    let chapter = include_str!("../../book/src/language.md");
+    let example = chapter.split("```").find(|block| block.contains("system \"A pendulum")).unwrap();
+    let example = &example[example.find("system").unwrap()..];
     let system = System::parse("pendulum.proof", example, Path::new("")).unwrap();
     let outcomes = decide_all(&system, 1, &false.into(), &|_| ());
     assert_eq!(outcomes.len(), 4);

@@ -38,6 +38,35 @@ fn every_regime_is_observable_on_its_box() {
     }
 }
 
+/// What is divided by has a value at a state also where no row of the codistribution mentions it: by hand, the rank is that of
+/// the unit matrix wherever the field exists.
+#[test]
+fn what_only_guards_mention_is_drawn_too() {
+    let folder = folder();
+    let with = |param: &str, rate: &str, sample: &str| {
+        let text = format!(
+            "system \"s\" state x, v param {param} drift f x' = v v' = {rate} output x \
+             sample x in [-1, 1] v in [-1, 1] {sample}"
+        );
+        write(&folder, "s.proof", text).display().to_string()
+    };
+    for (param, rate, sample, more) in [
+        ("m = 2", "-x/m", "", &[][..]),
+        ("m", "-x/m", "m in [1, 2]", &[]),
+        ("m = 2, k = 3", "-x*sqrt(k)/log(m)", "", &[]),
+        ("m", "-x/m", "", &["--at", "m=3"]),
+        ("m, k", "-x/m", "k in [1, 2]", &["--where", "m = k"]),
+    ] {
+        let file = with(param, rate, sample);
+        let found = rank(&[&[file.as_str(), "--samples", "40"], more].concat());
+        assert_eq!(found["rank_histogram"], json!({ "2": 40 }), "{param} {rate} {sample}: {found}");
+        assert_eq!(found["certified"], 40, "{param} {rate} {sample}");
+    }
+    // where the divisor is zero there is a pole, and no rank
+    let found = rank(&[&with("m = 2", "-x/m", ""), "--samples", "10", "--at", "m=0"]);
+    assert_eq!(found["certified"], 0, "{found}");
+}
+
 /// Where the object does not turn, both radii are unseen: the first two columns of every row vanish with omega0
 /// (thesis 4.49, 4.51 and 4.53), and nothing else does.
 #[test]

@@ -56,12 +56,34 @@ fn every_signal_is_heeded_in_the_middle_of_anything() {
     for run in all {
         for name in signals() {
             let output = interrupted(&mut program(&[run, &["--json"]].concat()), name);
-            assert_eq!(output.status.code(), Some(1), "{run:?} {name}: {}", words(&output));
+            assert_eq!(output.status.code(), Some(3), "{run:?} {name}: {}", words(&output));
             assert_eq!(json(&output)["interrupted"], true, "{run:?} {name}: {}", words(&output));
             assert!(String::from_utf8_lossy(&output.stderr).contains("stopping"), "{}", words(&output));
         }
     }
     assert_eq!(files(folder.path()), ["slow.proof"]);
+}
+
+/// A signal takes nothing back: what was found to be wrong before it came stays wrong, and the status says so.
+#[test]
+fn what_is_wrong_stays_wrong_when_the_rest_is_cut_off() {
+    let folder = folder();
+    let text = slow().replace("claim at_once: 1 + 1 = 2", "claim at_once: 1 + 1 = 3");
+    let file = write(&folder, "wrong.proof", text);
+    let run = ["prove", file.to_str().unwrap(), "--json"];
+    // a claim that is decided at once is decided within some seconds of the processor, on the slowest machine
+    let output = (4..12).map(|doublings| 1 << doublings).find_map(|ticks| {
+        let child = started_for(&mut program(&run), ticks);
+        signal("INT", &child.id().to_string());
+        let output = end_of(child);
+        let decided = json(&output)["claims"].as_array().is_some_and(|claims| !claims.is_empty());
+        decided.then_some(output)
+    });
+    let output = output.expect("the first claim is decided");
+    assert_eq!(output.status.code(), Some(1), "{}", words(&output));
+    let found = json(&output);
+    assert_eq!((&found["interrupted"], &found["ok"]), (&true.into(), &false.into()), "{}", words(&output));
+    assert_eq!(found["claims"][0]["verdict"], "refuted", "{}", words(&output));
 }
 
 /// A system whose codistribution nobody waits for, and a claim before it that is decided at once.
@@ -108,7 +130,7 @@ fn the_state_of_a_search_is_kept() {
             let output = end_of(child);
             // on a quick machine the search may be over before the signal comes
             let finished = json(&output)["interrupted"] == false;
-            let status = if finished { 0 } else { 1 };
+            let status = if finished { 0 } else { 3 };
             assert_eq!(output.status.code(), Some(status), "{name}: {}", words(&output));
             assert_eq!(files(folder.path()), ["search.state"], "{name}");
             json(&output)["boxes"].as_u64().filter(|now| finished || *now > boxes)

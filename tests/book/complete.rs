@@ -1,0 +1,163 @@
+//! What the book has to name: every entry of the language, every command with its options, every field of the JSON.
+
+use crate::blocks::blocks;
+use crate::common::{folder, json, palmistry, write};
+use std::collections::BTreeSet;
+
+fn chapter(name: &str) -> String {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("book/src").join(name);
+    std::fs::read_to_string(path).expect("a chapter")
+}
+
+/// A file that begins with no entry is told which words begin one.
+#[test]
+fn the_grammar_has_every_entry() {
+    let why = palmistry::System::parse("a.proof", "nothing", std::path::Path::new("")).expect_err("no entry");
+    let all = format!("{:?}", miette::Report::new(why));
+    let all = all.split_once("one of:").expect("a list").1;
+    let names: Vec<&str> = all
+        .split(|c: char| !c.is_ascii_lowercase())
+        .filter(|word| !word.is_empty())
+        .take_while(|word| *word != "help")
+        .collect();
+    let language = chapter("language.md");
+    let grammar =
+        blocks(&language).into_iter().find(|block| block.text.contains("file       = ")).expect("a grammar");
+    assert!(names.contains(&"system") && names.contains(&"reduction"), "{names:?}");
+    for name in names.iter().take_while(|name| **name != "reduction").chain(&["reduction"]) {
+        assert!(grammar.text.contains(&format!("\"{name}\"")), "the grammar lacks '{name}'");
+        assert!(language.contains(&format!("`{name} ")), "no entry '{name}' is explained");
+    }
+}
+
+#[test]
+fn every_command_is_listed_with_its_options() {
+    let text = |arguments: &[&str]| String::from_utf8(palmistry(arguments).stdout).expect("a text");
+    let commands = chapter("commands.md");
+    let help = text(&["--help"]);
+    let list = help.split("Commands:").nth(1).unwrap().split("Options:").next().unwrap();
+    let names = list.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    let names: Vec<&str> = names.filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(names.len() > 12, "{names:?}");
+    for name in names.into_iter().filter(|name| *name != "help") {
+        let row = commands.lines().find(|line| line.starts_with(&format!("| `{name} ")));
+        let row = row.unwrap_or_else(|| panic!("'{name}' is not listed"));
+        let listed: BTreeSet<&str> =
+            row.rsplit('|').nth(1).unwrap().split('`').filter(|word| word.starts_with("--")).collect();
+        let help = text(&[name, "--help"]);
+        let options = help.lines().filter_map(|line| {
+            let line = line.trim_start();
+            let long = line.split_whitespace().take(2).find(|word| word.starts_with("--"))?;
+            (line.starts_with('-')).then_some(long.trim_end_matches(','))
+        });
+        let known: BTreeSet<&str> = options.filter(|option| *option != "--help").collect();
+        assert_eq!(listed, known, "{name}");
+    }
+}
+
+/// The fields of each object, first level, stand in the part on its command.
+#[test]
+fn every_field_of_the_json_is_named() {
+    let folder = folder();
+    let text = "system \"small\"\nstate x, y\ndrift f\n  x' = y\n  y' = -x + x^2\noutput x\nsample x in [1/2, 1] y in [1/2, 1]\n\
+                claim 1: L(f, x) = y\n";
+    let file = write(&folder, "small.proof", text);
+    let file = file.to_str().unwrap();
+    let [verdicts, paper, out] =
+        ["v.json", "paper", "out"].map(|name| folder.path().join(name).display().to_string());
+    let chapter = chapter("json.md");
+    let begin = chapter.split_once("\n## ").expect("parts").0;
+    let runs: [&[&str]; 12] = [
+        &["prove", file, "--verdicts", &verdicts],
+        &["recheck", &verdicts],
+        &["rank", file, "--samples", "20", "--digits", "5"],
+        &["eval", file, "x", "--at", "x=1", "--latex"],
+        &["certify", file, "--boxes", "20"],
+        &["trade", file, "--samples", "20"],
+        &["stress", file, "--samples", "20", "--states", "1"],
+        &["observe", "proofs/moll2002/scenes/section_4_6.toml"],
+        &["verify", file, "--out", &out],
+        &["check", file],
+        &["fmt", file],
+        &["new", &paper],
+    ];
+    for run in runs {
+        let found = json(&palmistry(&[run, &["--json"]].concat()));
+        assert_eq!(found["version"], 1, "{run:?}");
+        let part = chapter
+            .split("\n## ")
+            .find(|part| part.lines().next().is_some_and(|title| title.contains(&format!("`{}`", run[0]))))
+            .unwrap_or_else(|| panic!("no part on {}", run[0]));
+        for field in found.as_object().expect("an object").keys() {
+            let named = |text: &str| text.contains(&format!("`{field}`"));
+            assert!(named(part) || named(begin), "{}: '{field}' is not told", run[0]);
+        }
+    }
+}
+
+/// Each file of tests stands in the map of them, by itself or with its folder.
+#[test]
+fn every_test_file_is_on_the_map() {
+    let map = chapter("tests.md");
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let names = |folder: &str| -> Vec<String> {
+        let entries = std::fs::read_dir(root.join(folder)).expect("a folder");
+        entries
+            .map(|entry| format!("{folder}/{}", entry.expect("an entry").file_name().to_string_lossy()))
+            .collect()
+    };
+    let told = |path: &str| map.contains(&format!("`{path}`")) || map.contains(&format!("`{path}/`"));
+    let helpers = ["tests/common", "tests/corpus"];
+    let mut missing = Vec::new();
+    for group in names("tests").into_iter().filter(|path| !helpers.contains(&path.as_str()) && !told(path)) {
+        let files = names(&group)
+            .into_iter()
+            .filter(|path| !path.ends_with("/main.rs") && !path.ends_with("/snapshots"));
+        missing.extend(files.filter(|path| !told(path)));
+    }
+    assert!(missing.is_empty(), "{missing:?} on no map");
+    // and what the map names is there
+    let named = map.split('`').filter(|word| word.starts_with("tests/"));
+    let gone: Vec<&str> = named.filter(|path| !root.join(path).exists()).collect();
+    assert!(gone.is_empty(), "{gone:?} are gone");
+}
+
+/// Each chapter stands in the summary, each link leads somewhere, and the README stays short.
+#[test]
+fn links_lead_somewhere() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let summary = chapter("SUMMARY.md");
+    for path in crate::pages::pages() {
+        let text = std::fs::read_to_string(&path).expect("a page");
+        let name = path.file_name().expect("a name").to_string_lossy();
+        if path.starts_with(root.join("book")) && name != "SUMMARY.md" {
+            assert!(summary.contains(&format!("({name})")), "{name} is in no summary");
+        }
+        let folder = path.parent().expect("a folder");
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let (file, place) = link.split_once('#').unwrap_or((link, ""));
+            if file.starts_with("http") {
+                continue;
+            }
+            let target = if file.is_empty() { path.clone() } else { folder.join(file) };
+            // a package goes without most of the reports
+            let packed = !root.join(".ci").exists() && file.contains("reports/");
+            assert!(packed || target.exists(), "{name}: {link} leads nowhere");
+            if !place.is_empty() {
+                let to = std::fs::read_to_string(&target).expect("a page");
+                let headings = to.lines().filter_map(|line| line.strip_prefix('#'));
+                let anchors: Vec<String> = headings.map(anchor).collect();
+                assert!(anchors.iter().any(|anchor| anchor == place), "{name}: no {place} among {anchors:?}");
+            }
+        }
+    }
+    let length = std::fs::metadata(root.join("README.md")).expect("a README").len();
+    assert!(length < 8000, "the README has {length} bytes");
+}
+
+/// What a heading is called in a link.
+fn anchor(heading: &str) -> String {
+    let words = heading.trim_start_matches('#').trim().to_lowercase();
+    let kept = words.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+}
