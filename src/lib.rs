@@ -82,6 +82,7 @@ pub mod experiment;
 pub mod paper;
 
 // the page, the plots, the JSON
+#[cfg(feature = "report")]
 pub mod report;
 
 pub use claim::{Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all};

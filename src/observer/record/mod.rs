@@ -8,11 +8,14 @@ mod check;
 mod comma_separated;
 mod error;
 mod fault;
+#[cfg(feature = "parquet")]
 mod metadata;
+#[cfg(feature = "parquet")]
 mod parquet_file;
 mod rows;
 mod spike;
 mod table;
+#[cfg(feature = "parquet")]
 mod thrift;
 mod write;
 
