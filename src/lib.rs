@@ -34,6 +34,7 @@
 //! Each module is a floor and imports only from those above it here.
 
 // files: read within bounds, written whole or not at all
+#[doc(hidden)]
 pub mod file;
 
 // what a value can be
@@ -58,21 +59,24 @@ pub mod sweep;
 pub mod certificate;
 
 // inequalities: signs, sums of squares, boxes
-pub mod inequality;
+pub(crate) mod inequality;
 
 // what verdicts rest on, written down for the checker
+#[doc(hidden)]
 pub mod evidence;
 
 // claims, the engines that decide them, verdicts
 pub mod claim;
 
 // real bodies between real palms, a second witness for the physics
+#[doc(hidden)]
 pub mod mechanics;
 
 // states recovered from what is measured
 pub mod observer;
 
 // speed against accuracy, the extremes
+#[doc(hidden)]
 pub mod tradeoff;
 
 // bodies, sensors and observers together: scenes

@@ -12,11 +12,13 @@ mod minors;
 mod ranks;
 mod statements;
 
+#[doc(hidden)]
 pub use boxes::{WrittenBoxes, certificate_file};
-pub use lowering::{Lowering, exact_coordinate, exact_state};
-pub use minors::largest_minor;
+pub(crate) use lowering::{Lowering, exact_state};
+pub(crate) use minors::largest_minor;
+#[doc(hidden)]
 pub use ranks::rank_records;
-pub use statements::StatementAt;
+pub(crate) use statements::StatementAt;
 
 /// Why evidence could not be written down.
 #[derive(Debug, thiserror::Error)]

@@ -17,24 +17,26 @@ mod kalman;
 mod model;
 mod moving_window;
 mod newton;
-pub mod record;
+pub(crate) mod record;
 mod signal;
 mod task;
 mod trust_region;
 mod window;
 
-pub use bound::{CramerRaoBound, cramer_rao};
-pub use flow::{Lost, MOST_UNKNOWNS, ModelFlow, Order, Sample};
+pub use bound::CramerRaoBound;
+pub(crate) use bound::cramer_rao;
+pub use flow::Lost;
+#[doc(hidden)]
+pub use flow::{ModelFlow, Order, Sample};
 pub use high_gain::HighGain;
 pub use integration::Integration;
 pub use kalman::Kalman;
-pub use model::{Model, ModelError, ModelQuestion};
+#[doc(hidden)]
+pub use model::ModelQuestion;
+pub use model::{Model, ModelError};
 pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
 pub use newton::Newton;
-pub use record::{
-    Cell, Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading, RecordRows, check,
-};
+pub use record::{Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading};
 pub use signal::{SignalError, Signals};
-pub use task::{Observer, SampleEstimate, Sought, TOLERANCE, Task, Track, Update, UpdateEnd};
+pub use task::{Observer, SampleEstimate, Sought, Task, Track, Update, UpdateEnd};
 pub use trust_region::TrustRegion;
-pub use window::{Window, WindowExpansion};

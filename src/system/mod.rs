@@ -29,12 +29,16 @@ pub use dimension::{Base, Dimension};
 pub use error::ReadError;
 pub(crate) use error::{Problem, line_and_column, nearest};
 pub use format::format_text;
-pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statement};
-pub use model::{
-    Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,
-};
+pub use grammar::Expectation;
+#[doc(hidden)]
+pub use grammar::parse_statement;
+#[doc(hidden)]
+pub use grammar::{ClaimBody, ClaimSyntax, Statement};
+pub use model::{Assignment, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value};
 pub use read::Examination;
 pub(crate) use read::load;
 pub use standing::{Basis, Flaw, Reference};
-pub use views::{LineEnd, LineView, MapView, NamedSet, Point, ReductionTo};
+#[doc(hidden)]
+pub use views::LineEnd;
+pub(crate) use views::{LineView, MapView, NamedSet, Point, ReductionTo};
 pub(crate) use written::in_one_line;

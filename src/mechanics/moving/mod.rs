@@ -39,11 +39,12 @@ pub(crate) mod fixtures;
 #[cfg(test)]
 mod tests;
 
-pub use breach::Breach;
-pub use drive::{Course, Drive, Oscillation, PushedPalm};
-pub use form::{BodyForm, CentreOfMass, FormError, Knots};
-pub use random::{DrawnSpline, MOST_DRAWS, RADII, SplineDraws};
-pub use scene::{DEFAULT_TOLERANCE, MovingScene, SceneError};
-pub use shape::Shape;
-pub use simulate::simulate;
-pub use trajectory::{Ended, Moment, PalmMoment, Trajectory};
+pub(crate) use drive::{Course, Drive, Oscillation, PushedPalm};
+pub(crate) use form::{BodyForm, CentreOfMass, FormError, Knots};
+pub(crate) use random::SplineDraws;
+pub(crate) use scene::{DEFAULT_TOLERANCE, MovingScene, SceneError};
+pub(crate) use shape::Shape;
+pub(crate) use simulate::simulate;
+#[doc(hidden)]
+pub use trajectory::Ended;
+pub(crate) use trajectory::{Moment, Trajectory};

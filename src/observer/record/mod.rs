@@ -19,11 +19,12 @@ mod table;
 mod thrift;
 mod write;
 
-pub use check::check;
+#[cfg(test)]
+pub(crate) use check::check;
 pub use error::RecordError;
 pub use fault::{Fault, FaultKind, FaultRules, OnFault};
-pub use rows::RecordRows;
-pub use table::{Cell, Row};
+pub(crate) use rows::RecordRows;
+pub(crate) use table::{Cell, Row};
 
 use std::path::Path;
 

@@ -65,16 +65,6 @@ impl RecordRows {
         Ok(RecordRows { path: path.to_owned(), names, rows, needed: judged })
     }
 
-    /// The rows, in the order of the file.
-    pub fn rows(&self) -> &[Row] {
-        &self.rows
-    }
-
-    /// The names of the columns, the time among them, in the order of the file.
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
-
     /// The record of the rows to keep, numbered from one, and the names of the columns that hold something other than
     /// numbers there.
     pub(super) fn numbers(&self, keep: impl Fn(usize) -> bool) -> (Record, Vec<String>) {

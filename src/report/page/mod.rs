@@ -9,5 +9,5 @@ mod regime;
 mod source;
 pub(super) mod whole;
 
-pub use findings::{findings_json, findings_text, printed_value_json};
+pub use findings::{findings_json, findings_text};
 pub use whole::page;

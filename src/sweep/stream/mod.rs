@@ -30,7 +30,7 @@ pub(super) use equilibrate::Equilibrium;
 pub use given::{StateVerdict, StatesError, Verdicts};
 pub use jacobi::Jacobi;
 use rayon::prelude::*;
-pub use report::{DECADES, StreamReport};
+pub use report::StreamReport;
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, Ordering};
 

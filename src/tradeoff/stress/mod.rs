@@ -17,14 +17,20 @@ mod scaling;
 mod subject;
 mod units;
 
-pub use approach::{Approach, approaches_of};
+#[doc(hidden)]
 pub use changes::{unit_quantities, units};
-pub use finding::StressFinding;
-pub use line::{First, Line, LineLimit, OnTheSet, WayOnLine};
+#[doc(hidden)]
+pub use line::{First, OnTheSet};
+#[doc(hidden)]
+pub use line::{Line, LineLimit};
+#[doc(hidden)]
 pub use run::{Stress, StressOptions, StressStudy, rows_of};
-pub use scaling::{Quantity, Scaling, WayScaled};
-pub use subject::{Subject, Truth};
-pub use units::{Conditioning, Rescaling, UnitsRow, WayInUnits};
+#[doc(hidden)]
+pub use scaling::Scaling;
+#[doc(hidden)]
+pub use units::Rescaling;
+#[doc(hidden)]
+pub use units::{Conditioning, UnitsRow};
 
 /// A number type together with a way to decide a rank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
