@@ -33,6 +33,8 @@
 //! Beside these stand [`tradeoff`], speed against accuracy and the extremes, and [`paper`], a folder taken through all of it.
 //! Each module is a floor and imports only from those above it here.
 
+#![warn(missing_docs)]
+
 // files: read within bounds, written whole or not at all
 #[doc(hidden)]
 pub mod file;
@@ -89,6 +91,9 @@ pub mod paper;
 #[cfg(feature = "report")]
 pub mod report;
 
-pub use claim::{Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all};
+pub use certificate::certify;
+pub use claim::{
+    Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all, prove,
+};
 pub use sweep::{RankAnswer, RankQuestion, answer_rank};
 pub use system::{ReadError, System};

@@ -22,7 +22,7 @@ mod value;
 mod verdict;
 mod witness;
 
-pub use decide::{decide, decide_all, decide_all_keeping};
+pub use decide::{decide, decide_all, decide_all_keeping, prove};
 pub use evidence::Kept;
 #[doc(hidden)]
 pub use selection::{Selection, UnmetPattern};

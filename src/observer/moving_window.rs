@@ -42,6 +42,15 @@ pub struct MovingWindow {
     pub when_blind: WhenBlind,
 }
 
+impl MovingWindow {
+    /// Windows of so many samples, five steps each by a region of trust; what is known no better than its own size counts as
+    /// not seen, and is integrated.
+    pub fn new(window: usize) -> MovingWindow {
+        let when_blind = WhenBlind::default();
+        MovingWindow { method: WindowSearch::TrustRegion, window, steps: 5, blind: 1.0, when_blind }
+    }
+}
+
 impl Observer for MovingWindow {
     fn observe(&self, task: &Task<'_>) -> Track {
         let mut track = Track::default();

@@ -8,6 +8,7 @@ use super::views::{draw, has_a_rank, rank_on};
 use crate::certificate::certify_region;
 use crate::claim::decide_all;
 use crate::experiment::{Experiment, Scene};
+use crate::sweep::UNINTERRUPTED;
 use crate::system::{ReadError, System};
 use crate::tradeoff::stress::{Stress, StressOptions, StressStudy};
 use crate::tradeoff::{
@@ -24,6 +25,13 @@ pub struct VerifyOptions<'a> {
     pub interrupt: &'a AtomicBool,
     /// Called with each step that is done, and with the number of all steps.
     pub progress: &'a (dyn Fn(&str, u64, u64) + Sync),
+}
+
+impl Default for VerifyOptions<'_> {
+    /// The seed 1, and nothing stops it.
+    fn default() -> Self {
+        VerifyOptions { seed: 1, interrupt: &UNINTERRUPTED, progress: &|_, _, _| () }
+    }
 }
 
 /// The orders up to which two routes to a Lie derivative are compared: duals double with each.

@@ -26,6 +26,7 @@ pub use digits::{Digits, NoDigits};
 #[doc(hidden)]
 pub use ladder::{Judge, JudgedRows, ProofWanted, StateJudgement, StateReport};
 pub use question::{BranchAnswer, RankAnswer, RankError, RankQuestion, TakenRow, answer_rank};
+pub(crate) use states::UNINTERRUPTED;
 pub use states::{RecordedState, SweepOptions, SweepReport, sweep};
 pub(crate) use stream::{Elimination, Jacobi};
 #[doc(hidden)]

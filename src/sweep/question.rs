@@ -1,7 +1,7 @@
 //! The whole question of a rank, from a system and some conditions to sweeps of every branch.
 
 use super::deviation::{StandardDeviations, standard_deviations};
-use super::states::{SweepOptions, SweepReport, sweep};
+use super::states::{SweepOptions, SweepReport, UNINTERRUPTED, sweep};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
     Codistribution, CodistributionError, Length, Locus, LocusError, OWN_ROWS, Stop, Unsolved,
@@ -35,9 +35,6 @@ pub struct RankQuestion<'a> {
     /// Called with the number of states done.
     pub progress: &'a (dyn Fn(u64) + Sync),
 }
-
-/// Never set.
-static UNINTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 impl Default for RankQuestion<'_> {
     /// A thousand states of the sample box, every rank certified, from words that are taken until the rank stops growing.

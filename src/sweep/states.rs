@@ -36,6 +36,25 @@ pub struct SweepOptions<'a> {
     pub progress: &'a (dyn Fn(u64) + Sync),
 }
 
+/// Never set: of what nothing stops.
+pub(crate) static UNINTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+impl Default for SweepOptions<'_> {
+    /// A thousand states, every rank certified.
+    fn default() -> Self {
+        SweepOptions {
+            samples: 1000,
+            seed: 1,
+            guards: &[],
+            wanted: Certainty::Certified,
+            digits: None,
+            recorded: 0,
+            interrupt: &UNINTERRUPTED,
+            progress: &|_| (),
+        }
+    }
+}
+
 /// A state of the sweep with its certified rank.
 #[derive(Clone, Debug)]
 pub struct RecordedState {
