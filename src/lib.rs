@@ -33,8 +33,6 @@
 //! Beside these stand [`tradeoff`], speed against accuracy and the extremes, and [`paper`], a folder taken through all of it.
 //! Each module is a floor and imports only from those above it here.
 
-#![warn(missing_docs)]
-
 // files: read within bounds, written whole or not at all
 #[doc(hidden)]
 pub mod file;
