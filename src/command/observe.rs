@@ -5,11 +5,11 @@ use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use indicatif::ProgressBar;
-use palmistry::experiment::{Basin, Experiment, NoiseLevel, Scene, SceneError, basins, noise_study};
+use palmistry::experiment::{Answer, Basin, Experiment, NoiseLevel, Scene, SceneError, basins, noise_study};
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
 use palmistry::observer::{Update, UpdateEnd};
-use palmistry::report::{Observed, ended_in_words, observe_json, observe_page, observe_text};
+use palmistry::report::{Observed, ended_in_words, forget_seconds, observe_json, observe_page, observe_text};
 use std::path::PathBuf;
 
 /// Moves a body between two palms, hands on what touch sensors and motors tell, and has observers recover its shape and
@@ -47,6 +47,9 @@ pub(crate) struct Observe {
     /// Write all of the simulated motion to a file, CSV or Parquet: poses, contact forces, torques, energies, the truth.
     #[arg(long, value_name = "FILE")]
     motion: Option<PathBuf>,
+    /// Tell no times: two runs with one seed then write the same to the last byte.
+    #[arg(long)]
+    no_times: bool,
     /// Print one JSON object: 'observers' with their 'updates' and 'end', and the studies.
     #[arg(long)]
     pub json: bool,
@@ -78,11 +81,14 @@ impl Observe {
             files.announce(path);
         }
         bar.set_message("observing");
-        let answers = experiment.run(&INTERRUPTED, &|method| {
+        let mut answers = experiment.run(&INTERRUPTED, &|method| {
             bar.set_message(method.name());
             bar.inc(1);
         })?;
         bar.finish_and_clear();
+        if self.no_times {
+            answers.iter_mut().for_each(Answer::forget_times);
+        }
         let (noise, basins) = if self.studies { studies(&experiment)? } else { (Vec::new(), Vec::new()) };
         begin_to_tell();
         let interrupted = interrupted();
@@ -93,7 +99,10 @@ impl Observe {
             basins: &basins,
             interrupted,
         };
-        let json = observe_json(&observed);
+        let mut json = observe_json(&observed);
+        if self.no_times {
+            forget_seconds(&mut json);
+        }
         if let Some(folder) = &self.out {
             files.text(&folder.join("index.html"), &observe_page(&observed));
             files.json(&folder.join("observe.json"), &json);

@@ -37,8 +37,18 @@ pub struct Experiment {
 pub struct Answer {
     pub method: scene::Method,
     pub track: Track,
-    /// In s.
+    /// In s; NaN where no times are kept.
     pub seconds: f64,
+}
+
+impl Answer {
+    /// Replaces each time on the wall by NaN.
+    pub fn forget_times(&mut self) {
+        self.seconds = f64::NAN;
+        for update in &mut self.track.updates {
+            update.seconds = f64::NAN;
+        }
+    }
 }
 
 impl Experiment {

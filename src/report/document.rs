@@ -1,5 +1,6 @@
 //! The frame of every page: one file, with its style and its script, and nothing from elsewhere.
 
+use crate::report::compact::compact;
 use crate::report::drawing::STANDALONE;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -9,7 +10,7 @@ const SCRIPT: &str = include_str!("page.js");
 
 /// A page as HTML.
 pub(super) fn document(title: &str, content: &Markup, has_claims: bool) -> String {
-    html! {
+    let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
@@ -25,6 +26,6 @@ pub(super) fn document(title: &str, content: &Markup, has_claims: bool) -> Strin
             }
         }
     }
-    .into_string()
-    .replace(STANDALONE, "")
+    .into_string();
+    compact(&page.replace(STANDALONE, ""))
 }

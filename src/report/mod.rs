@@ -5,6 +5,7 @@
 mod axis;
 mod certificate;
 mod claims;
+mod compact;
 mod document;
 mod drawing;
 mod formula;
@@ -35,6 +36,8 @@ pub use layout::Layout;
 #[doc(hidden)]
 pub use motion::ended_in_words;
 pub use motion::{Observed, observe_json, observe_page, observe_text};
+#[doc(hidden)]
+pub use page::forget_seconds;
 pub use page::{findings_json, findings_text, page};
 pub use ranks::{rank_json, rank_text};
 #[doc(hidden)]

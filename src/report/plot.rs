@@ -213,25 +213,33 @@ const LINES: [RGBColor; 4] =
 /// The stripes of a line, which are as wide as a finger.
 const STRIPES: usize = 16;
 
-/// A stripe around every few distances, and what stands there.
+/// A stripe around every few distances, and what stands there; neighbours with the same values are one.
 fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -> Vec<Hover> {
     let all: Vec<(&f64, &Vec<f64>)> = slope.distance.iter().zip(&slope.values).collect();
     let shown: Vec<_> = all.iter().step_by(all.len().div_ceil(STRIPES).max(1)).copied().collect();
     let places: Vec<i32> = shown.iter().map(|(distance, _)| place(**distance)).collect();
-    let found = shown.into_iter().enumerate();
-    let stripe = |(i, (distance, values)): (usize, (&f64, &Vec<f64>))| {
-        let here = places[i];
-        let half = |other: Option<&i32>| other.map_or(here, |other| (other + here) / 2);
-        let ends = [half(i.checked_sub(1).and_then(|i| places.get(i))), half(places.get(i + 1))];
-        let values: Vec<String> = values.iter().map(|value| format!("{value:.1e}")).collect();
-        let text = match values.is_empty() {
-            true => format!("{distance:.0e}: a pole"),
-            false => format!("{distance:.0e}: {}", values.join(", ")),
+    let said = |values: &Vec<f64>| match values.is_empty() {
+        true => "a pole".to_owned(),
+        false => values.iter().map(|value| format!("{value:.1e}")).collect::<Vec<_>>().join(", "),
+    };
+    let texts: Vec<String> = shown.iter().map(|(_, values)| said(values)).collect();
+    let mut stripes = Vec::new();
+    let mut first = 0;
+    for run in texts.chunk_by(|a, b| a == b) {
+        let last = first + run.len() - 1;
+        let half = |a: usize, b: usize| (places[a] + places[b]) / 2;
+        let ends = [half(first.saturating_sub(1), first), half(last, (last + 1).min(places.len() - 1))];
+        let distances = match first == last {
+            true => format!("{:.0e}", shown[first].0),
+            false => format!("{:.0e} to {:.0e}", shown[first].0, shown[last].0),
         };
         let corners = [ends[0].min(ends[1]), top, ends[0].max(ends[1]), bottom];
-        (corners[2] > corners[0]).then_some(Hover { corners, text })
-    };
-    found.filter_map(stripe).collect()
+        if corners[2] > corners[0] {
+            stripes.push(Hover { corners, text: format!("{distances}: {}", run[0]) });
+        }
+        first = last + 1;
+    }
+    stripes
 }
 
 /// The errors of a sum in few digits, as a histogram, with the error of the printed number as a line.

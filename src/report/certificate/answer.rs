@@ -183,7 +183,8 @@ pub fn region_text(answer: &RegionAnswer) -> String {
         let _ = writeln!(out, "{remark}");
     }
     let finished = if answer.finished { ", and nothing is left to halve" } else { "" };
-    let _ = write!(out, "{} boxes in {:.2} s{finished}", answer.boxes, answer.seconds);
+    let time = if answer.seconds.is_nan() { String::new() } else { format!(" in {:.2} s", answer.seconds) };
+    let _ = write!(out, "{} boxes{time}{finished}", answer.boxes);
     out
 }
 

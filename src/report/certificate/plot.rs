@@ -1,8 +1,8 @@
 //! Certificates on regions, as pictures.
 
-use crate::certificate::{BoxStanding, RegionAnswer, RegionMap};
+use crate::certificate::{BoxStanding, Patch, RegionAnswer, RegionMap};
 use crate::report::axis::{axis, number, room};
-use crate::report::drawing::{Canvas, INK, MESH, svg};
+use crate::report::drawing::{Canvas, Cells, INK, MESH, svg};
 
 use plotters::prelude::*;
 
@@ -66,35 +66,83 @@ fn meaning(standing: BoxStanding) -> &'static str {
     }
 }
 
+const STANDINGS: [BoxStanding; 4] =
+    [BoxStanding::Proved, BoxStanding::MinorVanishes, BoxStanding::Pole, BoxStanding::Undecided];
+
+/// More boxes than these are not told apart: their plane is drawn in cells, without borders.
+const MOST_PATCHES: usize = 200;
+/// Cells across and up.
+const GRID: [usize; 2] = [84, 60];
+
+/// What is in each cell, by rows from the top: of several the one that a reader must not miss.
+fn cells(map: &RegionMap) -> Vec<BoxStanding> {
+    let weight = |standing: &BoxStanding| match standing {
+        BoxStanding::Proved => 0,
+        BoxStanding::Undecided => 1,
+        BoxStanding::MinorVanishes => 2,
+        BoxStanding::Pole => 3,
+    };
+    let mut found = vec![BoxStanding::Proved; GRID[0] * GRID[1]];
+    // a box covers the cells whose middle it holds, and at least the one in which it lies
+    let covered = |(low, high): (f64, f64), (from, to): (f64, f64), count: usize| {
+        let place = |value: f64| (value - from) / (to - from) * count as f64;
+        let first = ((place(low) - 0.5).ceil().max(0.0) as usize).min(count);
+        let last = ((place(high) - 0.5).ceil().max(0.0) as usize).min(count);
+        let middle = (place(f64::midpoint(low, high)).max(0.0) as usize).min(count - 1);
+        if last > first { first..last } else { middle..middle + 1 }
+    };
+    for patch in &map.patches {
+        for row in covered(patch.y, (map.y.1, map.y.2), GRID[1]) {
+            for column in covered(patch.x, (map.x.1, map.x.2), GRID[0]) {
+                let cell = &mut found[(GRID[1] - 1 - row) * GRID[0] + column];
+                *cell = [*cell, patch.standing].into_iter().max_by_key(weight).unwrap_or(*cell);
+            }
+        }
+    }
+    found
+}
+
+/// The boxes with their borders: most is proved, so that it is drawn as one and the rest on it.
+fn draw_patches(map: &RegionMap, mut draw: impl FnMut(Rectangle<(f64, f64)>) -> Drawn) -> Drawn {
+    let smallest = ((map.x.2 - map.x.1) / 100.0, (map.y.2 - map.y.1) / 70.0);
+    let whole = [(map.x.1, map.y.1), (map.x.2, map.y.2)];
+    draw(Rectangle::new(whole, colour(BoxStanding::Proved).filled()))?;
+    let corners = |patch: &Patch| [(patch.x.0, patch.y.0), (patch.x.1, patch.y.1)];
+    for standing in STANDINGS.into_iter().filter(|standing| *standing != BoxStanding::Proved) {
+        for patch in map.patches.iter().filter(|patch| patch.standing == standing) {
+            draw(Rectangle::new(corners(patch), colour(standing).filled()))?;
+        }
+    }
+    let is_large = |patch: &&Patch| patch.x.1 - patch.x.0 > smallest.0 && patch.y.1 - patch.y.0 > smallest.1;
+    for patch in map.patches.iter().filter(is_large) {
+        draw(Rectangle::new(corners(patch), RGBColor(254, 254, 254).stroke_width(1)))?;
+    }
+    Ok(())
+}
+
+type Drawn = Result<(), Box<dyn std::error::Error>>;
+
 /// The boxes in a plane, each with its border: pale where full rank is proved, red where a minor is proved to vanish
 /// somewhere in the box, black where a pole runs through it, grey where nothing is known.
 pub fn region_map(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> String {
-    let meanings =
-        [BoxStanding::Proved, BoxStanding::MinorVanishes, BoxStanding::Pole, BoxStanding::Undecided];
-    let by_colour = meanings.map(|standing| (colour(standing), meaning(standing).to_owned()));
-    Canvas { size: (420, 320), title, by_colour: &by_colour, is_crisp: true }.draw(|area, _| {
+    let by_colour = STANDINGS.map(|standing| (colour(standing), meaning(standing).to_owned()));
+    Canvas { size: (420, 320), title, by_colour: &by_colour, is_crisp: true }.draw(|area, extras| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
             .x_label_area_size(38)
             .y_label_area_size(room((map.y.1, map.y.2), |v| number(v, map.y.2 - map.y.1)))
             .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
-        let smallest = ((map.x.2 - map.x.1) / 100.0, (map.y.2 - map.y.1) / 70.0);
-        // all of one standing together, so that they are one path, and then their borders
-        // most is proved: the whole first, and then the rest on it
-        let whole = [(map.x.1, map.y.1), (map.x.2, map.y.2)];
-        chart.draw_series([Rectangle::new(whole, colour(BoxStanding::Proved).filled())])?;
-        for standing in meanings.into_iter().filter(|standing| *standing != BoxStanding::Proved) {
-            for patch in map.patches.iter().filter(|patch| patch.standing == standing) {
-                let corners = [(patch.x.0, patch.y.0), (patch.x.1, patch.y.1)];
-                chart.draw_series([Rectangle::new(corners, colour(standing).filled())])?;
-            }
-        }
-        for patch in &map.patches {
-            if patch.x.1 - patch.x.0 > smallest.0 && patch.y.1 - patch.y.0 > smallest.1 {
-                let corners = [(patch.x.0, patch.y.0), (patch.x.1, patch.y.1)];
-                chart.draw_series([Rectangle::new(corners, RGBColor(254, 254, 254).stroke_width(1))])?;
-            }
+        if map.patches.len() > MOST_PATCHES {
+            let low = chart.backend_coord(&(map.x.1, map.y.1));
+            let high = chart.backend_coord(&(map.x.2, map.y.2));
+            let colours = cells(map).into_iter().map(colour).collect();
+            extras.cells = Some(Cells { corners: [low.0, high.1, high.0, low.1], columns: GRID[0], colours });
+        } else {
+            draw_patches(map, |rectangle| {
+                chart.draw_series([rectangle])?;
+                Ok(())
+            })?;
         }
         chart
             .configure_mesh()

@@ -192,16 +192,14 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         let _ = writeln!(text, "  {line}");
     }
     for answer in observed.answers {
-        let _ = writeln!(text, "\n{}: {:.3} s", answer.method.name(), answer.seconds);
+        let is_timed = !answer.seconds.is_nan();
+        let time = if is_timed { format!(": {:.3} s", answer.seconds) } else { String::new() };
+        let _ = writeln!(text, "\n{}{time}", answer.method.name());
         for update in &answer.track.updates {
-            let _ = writeln!(
-                text,
-                "  from {:.3} s: {} after {} steps, {:.1} ms",
-                update.from,
-                standing_name(&update.standing),
-                update.steps,
-                1e3 * update.seconds
-            );
+            let time = if is_timed { format!(", {:.1} ms", 1e3 * update.seconds) } else { String::new() };
+            let standing = standing_name(&update.standing);
+            let _ =
+                writeln!(text, "  from {:.3} s: {standing} after {} steps{time}", update.from, update.steps);
             let bounds = Some(&update.deviations[..]);
             state_lines(&mut text, observed, &names, update.from, &update.estimate, bounds);
         }

@@ -12,7 +12,6 @@ pub(super) const PALM_COLOURS: [RGBColor; 2] = [RGBColor(0, 114, 178), RGBColor(
 const TRUE_OUTLINE: RGBColor = RGBColor(150, 156, 165);
 /// Recovered where the observer could not see.
 const UNSEEN: RGBColor = RGBColor(205, 209, 215);
-const FRAMES: usize = 12;
 /// Twice the size in which they are shown: places are whole pixels, and a curve of few pixels is not smooth.
 const CELL: (u32, u32) = (400, 336);
 
@@ -86,10 +85,10 @@ fn dots(
 }
 
 /// As figure 4.3: the palms, the true outline, the contacts and the centre of mass at some samples, the last among them, and
-/// the part of the outline that is recovered by then, a picture each.
-pub(super) fn frames(observed: &Observed<'_>, outline: &Outline) -> Vec<String> {
+/// the part of the outline that is recovered by then, a picture each; at most `most`.
+pub(super) fn frames(observed: &Observed<'_>, outline: &Outline, most: usize) -> Vec<String> {
     let instants = &outline.instants;
-    let count = FRAMES.min(instants.len());
+    let count = most.min(instants.len());
     let rows: Vec<usize> = (1..=count).map(|frame| frame * instants.len() / count - 1).collect();
     let longest = instants.iter().flat_map(|i| i.contacts).map(|[x, y]| x.hypot(y)).fold(0.0, f64::max);
     let tip = |angle: f64| [1.15 * longest * angle.cos(), 1.15 * longest * angle.sin()];

@@ -3,7 +3,7 @@
 use crate::report::document::document;
 use crate::report::motion::answers::Observed;
 use crate::report::motion::section::{
-    body_pictures, faults, sensor_pictures, state_pictures, studies, summary,
+    FRAMES, body_pictures, faults, sensor_pictures, state_pictures, studies, summary,
 };
 use crate::report::motion::table::{ends, notes, updates};
 use maud::html;
@@ -26,7 +26,7 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
             }
         }
         main {
-            section #body { h2 { "The body between its palms" } (body_pictures(observed)) }
+            section #body { h2 { "The body between its palms" } (body_pictures(observed, FRAMES)) }
             section #found { h2 { "What they found" } (ends(observed)) (notes(observed)) }
             section #states { h2 { "States over time" } (state_pictures(observed)) }
             section #sensors { h2 { "Sensor errors" } (sensor_pictures(observed)) }
@@ -88,11 +88,14 @@ steps = 20
     fn a_page_holds_its_pictures() {
         with_observed(|observed| {
             let (page, section) = (observe_page(observed), observed_section(&[*observed]).into_string());
-            for (text, what) in [(&page, "page"), (&section, "section")] {
+            // a paper's page has half of the frames, and nothing of the sensors
+            for (text, what, frames, sensors) in
+                [(&page, "page", FRAMES, 3), (&section, "section", FRAMES / 2, 0)]
+            {
                 assert!(!text.contains("could not be drawn"), "{what}");
-                // twelve frames and the outline, three states with their errors, sensor errors of one method and of both outputs, the noise
-                // of three states, the basins of two methods
-                assert_eq!(text.matches("<svg").count(), 12 + 1 + 6 + 3 + 3 + 2, "{what}");
+                // the frames and the outline, three states with their errors, sensor errors of one method and of both outputs, the
+                // noise of three states, the basins of two methods
+                assert_eq!(text.matches("<svg").count(), frames + 1 + 6 + sensors + 3 + 2, "{what}");
                 assert!(!text.contains("NaN"), "{what}");
             }
             assert!(section.contains("id=\"observers\""));

@@ -9,6 +9,9 @@ use crate::report::motion::study_plot;
 use crate::report::motion::table::{ends, noise_table, notes, pace, updates};
 use maud::{Markup, PreEscaped, html};
 
+/// At most so many samples are drawn.
+pub(super) const FRAMES: usize = 12;
+
 /// Experiments, as a section of the page of the thesis.
 pub(in crate::report) fn observed_section(experiments: &[Observed<'_>]) -> Markup {
     html! {
@@ -17,17 +20,16 @@ pub(in crate::report) fn observed_section(experiments: &[Observed<'_>]) -> Marku
             p {
                 "A body moves between two palms by Newton's laws and contact geometry; observers get only what touch sensors and "
                 "motors tell, and recover shape and motion with the equations of the proof file. "
-                code { "palmistry observe" } " writes such a page for any scene."
+                code { "palmistry observe" } " writes such a page for any scene, with twice the samples and the errors of the sensors."
             }
             @for observed in experiments {
                 h3 { (observed.experiment.scene.title) }
                 (summary(observed))
                 (faults(observed))
-                (body_pictures(observed))
+                (body_pictures(observed, FRAMES / 2))
                 (ends(observed))
                 (notes(observed))
                 details { summary { "states over time, and their errors" } (state_pictures(observed)) }
-                details { summary { "sensor errors" } (sensor_pictures(observed)) }
                 details { summary { "all updates" } (updates(observed)) }
                 (studies(observed))
             }
@@ -109,15 +111,16 @@ fn headline(observed: &Observed<'_>) -> Markup {
             b { (answer.method.name()) }
             @match largest {
                 Some(largest) if largest.is_finite() => {
-                    " ends with " (names.join(", ")) " off by at most " b { (format!("{largest:.1e}")) } " of their size; "
+                    " ends with " (names.join(", ")) " off by at most " b { (format!("{largest:.1e}")) } " of their size"
                 }
-                Some(_) => { " does not end with a number for each of " (names.join(", ")) "; " }
-                None => { " looked for " (names.join(", ")) "; " }
+                Some(_) => { " does not end with a number for each of " (names.join(", ")) }
+                None => { " looked for " (names.join(", ")) }
             }
             @if answer.track.unseen > 0 {
-                b { "it could not see for " (answer.track.unseen) " of " (observed.experiment.signals.times().len()) " samples" } "; "
+                "; " b { "it could not see for " (answer.track.unseen) " of " (observed.experiment.signals.times().len()) " samples" }
             }
-            (pace(observed, answer)) "."
+            @if let Some(pace) = pace(observed, answer) { "; " (pace) }
+            "."
         }
     }
 }
@@ -145,7 +148,7 @@ pub(super) fn faults(observed: &Observed<'_>) -> Markup {
 }
 
 /// As figure 4.3 and 4.4a.
-pub(super) fn body_pictures(observed: &Observed<'_>) -> Markup {
+pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
     let Some(outline) = outline(observed) else {
         return html! {
             p.remark {
@@ -157,9 +160,9 @@ pub(super) fn body_pictures(observed: &Observed<'_>) -> Markup {
     let shape = observed.experiment.simulation.as_ref().map(|simulation| &simulation.shape);
     html! {
         figure {
-            div.frames { @for picture in frames(observed, &outline) { (PreEscaped(picture)) } }
+            div.frames { @for picture in frames(observed, &outline, most) { (PreEscaped(picture)) } }
             figcaption {
-                "As figure 4.3: the palms about their joint at " (outline.instants.len().min(12)) " samples. Large dots are the "
+                "As figure 4.3: the palms about their joint at " (outline.instants.len().min(most)) " samples. Large dots are the "
                 "centre of mass and the two contacts. Small dots are the part of the outline that " b { (outline.method.name()) }
                 " has recovered by then, blue where palm 1 touched it and orange where palm 2 did"
                 @if !outline.instants.iter().all(|instant| instant.seen) { ", pale where it could not see" }

@@ -17,6 +17,11 @@ fn duration(seconds: f64) -> String {
     }
 }
 
+/// Whether times are kept.
+fn is_timed(observed: &Observed<'_>) -> bool {
+    observed.answers.iter().all(|answer| !answer.seconds.is_nan())
+}
+
 /// The update in the middle, by time.
 fn median(answer: &Answer) -> Option<&Update> {
     let mut updates: Vec<&Update> = answer.track.updates.iter().collect();
@@ -24,11 +29,14 @@ fn median(answer: &Answer) -> Option<&Update> {
     updates.get(updates.len() / 2).copied()
 }
 
-/// How the time of an update compares with the time that its window covers.
-pub(super) fn pace(observed: &Observed<'_>, answer: &Answer) -> String {
+/// How the time of an update compares with the time that its window covers; nothing where no times are kept.
+pub(super) fn pace(observed: &Observed<'_>, answer: &Answer) -> Option<String> {
+    if answer.seconds.is_nan() {
+        return None;
+    }
     let times = observed.experiment.signals.times();
     let covered = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
-    match median(answer) {
+    Some(match median(answer) {
         Some(update) => {
             let window = update.to - update.from;
             let verdict = if update.seconds < window { "fast enough" } else { "too slow" };
@@ -40,19 +48,20 @@ pub(super) fn pace(observed: &Observed<'_>, answer: &Answer) -> String {
             )
         }
         None => format!("{} for {} of motion", duration(answer.seconds), duration(covered)),
-    }
+    })
 }
 
 /// Each method at the last sample, and whether it keeps up with the motion.
 pub(super) fn ends(observed: &Observed<'_>) -> Markup {
     let names = observed.experiment.names();
+    let timed = is_timed(observed);
     let known = observed.experiment.simulation.is_some();
     html! {
         div.scroll { table {
             thead { tr {
                 th { "method" } th { "at" }
                 @for name in &names { th { (name) } @if known { th { "error" } } }
-                th { "updates that converged" } th { "time" }
+                th { "updates that converged" } @if timed { th { "time" } }
             } }
             tbody {
                 @for answer in observed.answers {
@@ -73,21 +82,21 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
                             @if answer.track.updates.is_empty() { "-" }
                             @else { (converged) " of " (answer.track.updates.len()) }
                         }
-                        td.words { (pace(observed, answer)) }
+                        @if let Some(pace) = pace(observed, answer) { td.words { (pace) } }
                     }
                 }
                 @if let (true, Some(truth)) = (known, last_truth(observed)) {
                     tr {
                         td { "true" } td {}
                         @for value in truth { td.number { (format!("{value:.6}")) } td {} }
-                        td {} td {}
+                        td {} @if timed { td {} }
                     }
                 }
             }
         } }
         p.remark {
             @if known { "An error is relative, or absolute where the truth is less than a millionth. " }
-            "Times are wall times of this run."
+            @if timed { "Times are wall times of this run." }
         }
     }
 }
@@ -100,7 +109,7 @@ fn last_truth(observed: &Observed<'_>) -> Option<Vec<f64>> {
 pub(super) fn updates(observed: &Observed<'_>) -> Markup {
     html! {
         @for answer in observed.answers.iter().filter(|answer| !answer.track.updates.is_empty()) {
-            h3 { (answer.method.name()) ": " (pace(observed, answer)) }
+            h3 { (answer.method.name()) @if let Some(pace) = pace(observed, answer) { ": " (pace) } }
             (update_table(observed, answer))
             p.remark {
                 "The state is that at the window's first sample; the bound is its least standard deviation. Steps that had to be "
@@ -115,12 +124,13 @@ pub(super) fn updates(observed: &Observed<'_>) -> Markup {
 
 fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
     let names = observed.experiment.names();
+    let timed = is_timed(observed);
     let known = observed.experiment.simulation.is_some();
     let bound = |value: f64| if value.is_finite() { format!("{value:.1e}") } else { "not seen".to_owned() };
     html! {
         div.scroll { table {
             thead { tr {
-                th { "window" } th { "it" } th { "steps" } th { "time" } th { "state" } th { "recovered" }
+                th { "window" } th { "it" } th { "steps" } @if timed { th { "time" } } th { "state" } th { "recovered" }
                 @if known { th { "true" } th { "off by" } }
                 th { "bound" } @if known { th { "off by, in bounds" } }
             } }
@@ -135,7 +145,7 @@ fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
                             td.number rowspan=(names.len()) {
                                 (update.steps) @if update.troubled > 0 { " (" (update.troubled) " mended)" }
                             }
-                            td.number rowspan=(names.len()) { (duration(update.seconds)) }
+                            @if timed { td.number rowspan=(names.len()) { (duration(update.seconds)) } }
                         }
                         td { (name) }
                         td.number { (format!("{value:.9}")) }

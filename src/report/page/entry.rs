@@ -7,6 +7,7 @@ use crate::report::formula::formula_mathml;
 use crate::report::names::fields_text;
 use crate::system::{Basis, Flaw};
 use maud::{Markup, PreEscaped, html};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// An entry with its anchor.
@@ -142,12 +143,21 @@ fn raised(power: &str) -> String {
     base.chars().chain(exponent.chars().map(raise)).collect()
 }
 
+/// A text that is longer than a page needs has its first part here, and all of it in the terminal.
+fn in_short(text: &str) -> Cow<'_, str> {
+    const MOST: usize = 320;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{} ... (palmistry prove says it all)", &text[..end]).into(),
+        None => text.into(),
+    }
+}
+
 /// What stands behind a verdict.
 pub(super) fn explain(verdict: &Verdict) -> Markup {
     html! {
         @match verdict {
             Verdict::Proved { engine, log2_error } => {
-                (engine) (certainty(*log2_error))
+                (in_short(engine)) (certainty(*log2_error))
             }
             Verdict::Refuted { witness, .. } => { (witness_line(witness)) }
             Verdict::Definition { text } => { (text) }

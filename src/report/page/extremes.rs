@@ -5,7 +5,7 @@ use crate::paper::Findings;
 use crate::report::axis::unit_of;
 use crate::report::certificate::answer::region_text;
 use crate::report::certificate::plot::{region_curve, region_map};
-use crate::report::stress::answer::stress_pictures;
+use crate::report::stress::plot::lines_picture;
 use crate::report::trade::answer::{TRADE_FRONT_HEADINGS, trade_front_table};
 use crate::report::trade::plot::trade_plot;
 use crate::system::System;
@@ -13,19 +13,25 @@ use crate::tradeoff::Trade;
 use crate::tradeoff::stress::StressStudy;
 use maud::{Markup, PreEscaped, html};
 
-/// Whether something was found of it.
-pub(super) fn has_extremes(found: &Findings) -> bool {
-    found.files.iter().any(|file| file.trade.is_some() || file.stress.is_some() || file.certificate.is_some())
+/// What the section is called; nothing if nothing was found for it.
+pub(super) fn extremes_heading(found: &Findings) -> Option<&'static str> {
+    let is_timed = found.files.iter().any(|file| file.trade.is_some());
+    let goes_far = found.files.iter().any(|file| file.stress.is_some() || file.certificate.is_some());
+    match (is_timed, goes_far) {
+        (true, _) => Some("Speed against accuracy"),
+        (false, true) => Some("How far it holds"),
+        (false, false) => None,
+    }
 }
 
 /// What was found of it, as a section of the page.
-pub(super) fn extremes(found: &Findings) -> Markup {
+pub(super) fn extremes(found: &Findings, heading: &str) -> Markup {
     let stress: Vec<&StressStudy> = found.files.iter().filter_map(|file| file.stress.as_ref()).collect();
     let regions: Vec<(&System, &RegionAnswer)> =
         found.files.iter().filter_map(|file| Some((&file.system, file.certificate.as_ref()?))).collect();
     html! {
         section #extremes {
-            h2 { "Speed against accuracy" }
+            h2 { (heading) }
             @for file in &found.files {
                 @if let Some(trade) = &file.trade { (traded(trade)) }
             }
@@ -69,20 +75,17 @@ fn stressed(studies: &[&StressStudy]) -> Markup {
     html! {
         h3 { "The extremes" }
         p {
-            "Lines into every singular set of every system down to a distance of 1e-15, and every quantity scaled from 1e-150 to "
-            "1e150: where each kind of number first misreports the rank of the file's own rows, loses more than half of its "
-            "digits, or refuses, beside the certified rank at the very state. A short version; " code { "palmistry stress" }
-            " has more states and prints every distance."
+            "Lines into every singular set of every system down to a distance of 1e-15: where each kind of number first misreports "
+            "the rank of the file's own rows, loses more than half of its digits, or refuses, beside the certified rank at the very "
+            "state. A short version; " code { "palmistry stress" } " has more states, scales every quantity from 1e-150 to 1e150, "
+            "tells how states are conditioned, and prints every distance."
         }
         @for study in studies {
             details {
                 summary { (study.title) }
                 figure {
-                    div.grid { @for (_, picture) in stress_pictures(study) { (PreEscaped(picture)) } }
-                    figcaption {
-                        "Bars from far to near and from small to large, coloured by what a verdict is worth there; and how states are "
-                        "conditioned, before and after equilibration."
-                    }
+                    div.grid { (PreEscaped(lines_picture(study))) }
+                    figcaption { "Bars from far to near, coloured by what a verdict is worth there." }
                 }
             }
         }

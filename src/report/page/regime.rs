@@ -100,9 +100,12 @@ fn reduction(found: &ReductionFound) -> Markup {
             @match &found.comparison {
                 Ok(c) => {
                     " " (c.small_states) " states instead of " (c.large_states) "; differentials agree to "
-                    (format!("{:.0e}", c.largest_difference.max(f64::EPSILON))) " relative. One state's matrix and singular values "
-                    "take " b { (format!("{:.1}", c.large_seconds / c.small_seconds)) } " times as long with all states ("
-                    (c.large_operations) " operations against " (c.small_operations) ")."
+                    (format!("{:.0e}", c.largest_difference.max(f64::EPSILON))) " relative. One state's matrix takes "
+                    (c.large_operations) " operations with all states, and " (c.small_operations) " with these"
+                    @if !c.large_seconds.is_nan() {
+                        "; with its singular values " b { (format!("{:.1}", c.large_seconds / c.small_seconds)) } " times as long"
+                    }
+                    "."
                 }
                 Err(why) => { " Not counted: " (why) "." }
             }

@@ -3,7 +3,7 @@
 use super::anchors::{Anchors, placed, stem};
 use super::claims::{all_claims, equations, faults, tally};
 use super::entry::{ENGINES, name};
-use super::extremes::{extremes, has_extremes};
+use super::extremes::{extremes, extremes_heading};
 use super::regime::{file_section, has_a_section};
 use super::source::sources;
 use crate::claim::Outcome;
@@ -52,7 +52,7 @@ pub fn page(found: &Findings) -> String {
             @if numbering.count() > 0 { a href="#equations" { "All equations" } }
             @if has_faults { a href="#errata" { "What does not hold" } }
             @for (file, name) in sections() { a href=(format!("#{name}")) { (file.system.title) } }
-            @if has_extremes(found) { a href="#extremes" { "Speed against accuracy" } }
+            @if let Some(heading) = extremes_heading(found) { a href="#extremes" { (heading) } }
             @if !experiments.is_empty() { a href="#observers" { "Bodies in motion" } }
             a href="#claims" { "All claims" }
             a href="#sources" { "The proof files" }
@@ -61,7 +61,7 @@ pub fn page(found: &Findings) -> String {
             @if numbering.count() > 0 { (equations(numbering, &claims, &anchors)) }
             (faults(numbering, &claims, &anchors))
             @for (file, name) in sections() { (file_section(name, file, &|name| unit_of(&file.system, name))) }
-            @if has_extremes(found) { (extremes(found)) }
+            @if let Some(heading) = extremes_heading(found) { (extremes(found, heading)) }
             @if !experiments.is_empty() { (observed_section(&experiments)) }
             (all_claims(&claims, &anchors, &files))
             (sources(&systems, &anchors))
@@ -86,7 +86,11 @@ fn header(found: &Findings, links: Markup) -> Markup {
                 b { "Restated" } " is no proof: the two sides are one expression once names are put in."
             }
             (tally(&outcomes))
-            p.y { "Seed " (found.seed) ", " (format!("{:.0} s", found.seconds)) " in all." }
+            p.y {
+                "Seed " (found.seed)
+                @if !found.seconds.is_nan() { ", " (format!("{:.0} s", found.seconds)) " in all" }
+                "."
+            }
             @if found.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
             nav { (links) }
         }

@@ -91,7 +91,7 @@ pub fn trade_plot(trade: &Trade) -> String {
             for combination in alike {
                 filled(chart.plotting_area(), at(combination), combination.derivative, inside)?;
             }
-            for combination in alike {
+            for combination in alike.iter().filter(|_| rim != inside) {
                 rimmed(chart.plotting_area(), at(combination), combination.derivative, rim)?;
             }
         }

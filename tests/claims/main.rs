@@ -1,0 +1,23 @@
+//! Is it so? Claims, the language they are written in, and what a verdict rests on.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bad_input;
+mod blocks;
+mod brackets;
+mod derivation;
+mod dimensions;
+mod edges;
+mod formulas;
+mod functions;
+mod inequalities;
+mod language;
+mod lie_derivatives;
+mod misprints;
+mod mutation;
+mod published;
+mod recheck;
+mod series;
+mod units;
+mod words;

@@ -1,0 +1,8 @@
+//! Bodies in motion and observers that recover them.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod mechanics;
+mod observe;
+mod observers;

@@ -1,0 +1,12 @@
+//! The program as its users meet it: papers, pages, files that are damaged, a process among others.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod appendix;
+mod damaged;
+mod page;
+mod paper;
+mod papers;
+#[cfg(unix)]
+mod process;

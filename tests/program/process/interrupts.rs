@@ -1,0 +1,138 @@
+//! Signals: the first asks to stop and keeps what there is, the second ends the program.
+
+use crate::common::{folder, json, write};
+use crate::process::{end_of, files, finish, program, signal, words};
+use std::process::{Child, Command, Output, Stdio};
+
+/// Work of many seconds: words of twelve fields of the thesis's general system.
+const ENDLESS: [&str; 4] = ["rank", "proofs/moll2002/general.proof", "--order", "12"];
+
+/// Starts a run, and lets it work for a while: a twentieth of a second of the processor.
+fn started(command: &mut Command) -> Child {
+    started_for(command, 5)
+}
+
+/// The same for so many hundredths of a second of the processor.
+fn started_for(command: &mut Command, ticks: u64) -> Child {
+    let child =
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
+    while used(child.id()).is_some_and(|used| used < ticks) {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    child
+}
+
+/// The hundredths of a second that a process has used of the processor, as long as it runs.
+fn used(id: u32) -> Option<u64> {
+    let line = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
+    let rest = line.rsplit_once(')')?.1;
+    let words: Vec<&str> = rest.split_whitespace().collect();
+    let ended = *words.first()? == "Z";
+    words.get(11)?.parse().ok().filter(|_| !ended)
+}
+
+fn interrupted(command: &mut Command, name: &str) -> Output {
+    let child = started(command);
+    signal(name, &child.id().to_string());
+    end_of(child)
+}
+
+/// The signals that end a program; a hangup that is ignored here, as under `nohup`, is ignored by what is started here too.
+fn signals() -> Vec<&'static str> {
+    let status = std::fs::read_to_string("/proc/self/status").expect("a process has a status");
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).expect("a mask").trim();
+    let hangup_is_ignored = u64::from_str_radix(ignored, 16).expect("a mask in hexadecimal") & 1 == 1;
+    ["INT", "TERM", "HUP"].into_iter().filter(|name| *name != "HUP" || !hangup_is_ignored).collect()
+}
+
+/// Each of these takes many seconds at the least.
+#[test]
+fn every_signal_is_heeded_in_the_middle_of_anything() {
+    let folder = folder();
+    let slow = write(&folder, "slow.proof", slow());
+    let slow = slow.to_str().unwrap();
+    let all: [&[&str]; 3] =
+        [&ENDLESS, &["certify", "proofs/moll2002/general.proof", "--order", "12"], &["prove", slow]];
+    for run in all {
+        for name in signals() {
+            let output = interrupted(&mut program(&[run, &["--json"]].concat()), name);
+            assert_eq!(output.status.code(), Some(1), "{run:?} {name}: {}", words(&output));
+            assert_eq!(json(&output)["interrupted"], true, "{run:?} {name}: {}", words(&output));
+            assert!(String::from_utf8_lossy(&output.stderr).contains("stopping"), "{}", words(&output));
+        }
+    }
+    assert_eq!(files(folder.path()), ["slow.proof"]);
+}
+
+/// A system whose codistribution nobody waits for, and a claim before it that is decided at once.
+fn slow() -> String {
+    let mut text = std::fs::read_to_string("proofs/moll2002/general.proof").unwrap();
+    // what is claimed below makes no sense in any units
+    for dimension in ["length", "1/time^2", "1/time", "angle", "mass", "inertia", "acceleration", "torque"] {
+        text = text.replace(&format!(" : {dimension}"), "");
+    }
+    let lines: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with('#')).collect();
+    let end = lines.iter().position(|line| line.starts_with("claim ")).expect("it claims something");
+    let tower = (0..9).fold("s1".to_owned(), |inner, _| format!("L(f, {inner})"));
+    let many = (0..40).map(|_| format!("({tower})")).collect::<Vec<_>>().join("*");
+    let head = lines[..end].join("\n");
+    format!("{head}\nclaim at_once: 1 + 1 = 2\nclaim never: det([{many}, 1; 1, {many} + s2]) = s1\n")
+}
+
+#[test]
+fn the_second_signal_ends_it_at_once() {
+    let child = started(&mut program(&ENDLESS));
+    let id = child.id().to_string();
+    signal("INT", &id);
+    signal("TERM", &id);
+    let output = end_of(child);
+    let code = output.status.code();
+    assert!(matches!(code, Some(130 | 143)), "{}", words(&output));
+    assert!(output.stdout.is_empty(), "{}", words(&output));
+}
+
+/// The state of a search is kept whatever the signal, and taken up again.
+#[test]
+fn the_state_of_a_search_is_kept() {
+    let folder = folder();
+    let state = folder.path().join("search.state");
+    let file = ["certify", "proofs/moll2002/fixed_palms.proof", "--state", state.to_str().unwrap(), "--json"];
+    let first = finish(&mut program(&[&file[..], &["--boxes", "500"]].concat()));
+    let mut boxes = json(&first)["boxes"].as_u64().unwrap_or_else(|| panic!("{}", words(&first)));
+    for name in signals() {
+        // while a search is prepared there is nothing to keep: it is given more time until it has found something
+        let kept = (5..15).map(|doublings| 1 << doublings).find_map(|ticks| {
+            let run = [&file[..], &["--budget", "3600"]].concat();
+            let child = started_for(&mut program(&run), ticks);
+            signal(name, &child.id().to_string());
+            let output = end_of(child);
+            // on a quick machine the search may be over before the signal comes
+            let finished = json(&output)["interrupted"] == false;
+            let status = if finished { 0 } else { 1 };
+            assert_eq!(output.status.code(), Some(status), "{name}: {}", words(&output));
+            assert_eq!(files(folder.path()), ["search.state"], "{name}");
+            json(&output)["boxes"].as_u64().filter(|now| finished || *now > boxes)
+        });
+        let kept = kept.unwrap_or_else(|| panic!("{name}: nothing is kept"));
+        let again = finish(&mut program(&[&file[..], &["--boxes", "1"]].concat()));
+        boxes = json(&again)["boxes"].as_u64().unwrap_or_else(|| panic!("{}", words(&again)));
+        assert!(boxes >= kept, "{name}: {boxes} boxes after {kept}");
+    }
+}
+
+/// Who starts it with 'nohup' wants it to outlive the terminal.
+#[test]
+fn a_hangup_that_is_ignored_stays_ignored() {
+    let line = "trap '' HUP; exec \"$0\" \"$@\"";
+    let run = ["certify", "proofs/moll2002/fixed_palms.proof", "--boxes", "20000", "--json"];
+    let output = interrupted(&mut crate::process::in_shell(line, &run), "HUP");
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output));
+    assert_eq!(json(&output)["interrupted"], false);
+}
+
+/// Without a signal nothing is interrupted.
+#[test]
+fn a_whole_run_says_so() {
+    let output = finish(&mut program(&["prove", "proofs/moll2002/fixed_palms.proof", "--json"]));
+    assert_eq!(json(&output)["interrupted"], false, "{}", words(&output));
+}

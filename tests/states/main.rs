@@ -1,0 +1,15 @@
+//! Can it be seen? Ranks at states and on boxes, how fast, how exactly, and where numbers break.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/picture.rs"]
+mod picture;
+
+mod certify;
+mod certify_domains;
+mod certify_verdicts;
+mod neighbours;
+mod observable;
+mod stream;
+mod stress;
+mod trade;
