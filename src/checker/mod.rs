@@ -1,9 +1,9 @@
 //! A small checker of what the engines found, which shares nothing with them.
 //!
-//! An engine that refutes, certifies or proves writes down what its verdict rests on: a [`Listing`] of operations as plain
+//! An engine that refutes, certifies or proves writes down what its verdict rests on: a `Listing` of operations as plain
 //! data, a state in exact numbers, the two sides, a minor. The checker reads that and evaluates it again, naively, one
-//! operation after the other: a [`Refutation`] at its witness, a [`CertifiedRank`] by its minor and its kernel, a
-//! [`StatedIdentity`] and a [`ClaimedRank`] at states of its own choice. It cannot check the step from a file's text to expressions and their
+//! operation after the other: a `Refutation` at its witness, a `CertifiedRank` by its minor and its kernel, a
+//! `StatedIdentity` and a `ClaimedRank` at states of its own choice. It cannot check the step from a file's text to expressions and their
 //! derivatives; what it can and cannot check is told in `book/verdicts.md`.
 //!
 //! This floor knows exact numbers ([`crate::number`]) and none of the engines: no graph, no program, no system.

@@ -1,6 +1,6 @@
 //! What verdicts rest on, written down for the checker.
 //!
-//! A [`Lowering`] turns nodes of the graph into a [`crate::checker::Listing`], as they were read and without any
+//! A `Lowering` turns nodes of the graph into a `crate::checker::Listing`, as they were read and without any
 //! simplification of its own; [`rank_records`] writes the ranks of a sweep, each with its minor and its kernel, [`certificate_file`] proved boxes
 //! with their minors.
 //!

@@ -1,7 +1,7 @@
 //! Real bodies, as a second and independent witness for the physics.
 //!
 //! A body is given by its support function: [`PlanarBody`] with a few harmonics, [`Solid`] as an ellipsoid or
-//! as a body that is none. It is laid on palms so that it touches them ([`place`], [`grip`](grip())), which
+//! as a body that is none. It is laid on palms so that it touches them ([`place`], `grip`(grip())), which
 //! is a linear problem, and carried along while palms and body turn as they are told. What a sensor would
 //! read, and where the centre of mass goes, is then differentiated numerically in numbers of 320 bits
 //! ([`differentiate`]): some seventy correct digits, of which the estimate vouches for more than forty.

@@ -2,7 +2,7 @@
 //!
 //! [`Signals`] are columns of measurements over time. A [`Model`] takes some states of a system for unknown and everything else
 //! for constants or signals; a [`ModelFlow`] follows it through time with its exact first and second derivatives by the unknowns. A
-//! [`Window`] compares what the model expects with what was read, [`cramer_rao`] bounds how well that can tell the
+//! `Window` compares what the model expects with what was read, `cramer_rao` bounds how well that can tell the
 //! unknowns, and an [`Observer`] works through a [`Task`] and gives a [`Track`]: Newton's method and a region of trust
 //! ([`MovingWindow`]), [`Integration`], [`Kalman`], [`HighGain`].
 //!

@@ -58,7 +58,7 @@ pub struct RecordReading {
 }
 
 impl Record {
-    /// The table of these columns; each name once, and none of them [`TIME`].
+    /// The table of these columns; each name once, and none of them `TIME`.
     ///
     /// # Errors
     /// When a column has another length than the times, or a name is empty or there twice.

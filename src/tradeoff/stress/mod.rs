@@ -1,7 +1,7 @@
 //! The extremes: what each number type and each way to decide a rank makes of states that approach a singular set, of
 //! quantities from 1e-150 to 1e150, and of other units; beside the truth, which is certified.
 //!
-//! A [`Subject`] is some rows of a system; [`Approach`]es are the sets to walk into; a [`Stress`] has both prepared and
+//! A `Subject` is some rows of a system; `Approach`es are the sets to walk into; a [`Stress`] has both prepared and
 //! [`Stress::run`]s. An evaluation that leaves the finite numbers cannot go on from here without being named: its
 //! [`StressVerdict`] has no other place for it.
 //!
