@@ -57,6 +57,8 @@
 //! What is documented here. Items that are hidden from the documentation are what the program, the tests and the benchmarks
 //! reach of the inside; they may change with every version.
 
+#![warn(missing_docs)]
+
 // Each module is a floor and imports only from those above it here.
 
 // files: read within bounds, written whole or not at all

@@ -34,7 +34,9 @@ pub struct RegionRow {
 /// A symbol that is held at one value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HeldSymbol {
+    /// The symbol.
     pub symbol: Symbol,
+    /// Its value.
     pub value: RBig,
 }
 

@@ -20,13 +20,17 @@ pub const NOMINAL: f64 = 1e-9;
 /// A scene with its readings.
 #[derive(Clone, Debug)]
 pub struct Experiment {
+    /// What was asked for.
     pub scene: Scene,
+    /// The system that the observers believe in.
     pub system: System,
     /// Absent where the readings come from a file.
     pub simulation: Option<Simulation>,
+    /// The readings.
     pub record: Record,
     /// What was wrong with the rows of a file.
     pub faults: Vec<Fault>,
+    /// The readings as curves of time.
     pub signals: Signals,
     /// What the observers are asked for.
     pub sought: Sought,
@@ -35,7 +39,9 @@ pub struct Experiment {
 /// What one observer made of it.
 #[derive(Clone, Debug)]
 pub struct Answer {
+    /// The observer.
     pub method: scene::Method,
+    /// What it believed, sample by sample.
     pub track: Track,
     /// In s; NaN where no times are kept.
     pub seconds: f64,

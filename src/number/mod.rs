@@ -68,6 +68,7 @@ use dashu::rational::RBig;
 
 /// A function of one variable that is not a ratio of polynomials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[allow(missing_docs)] // names and messages say it
 pub enum Function {
     Sin,
     Cos,

@@ -32,6 +32,7 @@ pub enum WhenBlind {
 /// The observer by windows.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingWindow {
+    /// How the smallest error is sought.
     pub method: WindowSearch,
     /// Samples of a window.
     pub window: usize,
@@ -39,6 +40,7 @@ pub struct MovingWindow {
     pub steps: u64,
     /// The relative standard deviation, by the bound of Cramér and Rao, from which on something counts as not seen.
     pub blind: f64,
+    /// What is done where nothing is seen.
     pub when_blind: WhenBlind,
 }
 

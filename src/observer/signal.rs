@@ -8,6 +8,7 @@ const POINTS: usize = 8;
 
 /// Why a table is no set of signals.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // names and messages say it
 pub enum SignalError {
     /// There are no rows.
     #[error("there are no samples")]

@@ -20,6 +20,7 @@ use std::time::Instant;
 
 /// How a paper is to be verified.
 pub struct VerifyOptions<'a> {
+    /// The seed of all that is drawn.
     pub seed: u64,
     /// Set from outside to stop early; what was found is kept.
     pub interrupt: &'a AtomicBool,

@@ -4,8 +4,7 @@
 //! A `BodyForm` says how a body looks, a `Shape` is the body once it has been seen to be strictly convex: its
 //! support function about the centre of mass, area, perimeter, radius of gyration. A `MovingScene` adds masses,
 //! gravity, a start and a `Drive`, which either tells the palms how to move or what torques to feel;
-//! `simulate`
-//! [`Ended`].
+//! `simulate` then gives a `Trajectory`, what sensors and motors would report at given times, and how it ended, [`Ended`].
 //!
 //! As the rest of this floor it stays ignorant: it imports numbers only and reads no proof file. What it knows
 //! are the geometry of support functions, Newton's and Euler's laws and that a contact stays a contact. In

@@ -42,7 +42,9 @@ const CHUNKS: u64 = 32;
 /// How to stream.
 #[derive(Clone, Copy)]
 pub struct StreamOptions<'a> {
+    /// How many states are drawn.
     pub states: u64,
+    /// The seed from which they are drawn.
     pub seed: u64,
     /// Whether a rank that is merely computed will do.
     pub wanted: Certainty,
