@@ -18,6 +18,7 @@ enum Leaf {
 }
 
 const MINUS: &str = "<mo form=\"prefix\">";
+const LEAVES: [&str; 5] = ["<mi>", "<mn>", "<mtext>", "<mo>", MINUS];
 
 impl Leaf {
     fn of(tag: &str, text: &str) -> Leaf {
@@ -38,6 +39,8 @@ impl Leaf {
             {
                 ("<mn>", text)
             }
+            // a letter that is not slanted: it is when it stands in an element for names
+            Leaf::Operand(text) if text.len() == 1 => ("<mtext>", text),
             Leaf::Operand(text) | Leaf::Alone(text) => ("<mi>", text),
             Leaf::Sign(text) => ("<mo>", text),
             Leaf::Minus => (MINUS, "−".to_owned()),
@@ -57,7 +60,7 @@ pub(super) fn joined(pieces: Vec<Piece<'_>>) -> Vec<Piece<'_>> {
             continue;
         };
         let is_in_row = |open: &[String]| open.last().is_some_and(|parent| ROWS.contains(&parent.as_str()));
-        if is_in_row(&open) && ["<mi>", "<mn>", "<mo>", MINUS].contains(&tag.as_ref()) {
+        if is_in_row(&open) && LEAVES.contains(&tag.as_ref()) {
             let text = match pieces.next_if(|next| matches!(next, Piece::Text(_))) {
                 Some(Piece::Text(text)) => text.into_owned(),
                 _ => String::new(),
@@ -131,8 +134,8 @@ fn on_one_line(found: &mut Vec<Piece<'_>>) -> Option<String> {
 /// Symbols that were written already, and beside which there is another one now.
 fn take_back(run: &mut Vec<Leaf>, found: &mut Vec<Piece<'_>>) {
     while let [.., open, text, close] = found.as_slice()
-        && ["</mi>", "</mn>", "</mo>"].contains(&close.text())
-        && ["<mi>", "<mn>", "<mo>", MINUS].contains(&open.text())
+        && ["</mi>", "</mn>", "</mo>", "</mtext>"].contains(&close.text())
+        && LEAVES.contains(&open.text())
     {
         run.insert(0, Leaf::of(open.text(), text.text()));
         found.truncate(found.len() - 3);
@@ -151,7 +154,8 @@ fn finish(run: &mut Vec<Leaf>, found: &mut Vec<Piece<'_>>) {
         let (tag, text) = leaf.written();
         found.push(Piece::Tag(tag.into()));
         found.push(Piece::Text(text.into()));
-        found.push(Piece::Tag(format!("</{}>", &tag[1..3]).into()));
+        let name = tag[1..].split([' ', '>']).next().unwrap_or_default();
+        found.push(Piece::Tag(format!("</{name}>").into()));
     }
 }
 
@@ -234,6 +238,18 @@ mod tests {
             compact("<math><mn>3</mn></math> <math><mi>x</mi></math>"),
             "<math><mn>3</mn></math> <math><mi>𝑥</mi></math>"
         );
+    }
+
+    /// By hand: a matrix of one row is on one line, and so is a numerator; a letter that stands upright stays so.
+    #[test]
+    fn rows_that_are_on_one_line_are_symbols() {
+        let row = "<math><mi>d</mi><mo>=</mo><mrow><mo>[</mo><mtable><mtr><mtd><mn>0</mn></mtd><mtd><mi>x</mi></mtd></mtr></mtable>\
+                   <mo>]</mo></mrow></math>";
+        assert_eq!(compact(row), "<math><mi>𝑑\u{2005}=\u{2005}[0\u{2002}𝑥]</mi></math>");
+        let half = "<math><mfrac><mrow><mi>a</mi><mo>+</mo><mo form=\"prefix\">−</mo><mn>1</mn></mrow><mn>2</mn></mfrac></math>";
+        assert_eq!(compact(half), "<math><mfrac><mi>𝑎\u{205f}+\u{205f}−1</mi><mn>2</mn></mfrac></math>");
+        let differential = "<math><mtext>d</mtext><mi>x</mi></math> <math><mtext>d</mtext></math>";
+        assert_eq!(compact(differential), "<math><mi>d𝑥</mi></math> <math><mtext>d</mtext></math>");
     }
 
     /// A sum before a product: signs bind as they are written, since nothing is moved.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 /// Points that lie nearer to the line through those that are kept are left out, in pixels.
-const NEAR: f64 = 0.6;
+const NEAR: f64 = 0.8;
 
 /// The points that a line needs, by the method of Ramer, Douglas and Peucker.
 pub(super) fn simplified(points: &[(i32, i32)]) -> Vec<(i32, i32)> {

@@ -38,16 +38,16 @@ pub(super) fn equations(numbering: &Numbering, claims: &[Placed<'_>], anchors: &
             }
             div.cells {
                 @for equation in &all {
-                    @let ids = equation.entries.iter().map(|o| format!("{} {}", o.id, o.word())).collect::<Vec<_>>().join("; ");
+                    @let ids = equation.entries.iter().map(|o| o.id.as_str()).collect::<Vec<_>>().join(", ");
                     // the entry that gives the equation its word, or the first one
                     @let first = equation.entries.iter().find(|o| o.word() == equation.word()).or(equation.entries.first());
                     @match first.and_then(|outcome| place(outcome)) {
                         Some(claim) => {
-                            a.cell data-w=(equation.word()) href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) title=(ids) {
+                            a data-w=(equation.word()) href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) title=[(equation.entries.len() > 1).then_some(ids)] {
                                 (equation.number)
                             }
                         }
-                        None => { span.cell data-w="no entry" title="no entry" { (equation.number) } }
+                        None => { span data-w="no entry" { (equation.number) } }
                     }
                 }
             }
@@ -69,8 +69,10 @@ pub(super) fn faults(numbering: &Numbering, claims: &[Placed<'_>], anchors: &Anc
                 @for fault in Flaw::ALL {
                     @let found = of_kind(fault);
                     @if !found.is_empty() {
-                        h3 data-w=(fault.word()) { span.v { (errors(numbering, outcomes(), fault).text(fault.word())) } }
-                        p { (meaning(fault.word())) "." }
+                        @let text = errors(numbering, outcomes(), fault).text(fault.word());
+                        @let (count, following) = text.split_once(": ").unwrap_or((&text, ""));
+                        h3 data-w=(fault.word()) { span.v { (count) } }
+                        p { (meaning(fault.word())) "." @if !following.is_empty() { " Not on their own: " (following) "." } }
                         p.links {
                             @for claim in found.into_iter().filter_map(place) {
                                 a href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) { (claim.outcome.id) } " "

@@ -110,7 +110,7 @@ impl<'a> Engines<'a> {
         match verdict {
             Verdict::Proved { engine, log2_error } => match self.0.iter().position(|known| known == engine) {
                 Some(place) => html! {
-                    "by " a href=(format!("#{}", name(place))) { (name(place)) } (certainty(*log2_error))
+                    "by " (name(place)) (certainty(*log2_error))
                 },
                 None => explain(verdict),
             },
