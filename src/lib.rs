@@ -1,18 +1,8 @@
 //! Palmistry checks mathematics about systems that are seen only through their outputs.
 //!
-//! From a proof file to a verdict, in the order in which it happens: [`System::read`] turns the file into a system,
-//! that is states, vector fields, outputs and claims over one shared graph of expressions ([`expression`],
-//! [`system`]), or into an error that points into the text. [`decide_all`] takes each claim to an [`Outcome`]: an
-//! identity is tested in exact arithmetic at random points of random prime fields ([`number`]), a rank by minors, a
-//! number by intervals ([`claim`]).
-//! [`answer_rank`] asks at sampled states whether the differentials of the outputs and of their Lie derivatives span
-//! the state space ([`observability`], [`sweep`]), and [`certificate`] on which boxes they do. Real bodies, moved by Newton's laws alone, are a second witness for the physics
-//! ([`mechanics`]). An [`observer`] recovers states from what is measured, and an [`experiment`] has such observers recover
-//! the shape of a real body from touch. And [`report`] writes down what came of it all.
-//!
 //! ```
-//! use palmistry::{System, decide_all};
-//! let text = r#"
+//! use palmistry::{RankQuestion, System, answer_rank, prove};
+//! let mut system: System = r#"
 //!     system "A pendulum whose angle is seen"
 //!     state phi, omega
 //!     param k = 2
@@ -21,19 +11,58 @@
 //!       phi'   = omega
 //!       omega' = -k*sin(phi)
 //!     output phi
-//!     claim 1: L(f, L(f, phi)) = -k*sin(phi)
-//!     claim 2: rank = 2
-//! "#;
-//! let system = System::parse("pendulum.proof", text, std::path::Path::new(""))?;
-//! let outcomes = decide_all(&system, 1, &false.into(), &|_| ());
-//! assert!(outcomes.iter().all(|outcome| outcome.ok));
-//! # Ok::<(), palmistry::ReadError>(())
+//!     sample
+//!       phi   in [-3, 3]
+//!       omega in [-2, 2]
+//!     claim acceleration: L(f, f, phi) = -k*sin(phi)
+//!     claim observable: rank = 2
+//! "#.parse()?;
+//!
+//! // every claim with its verdict: proved, refuted with a witness, or undecided
+//! for outcome in prove(&system) {
+//!     assert_eq!(outcome.word(), "proved", "{}", outcome.statement);
+//! }
+//!
+//! // the rank of the observability codistribution at a thousand drawn states, certified at each
+//! let answer = answer_rank(&mut system, &RankQuestion::default())?;
+//! let states = &answer.branches[0].full;
+//! assert_eq!((states.rank_histogram[&2], states.certified), (1000, 1000));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Beside these stand [`tradeoff`], speed against accuracy and the extremes, and [`paper`], a folder taken through all of it.
-//! Each module is a floor and imports only from those above it here.
+//! From a proof file to a verdict, in the order in which it happens: [`System::read`] turns the file into a system,
+//! that is states, vector fields, outputs and claims over one shared graph of expressions ([`expression`],
+//! [`system`]), or into an error that points into the text. [`prove`] takes each claim to an [`Outcome`]: an
+//! identity is tested in exact arithmetic at random points of random prime fields ([`number`]), a rank by minors, a
+//! number by intervals ([`claim`]). [`answer_rank`] asks at sampled states whether the differentials of the outputs and of
+//! their Lie derivatives span the state space ([`observability`], [`sweep`]), and [`certify`] on which boxes they do
+//! ([`certificate`]). An [`observer`] recovers states from what is measured, and an [`experiment`] has such observers recover
+//! the shape of a real body from touch, moved by Newton's laws alone. What verdicts rest on is written down, and a [`checker`]
+//! that shares nothing with the engines finds it again. A [`paper`] is a folder taken through all of it, and `report` writes
+//! down what came of it all.
+//!
+//! # Numbers, units, rows
+//!
+//! Values of symbols are exact rationals ([`dashu::rational::RBig`](https://docs.rs/dashu)), angles among them in radians;
+//! everything else has the units in which the system was written, times of recordings are seconds. A matrix of differentials has
+//! a row for each function and a column for each state, in the order in which the file declares them.
+//!
+//! # Features
+//!
+//! `cli` (default) is the program `palmistry` with all that it needs; `report` is text, JSON, pages and pictures of answers;
+//! `parquet` reads and writes recordings as Parquet files beside CSV. With `default-features = false` none of their crates is built.
+//!
+//! # What is promised
+//!
+//! What is documented here. Items that are hidden from the documentation are what the program, the tests and the benchmarks
+//! reach of the inside; they may change with every version.
+
+#![warn(missing_docs)]
+
+// Each module is a floor and imports only from those above it here.
 
 // files: read within bounds, written whole or not at all
+#[doc(hidden)]
 pub mod file;
 
 // what a value can be
@@ -58,21 +87,24 @@ pub mod sweep;
 pub mod certificate;
 
 // inequalities: signs, sums of squares, boxes
-pub mod inequality;
+pub(crate) mod inequality;
 
 // what verdicts rest on, written down for the checker
+#[doc(hidden)]
 pub mod evidence;
 
 // claims, the engines that decide them, verdicts
 pub mod claim;
 
 // real bodies between real palms, a second witness for the physics
+#[doc(hidden)]
 pub mod mechanics;
 
 // states recovered from what is measured
 pub mod observer;
 
 // speed against accuracy, the extremes
+#[doc(hidden)]
 pub mod tradeoff;
 
 // bodies, sensors and observers together: scenes
@@ -82,12 +114,17 @@ pub mod experiment;
 pub mod paper;
 
 // the page, the plots, the JSON
+#[cfg(feature = "report")]
 pub mod report;
 
 // what an editor asks while a file is written
+#[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod lsp;
 
-pub use claim::{Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all};
+pub use certificate::certify;
+pub use claim::{
+    Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all, prove,
+};
 pub use sweep::{RankAnswer, RankQuestion, answer_rank};
 pub use system::{ReadError, System};

@@ -13,6 +13,7 @@ pub enum BoxStanding {
     MinorVanishes,
     /// The system is proved not to be defined at some of its states.
     Pole,
+    /// None of this is proved.
     Undecided,
 }
 
@@ -32,6 +33,7 @@ pub struct Vanishing {
     pub factor: String,
     /// The place of the minor that vanishes with it; `None` for a pole.
     pub minor: Option<usize>,
+    /// How many boxes.
     pub boxes: u64,
     /// The part of the volume of these boxes, in the coordinates of the part, rounded down.
     pub fraction: f64,
@@ -40,16 +42,21 @@ pub struct Vanishing {
 /// Coordinates that were looked at apart from the others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartAnswer {
+    /// Their names.
     pub coordinates: Vec<String>,
-    /// What has to be different from zero for the system to be defined, and what all minors have in common.
+    /// What has to be different from zero for the system to be defined.
     pub guards: Vec<String>,
+    /// The factors that all minors have in common.
     pub common: Vec<String>,
     /// Whether one of several minors has to be different from zero besides.
     pub alternatives: usize,
     /// The proved fraction of the volume in these coordinates, rounded down.
     pub proved: f64,
+    /// The boxes that were looked at.
     pub boxes: u64,
+    /// Those that are open.
     pub open_boxes: u64,
+    /// The factors that are proved to vanish in open boxes.
     pub vanishing: Vec<Vanishing>,
 }
 
@@ -58,6 +65,7 @@ pub struct PartAnswer {
 pub struct OpenBox {
     /// Name, low and high end; all other coordinates are anywhere.
     pub ranges: Vec<(String, f64, f64)>,
+    /// How it stands.
     pub standing: BoxStanding,
     /// The factor that is proved to vanish in it.
     pub factor: Option<String>,
@@ -70,8 +78,11 @@ pub struct OpenBox {
 /// A rectangle of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
+    /// Its low and high end along the first coordinate of the map.
     pub x: (f64, f64),
+    /// The same along the second one.
     pub y: (f64, f64),
+    /// How it stands.
     pub standing: BoxStanding,
 }
 
@@ -80,7 +91,9 @@ pub struct Patch {
 pub struct RegionMap {
     /// Name and range.
     pub x: (String, f64, f64),
+    /// The same of the other coordinate.
     pub y: (String, f64, f64),
+    /// Rectangles that cover it.
     pub patches: Vec<Patch>,
     /// The other coordinates.
     pub at: Vec<(String, f64)>,
@@ -89,22 +102,29 @@ pub struct RegionMap {
 /// What is known of a region. Fractions are of the volume of the box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegionAnswer {
+    /// The file.
     pub file: String,
+    /// The title of the system.
     pub title: String,
     /// The fields that move the states: of these words are made.
     pub fields: Vec<FieldRole>,
     /// The number of states, and the number of columns that are left when unit rows are taken out.
     pub dimension: usize,
+    /// The columns that are left when unit rows are taken out.
     pub columns: usize,
     /// The rows beside unit rows, and the length of the longest words.
     pub rows: usize,
+    /// The length of the longest words; none of a file's own rows.
     pub order: Option<usize>,
     /// The sides of the box, and whether anything depends on them.
     pub ranges: Vec<(FreeCoordinate, bool)>,
+    /// The minors that were used.
     pub minors: Vec<RegionMinor>,
     /// The minors that these were chosen from, and whether there are no others.
     pub candidates: usize,
+    /// Whether these are all minors that there are.
     pub all_minors: bool,
+    /// The parts of the box that were looked at apart.
     pub parts: Vec<PartAnswer>,
     /// Full rank is proved on so much; rounded down.
     pub proved: f64,
@@ -116,15 +136,21 @@ pub struct RegionAnswer {
     pub rest: f64,
     /// What sampled states keep away from.
     pub avoid: Vec<String>,
+    /// The boxes that were looked at.
     pub boxes: u64,
+    /// Those that are open.
     pub open_boxes: u64,
+    /// How long it took, in s.
     pub seconds: f64,
     /// Whether no box is open any more.
     pub finished: bool,
+    /// How the proved fraction grew.
     pub curve: Vec<Progress>,
     /// The largest open boxes, at most five of each part.
     pub largest: Vec<OpenBox>,
+    /// A map of two coordinates, if two matter.
     pub map: Option<RegionMap>,
+    /// What else is to be said.
     pub remarks: Vec<String>,
     /// What would have to hold for the system and its rows to exist, and holds nowhere; nothing is proved then.
     pub nowhere: Vec<String>,

@@ -40,9 +40,13 @@ impl Side {
 /// A coordinate of the box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeCoordinate {
+    /// The symbol.
     pub symbol: Symbol,
+    /// Its name.
     pub name: String,
+    /// The low end of its range.
     pub low: RBig,
+    /// The high end.
     pub high: RBig,
 }
 

@@ -40,5 +40,5 @@ pub use answer::{BoxStanding, OpenBox, PartAnswer, Patch, RegionAnswer, RegionMa
 pub use boxes::FreeCoordinate;
 pub use progress::{Limits, Progress};
 pub use proved::ProvedBox;
-pub use region::{Region, certify_region};
+pub use region::{Region, certify, certify_region};
 pub use rows::{HeldSymbol, RegionRow, RegionRows};

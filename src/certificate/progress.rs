@@ -21,6 +21,7 @@ pub struct Limits {
 pub struct Progress {
     /// The boxes that were looked at.
     pub boxes: u64,
+    /// The time since the beginning, in s.
     pub seconds: f64,
     /// The proved fraction of the volume, rounded down.
     pub proved: f64,

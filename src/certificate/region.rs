@@ -7,6 +7,7 @@ use super::progress::{Limits, Progress, Searches};
 use super::rows::RegionRows;
 use super::search::Plane;
 use crate::expression::Symbol;
+use crate::sweep::UNINTERRUPTED;
 use crate::system::System;
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
@@ -101,6 +102,14 @@ impl Region {
 /// So many proved boxes of each part are kept if nothing else is said.
 const KEPT: usize = 2000;
 
+/// On which part of its sample box a system has full rank, after so many boxes: as [`certify_region`], and nothing stops it.
+///
+/// # Errors
+/// As [`Region::new`].
+pub fn certify(system: &mut System, boxes: u64) -> Result<RegionAnswer, String> {
+    certify_region(system, boxes, &UNINTERRUPTED)
+}
+
 /// The sample box of a system after so many boxes: the short version, with the same result on every machine.
 ///
 /// # Errors
@@ -110,7 +119,7 @@ pub fn certify_region(
     boxes: u64,
     interrupt: &AtomicBool,
 ) -> Result<RegionAnswer, String> {
-    let mut region = Region::new(system, RegionRows::Codistribution(None), &BTreeMap::new(), None)?;
+    let mut region = Region::new(system, RegionRows::default(), &BTreeMap::new(), None)?;
     region.run(Limits { seconds: None, boxes: Some(boxes) }, interrupt, &|_| ());
     Ok(region.answer())
 }

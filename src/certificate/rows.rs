@@ -15,6 +15,13 @@ pub enum RegionRows {
     Own,
 }
 
+impl Default for RegionRows {
+    /// The full codistribution, its words as long as they have to be.
+    fn default() -> Self {
+        RegionRows::Codistribution(None)
+    }
+}
+
 /// A row of the matrix that is to have full rank.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RegionRow {
@@ -27,7 +34,9 @@ pub struct RegionRow {
 /// A symbol that is held at one value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HeldSymbol {
+    /// The symbol.
     pub symbol: Symbol,
+    /// Its value.
     pub value: RBig,
 }
 

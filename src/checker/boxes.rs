@@ -37,6 +37,7 @@ pub struct CertifiedBox {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CertifiedBoxes {
+    /// The operations, inputs first.
     pub listing: Listing,
     /// What the columns stand for: the names of the states.
     pub columns: Vec<String>,
@@ -48,11 +49,13 @@ pub struct CertifiedBoxes {
     pub requirements: Vec<Requirement>,
     /// The whole box, and what the other symbols are.
     pub ranges: Vec<SymbolRange>,
+    /// The boxes, each with the rows of its minor.
     pub boxes: Vec<CertifiedBox>,
     /// The part of the whole box that these boxes make.
     pub volume: Ratio,
     /// How many boxes were proved in all, and what part of the whole they make.
     pub proved_boxes: Ratio,
+    /// Their volume together, in parts of the whole.
     pub proved_volume: Ratio,
     /// A digest of all else, by which a file that was changed by hand is noticed. It is no signature.
     pub digest: String,

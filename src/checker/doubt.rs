@@ -57,6 +57,7 @@ impl Effort {
 
 /// Why a verdict is not confirmed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // names and messages say it
 pub enum Doubt {
     #[error("the state gives '{0}' by a sine and a cosine whose squares do not add up to one")]
     NotOnTheCircle(String),
@@ -153,6 +154,7 @@ impl Doubt {
 
 /// What a check has come to.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // names and messages say it
 pub enum Finding {
     /// The verdict has been found again by evaluation alone. How often something was checked: states, boxes.
     Confirmed { times: usize },

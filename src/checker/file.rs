@@ -44,6 +44,7 @@ pub struct VerdictRecord {
     pub id: String,
     /// The statement as it stands in the file.
     pub statement: String,
+    /// What the verdict rests on.
     pub evidence: Evidence,
 }
 
@@ -57,6 +58,7 @@ pub struct VerdictFile {
     pub tool: String,
     /// The seed with which they were found.
     pub seed: u64,
+    /// The verdicts, in the order in which they were found.
     pub verdicts: Vec<VerdictRecord>,
 }
 
@@ -69,6 +71,7 @@ struct Header {
 
 /// Why a text is no verdict file.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // names and messages say it
 pub enum Unreadable {
     #[error("it is longer than {LARGEST_FILE} bytes")]
     TooLong,
@@ -83,7 +86,9 @@ pub enum Unreadable {
 /// A verdict, and what its check has come to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedVerdict<'f> {
+    /// The verdict of the file.
     pub record: &'f VerdictRecord,
+    /// What came of it.
     pub finding: Finding,
 }
 

@@ -15,6 +15,7 @@ use crate::checker::{Evidence, VerdictRecord};
 use crate::expression::syntax::{Equation, Relation};
 use crate::expression::{Symbol, add_guard};
 use crate::observability::{Branch, solve};
+use crate::sweep::UNINTERRUPTED;
 use crate::system::{
     Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line, line_and_column,
 };
@@ -26,6 +27,12 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
+
+/// Decides all claims of a system, in the order of the file, as [`decide_all`] does with the seed 1: nobody waits and nothing
+/// stops it.
+pub fn prove(system: &System) -> Vec<Outcome> {
+    decide_all(system, 1, &UNINTERRUPTED, &|_| ())
+}
 
 /// Decides all claims of a system, several at a time; the outcomes are in the order of the file and do not depend on
 /// the number of threads. Claims that were not begun when `interrupt` was set are left out.

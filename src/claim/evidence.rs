@@ -23,7 +23,9 @@ const WORK: u64 = 1 << 28;
 /// Whether what verdicts rest on is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
+    /// Verdicts alone.
     Verdicts,
+    /// What they rest on as well, for a verdict file.
     Evidence,
 }
 

@@ -22,9 +22,11 @@ mod value;
 mod verdict;
 mod witness;
 
-pub use decide::{decide, decide_all, decide_all_keeping};
+pub use decide::{decide, decide_all, decide_all_keeping, prove};
 pub use evidence::Kept;
-pub use pole::{PoleOrder, pole_order};
+#[doc(hidden)]
 pub use selection::{Selection, UnmetPattern};
-pub use value::{PointValue, ValueError, certified_value, computed_value, exists_at};
+#[doc(hidden)]
+pub use value::exists_at;
+pub use value::{PointValue, ValueError, certified_value, computed_value};
 pub use verdict::{AtFilesValues, Outcome, Verdict, Witness};

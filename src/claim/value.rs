@@ -29,6 +29,7 @@ pub struct PointValue {
 
 /// Why there is no such value.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // names and messages say it
 pub enum ValueError {
     /// A symbol has no value.
     #[error("'{0}' has no value")]

@@ -1,6 +1,6 @@
 //! What verdicts rest on, written down for the checker.
 //!
-//! A [`Lowering`] turns nodes of the graph into a [`crate::checker::Listing`], as they were read and without any
+//! A `Lowering` turns nodes of the graph into a `crate::checker::Listing`, as they were read and without any
 //! simplification of its own; [`rank_records`] writes the ranks of a sweep, each with its minor and its kernel, [`certificate_file`] proved boxes
 //! with their minors.
 //!
@@ -12,11 +12,13 @@ mod minors;
 mod ranks;
 mod statements;
 
+#[doc(hidden)]
 pub use boxes::{WrittenBoxes, certificate_file};
-pub use lowering::{Lowering, exact_coordinate, exact_state};
-pub use minors::largest_minor;
+pub(crate) use lowering::{Lowering, exact_state};
+pub(crate) use minors::largest_minor;
+#[doc(hidden)]
 pub use ranks::rank_records;
-pub use statements::StatementAt;
+pub(crate) use statements::StatementAt;
 
 /// Why evidence could not be written down.
 #[derive(Debug, thiserror::Error)]

@@ -12,10 +12,18 @@ mod scene;
 mod simulation;
 mod study;
 
-pub use run::{Answer, Experiment, NOMINAL, error};
-pub use scene::{
-    BasinStudy, Body, Data, Guess, Method, NoiseStudy, ObserverSettings, Palms, Scene, SceneError,
-    SceneOutline, Sensor, Simulated, Study,
-};
-pub use simulation::{Simulation, TOUCH, deviation};
-pub use study::{ARRIVED, Basin, NoiseLevel, basins, noise_study};
+#[doc(hidden)]
+pub use run::NOMINAL;
+#[doc(hidden)]
+pub use run::error;
+pub use run::{Answer, Experiment};
+#[doc(hidden)]
+pub use scene::SceneOutline;
+#[doc(hidden)]
+pub use scene::{BasinStudy, NoiseStudy};
+pub use scene::{Data, Guess, Method, ObserverSettings, Scene, SceneError, Sensor};
+pub use simulation::Simulation;
+#[doc(hidden)]
+pub use study::ARRIVED;
+#[doc(hidden)]
+pub use study::{Basin, NoiseLevel, basins, noise_study};

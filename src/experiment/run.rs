@@ -6,6 +6,7 @@ use crate::observer::{
     Fault, ModelError, MovingWindow, Observer, Record, RecordError, RecordReading, Signals, Sought, Task,
     Track, WindowSearch,
 };
+use crate::sweep::UNINTERRUPTED;
 use crate::system::{Kind, System, nearest};
 use miette::Diagnostic;
 use std::collections::BTreeMap;
@@ -19,13 +20,17 @@ pub const NOMINAL: f64 = 1e-9;
 /// A scene with its readings.
 #[derive(Clone, Debug)]
 pub struct Experiment {
+    /// What was asked for.
     pub scene: Scene,
+    /// The system that the observers believe in.
     pub system: System,
     /// Absent where the readings come from a file.
     pub simulation: Option<Simulation>,
+    /// The readings.
     pub record: Record,
     /// What was wrong with the rows of a file.
     pub faults: Vec<Fault>,
+    /// The readings as curves of time.
     pub signals: Signals,
     /// What the observers are asked for.
     pub sought: Sought,
@@ -34,7 +39,9 @@ pub struct Experiment {
 /// What one observer made of it.
 #[derive(Clone, Debug)]
 pub struct Answer {
+    /// The observer.
     pub method: scene::Method,
+    /// What it believed, sample by sample.
     pub track: Track,
     /// In s; NaN where no times are kept.
     pub seconds: f64,
@@ -83,16 +90,13 @@ impl Experiment {
                 return Err(scene.error_at("title", "there is nothing to observe", "this scene", help));
             }
         };
-        let columns =
-            record.names().iter().filter_map(|name| Some((name.clone(), record.column(name)?.to_vec())));
-        let signals = Signals::new(record.times().to_vec(), columns.collect());
+        let signals = Signals::of_record(&record);
         let signals =
             signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
         let sought = sought(&scene, &system, simulation.as_ref(), told, &signals)?;
         let experiment = Experiment { scene, system, simulation, record, faults, signals, sought };
         // whether the model can be made at all is better known now
-        let never = AtomicBool::new(false);
-        experiment.task(&never)?;
+        experiment.task(&UNINTERRUPTED)?;
         Ok(experiment)
     }
 
@@ -130,6 +134,14 @@ impl Experiment {
     /// The observer by windows, with the scene's settings.
     pub fn window(&self, search: WindowSearch) -> MovingWindow {
         self.scene.observer.window(search)
+    }
+
+    /// What every observer of the scene makes of the readings.
+    ///
+    /// # Errors
+    /// As [`Experiment::task`].
+    pub fn observe(&self) -> Result<Vec<Answer>, SceneError> {
+        self.run(&UNINTERRUPTED, &|_| ())
     }
 
     /// What every observer of the scene makes of the readings; `done` is told of each that has finished.

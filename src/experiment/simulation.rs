@@ -17,7 +17,9 @@ pub const TOUCH: [&str; 2] = ["s1", "s2"];
 /// A scene's body in motion.
 #[derive(Clone, Debug)]
 pub struct Simulation {
+    /// The body's shape.
     pub shape: Shape,
+    /// How it moved.
     pub trajectory: Trajectory,
     /// Constants of the bodies by the names that the thesis gives them: `m`, `rho`, `I1`, `I2`, `g`.
     pub constants: BTreeMap<String, f64>,

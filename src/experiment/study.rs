@@ -14,6 +14,7 @@ pub struct NoiseLevel {
     pub noise: f64,
     /// Estimates that converged, of how many seeds.
     pub converged: usize,
+    /// How many draws of noise.
     pub seeds: usize,
     /// The root of the mean square error of what is sought at the first sample, over the seeds that converged.
     pub errors: Vec<f64>,
@@ -24,9 +25,11 @@ pub struct NoiseLevel {
 /// The first guesses from which one method arrives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basin {
+    /// The observer.
     pub method: scene::Method,
     /// The states that span the grid, and their values along each side.
     pub names: [String; 2],
+    /// The values of each along its side.
     pub values: [Vec<f64>; 2],
     /// Whether it arrives, rows by the second state; none where it was interrupted before.
     pub arrives: Vec<Option<bool>>,

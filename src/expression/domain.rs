@@ -30,7 +30,9 @@ pub enum Need {
 /// An operand, and what is needed of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Guard {
+    /// The expression.
     pub node: NodeId,
+    /// What it has to be.
     pub need: Need,
 }
 

@@ -17,6 +17,7 @@ pub struct NodeId(pub(crate) u32);
 
 /// One operation; its operands are earlier nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)] // names and messages say it
 pub enum Node {
     /// An exact rational, by its place in the table of constants.
     Constant(u32),

@@ -15,30 +15,39 @@ mod expansion;
 mod gradient;
 mod graph;
 mod nodes;
+#[doc(hidden)]
 pub mod notation;
 mod print;
 mod products;
 mod program;
 mod sign;
 mod squares;
+#[doc(hidden)]
 pub mod syntax;
 mod zero_test;
 
 pub(crate) mod parse;
 
-pub use adjoin::{Related, zero_by_relations};
+pub(crate) use adjoin::{Related, zero_by_relations};
 pub use angle::expand_angles;
-pub use block::{BlockProgram, Machine};
-pub use common_factor::share_a_factor;
+#[doc(hidden)]
+pub use block::BlockProgram;
+pub(crate) use block::Machine;
+pub(crate) use common_factor::share_a_factor;
 pub use derivative::Derivation;
-pub use domain::{Guard, Need, add_guard, substitute_guards};
-pub use expansion::{Expansion, expand};
+pub use domain::{Guard, Need};
+pub(crate) use domain::{add_guard, substitute_guards};
+pub(crate) use expansion::Expansion;
+#[doc(hidden)]
+pub use expansion::expand;
 pub use gradient::gradient;
 pub(crate) use graph::Extent;
 pub use graph::{Graph, Node, NodeId, Symbol};
-pub use nodes::Nodes;
+pub(crate) use nodes::Nodes;
 pub use parse::{Expected, parse_expression};
-pub use products::{NodeFractions, Products, Variable};
-pub use program::{Failure, Input, Loaded, Program};
-pub use sign::{Sign, sign, sign_given};
-pub use zero_test::{LOG2_ERROR, ZeroTest, draw_residues, failure_bound, identically_zero, sizes};
+pub(crate) use products::{NodeFractions, Products, Variable};
+pub(crate) use program::Loaded;
+pub use program::{Failure, Input, Program};
+pub(crate) use sign::{Sign, sign, sign_given};
+pub(crate) use zero_test::{LOG2_ERROR, draw_residues, failure_bound, sizes};
+pub use zero_test::{ZeroTest, identically_zero};

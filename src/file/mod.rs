@@ -8,9 +8,15 @@ mod read;
 mod standard;
 mod write;
 
-pub use packed::{PACKED, PackedFile, files_in, identity, is_file, is_folder, pack, packed_folders};
-pub use read::{ReadFailure, read_bytes, read_text};
+#[doc(hidden)]
+pub use packed::{PACKED, PackedFile, pack, packed_folders};
+pub(crate) use packed::{files_in, identity, is_file, is_folder};
+#[doc(hidden)]
+pub use read::read_text;
+pub(crate) use read::{ReadFailure, read_bytes};
+#[doc(hidden)]
 pub use standard::{look_at_standard_output, note, print};
+#[doc(hidden)]
 pub use write::{remove_unfinished, write_whole};
 
 use std::time::Duration;

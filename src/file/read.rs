@@ -85,7 +85,7 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, ReadFailure> {
 /// The text of a file, if it is no more than `most` bytes of UTF-8. A byte-order mark in front is no part of it.
 ///
 /// # Errors
-/// As [`read_bytes`]; and where it is no text.
+/// As `read_bytes`; and where it is no text.
 pub fn read_text(path: &Path, most: u64) -> Result<String, ReadFailure> {
     let text = String::from_utf8(read_bytes(path, most)?).map_err(|error| {
         let at = error.utf8_error().valid_up_to();

@@ -17,9 +17,9 @@ mod space;
 mod squares;
 mod touch;
 
-pub use bounds::{Bound, Bounds, SymbolBounds, bounds};
-pub use boxes::Proposed;
-pub use crossing::vanishes_somewhere;
+pub(crate) use bounds::{Bound, Bounds, SymbolBounds, bounds};
+pub(crate) use boxes::Proposed;
+pub(crate) use crossing::vanishes_somewhere;
 
 use crate::expression::{Graph, Guard, Need, NodeId, Sign, Symbol, sign_given};
 use crate::number::Interval;

@@ -1,7 +1,7 @@
 //! Real bodies, as a second and independent witness for the physics.
 //!
 //! A body is given by its support function: [`PlanarBody`] with a few harmonics, [`Solid`] as an ellipsoid or
-//! as a body that is none. It is laid on palms so that it touches them ([`place`], [`grip`](grip())), which
+//! as a body that is none. It is laid on palms so that it touches them ([`place`], `grip`(grip())), which
 //! is a linear problem, and carried along while palms and body turn as they are told. What a sensor would
 //! read, and where the centre of mass goes, is then differentiated numerically in numbers of 320 bits
 //! ([`differentiate`]): some seventy correct digits, of which the estimate vouches for more than forty.
@@ -33,17 +33,29 @@ mod rest;
 mod solid;
 mod tumbling;
 
-pub use body::{PlanarBody, ShapeError};
-pub use contact::{Angles, Contact, Placement, place};
-pub use derivative::{Derivatives, Moving, differentiate};
+#[doc(hidden)]
+pub use body::PlanarBody;
+#[doc(hidden)]
+pub use contact::{Placement, place};
+#[doc(hidden)]
+pub use derivative::differentiate;
+pub(crate) use derivative::{Derivatives, Moving};
+#[doc(hidden)]
 pub use dynamics::{Inertia, PlanarDynamics, planar_dynamics};
-pub use grip::{Grip, SolidContact, grip, palm_frame, rotation, rotation_about};
-pub use motion::{PalmMotion, PlanarMotion, Swing, observe, radius_of_curvature};
-pub use precise::{BITS, Real};
+#[doc(hidden)]
+pub use grip::palm_frame;
+#[doc(hidden)]
+pub use motion::{PalmMotion, PlanarMotion, Swing, radius_of_curvature};
+#[doc(hidden)]
+pub use precise::Real;
+#[doc(hidden)]
 pub use quasistatics::{follow, lowest_pose};
+#[doc(hidden)]
 pub use rest::resting_pose;
+#[doc(hidden)]
 pub use solid::{Solid, SolidShape};
+#[doc(hidden)]
 pub use tumbling::{
-    MovingContact, MovingSquare, MovingVector, SolidDynamics, SolidInertia, SolidMotion, Tumbling,
-    angular_acceleration, angular_velocity, solid_dynamics,
+    MovingVector, SolidDynamics, SolidInertia, SolidMotion, Tumbling, angular_acceleration, angular_velocity,
+    solid_dynamics,
 };

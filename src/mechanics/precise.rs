@@ -30,7 +30,7 @@ thread_local! {
     static CONSTANTS: RefCell<ConstCache> = const { RefCell::new(ConstCache::new()) };
 }
 
-/// A real number to [`BITS`] bits, or nothing.
+/// A real number to `BITS` bits, or nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Real(Option<Repr<2>>);
 

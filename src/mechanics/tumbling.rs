@@ -15,7 +15,7 @@ pub type MovingSquare = [Square<3>; 3];
 #[derive(Clone, Debug)]
 pub struct SolidMotion {
     pub solid: Solid,
-    /// The angles of [`rotation`] that turn the body.
+    /// The angles of `rotation` that turn the body.
     pub turn: [Swing; 3],
     /// The directions in which the palms rise, see [`palm_frame`]. They stay.
     pub azimuths: [Real; 3],

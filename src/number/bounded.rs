@@ -29,6 +29,7 @@ const BELIEVED: f64 = 4.0;
 /// A value, and how far it may be from the exact one.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded<L> {
+    /// The value.
     pub value: L,
     /// The bound in units of `2^-53`, but for the roundings of the bound itself.
     pub units: L,

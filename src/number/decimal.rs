@@ -3,7 +3,7 @@
 //! This is how a computer-algebra system evaluates an expression at its default setting (ten digits). It is here to
 //! show what such an evaluation does to a formula, not to compute with.
 
-use super::{Arithmetic, Function, Refusal, rational_to_f64};
+use super::{Arithmetic, Function, Refusal};
 use dashu::float::round::mode::HalfEven;
 use dashu::float::{Context, FBig, FpError, Repr};
 use dashu::integer::IBig;
@@ -78,11 +78,6 @@ impl Arithmetic for Decimals {
     fn is_zero(&self, a: &Decimal) -> Option<bool> {
         Some(a.significand().is_zero())
     }
-}
-
-/// The nearest double, for plots.
-pub fn decimal_to_f64(value: &Decimal) -> f64 {
-    rational_to_f64(&Decimals::exactly(value))
 }
 
 #[cfg(test)]

@@ -24,11 +24,6 @@ impl Extension {
         Extension { field, modulus, radicands: Vec::new() }
     }
 
-    /// The prime field.
-    pub fn field(&self) -> &PrimeField {
-        &self.field
-    }
-
     /// The root `y` of the polynomial.
     pub fn generator(&self) -> Vec<u64> {
         if self.modulus.len() == 1 {

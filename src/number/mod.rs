@@ -23,7 +23,7 @@ mod instructions;
 mod interval;
 mod lanes;
 mod laurent;
-pub mod polynomial;
+pub(crate) mod polynomial;
 mod rational;
 mod real;
 mod residue;
@@ -32,34 +32,43 @@ mod sine;
 mod taylor;
 mod tower;
 mod turn;
-pub mod univariate;
+pub(crate) mod univariate;
 
+#[doc(hidden)]
 pub use bounded::Bounded;
-pub use decimal::{Decimal, Decimals, decimal_to_f64};
+pub use decimal::Decimal;
+pub(crate) use decimal::Decimals;
+#[doc(hidden)]
 pub use double_double::DoubleDouble;
-pub use dual::{Differentiable, Duals};
-pub use enclosure::{Enclosure, Enclosures};
+pub(crate) use dual::{Differentiable, Duals};
+pub(crate) use enclosure::Enclosure;
+#[doc(hidden)]
+pub use enclosure::Enclosures;
 pub(crate) use enclosure::{common_decimal, round_to_decimal};
-pub use extension::Extension;
-pub use factorisation::{Factorisation, primitive, split};
+pub(crate) use extension::Extension;
+pub(crate) use factorisation::{Factorisation, primitive, split};
 pub use float::Floats;
-pub use fraction::{Factors, Fraction, Fractions};
+pub(crate) use fraction::{Factors, Fraction, Fractions};
+#[doc(hidden)]
 pub use instructions::Instructions;
 pub use interval::Interval;
-pub use lanes::{ErrorBounds, LaneTask, Lanes, MOST_LANES, Vectorised};
-pub use laurent::{Laurent, Series};
-pub use rational::{Rationals, display_rational, parse_decimal, rational_from_f64, rational_to_f64};
+pub(crate) use lanes::{LaneTask, Lanes, MOST_LANES, Vectorised};
+pub(crate) use laurent::{Laurent, Series};
+pub use rational::{Rationals, parse_decimal, rational_from_f64, rational_to_f64};
 pub use real::RealNumber;
-pub use residue::{LOG2_PRIMES, PrimeField};
+pub(crate) use residue::LOG2_PRIMES;
+#[doc(hidden)]
+pub use residue::PrimeField;
 pub use rung::Rung;
-pub use taylor::{Coefficients, Recurrences};
-pub use tower::Tower;
-pub use turn::Turn;
+pub(crate) use taylor::{Coefficients, Recurrences};
+pub(crate) use tower::Tower;
+pub(crate) use turn::Turn;
 
 use dashu::rational::RBig;
 
 /// A function of one variable that is not a ratio of polynomials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[allow(missing_docs)] // names and messages say it
 pub enum Function {
     Sin,
     Cos,

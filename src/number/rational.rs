@@ -89,11 +89,6 @@ pub fn rational_from_f64(value: f64) -> Option<RBig> {
     RBig::try_from(value).ok()
 }
 
-/// A rational as people write it: `3`, `-1/2`.
-pub fn display_rational(value: &RBig) -> String {
-    value.to_string()
-}
-
 /// A decimal literal as the exact rational that it denotes: `0.5` and `.5` are one half, `1e-3` is a thousandth, and
 /// `1/3` is a third. `None` where the text is no such number or its exponent is beyond plus or minus 4096.
 pub fn parse_decimal(text: &str) -> Option<RBig> {

@@ -11,9 +11,11 @@ use rand::Rng;
 pub enum GenericRank {
     /// The rank; it is certainly no less, and no more but for an error of probability below `2^log2_error`.
     Rank {
+        /// The rank.
         rank: usize,
         /// Minus infinity where the rank is full and there is nothing to err about.
         log2_error: f64,
+        /// At how many points it was tried.
         points: usize,
     },
     /// Every point was a pole; this divisor was zero.

@@ -20,24 +20,37 @@ mod series;
 mod singular;
 mod state;
 
-pub use codistribution::{Codistribution, CodistributionError, Length, OWN_ROWS, Stop, Word};
+#[doc(hidden)]
+pub use codistribution::OWN_ROWS;
+pub use codistribution::{Codistribution, CodistributionError, Length, Stop, Word};
 pub(crate) use conditions::vanishes;
-pub use conditions::{
-    Branch, Solution, Unsolved, also_met_otherwise, assumed, linear_solution, parse_condition, solve,
-    solve_conditions,
-};
+pub use conditions::{Branch, Unsolved, parse_condition, solve_conditions};
+pub(crate) use conditions::{also_met_otherwise, assumed, linear_solution, solve};
+#[doc(hidden)]
 pub use defined::Defined;
 pub(crate) use elimination::independent_rows;
-pub use elimination::{certain_rank, kernel, rank};
+#[doc(hidden)]
+pub use elimination::rank;
+pub(crate) use elimination::{certain_rank, kernel};
 pub(crate) use equilibrate::WEIGHT_OF_ERRORS;
-pub use equilibrate::equilibrate;
+#[cfg(test)]
+pub(crate) use equilibrate::equilibrate;
+#[doc(hidden)]
 pub use flow::Flow;
 pub use generic::{GenericRank, generic_rank};
+pub(crate) use locus::AVOIDED;
 pub(crate) use locus::{ATTEMPTS, Source};
-pub use locus::{AVOIDED, Locus, LocusError};
-pub use nested::{NestedError, differential_by_duals, lie_derivative_by_duals};
+pub use locus::{Locus, LocusError};
+#[doc(hidden)]
+pub use nested::{differential_by_duals, lie_derivative_by_duals};
+#[doc(hidden)]
 pub use reduction::Reduction;
+#[doc(hidden)]
 pub use series::lie_derivative_by_series;
 pub(crate) use singular::SEPARATED;
-pub use singular::{Spectrum, customary_singular_values, singular_values};
-pub use state::{Coordinate, NamedCoordinate, State, StateInWords, float_inputs};
+#[doc(hidden)]
+pub use singular::customary_singular_values;
+pub use singular::{Spectrum, singular_values};
+#[doc(hidden)]
+pub use state::float_inputs;
+pub use state::{Coordinate, NamedCoordinate, State, StateInWords};

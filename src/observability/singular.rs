@@ -11,7 +11,7 @@ const MOST_ITERATIONS: usize = 10_000;
 /// part of the largest: half of the digits of a double.
 pub const SEPARATED: f64 = 1.5e-8;
 
-/// The singular values of a matrix after [`equilibrate`], and the rank that they suggest.
+/// The singular values of a matrix after `equilibrate`, and the rank that they suggest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// In descending order.

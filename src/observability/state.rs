@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 /// The exact value of one symbol.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // names and messages say it
 pub enum Coordinate {
     /// A rational number; of an angle, in radians.
     Number(RBig),
@@ -43,6 +44,7 @@ impl Coordinate {
 /// A coordinate of a state in words.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedCoordinate {
+    /// The symbol's name.
     pub name: String,
     /// Its exact value: `3/2`, or `sin = 4/5, cos = 3/5`.
     pub exact: String,

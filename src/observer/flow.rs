@@ -18,8 +18,11 @@ use std::cell::{Cell, RefCell};
 /// How many derivatives are carried along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Order {
+    /// The state alone.
     Value,
+    /// Its first derivatives by the unknowns as well.
     First,
+    /// The second ones as well.
     Second,
 }
 
@@ -29,6 +32,7 @@ pub enum Order {
 pub struct Lost {
     /// In s.
     pub time: f64,
+    /// The reason, in words.
     pub why: String,
 }
 
@@ -52,7 +56,9 @@ pub struct Sample {
 /// A model with its signals, ready to be integrated.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelFlow<'a> {
+    /// The equations.
     pub model: &'a Model,
+    /// What they are told.
     pub signals: &'a Signals,
     /// The relative and absolute error of a step.
     pub tolerance: f64,

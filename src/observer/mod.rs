@@ -2,7 +2,7 @@
 //!
 //! [`Signals`] are columns of measurements over time. A [`Model`] takes some states of a system for unknown and everything else
 //! for constants or signals; a [`ModelFlow`] follows it through time with its exact first and second derivatives by the unknowns. A
-//! [`Window`] compares what the model expects with what was read, [`cramer_rao`] bounds how well that can tell the
+//! `Window` compares what the model expects with what was read, `cramer_rao` bounds how well that can tell the
 //! unknowns, and an [`Observer`] works through a [`Task`] and gives a [`Track`]: Newton's method and a region of trust
 //! ([`MovingWindow`]), [`Integration`], [`Kalman`], [`HighGain`].
 //!
@@ -17,24 +17,26 @@ mod kalman;
 mod model;
 mod moving_window;
 mod newton;
-pub mod record;
+pub(crate) mod record;
 mod signal;
 mod task;
 mod trust_region;
 mod window;
 
-pub use bound::{CramerRaoBound, cramer_rao};
-pub use flow::{Lost, MOST_UNKNOWNS, ModelFlow, Order, Sample};
+pub use bound::CramerRaoBound;
+pub(crate) use bound::cramer_rao;
+pub use flow::Lost;
+#[doc(hidden)]
+pub use flow::{ModelFlow, Order, Sample};
 pub use high_gain::HighGain;
 pub use integration::Integration;
 pub use kalman::Kalman;
-pub use model::{Model, ModelError, ModelQuestion};
+#[doc(hidden)]
+pub use model::ModelQuestion;
+pub use model::{Model, ModelError};
 pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
 pub use newton::Newton;
-pub use record::{
-    Cell, Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading, RecordRows, check,
-};
+pub use record::{Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading};
 pub use signal::{SignalError, Signals};
-pub use task::{Observer, SampleEstimate, Sought, TOLERANCE, Task, Track, Update, UpdateEnd};
+pub use task::{Observer, SampleEstimate, Sought, Task, Track, Update, UpdateEnd};
 pub use trust_region::TrustRegion;
-pub use window::{Window, WindowExpansion};

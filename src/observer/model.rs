@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Why a system gives no model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // names and messages say it
 pub enum ModelError {
     /// A name is no state of the system.
     #[error("'{name}' is no state of the system; its states are {states}")]

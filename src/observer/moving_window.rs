@@ -32,6 +32,7 @@ pub enum WhenBlind {
 /// The observer by windows.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingWindow {
+    /// How the smallest error is sought.
     pub method: WindowSearch,
     /// Samples of a window.
     pub window: usize,
@@ -39,7 +40,17 @@ pub struct MovingWindow {
     pub steps: u64,
     /// The relative standard deviation, by the bound of Cramér and Rao, from which on something counts as not seen.
     pub blind: f64,
+    /// What is done where nothing is seen.
     pub when_blind: WhenBlind,
+}
+
+impl MovingWindow {
+    /// Windows of so many samples, five steps each by a region of trust; what is known no better than its own size counts as
+    /// not seen, and is integrated.
+    pub fn new(window: usize) -> MovingWindow {
+        let when_blind = WhenBlind::default();
+        MovingWindow { method: WindowSearch::TrustRegion, window, steps: 5, blind: 1.0, when_blind }
+    }
 }
 
 impl Observer for MovingWindow {

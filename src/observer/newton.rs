@@ -17,7 +17,7 @@ const HALVINGS: usize = 12;
 
 /// Newton's method.
 ///
-/// Needs the error of the output with its exact first and second derivatives ([`Window::expand`]).
+/// Needs the error of the output with its exact first and second derivatives (`Window::expand`).
 ///
 /// Each step is `-H^-1 grad k`. Where `H` is not positive definite `k` is not convex there, which 4.78 presupposes, and the
 /// step is that of Gauss and Newton, whose matrix is never indefinite; where a step would raise `k`, or lead to where the

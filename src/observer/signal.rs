@@ -1,5 +1,6 @@
 //! What is known of time: columns of measurements, and the curves that run through them.
 
+use super::Record;
 use num_dual::{Dual64, DualNum};
 
 /// So many samples carry the curve at a time: its error is of this order in the time between two samples.
@@ -7,6 +8,7 @@ const POINTS: usize = 8;
 
 /// Why a table is no set of signals.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // names and messages say it
 pub enum SignalError {
     /// There are no rows.
     #[error("there are no samples")]
@@ -36,6 +38,15 @@ pub struct Signals {
 }
 
 impl Signals {
+    /// The columns of a recording.
+    ///
+    /// # Errors
+    /// As for [`Signals::new`].
+    pub fn of_record(record: &Record) -> Result<Signals, SignalError> {
+        let column = |name: &String| Some((name.clone(), record.column(name)?.to_vec()));
+        Signals::new(record.times().to_vec(), record.names().iter().filter_map(column).collect())
+    }
+
     /// Of times and named columns.
     ///
     /// # Errors

@@ -165,6 +165,7 @@ pub struct SampleEstimate {
 
 /// How an update ended.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // names and messages say it
 pub enum UpdateEnd {
     /// The last step was too short to matter.
     Converged,

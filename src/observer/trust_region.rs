@@ -11,7 +11,7 @@ const STRONGEST: f64 = 1e16;
 
 /// Levenberg and Marquardt's method.
 ///
-/// Needs the error of the output with its exact first derivatives ([`Window::expand`]).
+/// Needs the error of the output with its exact first derivatives (`Window::expand`).
 ///
 /// Each step minimises `|r + J p|^2 + lambda |p|^2`, `p` in units of the unknowns' sizes; `lambda` falls while the error falls as
 /// foretold, and rises where it does not, which bounds the step as a radius would.

@@ -13,7 +13,9 @@ use crate::tradeoff::{Growth, PrintedExpression, RouteAgreement, Trade};
 
 /// Lie derivatives of one output along one field, to high orders.
 pub struct DerivativesFound {
+    /// The field along which is differentiated.
     pub field: String,
+    /// The output that is.
     pub output: String,
     /// Two routes to each, order by order.
     pub routes: Vec<RouteAgreement>,
@@ -29,11 +31,15 @@ pub struct FileFindings {
     pub outcomes: Vec<Outcome>,
     /// The whole box first, then each named set.
     pub ranks: Vec<SetRank>,
+    /// The maps that the file asks for.
     pub maps: Vec<MapFound>,
+    /// The lines that it asks for.
     pub lines: Vec<LineFound>,
     /// Numbers in print, by formula.
     pub printed: Vec<PrintedExpression>,
+    /// The reductions to other systems.
     pub reductions: Vec<ReductionFound>,
+    /// How fast Lie derivatives grow, of the file that was chosen.
     pub derivatives: Option<DerivativesFound>,
     /// Speed against accuracy, in short.
     pub trade: Option<Trade>,
@@ -41,6 +47,7 @@ pub struct FileFindings {
     pub stress: Option<StressStudy>,
     /// The certificate on the sample box, after a few thousand sub-boxes.
     pub certificate: Option<RegionAnswer>,
+    /// What was not looked at, and why.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -74,14 +81,17 @@ impl FileFindings {
 
 /// Everything that was found.
 pub struct Findings {
+    /// The folder.
     pub paper: Paper,
     /// In the order of the paper.
     pub files: Vec<FileFindings>,
     /// Bodies in motion, and what observers made of them.
     pub experiments: Vec<(Experiment, Vec<Answer>)>,
+    /// The seed of all that is drawn.
     pub seed: u64,
     /// Whether it was stopped before the end.
     pub interrupted: bool,
+    /// How long it took, in s.
     /// NaN where no times are kept.
     pub seconds: f64,
 }

@@ -16,7 +16,9 @@ pub const MANIFEST: &str = "paper.toml";
 pub struct Paper {
     /// Its title; that of the first system where the folder does not say.
     pub title: String,
+    /// Its authors.
     pub authors: Vec<String>,
+    /// The year in which it appeared.
     pub year: Option<i64>,
     /// Where it is published.
     pub source: Option<String>,

@@ -12,10 +12,18 @@ mod reduction;
 mod verify;
 mod views;
 
-pub use findings::{DerivativesFound, FileFindings, Findings};
-pub use folder::{MANIFEST, Paper};
-pub use left_out::LeftOut;
-pub use numbering::{NumberedEquation, Numbering};
+#[doc(hidden)]
+pub use findings::DerivativesFound;
+pub use findings::{FileFindings, Findings};
+#[doc(hidden)]
+pub use folder::MANIFEST;
+pub use folder::Paper;
+#[doc(hidden)]
+pub use numbering::NumberedEquation;
+#[doc(hidden)]
+pub use numbering::Numbering;
+#[doc(hidden)]
 pub use reduction::ReductionFound;
 pub use verify::{VerifyOptions, verify, verify_into};
+#[doc(hidden)]
 pub use views::{LineFound, MapFound, SetRank};

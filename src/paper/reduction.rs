@@ -14,6 +14,7 @@ use std::sync::atomic::AtomicBool;
 
 /// What was found of one reduction.
 pub struct ReductionFound {
+    /// What the file says of it.
     pub reduction: ReductionTo,
     /// The title of the larger system.
     pub of: String,

@@ -8,6 +8,7 @@ use super::views::{draw, has_a_rank, rank_on};
 use crate::certificate::certify_region;
 use crate::claim::decide_all;
 use crate::experiment::{Experiment, Scene};
+use crate::sweep::UNINTERRUPTED;
 use crate::system::{ReadError, System};
 use crate::tradeoff::stress::{Stress, StressOptions, StressStudy};
 use crate::tradeoff::{
@@ -19,6 +20,7 @@ use std::time::Instant;
 
 /// How a paper is to be verified.
 pub struct VerifyOptions<'a> {
+    /// The seed of all that is drawn.
     pub seed: u64,
     /// Set from outside to stop early; what was found is kept.
     pub interrupt: &'a AtomicBool,
@@ -26,6 +28,13 @@ pub struct VerifyOptions<'a> {
     pub progress: &'a (dyn Fn(&str, u64, u64) + Sync),
     /// Whether times are measured. Without them two runs with one seed find the same to the last byte.
     pub timed: bool,
+}
+
+impl Default for VerifyOptions<'_> {
+    /// The seed 1, all that is asked for, and nothing stops it.
+    fn default() -> Self {
+        VerifyOptions { seed: 1, timed: true, interrupt: &UNINTERRUPTED, progress: &|_, _, _| () }
+    }
 }
 
 /// The orders up to which two routes to a Lie derivative are compared: duals double with each.

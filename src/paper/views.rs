@@ -69,13 +69,17 @@ impl SetRank {
 
 /// The smallest singular value over a plane: of the file's own rows where it has some, and of the full codistribution.
 pub struct MapFound {
+    /// What the file asks for.
     pub view: MapView,
+    /// A map for each choice of rows.
     pub maps: Vec<(LandscapeRows, Map)>,
 }
 
 /// The singular values along a line, of the file's own rows where it has some.
 pub struct LineFound {
+    /// What the file asks for.
     pub view: LineView,
+    /// The singular values along it.
     pub slope: Slope,
 }
 

@@ -18,18 +18,29 @@ mod ranks;
 mod stress;
 mod trade;
 
+#[doc(hidden)]
 pub use axis::unit_of;
-pub use certificate::{percent, region_curve, region_json, region_map, region_text};
+#[doc(hidden)]
+pub use certificate::percent;
+pub use certificate::{region_curve, region_json, region_map, region_text};
 pub use claims::{
     ClaimsForm, ClaimsSummary, Shown, claim_json, claim_line, claim_text, claims_text, counts_text,
     errata_markdown, junit,
 };
-pub use formula::{conditions_mathml, definition_mathml, expression_latex, formula_mathml, statement_latex};
-pub use layout::{Colour, Layout, Tone};
-pub use motion::{Observed, ended_in_words, fault_lines, observe_json, observe_page, observe_text};
-pub use page::{findings_json, findings_text, forget_seconds, page, printed_value_json};
+#[doc(hidden)]
+pub use formula::definition_mathml;
+pub use formula::{expression_latex, formula_mathml, statement_latex};
+#[doc(hidden)]
+pub use layout::Colour;
+pub use layout::Layout;
+#[doc(hidden)]
+pub use motion::ended_in_words;
+pub use motion::{Observed, observe_json, observe_page, observe_text};
+#[doc(hidden)]
+pub use page::forget_seconds;
+pub use page::{findings_json, findings_text, page};
 pub use ranks::{rank_json, rank_text};
-pub use stress::{
-    conditioning_picture, lines_picture, scalings_picture, stress_json, stress_pictures, stress_text,
-};
-pub use trade::{TRADE_FRONT_HEADINGS, trade_front_table, trade_json, trade_plot, trade_text};
+#[doc(hidden)]
+pub use stress::{stress_json, stress_pictures, stress_text};
+#[doc(hidden)]
+pub use trade::{trade_front_table, trade_json, trade_plot, trade_text};

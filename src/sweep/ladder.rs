@@ -31,7 +31,9 @@ const PRECISE: [usize; 2] = [128, 512];
 pub struct StateReport {
     /// The rank, how it is known, and on which rung that was found.
     pub rank: usize,
+    /// How certain the rank is.
     pub certainty: Certainty,
+    /// The numbers that decided it.
     pub rung: Rung,
     /// What floating point says of the rows that remain without unit rows.
     pub spectrum: Option<Spectrum>,
@@ -45,6 +47,7 @@ pub struct StateReport {
 
 /// What deciding at one state came to.
 pub enum StateJudgement {
+    /// It was decided.
     Report(StateReport),
     /// The divisor that is zero there, in words.
     Pole(String),
@@ -98,6 +101,7 @@ pub struct JudgedRows<'r> {
 /// How certain a rank has to be, and the numbers by which it may become so.
 #[derive(Clone, Copy, Debug)]
 pub struct ProofWanted {
+    /// What the rank has to be, at the least.
     pub wanted: Certainty,
     /// The residues.
     pub field: PrimeField,

@@ -17,12 +17,18 @@ mod stream;
 mod unseen;
 
 pub use certainty::Certainty;
-pub use deviation::{NEARLY_INVISIBLE, StandardDeviation, StandardDeviations};
-pub use digits::{Digits, MOST_DIGITS, NoDigits};
+#[doc(hidden)]
+pub use deviation::NEARLY_INVISIBLE;
+pub use deviation::{StandardDeviation, StandardDeviations};
+#[doc(hidden)]
+pub use digits::MOST_DIGITS;
+pub use digits::{Digits, NoDigits};
+#[doc(hidden)]
 pub use ladder::{Judge, JudgedRows, ProofWanted, StateJudgement, StateReport};
 pub use question::{BranchAnswer, RankAnswer, RankError, RankQuestion, TakenRow, answer_rank};
+pub(crate) use states::UNINTERRUPTED;
 pub use states::{RecordedState, SweepOptions, SweepReport, sweep};
-pub use stream::{
-    DECADES, Elimination, Jacobi, StateVerdict, StatesError, Stream, StreamOptions, StreamReport, Verdicts,
-};
+pub(crate) use stream::{Elimination, Jacobi};
+#[doc(hidden)]
+pub use stream::{StateVerdict, StatesError, Stream, StreamOptions, StreamReport, Verdicts};
 pub use unseen::UnseenDirection;

@@ -1,7 +1,7 @@
 //! The whole question of a rank, from a system and some conditions to sweeps of every branch.
 
 use super::deviation::{StandardDeviations, standard_deviations};
-use super::states::{SweepOptions, SweepReport, sweep};
+use super::states::{SweepOptions, SweepReport, UNINTERRUPTED, sweep};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
     Codistribution, CodistributionError, Length, Locus, LocusError, OWN_ROWS, Stop, Unsolved,
@@ -17,6 +17,7 @@ use std::sync::atomic::AtomicBool;
 pub struct RankQuestion<'a> {
     /// States drawn on each branch of the conditions.
     pub samples: u64,
+    /// The seed of the drawn states.
     pub seed: u64,
     /// What every rank has to be, at the least.
     pub wanted: Certainty,
@@ -35,9 +36,6 @@ pub struct RankQuestion<'a> {
     /// Called with the number of states done.
     pub progress: &'a (dyn Fn(u64) + Sync),
 }
-
-/// Never set.
-static UNINTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 impl Default for RankQuestion<'_> {
     /// A thousand states of the sample box, every rank certified, from words that are taken until the rank stops growing.
@@ -76,6 +74,7 @@ pub struct BranchAnswer {
     pub words: Vec<String>,
     /// The length of the longest word taken, and why no longer ones were.
     pub order: usize,
+    /// Why no longer words were taken.
     pub stop: Stop,
     /// The rank at almost all states of the branch, by these words.
     pub generic_rank: usize,
@@ -97,12 +96,17 @@ pub struct BranchAnswer {
 pub struct RankAnswer {
     /// The file and the title of the system.
     pub file: String,
+    /// The title of the system.
     pub title: String,
+    /// How many outputs it has.
     pub outputs: usize,
     /// The fields that the words take.
     pub fields: Vec<FieldRole>,
+    /// The seed of the drawn states.
     pub seed: u64,
+    /// The number of states of the system: the rank of one that is seen.
     pub dimension: usize,
+    /// An answer for each branch of the conditions; one where there are none.
     pub branches: Vec<BranchAnswer>,
 }
 

@@ -20,7 +20,9 @@ use std::time::Instant;
 /// How to sweep.
 #[derive(Clone, Copy)]
 pub struct SweepOptions<'a> {
+    /// How many states are drawn.
     pub samples: u64,
+    /// The seed from which they are drawn.
     pub seed: u64,
     /// What the rows need to exist, beside what outputs and fields need.
     pub guards: &'a [Guard],
@@ -36,10 +38,31 @@ pub struct SweepOptions<'a> {
     pub progress: &'a (dyn Fn(u64) + Sync),
 }
 
+/// Never set: of what nothing stops.
+pub(crate) static UNINTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+impl Default for SweepOptions<'_> {
+    /// A thousand states, every rank certified.
+    fn default() -> Self {
+        SweepOptions {
+            samples: 1000,
+            seed: 1,
+            guards: &[],
+            wanted: Certainty::Certified,
+            digits: None,
+            recorded: 0,
+            interrupt: &UNINTERRUPTED,
+            progress: &|_| (),
+        }
+    }
+}
+
 /// A state of the sweep with its certified rank.
 #[derive(Clone, Debug)]
 pub struct RecordedState {
+    /// The state, exactly.
     pub state: State,
+    /// Its rank.
     pub rank: usize,
     /// A basis of the directions that no row sees, exactly.
     pub unseen: Vec<Vec<RBig>>,
@@ -79,6 +102,7 @@ pub struct SweepReport {
     /// As many of the states as were to be recorded, spread over the sweep, those that are poles or not certified left
     /// out; the worst conditioned state is the first.
     pub recorded: Vec<RecordedState>,
+    /// How long it took, in s.
     pub seconds: f64,
 }
 

@@ -51,6 +51,7 @@ pub struct Statement {
 
 /// The verdict that a file says it expects where that is not *proved*.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // names and messages say it
 pub enum Expectation {
     Proved,
     Refuted,
@@ -59,6 +60,7 @@ pub enum Expectation {
 
 /// What a claim says.
 #[derive(Clone, Debug)]
+#[allow(missing_docs)] // names and messages say it
 pub enum ClaimBody {
     /// A statement with the verdict that is expected of it.
     Claim { statement: Box<Statement>, expected: Expectation },
@@ -430,6 +432,7 @@ pub(super) struct Entries {
     /// The entries that could be.
     pub items: Vec<Item>,
     /// Where each of them stands, with the blanks and comments behind it.
+    #[cfg_attr(not(feature = "cli"), allow(dead_code))] // editors ask for it
     pub spans: Vec<Span>,
     /// What is no entry.
     pub damage: Vec<Damage>,

@@ -17,6 +17,7 @@ mod grammar;
 mod lie;
 mod matrices;
 mod model;
+#[cfg(feature = "cli")]
 mod outline;
 mod problems;
 mod read;
@@ -30,16 +31,26 @@ mod written;
 
 pub use dimension::{Base, Dimension};
 pub use error::ReadError;
-pub(crate) use error::{Problem, boundary, line_and_column, nearest};
+#[cfg(feature = "cli")]
+pub(crate) use error::boundary;
+pub(crate) use error::{Problem, line_and_column, nearest};
 pub use format::format_text;
-pub use grammar::{ClaimBody, ClaimSyntax, Expectation, Statement, parse_statement};
-pub use model::{
-    Assignment, Explanations, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value,
-};
+pub use grammar::Expectation;
+#[doc(hidden)]
+pub use grammar::parse_statement;
+#[doc(hidden)]
+pub use grammar::{ClaimBody, ClaimSyntax, Statement};
+pub use model::{Assignment, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value};
+#[cfg(feature = "cli")]
 pub(crate) use outline::{Declaration, DeclarationKind, Outline};
+#[doc(hidden)]
 pub use problems::MOST_PROBLEMS;
 pub use read::Examination;
-pub(crate) use read::{load, with_plain_line_ends};
+pub(crate) use read::load;
+#[cfg(feature = "cli")]
+pub(crate) use read::with_plain_line_ends;
 pub use standing::{Basis, Flaw, Reference};
-pub use views::{LineEnd, LineView, MapView, NamedSet, Point, ReductionTo};
+#[doc(hidden)]
+pub use views::LineEnd;
+pub(crate) use views::{LineView, MapView, NamedSet, Point, ReductionTo};
 pub(crate) use written::in_one_line;

@@ -27,13 +27,16 @@ pub enum Kind {
 /// The closed interval from which a coordinate is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Range {
+    /// The low end.
     pub low: RBig,
+    /// The high end, no lower than the low one.
     pub high: RBig,
 }
 
 /// What is known of a symbol.
 #[derive(Clone, Debug)]
 pub struct SymbolInfo {
+    /// What it is in the system.
     pub kind: Kind,
     /// Whether it is met only inside sines and cosines.
     pub is_angle: bool,
@@ -68,6 +71,7 @@ impl Role {
 /// A vector field: `x' = component` for each state that it moves.
 #[derive(Clone, Debug)]
 pub struct Field {
+    /// Its name.
     pub name: String,
     /// What it is for. Fields of imported systems keep theirs.
     pub role: Role,
@@ -94,7 +98,9 @@ pub struct Explanations {
 /// A field that takes part in a rank, for reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldRole {
+    /// The field's name.
     pub name: String,
+    /// What it does to the states.
     pub role: Role,
 }
 
@@ -108,8 +114,11 @@ pub(crate) enum FieldPlace {
 /// A matrix of expressions, by rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Matrix {
+    /// How many rows.
     pub rows: usize,
+    /// How many columns.
     pub columns: usize,
+    /// The entries, row by row.
     pub entries: Vec<NodeId>,
 }
 
@@ -123,7 +132,9 @@ impl Matrix {
 /// What an expression of the language can mean.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
+    /// One expression.
     Scalar(NodeId),
+    /// A table of expressions.
     Matrix(Matrix),
     /// `rank(M)`, the rank of a matrix at almost all points.
     Rank(Matrix),
@@ -131,7 +142,9 @@ pub enum Value {
     CodistributionRank,
     /// `pole(e, x)`, the order of the pole of `e` where `x` vanishes.
     Pole {
+        /// What has the pole.
         expression: NodeId,
+        /// What vanishes there.
         factor: NodeId,
     },
 }

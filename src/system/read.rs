@@ -28,6 +28,15 @@ const MOST_NAMES: usize = 200_000;
 /// Files longer than this are refused.
 const LONGEST_FILE: u64 = 16 << 20;
 
+impl std::str::FromStr for System {
+    type Err = ReadError;
+
+    /// A system from a text alone: what it imports is looked for where the program runs.
+    fn from_str(text: &str) -> Result<System, ReadError> {
+        System::parse("the text", text, Path::new(""))
+    }
+}
+
 impl System {
     /// Reads a proof file.
     ///

@@ -13,16 +13,19 @@ pub mod stress;
 mod term_by_term;
 mod trade;
 
-pub use differences::{Differences, FiniteDifference};
-pub use growth::{Growth, growth_of_lie_derivatives};
-pub use landscape::{Landscape, LandscapeRows, Map, Slope};
-pub use models::{ModelComparison, compare_reduction};
-pub use point_programs::{LoadedPoints, PointPrograms};
-pub use printed::{ExpandedText, PrintedExpression, PrintedValue, printed_values};
-pub use rounding::{RoundingStudy, study_rounding};
-pub use routes::{RouteAgreement, compare_routes};
-pub use term_by_term::term_by_term;
-pub use trade::{
-    Combination, CombinationLeftOut, CorrectDigits, DIGITS_TOLERANCE, Derivative, DerivativeResult, Number,
-    RankMethod, RankResult, TIME_TOLERANCE, Trade, TradeQuestion, beats, trade,
-};
+pub(crate) use growth::Growth;
+#[doc(hidden)]
+pub use growth::growth_of_lie_derivatives;
+#[doc(hidden)]
+pub use landscape::LandscapeRows;
+pub(crate) use landscape::{Landscape, Map, Slope};
+pub(crate) use models::{ModelComparison, compare_reduction};
+#[doc(hidden)]
+pub use printed::{ExpandedText, PrintedValue};
+pub(crate) use printed::{PrintedExpression, printed_values};
+pub(crate) use rounding::{RoundingStudy, study_rounding};
+pub(crate) use routes::{RouteAgreement, compare_routes};
+#[doc(hidden)]
+pub use trade::{Combination, CorrectDigits, Derivative, Number, RankMethod, Trade, TradeQuestion, trade};
+#[doc(hidden)]
+pub use trade::{CombinationLeftOut, DIGITS_TOLERANCE, DerivativeResult, TIME_TOLERANCE};

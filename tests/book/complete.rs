@@ -40,7 +40,9 @@ fn every_command_is_listed_with_its_options() {
     let names: Vec<&str> = names.filter_map(|line| line.split_whitespace().next()).collect();
     assert!(names.len() > 12, "{names:?}");
     for name in names.into_iter().filter(|name| *name != "help") {
-        let row = commands.lines().find(|line| line.starts_with(&format!("| `{name} ")));
+        let row = commands.lines().find(|line| {
+            line.strip_prefix(&format!("| `{name}")).is_some_and(|rest| rest.starts_with([' ', '`']))
+        });
         let row = row.unwrap_or_else(|| panic!("'{name}' is not listed"));
         let listed: BTreeSet<&str> =
             row.rsplit('|').nth(1).unwrap().split('`').filter(|word| word.starts_with("--")).collect();

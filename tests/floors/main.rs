@@ -1,6 +1,7 @@
 //! Each module is a floor and imports only from those above it in `src/lib.rs`; within a folder no file needs another one
 //! that needs it in turn. Read from the imports themselves; tests may look at everything.
 
+mod features;
 mod source;
 
 use source::{Crate, ModulePath};

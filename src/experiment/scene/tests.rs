@@ -297,8 +297,8 @@ fn the_rules_of_a_scene_cope_with_its_jitter() {
     let path = folder.path().join("record.csv");
     record.write(&path).unwrap();
     let faults = |path: &Path| {
-        let rows = crate::observer::RecordRows::read(path, &[]).unwrap();
-        crate::observer::check(&rows, &scene.fault_rules())
+        let rows = crate::observer::record::RecordRows::read(path, &[]).unwrap();
+        crate::observer::record::check(&rows, &scene.fault_rules())
     };
     assert_eq!(faults(&path), []);
     let lines: Vec<String> = std::fs::read_to_string(&path).unwrap().lines().map(str::to_owned).collect();

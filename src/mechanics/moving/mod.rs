@@ -1,11 +1,10 @@
 //! Planar bodies in motion, in double precision: a smooth convex body that slides between two palms through
 //! time.
 //!
-//! A [`BodyForm`] says how a body looks, a [`Shape`] is the body once it has been seen to be strictly convex: its
-//! support function about the centre of mass, area, perimeter, radius of gyration. A [`MovingScene`] adds masses,
-//! gravity, a start and a [`Drive`], which either tells the palms how to move or what torques to feel;
-//! [`simulate`] then gives a [`Trajectory`], what sensors and motors would report at given times, and how it
-//! [`Ended`].
+//! A `BodyForm` says how a body looks, a `Shape` is the body once it has been seen to be strictly convex: its
+//! support function about the centre of mass, area, perimeter, radius of gyration. A `MovingScene` adds masses,
+//! gravity, a start and a `Drive`, which either tells the palms how to move or what torques to feel;
+//! `simulate` then gives a `Trajectory`, what sensors and motors would report at given times, and how it ended, [`Ended`].
 //!
 //! As the rest of this floor it stays ignorant: it imports numbers only and reads no proof file. What it knows
 //! are the geometry of support functions, Newton's and Euler's laws and that a contact stays a contact. In
@@ -39,11 +38,12 @@ pub(crate) mod fixtures;
 #[cfg(test)]
 mod tests;
 
-pub use breach::Breach;
-pub use drive::{Course, Drive, Oscillation, PushedPalm};
-pub use form::{BodyForm, CentreOfMass, FormError, Knots};
-pub use random::{DrawnSpline, MOST_DRAWS, RADII, SplineDraws};
-pub use scene::{DEFAULT_TOLERANCE, MovingScene, SceneError};
-pub use shape::Shape;
-pub use simulate::simulate;
-pub use trajectory::{Ended, Moment, PalmMoment, Trajectory};
+pub(crate) use drive::{Course, Drive, Oscillation, PushedPalm};
+pub(crate) use form::{BodyForm, CentreOfMass, FormError, Knots};
+pub(crate) use random::SplineDraws;
+pub(crate) use scene::{DEFAULT_TOLERANCE, MovingScene, SceneError};
+pub(crate) use shape::Shape;
+pub(crate) use simulate::simulate;
+#[doc(hidden)]
+pub use trajectory::Ended;
+pub(crate) use trajectory::{Moment, Trajectory};

@@ -98,10 +98,10 @@ const LONGEST_QUOTE: usize = 80;
 /// No more branches than this are followed.
 const MOST_BRANCHES: usize = 64;
 
-/// The parts of the set on which all conditions hold; see [`solve`].
+/// The parts of the set on which all conditions hold; see `solve`.
 ///
 /// # Errors
-/// As for [`solve`].
+/// As for `solve`.
 pub fn solve_conditions(system: &mut System, conditions: &[Equation]) -> Result<Vec<Branch>, Unsolved> {
     let solution = solve(system, conditions)?;
     Ok(solution.parts.into_iter().chain(solution.smaller).collect())

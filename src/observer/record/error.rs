@@ -36,6 +36,13 @@ pub enum RecordError {
         /// The file.
         path: PathBuf,
     },
+    /// A Parquet file, where the crate was built without them.
+    #[error("{} is a Parquet file, and this build has no Parquet", path.display())]
+    #[diagnostic(help("build it with the feature 'parquet', or keep records as .csv"))]
+    NoParquet {
+        /// The file.
+        path: PathBuf,
+    },
     /// The header names no columns that can be used.
     #[error("the header of {} cannot be used: {why}", path.display())]
     Header {

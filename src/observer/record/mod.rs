@@ -8,19 +8,23 @@ mod check;
 mod comma_separated;
 mod error;
 mod fault;
+#[cfg(feature = "parquet")]
 mod metadata;
+#[cfg(feature = "parquet")]
 mod parquet_file;
 mod rows;
 mod spike;
 mod table;
+#[cfg(feature = "parquet")]
 mod thrift;
 mod write;
 
-pub use check::check;
+#[cfg(test)]
+pub(crate) use check::check;
 pub use error::RecordError;
 pub use fault::{Fault, FaultKind, FaultRules, OnFault};
-pub use rows::RecordRows;
-pub use table::{Cell, Row};
+pub(crate) use rows::RecordRows;
+pub(crate) use table::{Cell, Row};
 
 use std::path::Path;
 
@@ -54,7 +58,7 @@ pub struct RecordReading {
 }
 
 impl Record {
-    /// The table of these columns; each name once, and none of them [`TIME`].
+    /// The table of these columns; each name once, and none of them `TIME`.
     ///
     /// # Errors
     /// When a column has another length than the times, or a name is empty or there twice.

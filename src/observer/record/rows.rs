@@ -1,7 +1,9 @@
 //! A record as it stands in its file: cells that may be unreadable, and rows that may be too short or too long.
 
+#[cfg(feature = "parquet")]
+use super::parquet_file;
 use super::table::{Cell, Row, Table};
-use super::{Fault, FaultKind, Record, RecordError, TIME, comma_separated, parquet_file};
+use super::{Fault, FaultKind, Record, RecordError, TIME, comma_separated};
 use crate::system::nearest;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -27,7 +29,10 @@ impl RecordRows {
         let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
         let Table { names, rows, foreign } = match extension.as_deref() {
             Some("csv") => comma_separated::read(path)?,
+            #[cfg(feature = "parquet")]
             Some("parquet") => parquet_file::read(path)?,
+            #[cfg(not(feature = "parquet"))]
+            Some("parquet") => return Err(RecordError::NoParquet { path: path.to_owned() }),
             _ => return Err(RecordError::Extension { path: path.to_owned() }),
         };
         let mut seen = BTreeSet::new();
@@ -58,16 +63,6 @@ impl RecordRows {
             return Err(RecordError::NoRows { path: path.to_owned() });
         }
         Ok(RecordRows { path: path.to_owned(), names, rows, needed: judged })
-    }
-
-    /// The rows, in the order of the file.
-    pub fn rows(&self) -> &[Row] {
-        &self.rows
-    }
-
-    /// The names of the columns, the time among them, in the order of the file.
-    pub fn names(&self) -> &[String] {
-        &self.names
     }
 
     /// The record of the rows to keep, numbered from one, and the names of the columns that hold something other than

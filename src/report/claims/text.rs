@@ -19,6 +19,7 @@ pub enum Shown {
 /// How outcomes are shown.
 #[derive(Clone, Copy, Debug)]
 pub struct ClaimsForm {
+    /// Which claims.
     pub shown: Shown,
     /// Whether each statement is written as LaTeX too.
     pub latex: bool,

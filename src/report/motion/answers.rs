@@ -9,7 +9,9 @@ use std::fmt::Write;
 /// An experiment with all that was found: what the page and the JSON are made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed<'a> {
+    /// The scene with its readings.
     pub experiment: &'a Experiment,
+    /// What the observers made of it.
     pub answers: &'a [Answer],
     /// The error over noise, where it was studied.
     pub noise: &'a [NoiseLevel],

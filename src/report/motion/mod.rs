@@ -10,5 +10,5 @@ pub(super) mod shape;
 pub(super) mod study_plot;
 pub(super) mod table;
 
-pub use answers::{Observed, ended_in_words, fault_lines, observe_json, observe_text};
+pub use answers::{Observed, ended_in_words, observe_json, observe_text};
 pub use page::observe_page;

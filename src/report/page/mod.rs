@@ -9,5 +9,5 @@ mod regime;
 mod source;
 pub(super) mod whole;
 
-pub use findings::{findings_json, findings_text, forget_seconds, printed_value_json};
+pub use findings::{findings_json, findings_text, forget_seconds};
 pub use whole::page;

@@ -4,4 +4,3 @@ pub(super) mod answer;
 pub(super) mod plot;
 
 pub use answer::{stress_json, stress_pictures, stress_text};
-pub use plot::{conditioning_picture, lines_picture, scalings_picture};

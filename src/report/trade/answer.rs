@@ -120,7 +120,7 @@ pub(crate) fn front(trade: &Trade) -> Vec<&Combination> {
 pub const TRADE_FRONT_HEADINGS: [&str; 8] =
     ["number", "derivative", "rank", "a state", "digits", "wrong", "unsure", "certified"];
 
-/// The front as rows of a table under [`TRADE_FRONT_HEADINGS`]: time a state, digits at the worst state, how many
+/// The front as rows of a table under `TRADE_FRONT_HEADINGS`: time a state, digits at the worst state, how many
 /// verdicts were wrong, how many undecided or failed, how many right ones are certain.
 pub fn trade_front_table(trade: &Trade) -> Vec<[String; 8]> {
     let row = |c: &&Combination| {

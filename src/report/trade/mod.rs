@@ -3,5 +3,5 @@
 pub(super) mod answer;
 pub(super) mod plot;
 
-pub use answer::{TRADE_FRONT_HEADINGS, trade_front_table, trade_json, trade_text};
+pub use answer::{trade_front_table, trade_json, trade_text};
 pub use plot::trade_plot;

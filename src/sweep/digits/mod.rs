@@ -47,6 +47,7 @@ pub struct Digits {
 
 /// Why there are no such digits.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // names and messages say it
 pub enum NoDigits {
     /// There is no state of full rank whose singular values could be given.
     #[error("no state of full rank was found")]

@@ -38,6 +38,7 @@ pub struct Verdicts {
 
 /// Why states that are handed over cannot be looked at.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // names and messages say it
 pub enum StatesError {
     /// There is one slice for each of [`Stream::coordinates`].
     #[error("{expected} coordinates are needed, and {found} were handed over")]

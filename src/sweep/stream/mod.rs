@@ -30,7 +30,7 @@ pub(super) use equilibrate::Equilibrium;
 pub use given::{StateVerdict, StatesError, Verdicts};
 pub use jacobi::Jacobi;
 use rayon::prelude::*;
-pub use report::{DECADES, StreamReport};
+pub use report::StreamReport;
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -42,7 +42,9 @@ const CHUNKS: u64 = 32;
 /// How to stream.
 #[derive(Clone, Copy)]
 pub struct StreamOptions<'a> {
+    /// How many states are drawn.
     pub states: u64,
+    /// The seed from which they are drawn.
     pub seed: u64,
     /// Whether a rank that is merely computed will do.
     pub wanted: Certainty,

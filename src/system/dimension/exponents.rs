@@ -5,6 +5,7 @@ use std::fmt;
 
 /// The base dimensions of the International System of Units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)] // names and messages say it
 pub enum Base {
     Mass,
     Length,

@@ -1,7 +1,7 @@
 //! The extremes: what each number type and each way to decide a rank makes of states that approach a singular set, of
 //! quantities from 1e-150 to 1e150, and of other units; beside the truth, which is certified.
 //!
-//! A [`Subject`] is some rows of a system; [`Approach`]es are the sets to walk into; a [`Stress`] has both prepared and
+//! A `Subject` is some rows of a system; `Approach`es are the sets to walk into; a [`Stress`] has both prepared and
 //! [`Stress::run`]s. An evaluation that leaves the finite numbers cannot go on from here without being named: its
 //! [`StressVerdict`] has no other place for it.
 //!
@@ -17,14 +17,20 @@ mod scaling;
 mod subject;
 mod units;
 
-pub use approach::{Approach, approaches_of};
+#[doc(hidden)]
 pub use changes::{unit_quantities, units};
-pub use finding::StressFinding;
-pub use line::{First, Line, LineLimit, OnTheSet, WayOnLine};
+#[doc(hidden)]
+pub use line::{First, OnTheSet};
+#[doc(hidden)]
+pub use line::{Line, LineLimit};
+#[doc(hidden)]
 pub use run::{Stress, StressOptions, StressStudy, rows_of};
-pub use scaling::{Quantity, Scaling, WayScaled};
-pub use subject::{Subject, Truth};
-pub use units::{Conditioning, Rescaling, UnitsRow, WayInUnits};
+#[doc(hidden)]
+pub use scaling::Scaling;
+#[doc(hidden)]
+pub use units::Rescaling;
+#[doc(hidden)]
+pub use units::{Conditioning, UnitsRow};
 
 /// A number type together with a way to decide a rank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -210,7 +210,7 @@ pub struct Combination {
     /// Right verdicts that are proofs, and not computed.
     pub certified: u64,
     /// No other is as fast, as accurate at its worst state, as often right and as often certain, and better in one of
-    /// these, by more than what differs from run to run; see [`beats`](super::beats).
+    /// these, by more than what differs from run to run; see `beats`.
     pub on_front: bool,
 }
 

@@ -25,10 +25,9 @@ mod ways;
 mod work;
 
 pub use combination::{
-    Combination, CombinationLeftOut, CorrectDigits, Derivative, DerivativeResult, Number, RankMethod,
-    RankResult, Trade,
+    Combination, CombinationLeftOut, CorrectDigits, Derivative, DerivativeResult, Number, RankMethod, Trade,
 };
-pub use front::{DIGITS_TOLERANCE, TIME_TOLERANCE, beats};
+pub use front::{DIGITS_TOLERANCE, TIME_TOLERANCE};
 
 use crate::system::System;
 use front::mark_front;

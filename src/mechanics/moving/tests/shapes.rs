@@ -1,6 +1,7 @@
 //! Shapes against closed forms.
 
 use super::super::plane::{cross, dot, unit};
+use super::super::random::RADII;
 use super::super::*;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
