@@ -36,7 +36,7 @@ impl System {
     }
 
     /// The dimension of a definition in words, as far as it is known: of a matrix, that of all entries where they have one.
-    #[cfg(feature = "cli")]
+    #[cfg_attr(not(feature = "cli"), allow(dead_code))] // editors ask for it
     pub(crate) fn dimension_of_definition(&self, name: &str) -> Option<String> {
         let Quantity::Table(table) = self.dimensions.definitions.get(name)? else { return None };
         let mut solution = self.dimensions.solution.clone();
