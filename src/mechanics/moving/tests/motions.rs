@@ -316,7 +316,15 @@ proptest! {
             }
             // what the palms swing by, as the energy itself, is some tens of joules
             let size = path.moments.iter().map(|m| m.kinetic + m.potential.abs()).fold(1.0, f64::max);
-            prop_assert!(path.energy_drift() < 1e-9 * size, "{:e} of {size:e} J", path.energy_drift());
+            let (drift, bound) = (path.energy_drift(), 1e-9 * size);
+            // a step across a kink of a spline's curvature may be worse than its estimate says (2.6e-9 was met): then it is a
+            // matter of steps, and finer ones have no such drift
+            prop_assert!(drift < bound || spline && drift < 100.0 * bound, "{drift:e} of {size:e} J");
+            if drift >= bound {
+                scene.tolerance = DEFAULT_TOLERANCE / 10.0;
+                let finer = simulate(&scene, &times()).unwrap().energy_drift();
+                prop_assert!(finer < bound, "{drift:e} and with finer steps {finer:e} of {size:e} J");
+            }
         }
     }
 }
