@@ -69,7 +69,7 @@ fn meaning(standing: BoxStanding) -> &'static str {
 const STANDINGS: [BoxStanding; 4] =
     [BoxStanding::Proved, BoxStanding::MinorVanishes, BoxStanding::Pole, BoxStanding::Undecided];
 
-/// More boxes than these are not told apart: their plane is drawn in cells, without borders.
+/// More boxes than these are not told apart on a page.
 const MOST_PATCHES: usize = 200;
 /// Cells across and up.
 const GRID: [usize; 2] = [84, 60];
@@ -125,6 +125,19 @@ type Drawn = Result<(), Box<dyn std::error::Error>>;
 /// The boxes in a plane, each with its border: pale where full rank is proved, red where a minor is proved to vanish
 /// somewhere in the box, black where a pole runs through it, grey where nothing is known.
 pub fn region_map(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> String {
+    drawn(map, title, units, usize::MAX)
+}
+
+/// The same for a page: many boxes are not told apart, their plane is drawn in cells, without borders.
+pub(in crate::report) fn region_map_in_short(
+    map: &RegionMap,
+    title: &str,
+    units: [Option<&str>; 2],
+) -> String {
+    drawn(map, title, units, MOST_PATCHES)
+}
+
+fn drawn(map: &RegionMap, title: &str, units: [Option<&str>; 2], most_patches: usize) -> String {
     let by_colour = STANDINGS.map(|standing| (colour(standing), meaning(standing).to_owned()));
     Canvas { size: (420, 320), title, by_colour: &by_colour, is_crisp: true }.draw(|area, extras| {
         let mut chart = ChartBuilder::on(area)
@@ -133,7 +146,7 @@ pub fn region_map(map: &RegionMap, title: &str, units: [Option<&str>; 2]) -> Str
             .x_label_area_size(38)
             .y_label_area_size(room((map.y.1, map.y.2), |v| number(v, map.y.2 - map.y.1)))
             .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
-        if map.patches.len() > MOST_PATCHES {
+        if map.patches.len() > most_patches {
             let low = chart.backend_coord(&(map.x.1, map.y.1));
             let high = chart.backend_coord(&(map.x.2, map.y.2));
             let colours = cells(map).into_iter().map(colour).collect();

@@ -4,7 +4,7 @@ use crate::certificate::RegionAnswer;
 use crate::paper::Findings;
 use crate::report::axis::unit_of;
 use crate::report::certificate::answer::region_text;
-use crate::report::certificate::plot::{region_curve, region_map};
+use crate::report::certificate::plot::{region_curve, region_map_in_short};
 use crate::report::stress::plot::lines_picture;
 use crate::report::trade::answer::{TRADE_FRONT_HEADINGS, trade_front_table};
 use crate::report::trade::plot::trade_plot;
@@ -58,7 +58,7 @@ fn certified(regions: &[(&System, &RegionAnswer)]) -> Markup {
                         @if let Some(map) = &answer.map {
                             @let units = [unit_of(system, &map.x.0), unit_of(system, &map.y.0)];
                             @let units = [units[0].as_deref(), units[1].as_deref()];
-                            (PreEscaped(region_map(map, "the box, in two coordinates", units)))
+                            (PreEscaped(region_map_in_short(map, "the box, in two coordinates", units)))
                         }
                     }
                     figcaption {

@@ -61,8 +61,12 @@ fn found() -> Findings {
 
 /// The values of an attribute, in order.
 fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
-    let begin = format!(" {attribute}=\"");
-    page.split(&begin).skip(1).filter_map(|rest| rest.split('"').next()).collect()
+    let begin = format!(" {attribute}=");
+    let value = |rest: &'a str| match rest.strip_prefix('"') {
+        Some(quoted) => quoted.split('"').next(),
+        None => rest.split([' ', '>']).next(),
+    };
+    page.split(&begin).skip(1).filter_map(value).collect()
 }
 
 /// Without a script: everything is there, once, and every way leads somewhere.
@@ -141,8 +145,8 @@ fn a_reader_finds_their_way() {
             assert_eq!(seen["untitled"], json!([]), "{place}");
             assert!(seen["pictures"].as_u64() >= Some(3), "{place}");
             assert!(seen["label"].as_f64() >= Some(10.0), "{place}");
-            // a title for each of 16 stripes on two lines, and most of the 12 steps of the map
-            assert!(seen["hover"].as_u64() > Some(35), "{place}");
+            // most of the 12 steps of the map, and on two lines a title for each of 16 stripes, where neighbours differ
+            assert!(seen["hover"].as_u64() > Some(20), "{place}");
             // WCAG 2.2, criterion 1.4.3
             assert!(seen["contrast"].as_f64() >= Some(4.5) && seen["texts"].as_u64() > Some(200), "{place}");
             assert_eq!(seen["paper"].as_f64() < Some(0.2), dark, "{place}");

@@ -86,19 +86,19 @@ fn what_is_wrong_stays_wrong_when_the_rest_is_cut_off() {
     assert_eq!(found["claims"][0]["verdict"], "refuted", "{}", words(&output));
 }
 
-/// A system whose codistribution nobody waits for, and a claim before it that is decided at once.
+/// Claims for which nobody waits, half a minute in all, and before them one that is decided at once.
 fn slow() -> String {
-    let mut text = std::fs::read_to_string("proofs/moll2002/general.proof").unwrap();
-    // what is claimed below makes no sense in any units
-    for dimension in ["length", "1/time^2", "1/time", "angle", "mass", "inertia", "acceleration", "torque"] {
-        text = text.replace(&format!(" : {dimension}"), "");
-    }
-    let lines: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with('#')).collect();
-    let end = lines.iter().position(|line| line.starts_with("claim ")).expect("it claims something");
-    let tower = (0..9).fold("s1".to_owned(), |inner, _| format!("L(f, {inner})"));
-    let many = (0..40).map(|_| format!("({tower})")).collect::<Vec<_>>().join("*");
-    let head = lines[..end].join("\n");
-    format!("{head}\nclaim at_once: 1 + 1 = 2\nclaim never: det([{many}, 1; 1, {many} + s2]) = s1\n")
+    let claim = |number: usize| {
+        let entry = |i: usize, j: usize| format!("({}*x + y)^{}", 12 * i + j + 1, 1 + (i * j + number) % 7);
+        let matrix = |entry: &dyn Fn(usize, usize) -> String| {
+            let row = |i: usize| (0..12).map(|j| entry(i, j)).collect::<Vec<_>>().join(", ");
+            (0..12).map(row).collect::<Vec<_>>().join("; ")
+        };
+        let (one, turned) = (matrix(&entry), matrix(&|i, j| entry(j, i)));
+        format!("claim slow{number}: det([{one}]) = det([{turned}])\n")
+    };
+    let claims: String = (0..100).map(claim).collect();
+    format!("system \"slow\"\nparam x, y\nclaim at_once: 1 + 1 = 2\n{claims}")
 }
 
 #[test]
