@@ -111,6 +111,13 @@ fn an_error_in_json_has_its_line_and_column() {
 /// Deep nesting, long sums, towers of powers: an error or an answer, never a crash and never a wait without end.
 #[test]
 fn depth_and_length_are_survived() {
+    // frames that are not optimised are larger
+    let stack = if cfg!(debug_assertions) { 64 << 20 } else { 2 << 20 };
+    let thread = std::thread::Builder::new().stack_size(stack).spawn(deep_and_long).unwrap();
+    thread.join().unwrap();
+}
+
+fn deep_and_long() {
     let try_it = |expression: &str| {
         let text = format!("system \"s\" state x drift f x' = x^2 output x claim 1: {expression} = 0");
         if let Ok(system) = System::parse("deep.proof", &text, Path::new("")) {
