@@ -6,7 +6,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::file;
 use palmistry::paper::{Findings, Paper, VerifyOptions, verify_into};
-use palmistry::report::{errata_markdown, findings_json, findings_text, forget_seconds, page};
+use palmistry::report::{errata_markdown, findings_json, findings_text, forget_seconds, forget_times, page};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -83,7 +83,7 @@ impl Verify {
         found.interrupted |= interrupted();
         let mut json = versioned(findings_json(&found));
         if self.no_times {
-            found.forget_times();
+            forget_times(&mut found);
             forget_seconds(&mut json);
         }
         let (html_file, json_file) = (self.out.join("index.html"), self.out.join("verify.json"));

@@ -91,8 +91,7 @@ pub struct Findings {
     pub seed: u64,
     /// Whether it was stopped before the end.
     pub interrupted: bool,
-    /// How long it took, in s.
-    /// NaN where no times are kept.
+    /// How long it took, in s; NaN where no times are kept.
     pub seconds: f64,
 }
 
@@ -112,21 +111,6 @@ impl Findings {
     /// The claims of all files, in order.
     pub fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
         self.files.iter().flat_map(|file| &file.outcomes)
-    }
-
-    /// Replaces each time on the wall that a page would tell by NaN, and leaves out what rests on such times.
-    pub fn forget_times(&mut self) {
-        self.seconds = f64::NAN;
-        for file in &mut self.files {
-            file.trade = None;
-            for comparison in file.reductions.iter_mut().filter_map(|found| found.comparison.as_mut().ok()) {
-                (comparison.small_seconds, comparison.large_seconds) = (f64::NAN, f64::NAN);
-            }
-            if let Some(certificate) = &mut file.certificate {
-                certificate.seconds = f64::NAN;
-            }
-        }
-        self.experiments.iter_mut().flat_map(|(_, answers)| answers).for_each(Answer::forget_times);
     }
 
     /// Whether everything is as the files expect.

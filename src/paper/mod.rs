@@ -19,9 +19,7 @@ pub use findings::{FileFindings, Findings};
 pub use folder::MANIFEST;
 pub use folder::Paper;
 #[doc(hidden)]
-pub use numbering::NumberedEquation;
-#[doc(hidden)]
-pub use numbering::Numbering;
+pub use numbering::{NumberedEquation, Numbering};
 #[doc(hidden)]
 pub use reduction::ReductionFound;
 pub use verify::{VerifyOptions, verify, verify_into};

@@ -26,7 +26,7 @@ pub struct VerifyOptions<'a> {
     pub interrupt: &'a AtomicBool,
     /// Called with each step that is done, and with the number of all steps.
     pub progress: &'a (dyn Fn(&str, u64, u64) + Sync),
-    /// Whether times are measured. Without them two runs with one seed find the same to the last byte.
+    /// Whether that is done of which nothing but times comes out.
     pub timed: bool,
 }
 
@@ -107,9 +107,6 @@ pub fn verify_into(
     let mut found = run.found();
     found.interrupted = run.stopped();
     found.seconds = begin.elapsed().as_secs_f64();
-    if !options.timed {
-        found.forget_times();
-    }
     Ok(())
 }
 
@@ -219,22 +216,12 @@ impl Run<'_> {
             }
         }
         if system.claims.iter().any(|claim| claim.body.statements().iter().any(|s| s.carried.is_some())) {
-            self.keep(
-                place,
-                "numbers in print",
-                || printed_values(system, seed),
-                |file, found| file.printed = found,
-            );
+            let printed = || printed_values(system, seed);
+            self.keep(place, "numbers in print", printed, |file, found| file.printed = found);
         }
         if measured.derivatives {
-            self.keep(
-                place,
-                "Lie derivatives",
-                || derivatives(system, seed),
-                |file, found| {
-                    file.derivatives = Some(found);
-                },
-            );
+            let derivatives = || derivatives(system, seed);
+            self.keep(place, "Lie derivatives", derivatives, |file, found| file.derivatives = Some(found));
         }
         if measured.trade {
             let question = TradeQuestion {
@@ -244,24 +231,12 @@ impl Run<'_> {
                 interrupt,
                 progress: &|_, _| (),
             };
-            self.keep(
-                place,
-                "speed against accuracy",
-                || trade(system, &question),
-                |file, found| {
-                    file.trade = Some(found);
-                },
-            );
+            let trade = || trade(system, &question);
+            self.keep(place, "speed against accuracy", trade, |file, found| file.trade = Some(found));
         }
         if has_a_rank(system) && measured.extremes {
-            self.keep(
-                place,
-                "the extremes",
-                || stress(system, seed, interrupt),
-                |file, found| {
-                    file.stress = Some(found);
-                },
-            );
+            let stress = || stress(system, seed, interrupt);
+            self.keep(place, "the extremes", stress, |file, found| file.stress = Some(found));
             let certify = || certify_region(&mut system.clone(), SUB_BOXES, interrupt);
             self.keep(place, "the sample box", certify, |file, found| file.certificate = Some(found));
         }

@@ -36,9 +36,9 @@ pub use layout::Layout;
 #[doc(hidden)]
 pub use motion::ended_in_words;
 pub use motion::{Observed, observe_json, observe_page, observe_text};
-#[doc(hidden)]
-pub use page::forget_seconds;
 pub use page::{findings_json, findings_text, page};
+#[doc(hidden)]
+pub use page::{forget_seconds, forget_times};
 pub use ranks::{rank_json, rank_text};
 #[doc(hidden)]
 pub use stress::{stress_json, stress_pictures, stress_text};

@@ -162,7 +162,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
         figure {
             div.frames { @for picture in frames(observed, &outline, most) { (PreEscaped(picture)) } }
             figcaption {
-                "As figure 4.3: the palms about their joint at " (outline.instants.len().min(most)) " samples. Large dots are the "
+                "The palms about their joint at " (outline.instants.len().min(most)) " samples. Large dots are the "
                 "centre of mass and the two contacts. Small dots are the part of the outline that " b { (outline.method.name()) }
                 " has recovered by then, blue where palm 1 touched it and orange where palm 2 did"
                 @if !outline.instants.iter().all(|instant| instant.seen) { ", pale where it could not see" }
@@ -176,7 +176,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
         figure.narrow {
             (PreEscaped(recovered_outline(shape, &outline)))
             figcaption {
-                "As figure 4.4a: every recovered contact, turned back by the recovered orientation. "
+                "Every recovered contact, turned back by the recovered orientation. "
                 @if let Some(shape) = shape {
                     @match outline.departure(shape) {
                         Some((largest, mean)) => {
@@ -217,7 +217,7 @@ pub(super) fn state_pictures(observed: &Observed<'_>) -> Markup {
             }
             figcaption {
                 @if known {
-                    "As figures 4.4b and 4.4c: each state, true (broad grey line) and recovered; a good observer hides in the grey. "
+                    "Each state, true (broad grey line) and recovered; a good observer hides in the grey. "
                     "Beside it the error, in decades: " b { "circles are the bound of Cramér and Rao" } " at the first sample of each "
                     "window, below which no unbiased estimate can stay on average. "
                 } @else { "Each state as each method recovered it. " }
@@ -239,7 +239,7 @@ pub(super) fn sensor_pictures(observed: &Observed<'_>) -> Markup {
             figure {
                 div.two { @for picture in &pictures { (PreEscaped(picture)) } }
                 figcaption {
-                    "As figure 4.4d: the contact that the model expects minus the one that was read. What an observer that is right has "
+                    "The contact that the model expects minus the one that was read. What an observer that is right has "
                     "left is the error of the sensor, without a trend; a curve that bends within a window tells of a wrong state or "
                     "model. A method that compares nothing has no curve."
                 }

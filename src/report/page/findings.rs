@@ -1,5 +1,7 @@
 //! The main job's findings as JSON and as lines for the terminal.
 
+use crate::experiment::Answer;
+use crate::experiment::Answer;
 use crate::paper::{FileFindings, Findings, ReductionFound, SetRank};
 use crate::report::certificate::answer::region_json;
 use crate::report::claims::outcomes::{claim_json, claim_line};
@@ -174,6 +176,22 @@ pub fn findings_json(found: &Findings) -> Value {
         }).collect::<Vec<_>>(),
         "seconds": found.seconds,
     })
+}
+
+/// Replaces each time on the wall that a page would tell by NaN, and leaves out what rests on such times: two runs with one seed
+/// then tell the same to the last byte.
+pub fn forget_times(found: &mut Findings) {
+    found.seconds = f64::NAN;
+    for file in &mut found.files {
+        file.trade = None;
+        for comparison in file.reductions.iter_mut().filter_map(|found| found.comparison.as_mut().ok()) {
+            (comparison.small_seconds, comparison.large_seconds) = (f64::NAN, f64::NAN);
+        }
+        if let Some(certificate) = &mut file.certificate {
+            certificate.seconds = f64::NAN;
+        }
+    }
+    found.experiments.iter_mut().flat_map(|(_, answers)| answers).for_each(Answer::forget_times);
 }
 
 /// Takes away all that depends on the clock: each field with `seconds` in its name.

@@ -9,5 +9,5 @@ mod regime;
 mod source;
 pub(super) mod whole;
 
-pub use findings::{findings_json, findings_text, forget_seconds};
+pub use findings::{findings_json, findings_text, forget_seconds, forget_times};
 pub use whole::page;
