@@ -1,7 +1,6 @@
 //! The main job's findings as JSON and as lines for the terminal.
 
 use crate::experiment::Answer;
-use crate::experiment::Answer;
 use crate::paper::{FileFindings, Findings, ReductionFound, SetRank};
 use crate::report::certificate::answer::region_json;
 use crate::report::claims::outcomes::{claim_json, claim_line};
