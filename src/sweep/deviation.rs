@@ -83,8 +83,7 @@ pub(crate) fn standard_deviations(
     seed: u64,
     samples: u64,
 ) -> Result<Option<StandardDeviations>, LocusError> {
-    let angles = system.angles();
-    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_angle = &system.angle_test();
     let values: Vec<NodeId> = codistribution.needed.iter().map(|word| codistribution.values[*word]).collect();
     let values = expand_angles(&mut system.graph, &values, is_angle);
     let rows = expand_angles(&mut system.graph, &codistribution.needed_entries(), is_angle);
