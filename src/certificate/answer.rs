@@ -2,7 +2,7 @@
 
 use super::boxes::FreeCoordinate;
 use super::progress::Progress;
-use crate::system::FieldRole;
+use crate::system::{CoordinateRange, FieldRole};
 
 /// How a box stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,8 +63,8 @@ pub struct PartAnswer {
 /// An open box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenBox {
-    /// Name, low and high end; all other coordinates are anywhere.
-    pub ranges: Vec<(String, f64, f64)>,
+    /// Where some coordinates are; all others are anywhere.
+    pub ranges: Vec<CoordinateRange<f64>>,
     /// How it stands.
     pub standing: BoxStanding,
     /// The factor that is proved to vanish in it.
@@ -89,10 +89,10 @@ pub struct Patch {
 /// A plane through the box: the other coordinates of its parts are a third of their ranges from the low end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegionMap {
-    /// Name and range.
-    pub x: (String, f64, f64),
-    /// The same of the other coordinate.
-    pub y: (String, f64, f64),
+    /// One coordinate.
+    pub x: CoordinateRange<f64>,
+    /// The other one.
+    pub y: CoordinateRange<f64>,
     /// Rectangles that cover it.
     pub patches: Vec<Patch>,
     /// The other coordinates.

@@ -5,6 +5,7 @@ use super::boxes::{FreeCoordinate, Side, Volume};
 use super::explain::{Why, explain, sampled_volume};
 use super::part::Part;
 use super::search::Search;
+use crate::system::CoordinateRange;
 use dashu::rational::RBig;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -40,7 +41,12 @@ impl PartVolumes {
             let halved = |(_, side): &(&FreeCoordinate, &Side)| side.depth > 0;
             let sides = part.chart.coordinates().iter().zip(cell.sides.iter()).filter(halved);
             let open = OpenBox {
-                ranges: sides.map(|(c, side)| (c.name.clone(), c.ends(*side).0, c.ends(*side).1)).collect(),
+                ranges: sides
+                    .map(|(c, side)| {
+                        let (low, high) = c.ends(*side);
+                        CoordinateRange { name: c.name.clone(), low, high }
+                    })
+                    .collect(),
                 standing: standing(*why),
                 factor: factor_of(part, *why),
                 avoided: *avoided,

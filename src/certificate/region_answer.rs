@@ -9,6 +9,7 @@ use super::region::Region;
 use super::search::Search;
 use crate::expression::Symbol;
 use crate::number::{Interval, RealNumber};
+use crate::system::CoordinateRange;
 use dashu::rational::RBig;
 
 /// A map has no more rectangles.
@@ -180,7 +181,7 @@ impl Region {
         }
         let range = |place: usize| {
             let (low, high) = ranges[place].ends(Side::WHOLE);
-            (ranges[place].name.clone(), low, high)
+            CoordinateRange { name: ranges[place].name.clone(), low, high }
         };
         let patch = |([a, b], standing): ([Side; 2], BoxStanding)| Patch {
             x: ranges[x].ends(a),

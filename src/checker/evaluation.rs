@@ -2,7 +2,7 @@
 
 use super::doubt::{Doubt, Effort, Missing};
 use super::exact::{Exact, Form};
-use super::listing::{Listing, Step};
+use super::listing::{Expense, Listing, Step};
 use super::state::{ExactCoordinate, ExactState};
 use crate::number::{Arithmetic, Enclosure, Enclosures, Function, Refusal};
 use dashu::rational::RBig;
@@ -67,7 +67,7 @@ impl<'c> Evaluation<'c> {
                 }
             })
         };
-        self.listing.run(&Exact::new(circle), (self.effort, 1), symbol)
+        self.listing.run(&Exact::new(circle), Expense { effort: self.effort, each: 1 }, symbol)
     }
 
     /// The exact value of an operation.
@@ -121,7 +121,7 @@ impl<'c> Evaluation<'c> {
                 }
             })
         };
-        self.listing.run(&arithmetic, (self.effort, bits as u64 / 8), known)
+        self.listing.run(&arithmetic, Expense { effort: self.effort, each: bits as u64 / 8 }, known)
     }
 
     /// The sine or cosine of a symbol that is given by them.

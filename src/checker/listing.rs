@@ -13,6 +13,13 @@ pub const MOST_STEPS: usize = 1 << 20;
 /// No symbol's name is longer, in bytes.
 const LONGEST_NAME: usize = 256;
 
+/// From what work is taken, and how much for each operation.
+#[derive(Clone, Copy, Debug)]
+pub struct Expense<'e> {
+    pub effort: &'e Effort,
+    pub each: u64,
+}
+
 /// One operation; its operands are the places of earlier ones.
 ///
 /// In JSON a list: `["const","1/2"]`, `["pi"]`, `["symbol","x"]`, `["add",0,1]` (likewise `sub`, `mul`, `div`), `["neg",0]`,
@@ -70,16 +77,16 @@ impl Listing {
     }
 
     /// The value of every operation, or why it has none here. `known` may give the value of a place; it has to give
-    /// those of symbols, for which it is also shown the values before. `cost` is that of one operation.
+    /// those of symbols, for which it is also shown the values before.
     pub fn run<A: Arithmetic>(
         &self,
         arithmetic: &A,
-        (effort, cost): (&Effort, u64),
+        expense: Expense<'_>,
         known: impl Fn(usize, &Step, &[Result<A::Number, Missing>]) -> Option<Result<A::Number, Missing>>,
     ) -> Vec<Result<A::Number, Missing>> {
         let mut values: Vec<Result<A::Number, Missing>> = Vec::with_capacity(self.steps.len());
         for (place, step) in self.steps.iter().enumerate() {
-            let value = match effort.spend(cost) {
+            let value = match expense.effort.spend(expense.each) {
                 Ok(()) => {
                     known(place, step, &values).unwrap_or_else(|| one(arithmetic, place, step, &values))
                 }

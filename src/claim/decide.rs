@@ -330,7 +330,7 @@ fn attempt(
             };
             if let (OnOneBranch::Verdict(verdict, _), Kept::Evidence) = (&verdict, notes.kept) {
                 // random numbers of its own: what is kept changes no verdict
-                notes.evidence.extend(question.evidence(system, &on, branch, verdict, &mut rng.clone()));
+                notes.evidence.extend(question.evidence(system, &on, verdict, &mut rng.clone()));
             }
             found.push((size, branch, verdict));
         }

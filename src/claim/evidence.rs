@@ -88,7 +88,8 @@ fn confirmed(refutation: Refutation) -> Result<Box<Refutation>, Doubt> {
 pub(super) fn identity(
     system: &mut System,
     on: &OnBranch,
-    (engine, log2_error): (&str, f64),
+    engine: &str,
+    log2_error: f64,
     rng: &mut impl Rng,
 ) -> Evidence {
     let mut attempts = (0..STATES).map(|attempt| on.draw(system, attempt, rng));
@@ -222,7 +223,7 @@ impl RankedMatrix {
 /// The evidence for a verdict on a rank on a branch: the largest minor at some states.
 pub(super) fn claimed_rank(
     system: &mut System,
-    (on, branch): (&OnBranch, &Branch),
+    on: &OnBranch,
     matrix: &RankedMatrix,
     verdict: &Verdict,
     rng: &mut impl Rng,
@@ -235,7 +236,7 @@ pub(super) fn claimed_rank(
     // the entries of a codistribution are no sides of the statement, and mention more symbols
     let sides = matrix.entries.clone();
     let terms = Terms { sides, relations: Vec::new(), ..on.statement.clone() };
-    let Ok(on) = &OnBranch::new(system, branch, &terms) else {
+    let Ok(on) = &OnBranch::new(system, &on.branch, &terms) else {
         return Some(Evidence::Unchecked(NO_STATE.to_owned()));
     };
     let is_angle = &system.angle_test();

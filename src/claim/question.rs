@@ -6,7 +6,6 @@ use super::verdict::Verdict;
 use crate::checker::Evidence;
 use crate::expression::syntax::Relation;
 use crate::expression::{Guard, Need, NodeId, add_guard};
-use crate::observability::Branch;
 use crate::system::{Statement, System, Value};
 use rand_chacha::ChaCha8Rng;
 
@@ -86,7 +85,6 @@ impl Question {
         &self,
         system: &mut System,
         on: &OnBranch,
-        branch: &Branch,
         verdict: &Verdict,
         rng: &mut ChaCha8Rng,
     ) -> Option<Evidence> {
@@ -95,17 +93,17 @@ impl Question {
                 Question::Identity { .. } | Question::Relations { .. },
                 Verdict::Proved { engine, log2_error },
             ) => {
-                return Some(identity(system, on, (engine, *log2_error), rng));
+                return Some(identity(system, on, engine, *log2_error, rng));
             }
             (Question::Identity { .. } | Question::Relations { .. }, _) => return None,
             (Question::Rank { entries, columns, claimed }, _) => {
                 RankedMatrix::of_file(entries, *columns, *claimed)
             }
             (Question::Codistribution { claimed }, _) => {
-                RankedMatrix::codistribution(system, branch, *claimed)?
+                RankedMatrix::codistribution(system, &on.branch, *claimed)?
             }
         };
-        claimed_rank(system, (on, branch), &matrix, verdict, rng)
+        claimed_rank(system, on, &matrix, verdict, rng)
     }
 
     /// What has to exist.

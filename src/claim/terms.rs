@@ -40,6 +40,8 @@ struct Programs {
 
 /// The terms of a statement on a branch.
 pub(crate) struct OnBranch {
+    /// The branch itself.
+    pub branch: Branch,
     /// As the statement has them, with the guards of the branch.
     pub statement: Terms,
     /// With the branch's values put in.
@@ -119,6 +121,7 @@ impl OnBranch {
             .map(|(symbol, value)| (symbol, Solved::new(system, symbol, value, circular)))
             .collect();
         Ok(OnBranch {
+            branch: branch.clone(),
             statement: statement.clone(),
             terms: here,
             needs,

@@ -52,22 +52,31 @@ pub fn rank_records(
         ];
         for (id, what, rows, report, guards) in sweeps {
             let Some(report) = report.filter(|report| !report.recorded.is_empty()) else { continue };
+            let conditions = Conditions { met: &met, guards };
             records.push(VerdictRecord {
                 file: answer.file.clone(),
                 id: id.to_owned(),
                 statement: format!("the rank of {what}, {place}"),
-                evidence: Evidence::Rank(certified_rank(system, rows, report, (&met, guards), answer.seed)?),
+                evidence: Evidence::Rank(certified_rank(system, rows, report, conditions, answer.seed)?),
             });
         }
     }
     Ok(records)
 }
 
+/// What holds at every state of a sweep.
+struct Conditions<'a> {
+    /// Equations, left and right side.
+    met: &'a [(NodeId, NodeId)],
+    /// What the rows need to exist.
+    guards: &'a [Guard],
+}
+
 fn certified_rank(
     system: &mut System,
     rows: &[TakenRow],
     report: &SweepReport,
-    (met, guards): (&[(NodeId, NodeId)], &[Guard]),
+    conditions: Conditions<'_>,
     seed: u64,
 ) -> Result<CertifiedRank, Missing> {
     let is_angle = &system.angle_test();
@@ -100,16 +109,16 @@ fn certified_rank(
         let entries = rows[*row].entries.iter();
         places.push(entries.map(|entry| lowering.place(*entry)).collect::<Result<Vec<_>, _>>()?);
     }
-    let conditions = met
-        .iter()
-        .map(|(left, right)| lowering.sides(*left, Relation::Equal, *right))
-        .collect::<Result<_, _>>()?;
-    let requirements = guards.iter().map(|guard| lowering.requirement(*guard)).collect::<Result<_, _>>()?;
+    let met = conditions.met.iter();
+    let met =
+        met.map(|(left, right)| lowering.sides(*left, Relation::Equal, *right)).collect::<Result<_, _>>()?;
+    let requirements =
+        conditions.guards.iter().map(|guard| lowering.requirement(*guard)).collect::<Result<_, _>>()?;
     Ok(CertifiedRank {
         columns: system.states.iter().map(|state| graph.symbol_name(*state).to_owned()).collect(),
         words: kept.iter().map(|row| rows[*row].word.clone()).collect(),
         rows: places,
-        conditions,
+        conditions: met,
         requirements,
         listing: lowering.finish(),
         states,

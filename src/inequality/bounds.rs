@@ -68,7 +68,7 @@ pub fn bounds(graph: &mut Graph, assumed: &[Guard]) -> Bounds {
             Need::NotNegative => false,
             Need::NotZero | Need::WithinOne | Need::InsideOne => continue,
         };
-        let Some((symbol, slope, rest)) = line(graph, guard.node) else { continue };
+        let Some((symbol, Line { slope, rest })) = line(graph, guard.node) else { continue };
         // slope x + rest > 0
         let scale = graph.rational(RBig::from(-1) / &slope);
         let value = graph.mul(scale, rest);
@@ -123,53 +123,65 @@ fn to_interval(value: &Enclosure) -> Interval {
     Interval::new(low.next_down(), high.next_up())
 }
 
-/// A symbol, a number and an expression without symbols, where an expression is `number symbol + expression`.
-fn line(graph: &mut Graph, root: NodeId) -> Option<(Symbol, RBig, NodeId)> {
+/// A line in one symbol: `slope symbol + rest`, the rest without symbols.
+#[derive(Clone)]
+struct Line {
+    slope: RBig,
+    rest: NodeId,
+}
+
+/// The symbol in which an expression is a line that is not level, and the line.
+fn line(graph: &mut Graph, root: NodeId) -> Option<(Symbol, Line)> {
     let needed = graph.reachable([root]);
     let mut symbols = needed.iter().filter_map(|id| graph.as_symbol(*id));
     let symbol = symbols.next()?;
     if symbols.next().is_some() || needed.len() > LONGEST {
         return None;
     }
-    let mut known: HashMap<NodeId, (RBig, NodeId)> = HashMap::new();
+    let mut known: HashMap<NodeId, Line> = HashMap::new();
     for id in needed {
         let of = |operand: NodeId| known.get(&operand).cloned();
         let found = match graph.node(id) {
-            Node::Symbol(_) => Some((RBig::ONE, graph.integer(0))),
-            Node::Add(a, b) => of(a).zip(of(b)).map(|(a, b)| (a.0 + b.0, graph.add(a.1, b.1))),
-            Node::Sub(a, b) => of(a).zip(of(b)).map(|(a, b)| (a.0 - b.0, graph.sub(a.1, b.1))),
-            Node::Neg(a) => of(a).map(|a| (-a.0, graph.neg(a.1))),
+            Node::Symbol(_) => Some(Line { slope: RBig::ONE, rest: graph.integer(0) }),
+            Node::Add(a, b) => of(a)
+                .zip(of(b))
+                .map(|(a, b)| Line { slope: a.slope + b.slope, rest: graph.add(a.rest, b.rest) }),
+            Node::Sub(a, b) => of(a)
+                .zip(of(b))
+                .map(|(a, b)| Line { slope: a.slope - b.slope, rest: graph.sub(a.rest, b.rest) }),
+            Node::Neg(a) => of(a).map(|a| Line { slope: -a.slope, rest: graph.neg(a.rest) }),
             Node::Mul(a, b) => of(a).zip(of(b)).and_then(|(a, b)| product(graph, a, b)),
             Node::Div(a, b) => of(a).zip(of(b)).and_then(|(a, b)| {
-                let divisor = graph.constant_value(b.1).filter(|c| b.0.is_zero() && !c.is_zero()).cloned()?;
+                let divisor = graph.constant_value(b.rest);
+                let divisor = divisor.filter(|c| b.slope.is_zero() && !c.is_zero()).cloned()?;
                 let inverse = graph.rational(RBig::ONE / &divisor);
-                Some((a.0 / divisor, graph.mul(a.1, inverse)))
+                Some(Line { slope: a.slope / divisor, rest: graph.mul(a.rest, inverse) })
             }),
-            Node::Constant(_) | Node::Pi => Some((RBig::ZERO, id)),
+            Node::Constant(_) | Node::Pi => Some(Line { slope: RBig::ZERO, rest: id }),
             Node::Power(a, _) | Node::Apply(_, a) => {
-                of(a).filter(|(slope, _)| slope.is_zero()).map(|_| (RBig::ZERO, id))
+                of(a).filter(|a| a.slope.is_zero()).map(|_| Line { slope: RBig::ZERO, rest: id })
             }
         };
         if let Some(found) = found {
             known.insert(id, found);
         }
     }
-    let (slope, rest) = known.remove(&root)?;
-    (!slope.is_zero()).then_some((symbol, slope, rest))
+    let line = known.remove(&root)?;
+    (!line.slope.is_zero()).then_some((symbol, line))
 }
 
 /// A product of two lines one of which is a number, rational where the other one is not.
-fn product(graph: &mut Graph, a: (RBig, NodeId), b: (RBig, NodeId)) -> Option<(RBig, NodeId)> {
-    let (line, factor) = if b.0.is_zero() { (a, b) } else { (b, a) };
-    if !factor.0.is_zero() {
+fn product(graph: &mut Graph, a: Line, b: Line) -> Option<Line> {
+    let (line, factor) = if b.slope.is_zero() { (a, b) } else { (b, a) };
+    if !factor.slope.is_zero() {
         return None;
     }
-    let slope = match graph.constant_value(factor.1) {
-        Some(number) => line.0 * number,
-        None if line.0.is_zero() => RBig::ZERO,
+    let slope = match graph.constant_value(factor.rest) {
+        Some(number) => line.slope * number,
+        None if line.slope.is_zero() => RBig::ZERO,
         None => return None,
     };
-    Some((slope, graph.mul(line.1, factor.1)))
+    Some(Line { slope, rest: graph.mul(line.rest, factor.rest) })
 }
 
 /// What inequalities tell of the signs of expressions: of symbols by their bounds, of others by their names.

@@ -1,15 +1,14 @@
 //! The sign of an expression by those of its factors: over one denominator, split into polynomials, each of which is
 //! assumed to have a sign, has coefficients of one sign in variables whose signs are known, or is a sum of squares.
 
-use super::bounds::Bounds;
 use super::reading::{GoalVariable, LONGEST, Polynomials, Reading};
 use super::squares::{ProvedSign, bounded_below};
-use crate::expression::{Graph, Guard, Need, NodeId, Sign, Symbol};
+use super::{Known, Premises};
+use crate::expression::{Graph, Guard, Need, Sign, Symbol};
 use crate::number::polynomial::{Polynomial, Ring};
 use crate::number::{Factorisation, Factors, Fraction, primitive, split};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
-use std::collections::HashMap;
 
 /// Powers of a sine beyond this are not taken out.
 const MOST_SINES: u32 = 64;
@@ -29,23 +28,22 @@ struct Signs {
 pub fn tell(
     graph: &mut Graph,
     goal: Guard,
-    (assumed, equations): (&[Guard], &[NodeId]),
+    premises: Premises<'_>,
     is_angle: &dyn Fn(Symbol) -> bool,
-    (bounds, known): (&Bounds, &HashMap<NodeId, Sign>),
+    known: Known<'_>,
 ) -> bool {
-    let with_all = Reading::new(graph, goal.node, (assumed, equations), is_angle);
-    let (reading, assumed, equations) = match with_all {
-        Some(reading) => (reading, assumed, equations),
+    let (reading, premises) = match Reading::new(graph, goal.node, premises, is_angle) {
+        Some(reading) => (reading, premises),
         // too many variables
-        None => match Reading::new(graph, goal.node, (&[], &[]), is_angle) {
-            Some(reading) => (reading, &[][..], &[][..]),
+        None => match Reading::new(graph, goal.node, Premises::default(), is_angle) {
+            Some(reading) => (reading, Premises::default()),
             None => return false,
         },
     };
-    let Some(read) = reading.polynomials(graph, (assumed.len(), equations.len()), (bounds, known)) else {
+    let Some(read) = reading.polynomials(graph, known) else {
         return false;
     };
-    let signs = Signs::new(read, assumed);
+    let signs = Signs::new(read, premises.assumed);
     let Fraction { top, bottom } = &signs.read.goal;
     if goal.need == Need::NotZero {
         return signs.is_not_zero_product(top);
@@ -341,11 +339,11 @@ impl Signs {
                     all.push((polynomial, strict));
                 }
             };
-            if let Some((low, strict)) = &variable.low {
-                note(line(&x, low, true), *strict);
+            if let Some(low) = &variable.low {
+                note(line(&x, &low.value, true), low.strict);
             }
-            if let Some((high, strict)) = &variable.high {
-                note(line(&x, high, false), *strict);
+            if let Some(high) = &variable.high {
+                note(line(&x, &high.value, false), high.strict);
             }
             if variable.low.is_none()
                 && variable.high.is_none()
@@ -365,9 +363,9 @@ impl Signs {
         for (place, variable) in self.read.variables.iter().enumerate() {
             let x = Polynomial::variable(place);
             let (moved, strict) = match (variable, variable.sign) {
-                (GoalVariable { low: Some((low, strict)), .. }, _) => (Some((x, low, true)), Some(*strict)),
-                (GoalVariable { high: Some((high, strict)), .. }, _) => {
-                    (Some((x, high, false)), Some(*strict))
+                (GoalVariable { low: Some(low), .. }, _) => (Some((x, &low.value, true)), Some(low.strict)),
+                (GoalVariable { high: Some(high), .. }, _) => {
+                    (Some((x, &high.value, false)), Some(high.strict))
                 }
                 (_, Some(sign)) if sign.is_upward() => (None, Some(sign.is_strict())),
                 (_, Some(sign)) => (Some((x, &RBig::ZERO, false)), Some(sign.is_strict())),

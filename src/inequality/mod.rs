@@ -24,6 +24,7 @@ pub(crate) use crossing::vanishes_somewhere;
 use crate::expression::{Graph, Guard, Need, NodeId, Sign, Symbol, sign_given};
 use crate::number::Interval;
 use bounds::known_signs;
+use std::collections::HashMap;
 
 /// What may be taken to hold, and where terms exist.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +35,20 @@ pub struct Given<'g> {
     pub equations: &'g [NodeId],
     /// What the terms need to exist; nothing is asked about states at which they do not.
     pub exists: &'g [Guard],
+}
+
+/// What a proof by signs may use: inequalities, and expressions that vanish.
+#[derive(Clone, Copy, Debug, Default)]
+struct Premises<'g> {
+    assumed: &'g [Guard],
+    equations: &'g [NodeId],
+}
+
+/// What was read off the premises.
+#[derive(Clone, Copy, Debug)]
+struct Known<'k> {
+    bounds: &'k Bounds,
+    signs: &'k HashMap<NodeId, Sign>,
 }
 
 /// What a goal came to.
@@ -79,7 +94,8 @@ pub fn decide(
     // where terms exist is as good as what is assumed
     let all: Vec<Guard> = given.assumed.iter().chain(given.exists).copied().collect();
     let bounds = bounds(graph, &all);
-    if by_signs(graph, goal, (&all, given.equations), &bounds, is_angle) {
+    let premises = Premises { assumed: &all, equations: given.equations };
+    if by_signs(graph, goal, premises, &bounds, is_angle) {
         return InequalityAnswer::Holds(Argument::Signs);
     }
     let question = boxes::Question {
@@ -110,14 +126,14 @@ fn tells(need: Need, sign: Sign) -> bool {
 fn by_signs(
     graph: &mut Graph,
     goal: Guard,
-    (given, equations): (&[Guard], &[NodeId]),
+    premises: Premises<'_>,
     bounds: &Bounds,
     is_angle: &dyn Fn(Symbol) -> bool,
 ) -> bool {
     if goal.is_obvious(graph) == Some(true) {
         return true;
     }
-    let known = known_signs(graph, given, bounds);
-    sign_given(graph, goal.node, &known).is_some_and(|sign| tells(goal.need, sign))
-        || factors::tell(graph, goal, (given, equations), is_angle, (bounds, &known))
+    let signs = known_signs(graph, premises.assumed, bounds);
+    sign_given(graph, goal.node, &signs).is_some_and(|sign| tells(goal.need, sign))
+        || factors::tell(graph, goal, premises, is_angle, Known { bounds, signs: &signs })
 }

@@ -1,15 +1,13 @@
 //! A goal and what is given, read as fractions of polynomials in the same variables: symbols, sines and cosines of angles,
 //! and the values of functions, with what is known of each.
 
-use super::bounds::{Bound, Bounds, SymbolBounds};
-use crate::expression::{
-    Graph, Guard, Input, Node, NodeId, Program, Sign, Symbol, expand_angles, sign_given,
-};
+use super::bounds::{Bound, SymbolBounds};
+use super::{Known, Premises};
+use crate::expression::{Graph, Input, Node, NodeId, Program, Sign, Symbol, expand_angles, sign_given};
 use crate::number::polynomial::{LARGEST_ARITY, Polynomial, Ring};
 use crate::number::{Fraction, Fractions, Function};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
-use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Longer polynomials are not looked at.
@@ -33,8 +31,12 @@ pub struct Polynomials {
     pub principal_values: Vec<(Polynomial, bool)>,
 }
 
-/// A number that is not passed, and whether it is not reached either.
-pub type End = (RBig, bool);
+/// A number that is not passed.
+pub struct End {
+    pub value: RBig,
+    /// Whether it is not reached either.
+    pub strict: bool,
+}
 
 /// A variable: its sign, and a number that it does not pass.
 pub struct GoalVariable {
@@ -45,6 +47,9 @@ pub struct GoalVariable {
 
 /// What is read together with a goal.
 pub struct Reading {
+    /// How many assumptions were read behind the goal, and how many equations behind them.
+    assumed: usize,
+    equations: usize,
     /// For goal, assumptions, equations, and what roots are taken of, with sums of angles expanded.
     program: Program,
     /// Roots among the inputs: their places, and those of their squares among the nodes.
@@ -56,12 +61,12 @@ impl Reading {
     pub fn new(
         graph: &mut Graph,
         goal: NodeId,
-        (assumed, equations): (&[Guard], &[NodeId]),
+        premises: Premises<'_>,
         is_angle: &dyn Fn(Symbol) -> bool,
     ) -> Option<Reading> {
         let mut nodes = vec![goal];
-        nodes.extend(assumed.iter().map(|guard| guard.node));
-        nodes.extend(equations);
+        nodes.extend(premises.assumed.iter().map(|guard| guard.node));
+        nodes.extend(premises.equations);
         let mut nodes = expand_angles(graph, &nodes, is_angle);
         let mut squares: Vec<(NodeId, usize)> = Vec::new();
         loop {
@@ -84,20 +89,21 @@ impl Reading {
             let Some((node, argument)) = new else {
                 let place = |node: NodeId| program.inputs().iter().position(|i| *i == Input::Opaque(node));
                 let roots = squares.iter().filter_map(|(node, square)| Some((place(*node)?, *square)));
-                return Some(Reading { roots: roots.collect(), program });
+                return Some(Reading {
+                    assumed: premises.assumed.len(),
+                    equations: premises.equations.len(),
+                    roots: roots.collect(),
+                    program,
+                });
             };
             squares.push((node, nodes.len()));
             nodes.extend(expand_angles(graph, &[argument], is_angle));
         }
     }
 
-    /// What is read, of so many assumptions and equations. `None` where polynomials do not suffice.
-    pub fn polynomials(
-        &self,
-        graph: &mut Graph,
-        (assumed, equations): (usize, usize),
-        (bounds, known): (&Bounds, &HashMap<NodeId, Sign>),
-    ) -> Option<Polynomials> {
+    /// What is read. `None` where polynomials do not suffice.
+    pub fn polynomials(&self, graph: &mut Graph, known: Known<'_>) -> Option<Polynomials> {
+        let Reading { assumed, equations, .. } = *self;
         let circles = circles(self.program.inputs());
         let squares_of_sines =
             circles.iter().map(|(sine, cosine)| (*sine, square_of_sine(*cosine))).collect::<Vec<_>>();
@@ -105,7 +111,7 @@ impl Reading {
         let inner = normal.clone();
         let fractions = Fractions::<Polynomial>::with_normal_form(move |p| inner(p));
         let inputs = self.program.inputs();
-        let variables = inputs.iter().map(|input| GoalVariable::new(graph, *input, bounds, known)).collect();
+        let variables = inputs.iter().map(|input| GoalVariable::new(graph, *input, known)).collect();
         let elements: Vec<_> =
             (0..inputs.len()).map(|i| fractions.element(Polynomial::variable(i))).collect();
         let mut values = self.program.load(&fractions).ok()?.run(&elements, &mut Vec::new()).ok()?;
@@ -143,22 +149,25 @@ impl Reading {
 }
 
 impl GoalVariable {
-    fn new(graph: &mut Graph, input: Input, bounds: &Bounds, known: &HashMap<NodeId, Sign>) -> GoalVariable {
+    fn new(graph: &mut Graph, input: Input, known: Known<'_>) -> GoalVariable {
+        let Known { bounds, signs } = known;
         let free = GoalVariable { sign: None, low: None, high: None };
         match input {
             Input::Plain(symbol) => {
                 let node = graph.symbol(symbol);
                 let Some(SymbolBounds { low, high }) = bounds.get(&symbol) else {
-                    return GoalVariable { sign: known.get(&node).copied(), ..free };
+                    return GoalVariable { sign: signs.get(&node).copied(), ..free };
                 };
                 let end = |bound: &Option<Bound>| {
-                    bound.as_ref().and_then(|bound| Some((bound.exact.clone()?, bound.strict)))
+                    bound
+                        .as_ref()
+                        .and_then(|bound| Some(End { value: bound.exact.clone()?, strict: bound.strict }))
                 };
-                GoalVariable { sign: known.get(&node).copied(), low: end(low), high: end(high) }
+                GoalVariable { sign: signs.get(&node).copied(), low: end(low), high: end(high) }
             }
             Input::Opaque(node) => {
                 let (low, high) = constant_bounds(graph.node(node));
-                GoalVariable { sign: sign_given(graph, node, known), low, high }
+                GoalVariable { sign: sign_given(graph, node, signs), low, high }
             }
             Input::Sine(_) | Input::Cosine(_) => free,
         }
@@ -170,11 +179,13 @@ fn constant_bounds(node: Node) -> (Option<End>, Option<End>) {
     // 333/106 < pi < 355/113
     let (below_pi, above_pi) = (RBig::from(333) / RBig::from(106), RBig::from(355) / RBig::from(113));
     let quarter = &above_pi / RBig::from(2);
-    let strictly = |value: RBig| Some((value, true));
+    let strictly = |value: RBig| Some(End { value, strict: true });
     match node {
         Node::Pi => (strictly(below_pi), strictly(above_pi)),
         Node::Apply(Function::Asin | Function::Atan, _) => (strictly(-quarter.clone()), strictly(quarter)),
-        Node::Apply(Function::Acos, _) => (Some((RBig::ZERO, false)), strictly(above_pi)),
+        Node::Apply(Function::Acos, _) => {
+            (Some(End { value: RBig::ZERO, strict: false }), strictly(above_pi))
+        }
         _ => (None, None),
     }
 }

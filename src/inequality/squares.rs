@@ -68,7 +68,7 @@ pub fn bounded_below(
         if assumed.is_empty() && equations.is_empty() && raised > polynomial.degree().next_multiple_of(2) {
             break;
         }
-        match at_degree(polynomial, (assumed, equations), normal, raised) {
+        match at_degree(polynomial, assumed, equations, normal, raised) {
             Some(ProvedSign::Positive) => return Some(ProvedSign::Positive),
             found => last = last.or(found),
         }
@@ -78,11 +78,12 @@ pub fn bounded_below(
 
 fn at_degree(
     polynomial: &Polynomial,
-    (assumed, equations): (&[(Polynomial, bool)], &[Polynomial]),
+    assumed: &[(Polynomial, bool)],
+    equations: &[Polynomial],
     normal: &dyn Fn(Polynomial) -> Polynomial,
     degree: u32,
 ) -> Option<ProvedSign> {
-    let mut parts = parts(polynomial, (assumed, equations), normal, degree)?;
+    let mut parts = parts(polynomial, assumed, equations, normal, degree)?;
     let mut unknowns = 0;
     for part in &mut parts {
         part.first = unknowns;
@@ -146,7 +147,8 @@ fn total(exponents: &Exponents) -> u32 {
 /// The matrices that are tried: one for the squares, one for each assumption, and for pairs of them where they are few.
 fn parts(
     polynomial: &Polynomial,
-    (assumed, equations): (&[(Polynomial, bool)], &[Polynomial]),
+    assumed: &[(Polynomial, bool)],
+    equations: &[Polynomial],
     normal: &dyn Fn(Polynomial) -> Polynomial,
     degree: u32,
 ) -> Option<Vec<Part>> {

@@ -4,8 +4,9 @@ use super::left_out::LeftOut;
 use crate::expression::NodeId;
 use crate::observability::{Codistribution, CodistributionError, Length, OWN_ROWS};
 use crate::sweep::{BranchAnswer, RankAnswer, RankError, RankQuestion, answer_rank};
-use crate::system::{Assignment, LineView, MapView, NamedSet, System, Value};
+use crate::system::{Assignment, CoordinateRange, LineView, MapView, NamedSet, System, Value};
 use crate::tradeoff::{Landscape, LandscapeRows, Map, Slope};
+use dashu::rational::RBig;
 use std::sync::atomic::AtomicBool;
 
 /// States of the sample box, and of each set, at which ranks are decided.
@@ -124,9 +125,10 @@ fn map(system: &System, own: Option<&[NodeId]>, view: &MapView) -> Result<Vec<(L
     let mut system = system.clone();
     let length = view.order.map_or(Length::UntilItStops, Length::Exactly);
     let full = Codistribution::new(&mut system, &Assignment::new(), length)?.entries();
-    let axis = |(name, low, high): &(String, _, _)| {
-        let number = |value: &dashu::rational::RBig| value.to_f64().value();
-        (name.clone(), number(low), number(high))
+    let axis = |axis: &CoordinateRange<RBig>| CoordinateRange {
+        name: axis.name.clone(),
+        low: axis.low.to_f64().value(),
+        high: axis.high.to_f64().value(),
     };
     let [x, y] = [axis(&view.axes[0]), axis(&view.axes[1])];
     let mut maps = Vec::new();
@@ -135,7 +137,7 @@ fn map(system: &System, own: Option<&[NodeId]>, view: &MapView) -> Result<Vec<(L
     {
         let mut copy = system.clone();
         let landscape = Landscape::new(&mut copy, rows, &view.at)?;
-        maps.push((kind, landscape.map((&x.0, x.1, x.2), (&y.0, y.1, y.2), MAP.0, MAP.1)?));
+        maps.push((kind, landscape.map(x.clone(), y.clone(), MAP.0, MAP.1)?));
     }
     Ok(maps)
 }

@@ -77,21 +77,21 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
     canvas.draw(|area, extras| {
         let scale_room = room((lowest, lowest + span), |v| power(v, span));
         let (plot, legend) = area.split_horizontally(420 - scale_room.max(60) as i32 - 20);
-        let spans = [map.x.2 - map.x.1, map.y.2 - map.y.1];
+        let spans = [map.x.high - map.x.low, map.y.high - map.y.low];
         let mut chart = ChartBuilder::on(&plot)
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
             .margin_right(16)
             .x_label_area_size(38)
-            .y_label_area_size(room((map.y.1, map.y.2), |v| number(v, spans[1])))
-            .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
+            .y_label_area_size(room((map.y.low, map.y.high), |v| number(v, spans[1])))
+            .build_cartesian_2d(map.x.low..map.x.high, map.y.low..map.y.high)?;
         let colour = |cell: &Option<f64>| match cell {
             None => POLE,
             Some(_) if everywhere => shade(SHADES / 2),
             Some(value) => shade(level(value.max(f64::MIN_POSITIVE), lowest, lowest + span)),
         };
         let (low, high) =
-            (chart.backend_coord(&(map.x.1, map.y.1)), chart.backend_coord(&(map.x.2, map.y.2)));
+            (chart.backend_coord(&(map.x.low, map.y.low)), chart.backend_coord(&(map.x.high, map.y.high)));
         extras.cells = Some(Cells {
             corners: [low.0, high.1, high.0, low.1],
             columns: map.width.div_ceil(BLOCK),
@@ -105,8 +105,8 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
             .x_label_formatter(&|v| number(*v, spans[0]))
             .y_label_formatter(&|v| number(*v, spans[1]))
             .label_style(("sans-serif", 12).into_font().color(&INK))
-            .x_desc(axis(&map.x.0, units[0]))
-            .y_desc(axis(&map.y.0, units[1]))
+            .x_desc(axis(&map.x.name, units[0]))
+            .y_desc(axis(&map.y.name, units[1]))
             .axis_desc_style(("sans-serif", 13))
             .draw()?;
         if everywhere {
@@ -321,11 +321,12 @@ pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::system::CoordinateRange;
 
     /// What differs by rounding alone is one value, said once; what differs by little has a scale that tells.
     #[test]
     fn a_constant_map_says_its_value() {
-        let axis = |name: &str| (name.to_owned(), -10_000.0, 10_000.0);
+        let axis = |name: &str| CoordinateRange { name: name.to_owned(), low: -10_000.0, high: 10_000.0 };
         let of = |smallest: Vec<f64>| {
             let smallest = smallest.into_iter().map(Some).collect();
             super::map(&Map { x: axis("x"), y: axis("y"), width: 2, height: 2, smallest }, "a map", [None; 2])
@@ -354,7 +355,7 @@ mod tests {
             Some(8.0),
             Some(9.0),
         ];
-        let axis = |name: &str| (name.to_owned(), 0.0, 1.0);
+        let axis = |name: &str| CoordinateRange { name: name.to_owned(), low: 0.0, high: 1.0 };
         let map = Map { x: axis("x"), y: axis("y"), width: 3, height: 3, smallest };
         assert_eq!(blocks(&map), [Some(7.0), Some(9.0), None, Some(3.0)]);
     }

@@ -51,6 +51,6 @@ pub(crate) use read::load;
 pub(crate) use read::with_plain_line_ends;
 pub use standing::{Basis, Flaw, Reference};
 #[doc(hidden)]
-pub use views::LineEnd;
+pub use views::{CoordinateRange, LineEnd};
 pub(crate) use views::{LineView, MapView, NamedSet, Point, ReductionTo};
 pub(crate) use written::in_one_line;

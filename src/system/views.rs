@@ -32,14 +32,25 @@ pub struct NamedSet {
 /// The values of what does not move, as they are written.
 pub type Point = Vec<(String, RBig)>;
 
+/// A coordinate with its least and greatest value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoordinateRange<N> {
+    /// Its name.
+    pub name: String,
+    /// The least value.
+    pub low: N,
+    /// The greatest one.
+    pub high: N,
+}
+
 /// A plane of two coordinates over which singular values are looked at:
 /// `map "valleys": x in [0, 1], y in [0, 2] at {z = 1} order 2 "caption"`.
 #[derive(Clone, Debug)]
 pub struct MapView {
     /// Its title.
     pub title: String,
-    /// The two coordinates, each with its least and greatest value.
-    pub axes: [(String, RBig, RBig); 2],
+    /// The two coordinates.
+    pub axes: [CoordinateRange<RBig>; 2],
     /// The values of other symbols.
     pub at: Point,
     /// The length of the words of the full codistribution; until the rank stops growing where none is given.
@@ -129,7 +140,13 @@ impl View {
     }
 }
 
-type Axis = (Name, Expr, Expr);
+/// A coordinate and its range as they are written.
+#[derive(Clone, Debug)]
+pub(crate) struct Axis {
+    pub name: Name,
+    pub low: Expr,
+    pub high: Expr,
+}
 
 #[derive(Clone, Debug)]
 pub(crate) enum End {
@@ -180,7 +197,7 @@ fn map(input: &mut Text<'_>) -> Read<View> {
         let name = name.context("a coordinate and its range, as in x in [0, 1]").parse_next(input)?;
         cut_err(keyword("in")).context("'in' and a range [low, high]").parse_next(input)?;
         let (low, high, _) = cut_err(range).parse_next(input)?;
-        Ok((name, low, high))
+        Ok(Axis { name, low, high })
     };
     let at_axes = input.current_token_start();
     let axes: Vec<Axis> = cut_err(separated(1.., axis, sign(","))).parse_next(input)?;
@@ -254,7 +271,7 @@ impl System {
             }
             View::Map { title, axes, at, order, caption, span } => {
                 let mut checked = Vec::new();
-                for (name, low, high) in axes {
+                for Axis { name, low, high } in axes {
                     self.coordinate(name)?;
                     let (least, greatest) = (self.rational(low)?, self.rational(high)?);
                     if least >= greatest {
@@ -265,12 +282,12 @@ impl System {
                             "low above high",
                         ));
                     }
-                    checked.push((name.text.clone(), least, greatest));
+                    checked.push(CoordinateRange { name: name.text.clone(), low: least, high: greatest });
                 }
                 let [x, y] = checked.try_into().unwrap_or_else(|_| unreachable!("the grammar has two"));
-                if x.0 == y.0 {
+                if x.name == y.name {
                     let message = "the two coordinates are one";
-                    return Err(Problem::new(&axes[1].0.span, message, "the second time"));
+                    return Err(Problem::new(&axes[1].name.span, message, "the second time"));
                 }
                 let at = self.point(at)?;
                 let order = order.as_ref().map(|order| self.word_length(order)).transpose()?;

@@ -3,7 +3,7 @@
 use crate::expression::{NodeId, Program, Symbol};
 use crate::number::Floats;
 use crate::observability::{Reduction, float_inputs, linear_solution, singular_values};
-use crate::system::{LineEnd, Point, System};
+use crate::system::{CoordinateRange, LineEnd, Point, System};
 use dashu::rational::RBig;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -20,9 +20,13 @@ pub enum LandscapeRows {
 /// The smallest singular value on a grid.
 #[derive(Clone, Debug)]
 pub struct Map {
-    pub x: (String, f64, f64),
-    pub y: (String, f64, f64),
+    /// The coordinate to the right.
+    pub x: CoordinateRange<f64>,
+    /// The coordinate upwards.
+    pub y: CoordinateRange<f64>,
+    /// How many cells it has in a row.
     pub width: usize,
+    /// How many rows it has.
     pub height: usize,
     /// By rows from the lowest `y`; `None` at a pole.
     pub smallest: Vec<Option<f64>>,
@@ -79,25 +83,25 @@ impl<'s> Landscape<'s> {
     /// A name that is not known.
     pub fn map(
         &self,
-        x: (&str, f64, f64),
-        y: (&str, f64, f64),
+        x: CoordinateRange<f64>,
+        y: CoordinateRange<f64>,
         width: usize,
         height: usize,
     ) -> Result<Map, String> {
-        let (sx, sy) = (known(self.system, x.0)?, known(self.system, y.0)?);
-        let at = |(_, low, high): (&str, f64, f64), i: usize, n: usize| {
-            low + (high - low) * (i as f64 + 0.5) / n as f64
+        let (sx, sy) = (known(self.system, &x.name)?, known(self.system, &y.name)?);
+        let at = |axis: &CoordinateRange<f64>, i: usize, n: usize| {
+            axis.low + (axis.high - axis.low) * (i as f64 + 0.5) / n as f64
         };
         let smallest = (0..width * height)
             .into_par_iter()
             .map(|cell| {
                 let mut values = self.values.clone();
-                values.insert(sx, at(x, cell % width, width));
-                values.insert(sy, at(y, cell / width, height));
+                values.insert(sx, at(&x, cell % width, width));
+                values.insert(sy, at(&y, cell / width, height));
                 self.spectrum(&values)?.last().copied()
             })
             .collect();
-        Ok(Map { x: (x.0.to_owned(), x.1, x.2), y: (y.0.to_owned(), y.1, y.2), width, height, smallest })
+        Ok(Map { x, y, width, height, smallest })
     }
 
     /// The singular values on a line along one coordinate, from a distance of one down to `least`.

@@ -29,27 +29,38 @@ const ROUNDS: usize = 9;
 /// States at which a reduction is timed.
 const STATES_TO_TIME: u64 = 400;
 
-/// Compares the rows `small_rows` of one system with the rows `large_rows` of another at states drawn for the large
-/// one; the small one is given the values of the symbols that it shares. `shared` pairs the columns of the first rows
-/// (small column, large column), for the check that both compute the same.
+/// A model and the rows of it that are compared.
+struct ModelRows<'m> {
+    system: &'m mut System,
+    rows: &'m [NodeId],
+}
+
+/// The same, made ready, with its inputs at some states.
+struct Prepared<'p> {
+    program: &'p Program,
+    inputs: &'p [Vec<f64>],
+    system: &'p System,
+}
+
+/// Compares rows of one system with rows of another at states drawn from a locus of the large one; the small one is given
+/// the values of the symbols that it shares.
 ///
 /// # Errors
 /// In words, where a state cannot be drawn or evaluated.
 fn compare_models(
-    small: (&mut System, &[NodeId]),
-    large: (&mut System, &[NodeId], &Locus),
+    small: ModelRows<'_>,
+    large: ModelRows<'_>,
+    locus: &Locus,
     states: u64,
     seed: u64,
 ) -> Result<ModelComparison, String> {
-    let (small_system, small_rows) = small;
-    let (large_system, large_rows, locus) = large;
-    let (small_program, small_reduced) = compiled(small_system, small_rows);
-    let (large_program, large_reduced) = compiled(large_system, large_rows);
+    let (small_program, small_reduced) = compiled(small.system, small.rows);
+    let (large_program, large_reduced) = compiled(large.system, large.rows);
     let drawn: Vec<State> = (0..states)
         .map(|index| locus.draw(seed, index))
         .collect::<Result<_, _>>()
         .map_err(|e| e.to_string())?;
-    let renamed: Vec<State> = drawn.iter().map(|state| rename(state, large_system, small_system)).collect();
+    let renamed: Vec<State> = drawn.iter().map(|state| rename(state, large.system, small.system)).collect();
     let inputs = |program: &Program, states: &[State]| -> Result<Vec<Vec<f64>>, String> {
         states
             .iter()
@@ -59,8 +70,8 @@ fn compare_models(
     let small_inputs = inputs(&small_program, &renamed)?;
     let large_inputs = inputs(&large_program, &drawn)?;
     let largest_difference = difference(
-        (&small_program, &small_inputs, small_system),
-        (&large_program, &large_inputs, large_system),
+        &Prepared { program: &small_program, inputs: &small_inputs, system: small.system },
+        &Prepared { program: &large_program, inputs: &large_inputs, system: large.system },
     )?;
     let (mut small_times, mut large_times) = (Vec::new(), Vec::new());
     let small_work = (&small_reduced, inputs(&small_reduced.program, &renamed)?);
@@ -70,8 +81,8 @@ fn compare_models(
         large_times.push(time(large_work.0, &large_work.1)?);
     }
     Ok(ModelComparison {
-        small_states: small_system.states.len(),
-        large_states: large_system.states.len(),
+        small_states: small.system.states.len(),
+        large_states: large.system.states.len(),
         small_operations: small_reduced.program.len(),
         large_operations: large_reduced.program.len(),
         small_seconds: median(&mut small_times),
@@ -98,7 +109,13 @@ pub fn compare_reduction(
     let branch: Branch = branches.into_iter().next().ok_or("no state meets the conditions")?;
     let (own, rows) = counterparts(&mut small, &mut large)?;
     let locus = Locus::new(&mut large, &branch, &BTreeMap::new(), &rows).map_err(|e| e.to_string())?;
-    compare_models((&mut small, &own), (&mut large, &rows, &locus), STATES_TO_TIME, seed)
+    compare_models(
+        ModelRows { system: &mut small, rows: &own },
+        ModelRows { system: &mut large, rows: &rows },
+        &locus,
+        STATES_TO_TIME,
+        seed,
+    )
 }
 
 /// The rows that the smaller system's codistribution needs, and in the larger one the differentials of all outputs and of the
@@ -165,29 +182,26 @@ fn time(rows: &Reduced, inputs: &[Vec<f64>]) -> Result<f64, String> {
 
 /// The largest relative difference between the entries of rows that have the same place counted from the end (the
 /// large model has more outputs in front), in columns of the same name.
-fn difference(
-    small: (&Program, &[Vec<f64>], &System),
-    large: (&Program, &[Vec<f64>], &System),
-) -> Result<f64, String> {
+fn difference(small: &Prepared<'_>, large: &Prepared<'_>) -> Result<f64, String> {
     let run = |program: &Program, input: &Vec<f64>| {
         let loaded = program.load(Floats).map_err(|refusal| refusal.to_string())?;
         loaded.run(input, &mut Vec::new()).map_err(|failure| failure.refusal.to_string())
     };
     let columns: Vec<(usize, usize)> = small
-        .2
+        .system
         .states
         .iter()
         .enumerate()
         .filter_map(|(i, symbol)| {
-            let name = small.2.symbol_name(*symbol);
-            Some((i, large.2.states.iter().position(|other| large.2.symbol_name(*other) == name)?))
+            let name = small.system.symbol_name(*symbol);
+            Some((i, large.system.states.iter().position(|other| large.system.symbol_name(*other) == name)?))
         })
         .collect();
-    let (ns, nl) = (small.2.states.len(), large.2.states.len());
+    let (ns, nl) = (small.system.states.len(), large.system.states.len());
     let mut worst = 0.0f64;
-    for (small_input, large_input) in small.1.iter().zip(large.1) {
-        let (a, b) = (run(small.0, small_input)?, run(large.0, large_input)?);
-        let lie_rows = a.len() / ns - small.2.outputs.len();
+    for (small_input, large_input) in small.inputs.iter().zip(large.inputs) {
+        let (a, b) = (run(small.program, small_input)?, run(large.program, large_input)?);
+        let lie_rows = a.len() / ns - small.system.outputs.len();
         for (x, y) in a.chunks(ns).rev().zip(b.chunks(nl).rev()).take(lie_rows) {
             let scale = x.iter().fold(0.0f64, |m, v| m.max(v.abs()));
             for (i, j) in &columns {

@@ -92,7 +92,8 @@ fn a_folder_is_taken_through_everything() {
     assert!(!pendulum.ok() && !found.ok());
     let map = &pendulum.maps[0];
     assert_eq!((map.view.title.as_str(), map.view.order, map.maps.len()), ("plane", Some(1), 1));
-    assert_eq!((map.maps[0].1.x.clone(), map.maps[0].1.y.2), (("phi".to_owned(), -1.0, 1.0), 2.0));
+    let (x, y) = (&map.maps[0].1.x, &map.maps[0].1.y);
+    assert_eq!((x.name.as_str(), x.low, x.high, y.high), ("phi", -1.0, 1.0, 2.0));
     assert_eq!(map.view.caption.as_deref(), Some("nothing happens"));
     let ends: Vec<bool> = pendulum.lines.iter().map(|line| line.view.end == LineEnd::Infinity).collect();
     assert_eq!(ends, [false, true, false]);

@@ -182,7 +182,8 @@ fn a_curve_on_which_the_rank_drops_is_left_out_everywhere() {
     for open in vanishing {
         let exact = |value: f64| palmistry::number::rational_from_f64(value).unwrap();
         let side = |name: &str| {
-            let found = open.ranges.iter().find(|(n, _, _)| n == name).map(|(_, low, high)| (*low, *high));
+            let found =
+                open.ranges.iter().find(|range| range.name == *name).map(|range| (range.low, range.high));
             let (low, high) = found.unwrap_or((-2.0, 2.0)); // binary fractions throughout: the ends are exact
             [exact(low), exact(high)]
         };

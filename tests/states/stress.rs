@@ -226,7 +226,7 @@ fn changes_of_units_come_from_the_file() {
     let parse = |text: &str| System::parse("spring.proof", text, Path::new("")).unwrap();
     let changes = |text: &str| {
         let mut system = parse(text);
-        let (_, rows) = rows_of(&mut system, LandscapeRows::Full).unwrap();
+        let rows = rows_of(&mut system, LandscapeRows::Full).unwrap().entries;
         let found = units(&system, &rows)?;
         let quantities = unit_quantities(&system, &rows);
         let named = |factors: &Rescaling| match factors {

@@ -136,9 +136,9 @@ fn tiles(operations: &Operations) -> Vec<Option<Tile>> {
         wanted[*place as usize] = true;
     }
     let binary = |place: Place| match all[place as usize] {
-        Operation::Add(a, b) => Some((Add, a, b)),
-        Operation::Sub(a, b) => Some((Sub, a, b)),
-        Operation::Mul(a, b) => Some((Mul, a, b)),
+        Operation::Add(left, right) => Some(Binary { operator: Add, left, right }),
+        Operation::Sub(left, right) => Some(Binary { operator: Sub, left, right }),
+        Operation::Mul(left, right) => Some(Binary { operator: Mul, left, right }),
         _ => None,
     };
     let inner = |place: Place| binary(place).filter(|_| uses[place as usize] == 1);
@@ -158,9 +158,9 @@ fn tiles(operations: &Operations) -> Vec<Option<Tile>> {
             Operation::Reciprocal(a) => simple(Kind::Reciprocal, a),
             Operation::Function(function, a) => simple(Kind::Function(function), a),
             Operation::Circular(_, a) => Tile { results: circular[&a], ..simple(Kind::SineCosine, a) },
-            Operation::Add(a, b) => fused(place, (Add, a, b), inner),
-            Operation::Sub(a, b) => fused(place, (Sub, a, b), inner),
-            Operation::Mul(a, b) => fused(place, (Mul, a, b), inner),
+            Operation::Add(left, right) => fused(place, Binary { operator: Add, left, right }, inner),
+            Operation::Sub(left, right) => fused(place, Binary { operator: Sub, left, right }, inner),
+            Operation::Mul(left, right) => fused(place, Binary { operator: Mul, left, right }, inner),
         };
         for operand in tile.operands() {
             wanted[*operand as usize] = true;
@@ -170,12 +170,17 @@ fn tiles(operations: &Operations) -> Vec<Option<Tile>> {
     tiles
 }
 
-/// The largest tile at an operation `a o b`; `inner` gives operations that nothing else uses.
-fn fused(
-    place: Place,
-    (operator, a, b): (Operator, Place, Place),
-    inner: impl Fn(Place) -> Option<(Operator, Place, Place)>,
-) -> Tile {
+/// An operation with two operands.
+#[derive(Clone, Copy)]
+struct Binary {
+    operator: Operator,
+    left: Place,
+    right: Place,
+}
+
+/// The largest tile at an operation; `inner` gives operations that nothing else uses.
+fn fused(place: Place, outermost: Binary, inner: impl Fn(Place) -> Option<Binary>) -> Tile {
+    let Binary { operator, left: a, right: b } = outermost;
     let tile = |kind, operators, operands, count| Tile {
         kind,
         operators,
@@ -188,21 +193,22 @@ fn fused(
         Sub => Reversed,
         other => other,
     };
-    if let (Some((left, c, d)), Some((right, e, f))) = (inner(a), inner(b)) {
-        return tile(Kind::Balanced, [left, operator, right], [c, d, e, f], 4);
+    if let (Some(one), Some(other)) = (inner(a), inner(b)) {
+        let operands = [one.left, one.right, other.left, other.right];
+        return tile(Kind::Balanced, [one.operator, operator, other.operator], operands, 4);
     }
     let (outer, inside, other) = match (inner(a), inner(b)) {
         (Some(inside), _) => (operator, inside, b),
         (None, Some(inside)) => (turned(operator), inside, a),
         (None, None) => return tile(Kind::Two, [operator, Add, Add], [a, b, 0, 0], 2),
     };
-    let (first, c, d) = inside;
+    let Binary { operator: first, left: c, right: d } = inside;
     let (second, innermost, third) = match (inner(c), inner(d)) {
         (Some(innermost), _) => (first, innermost, d),
         (None, Some(innermost)) => (turned(first), innermost, c),
         (None, None) => return tile(Kind::Three, [first, outer, Add], [c, d, other, 0], 3),
     };
-    let (operator, e, f) = innermost;
+    let Binary { operator, left: e, right: f } = innermost;
     tile(Kind::Chain, [operator, second, outer], [e, f, third, other], 4)
 }
 

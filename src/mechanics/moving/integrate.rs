@@ -5,7 +5,7 @@
 //! end (`c_12` is 0; it has to be 1, the sum of its row; pull request 42). A system whose rates do not depend on the
 //! time is not affected. So the time is integrated along with the state, and the solver's own time is not used.
 
-use super::laws::{Situation, State};
+use super::laws::{Situation, State, TimedState};
 use super::scene::MovingScene;
 use ode_solvers::{Dop853, OutputType, SVector, System};
 
@@ -36,14 +36,15 @@ impl System<f64, Vector> for Laws<'_> {
     }
 }
 
-/// The integrator's steps from a state at time `begin` to time `end`, first and last included, none longer than
+/// The integrator's steps from a state to time `end`, first and last included, none longer than
 /// `longest` seconds; and why it stopped before the end, if it did.
 pub(super) fn steps(
     scene: &MovingScene,
-    (begin, from): (f64, State),
+    from: TimedState,
     end: f64,
     longest: f64,
-) -> (Vec<(f64, State)>, Option<String>) {
+) -> (Vec<TimedState>, Option<String>) {
+    let TimedState { time: begin, state: from } = from;
     let (span, tolerance) = (end - begin, scene.tolerance);
     let first = span.min(longest);
     // times count from `begin`: the solver compares its step with the time to see whether it became too short. The
@@ -68,10 +69,12 @@ pub(super) fn steps(
     );
     let failure = solver.integrate().err().map(|error| error.to_string());
     let times = solver.x_out().iter().map(|since| begin + since);
-    let mut all: Vec<(f64, State)> = times.zip(solver.y_out().iter().map(state)).collect();
+    let states = solver.y_out().iter().map(state);
+    let mut all: Vec<TimedState> =
+        times.zip(states).map(|(time, state)| TimedState { time, state }).collect();
     // begin + (end - begin) may be off by a rounding
     if let (None, Some(last)) = (&failure, all.last_mut()) {
-        last.0 = end;
+        last.time = end;
     }
     (all, failure)
 }

@@ -25,6 +25,14 @@ use std::f64::consts::FRAC_PI_2;
 /// palms' angles are told) and the work done by the motors.
 pub(super) type State = [f64; 7];
 
+/// A state at a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TimedState {
+    /// In s.
+    pub time: f64,
+    pub state: State,
+}
+
 /// Palms count as parallel where the sine of the angle between them is below this. The forces follow from equations
 /// whose determinant falls with the square of the sine, so that half of their digits are lost there.
 const PARALLEL: f64 = 1e-4;

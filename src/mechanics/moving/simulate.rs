@@ -2,7 +2,7 @@
 
 use super::breach::Breach;
 use super::integrate::steps;
-use super::laws::{Situation, State};
+use super::laws::{Situation, TimedState};
 use super::scene::{MovingScene, SceneError};
 use super::trajectory::{Ended, Moment, Trajectory};
 
@@ -31,62 +31,62 @@ pub fn simulate(scene: &MovingScene, times: &[f64]) -> Result<Trajectory, SceneE
     scene.check()?;
 
     let mut moments = Vec::with_capacity(times.len());
-    let mut now = (0.0, scene.start());
-    let start_energy = Moment::of(scene, now.0, &now.1).energy();
+    let mut now = TimedState { time: 0.0, state: scene.start() };
+    let start_energy = Moment::of(scene, now.time, &now.state).energy();
     for &time in times {
-        if time > now.0 {
+        if time > now.time {
             match advance(scene, now, time, last / FEWEST_STEPS) {
-                Ok(state) => now = (time, state),
+                Ok(held) => now = TimedState { time, ..held },
                 Err(stop) => {
                     // an end at once after a sample is that sample
-                    let fresh = stop.at.filter(|(time, _)| *time > now.0);
-                    moments.extend(fresh.map(|(time, state)| Moment::of(scene, time, &state)));
+                    let fresh = stop.at.filter(|at| at.time > now.time);
+                    moments.extend(fresh.map(|at| Moment::of(scene, at.time, &at.state)));
                     return Ok(Trajectory { moments, ended: stop.ended, start_energy });
                 }
             }
         }
-        moments.push(Moment::of(scene, time, &now.1));
+        moments.push(Moment::of(scene, time, &now.state));
     }
     Ok(Trajectory { moments, ended: Ended::Completed, start_energy })
 }
 
 /// An end before the next sample, and the last state before it unless the integrator gave up.
 struct Stop {
-    at: Option<(f64, State)>,
+    at: Option<TimedState>,
     ended: Ended,
 }
 
-fn breach((time, state): &(f64, State), scene: &MovingScene) -> Option<Breach> {
-    Situation::at(scene, *time, state).breach(scene)
+fn breach(at: &TimedState, scene: &MovingScene) -> Option<Breach> {
+    Situation::at(scene, at.time, &at.state).breach(scene)
 }
 
 /// The state at time `end`.
-fn advance(scene: &MovingScene, from: (f64, State), end: f64, longest: f64) -> Result<State, Stop> {
+fn advance(scene: &MovingScene, from: TimedState, end: f64, longest: f64) -> Result<TimedState, Stop> {
     let (all, failure) = steps(scene, from, end, longest);
     let mut held = from;
     for step in all {
         if let Some(first) = breach(&step, scene) {
-            let (at, last) = locate(scene, held, step.0, first);
-            return Err(Stop { at: Some(at), ended: Ended::by(last, at.0) });
+            let (at, last) = locate(scene, held, step.time, first);
+            return Err(Stop { at: Some(at), ended: Ended::by(last, at.time) });
         }
         held = step;
     }
     match failure {
-        None => Ok(held.1),
-        Some(why) => Err(Stop { at: None, ended: Ended::Failed { time: held.0, why } }),
+        None => Ok(held),
+        Some(why) => Err(Stop { at: None, ended: Ended::Failed { time: held.time, why } }),
     }
 }
 
 /// Where the contacts hold for the last time between a state in which they do and a time at which they do not, by
 /// bisection; each state is integrated from the first one.
-fn locate(scene: &MovingScene, held: (f64, State), broken: f64, mut by: Breach) -> ((f64, State), Breach) {
+fn locate(scene: &MovingScene, held: TimedState, broken: f64, mut by: Breach) -> (TimedState, Breach) {
     let (mut low, mut high) = (held, broken);
-    while high - low.0 > LOCATED {
-        let middle = low.0 + (high - low.0) / 2.0;
-        if middle <= low.0 || middle >= high {
+    while high - low.time > LOCATED {
+        let middle = low.time + (high - low.time) / 2.0;
+        if middle <= low.time || middle >= high {
             break;
         }
-        let (all, failure) = steps(scene, held, middle, middle - held.0);
+        let (all, failure) = steps(scene, held, middle, middle - held.time);
         let Some(&state) = all.last().filter(|_| failure.is_none()) else { break };
         match breach(&state, scene) {
             None => low = state,

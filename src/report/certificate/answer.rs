@@ -41,7 +41,7 @@ fn part_json(part: &PartAnswer) -> Value {
 
 fn open_json(open: &OpenBox) -> Value {
     let ranges: serde_json::Map<String, Value> =
-        open.ranges.iter().map(|(name, low, high)| (name.clone(), json!([low, high]))).collect();
+        open.ranges.iter().map(|range| (range.name.clone(), json!([range.low, range.high]))).collect();
     json!({
         "box": ranges,
         "standing": standing_word(open.standing),

@@ -92,8 +92,8 @@ fn cells(map: &RegionMap) -> Vec<BoxStanding> {
         if last > first { first..last } else { middle..middle + 1 }
     };
     for patch in &map.patches {
-        for row in covered(patch.y, (map.y.1, map.y.2), GRID[1]) {
-            for column in covered(patch.x, (map.x.1, map.x.2), GRID[0]) {
+        for row in covered(patch.y, (map.y.low, map.y.high), GRID[1]) {
+            for column in covered(patch.x, (map.x.low, map.x.high), GRID[0]) {
                 let cell = &mut found[(GRID[1] - 1 - row) * GRID[0] + column];
                 *cell = [*cell, patch.standing].into_iter().max_by_key(weight).unwrap_or(*cell);
             }
@@ -104,8 +104,8 @@ fn cells(map: &RegionMap) -> Vec<BoxStanding> {
 
 /// The boxes with their borders: most is proved, so that it is drawn as one and the rest on it.
 fn draw_patches(map: &RegionMap, mut draw: impl FnMut(Rectangle<(f64, f64)>) -> Drawn) -> Drawn {
-    let smallest = ((map.x.2 - map.x.1) / 100.0, (map.y.2 - map.y.1) / 70.0);
-    let whole = [(map.x.1, map.y.1), (map.x.2, map.y.2)];
+    let smallest = ((map.x.high - map.x.low) / 100.0, (map.y.high - map.y.low) / 70.0);
+    let whole = [(map.x.low, map.y.low), (map.x.high, map.y.high)];
     draw(Rectangle::new(whole, colour(BoxStanding::Proved).filled()))?;
     let corners = |patch: &Patch| [(patch.x.0, patch.y.0), (patch.x.1, patch.y.1)];
     for standing in STANDINGS.into_iter().filter(|standing| *standing != BoxStanding::Proved) {
@@ -144,11 +144,11 @@ fn drawn(map: &RegionMap, title: &str, units: [Option<&str>; 2], most_patches: u
             .caption(title, ("sans-serif", 14).into_font().color(&INK))
             .margin(8)
             .x_label_area_size(38)
-            .y_label_area_size(room((map.y.1, map.y.2), |v| number(v, map.y.2 - map.y.1)))
-            .build_cartesian_2d(map.x.1..map.x.2, map.y.1..map.y.2)?;
+            .y_label_area_size(room((map.y.low, map.y.high), |v| number(v, map.y.high - map.y.low)))
+            .build_cartesian_2d(map.x.low..map.x.high, map.y.low..map.y.high)?;
         if map.patches.len() > most_patches {
-            let low = chart.backend_coord(&(map.x.1, map.y.1));
-            let high = chart.backend_coord(&(map.x.2, map.y.2));
+            let low = chart.backend_coord(&(map.x.low, map.y.low));
+            let high = chart.backend_coord(&(map.x.high, map.y.high));
             let colours = cells(map).into_iter().map(colour).collect();
             extras.cells = Some(Cells { corners: [low.0, high.1, high.0, low.1], columns: GRID[0], colours });
         } else {
@@ -162,11 +162,11 @@ fn drawn(map: &RegionMap, title: &str, units: [Option<&str>; 2], most_patches: u
             .disable_mesh()
             .x_labels(5)
             .y_labels(6)
-            .x_label_formatter(&|v| number(*v, map.x.2 - map.x.1))
-            .y_label_formatter(&|v| number(*v, map.y.2 - map.y.1))
+            .x_label_formatter(&|v| number(*v, map.x.high - map.x.low))
+            .y_label_formatter(&|v| number(*v, map.y.high - map.y.low))
             .label_style(("sans-serif", 12).into_font().color(&INK))
-            .x_desc(axis(&map.x.0, units[0]))
-            .y_desc(axis(&map.y.0, units[1]))
+            .x_desc(axis(&map.x.name, units[0]))
+            .y_desc(axis(&map.y.name, units[1]))
             .axis_desc_style(("sans-serif", 13))
             .draw()?;
         Ok(())

@@ -56,7 +56,7 @@ fn certified(regions: &[(&System, &RegionAnswer)]) -> Markup {
                     div.grid {
                         (PreEscaped(region_curve(answer, "proved")))
                         @if let Some(map) = &answer.map {
-                            @let units = [unit_of(system, &map.x.0), unit_of(system, &map.y.0)];
+                            @let units = [unit_of(system, &map.x.name), unit_of(system, &map.y.name)];
                             @let units = [units[0].as_deref(), units[1].as_deref()];
                             (PreEscaped(region_map_in_short(map, "the box, in two coordinates", units)))
                         }

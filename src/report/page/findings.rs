@@ -24,8 +24,8 @@ fn four_digits(value: f64) -> f64 {
 fn map_json(kind: LandscapeRows, map: &Map) -> Value {
     json!({
         "rows": if kind == LandscapeRows::Own { "own" } else { "full" },
-        "x": { "name": map.x.0, "low": map.x.1, "high": map.x.2, "cells": map.width },
-        "y": { "name": map.y.0, "low": map.y.1, "high": map.y.2, "cells": map.height },
+        "x": { "name": map.x.name, "low": map.x.low, "high": map.x.high, "cells": map.width },
+        "y": { "name": map.y.name, "low": map.y.low, "high": map.y.high, "cells": map.height },
         "smallest_singular_value": map.smallest.iter().map(|v| v.map(four_digits)).collect::<Vec<_>>(),
     })
 }

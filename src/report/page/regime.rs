@@ -44,7 +44,7 @@ fn maps(map: &MapFound, units: Units<'_>) -> Markup {
             div.grid {
                 @for (kind, drawn) in &map.maps {
                     @let title = if *kind == LandscapeRows::Own { "the file's own rows" } else { "the full codistribution" };
-                    @let units = [units(&drawn.x.0), units(&drawn.y.0)];
+                    @let units = [units(&drawn.x.name), units(&drawn.y.name)];
                     (PreEscaped(plot::map(drawn, title, [units[0].as_deref(), units[1].as_deref()])))
                 }
             }

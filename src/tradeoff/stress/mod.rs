@@ -24,7 +24,7 @@ pub use line::{First, OnTheSet};
 #[doc(hidden)]
 pub use line::{Line, LineLimit};
 #[doc(hidden)]
-pub use run::{Stress, StressOptions, StressStudy, rows_of};
+pub use run::{NamedRows, Stress, StressOptions, StressStudy, rows_of};
 #[doc(hidden)]
 pub use scaling::Scaling;
 #[doc(hidden)]

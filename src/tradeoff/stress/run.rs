@@ -76,12 +76,21 @@ pub struct Stress {
     box_states: Locus,
 }
 
+/// Rows of a system.
+#[derive(Clone, Debug)]
+pub struct NamedRows {
+    /// What they are, in words.
+    pub name: String,
+    /// Entry after entry.
+    pub entries: Vec<NodeId>,
+}
+
 /// The name and the entries of a system's rows: its own choice, if it defines one and it is wanted, or else the
 /// differentials of its outputs and of their Lie derivatives.
 ///
 /// # Errors
 /// In words: no states or outputs, a pole everywhere.
-pub fn rows_of(system: &mut System, wanted: LandscapeRows) -> Result<(String, Vec<NodeId>), String> {
+pub fn rows_of(system: &mut System, wanted: LandscapeRows) -> Result<NamedRows, String> {
     if system.states.is_empty() || system.outputs.is_empty() {
         return Err(format!("{} declares no states or no outputs", system.name));
     }
@@ -89,11 +98,11 @@ pub fn rows_of(system: &mut System, wanted: LandscapeRows) -> Result<(String, Ve
         Some(Value::Matrix(matrix))
             if wanted == LandscapeRows::Own && matrix.columns == system.states.len() =>
         {
-            Ok((format!("the file's own '{OWN_ROWS}'"), matrix.entries.clone()))
+            Ok(NamedRows { name: format!("the file's own '{OWN_ROWS}'"), entries: matrix.entries.clone() })
         }
         _ => {
             let words = Codistribution::new(system, &Assignment::new(), Length::UntilItStops)?;
-            Ok(("the full codistribution".to_owned(), words.entries()))
+            Ok(NamedRows { name: "the full codistribution".to_owned(), entries: words.entries() })
         }
     }
 }
@@ -109,10 +118,10 @@ impl Stress {
         wanted: LandscapeRows,
         options: &StressOptions<'_>,
     ) -> Result<Stress, String> {
-        let (name, rows) = rows_of(system, wanted)?;
-        let approaches = approaches_of(system, &rows);
-        let quantities = unit_quantities(system, &rows);
-        let others = units(system, &rows).unwrap_or_else(|| {
+        let rows = rows_of(system, wanted)?;
+        let approaches = approaches_of(system, &rows.entries);
+        let quantities = unit_quantities(system, &rows.entries);
+        let others = units(system, &rows.entries).unwrap_or_else(|| {
             let column = |(power, (place, state)): (i32, (usize, &Symbol))| {
                 let name = format!("{} in units 2^{power} times smaller", system.symbol_name(*state));
                 (name, Rescaling::Column { place, power })
@@ -120,22 +129,24 @@ impl Stress {
             let states = |power| system.states.iter().enumerate().map(move |state| (power, state));
             [20, 40].into_iter().flat_map(states).map(column).collect()
         });
-        Stress::prepare(system, (&name, &rows), &approaches, quantities, others, options)
+        Stress::prepare(system, rows, &approaches, quantities, others, options)
     }
 
-    /// Prepares some rows of a system (their name and their entries) for approaches. Besides each quantity by itself
+    /// Prepares some rows of a system for approaches. Besides each quantity by itself
     /// `quantities` are scaled; `units` are other units to look at the states in.
     ///
     /// # Errors
     /// In words: rows that cannot be evaluated, a sample box from which nothing can be drawn.
     pub fn prepare(
         system: &mut System,
-        (rows_name, rows): (&str, &[NodeId]),
+        rows: NamedRows,
         approaches: &[Approach],
         quantities: Vec<Quantity>,
         units: Vec<(String, Rescaling)>,
         options: &StressOptions<'_>,
     ) -> Result<Stress, String> {
+        let NamedRows { name, entries: rows } = rows;
+        let rows = rows.as_slice();
         let box_states =
             Locus::new(system, &Branch::default(), &BTreeMap::new(), rows).map_err(|e| e.to_string())?;
         let (mut lines, mut skipped) = (Vec::new(), Vec::new());
@@ -158,7 +169,7 @@ impl Stress {
         let state = box_states.draw(options.seed, 0).map_err(|e| e.to_string())?;
         let mut all = Quantity::all(&subject, &state);
         all.extend(quantities);
-        Ok(Stress { subject, rows: rows_name.to_owned(), lines, skipped, quantities: all, units, box_states })
+        Ok(Stress { subject, rows: name, lines, skipped, quantities: all, units, box_states })
     }
 
     /// How often [`Stress::run`] calls its progress.
