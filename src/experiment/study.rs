@@ -66,9 +66,9 @@ pub fn noise_study(
         if task.interrupted() {
             break;
         }
-        let one = |seed: u64| -> Option<Option<Vec<f64>>> {
+        let one = |seed: u64| -> Trial {
             if interrupt.load(Ordering::Relaxed) {
-                return None;
+                return Trial::Interrupted;
             }
             let estimate = (|| {
                 // every level has errors of its own
@@ -82,12 +82,12 @@ pub fn noise_study(
                 matches!(update.standing, UpdateEnd::Converged | UpdateEnd::Stuck).then_some(update.estimate)
             })();
             done();
-            Some(estimate)
+            estimate.map_or(Trial::Failed, Trial::Converged)
         };
-        let estimates: Vec<Option<Vec<f64>>> =
-            (0..study.seeds as u64).into_par_iter().filter_map(one).collect();
+        let mut trials: Vec<Trial> = (0..study.seeds as u64).into_par_iter().map(one).collect();
+        trials.retain(|trial| *trial != Trial::Interrupted);
         let Some(truth) = experiment.truth_at(task.signals.times()[0]) else { break };
-        let arrived: Vec<&Vec<f64>> = estimates.iter().flatten().collect();
+        let arrived: Vec<&Vec<f64>> = trials.iter().filter_map(Trial::estimate).collect();
         let error = |i: usize| {
             let square: f64 = arrived.iter().map(|estimate| (estimate[i] - truth[i]).powi(2)).sum();
             (square / arrived.len() as f64).sqrt()
@@ -95,12 +95,31 @@ pub fn noise_study(
         levels.push(NoiseLevel {
             noise,
             converged: arrived.len(),
-            seeds: estimates.len(),
+            seeds: trials.len(),
             errors: (0..truth.len()).map(error).collect(),
             bounds: bounds(&task, &observer, &truth, noise),
         });
     }
     Ok(levels)
+}
+
+/// What came of one draw of noise.
+#[derive(Clone, Debug, PartialEq)]
+enum Trial {
+    /// It was not begun.
+    Interrupted,
+    /// There was no estimate, or it did not converge.
+    Failed,
+    Converged(Vec<f64>),
+}
+
+impl Trial {
+    fn estimate(&self) -> Option<&Vec<f64>> {
+        match self {
+            Trial::Converged(estimate) => Some(estimate),
+            Trial::Interrupted | Trial::Failed => None,
+        }
+    }
 }
 
 /// The signals of an experiment with other errors.

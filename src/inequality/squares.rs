@@ -316,26 +316,40 @@ fn are_semidefinite(parts: &[Part], entries: &[RBig]) -> Option<bool> {
             matrix[i][j] = entries[part.first + k].clone();
             matrix[j][i] = entries[part.first + k].clone();
         }
-        let last = last_pivot(matrix)?;
+        let definite = definiteness(matrix);
+        if definite == Definiteness::Indefinite {
+            return None;
+        }
         let ends_in_one = part.monomials.last().is_some_and(|m| total(m) == 0);
-        strict |= ends_in_one && part.strict && last.is_some_and(|pivot| pivot > RBig::ZERO);
+        strict |= ends_in_one && part.strict && definite == Definiteness::PositiveAtTheEnd;
     }
     Some(strict)
 }
 
-/// The last pivot of a positive semidefinite matrix, by exact elimination; `None` where it is not semidefinite.
-fn last_pivot(mut matrix: Vec<Vec<RBig>>) -> Option<Option<RBig>> {
+/// What exact elimination tells of a symmetric matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Definiteness {
+    /// It is not positive semidefinite.
+    Indefinite,
+    /// It is, and its last pivot is zero or it has none.
+    Semidefinite,
+    /// It is, and its last pivot is positive.
+    PositiveAtTheEnd,
+}
+
+fn definiteness(mut matrix: Vec<Vec<RBig>>) -> Definiteness {
     let n = matrix.len();
-    let mut last = None;
+    let mut found = Definiteness::Semidefinite;
     for k in 0..n {
         let pivot = matrix[k][k].clone();
         if pivot < RBig::ZERO || pivot.is_zero() && (k..n).any(|j| !matrix[k][j].is_zero()) {
-            return None;
+            return Definiteness::Indefinite;
         }
-        last = Some(pivot.clone());
         if pivot.is_zero() {
+            found = Definiteness::Semidefinite;
             continue;
         }
+        found = Definiteness::PositiveAtTheEnd;
         let row = matrix[k].clone();
         for i in k + 1..n {
             let factor = &row[i] / &pivot;
@@ -349,7 +363,7 @@ fn last_pivot(mut matrix: Vec<Vec<RBig>>) -> Option<Option<RBig>> {
             }
         }
     }
-    Some(last)
+    found
 }
 
 /// Whether the products, each so many times, add up to the polynomial.

@@ -17,6 +17,23 @@ pub struct Defined {
     texts: Vec<String>,
 }
 
+/// The operands of guards at a state.
+enum Operands<N> {
+    Values(Vec<N>),
+    /// What is not defined there.
+    Undefined(NodeId),
+    /// The arithmetic has no values for them.
+    NotInThese,
+}
+
+/// A guard that is not known to hold.
+#[derive(Clone, Copy)]
+struct Failing {
+    index: usize,
+    /// Whether it may hold all the same.
+    may_hold: bool,
+}
+
 impl Defined {
     /// Those guards that do not hold wherever their operands exist.
     pub fn new(system: &mut System, guards: &[Guard]) -> Defined {
@@ -47,30 +64,29 @@ impl Defined {
             return None;
         }
         let doubles = self.values(state, Floats::<Interval>::default());
-        if let Some(Ok(values)) = doubles
+        if let Operands::Values(values) = doubles
             && self.first(&values, |need, value| need.is_met_in(value.low(), value.high())).is_none()
         {
             return None;
         }
-        if let Some(found) = self.values(state, Rationals::default()) {
-            return match found {
-                Ok(values) => {
-                    let failing = self.first(&values, |need, value: &RBig| Some(need.is_met_by(value)));
-                    failing.map(|(index, _)| self.not_met(index))
-                }
-                Err(node) => Some(format!("{} is not defined", text(node))),
-            };
+        match self.values(state, Rationals::default()) {
+            Operands::Values(values) => {
+                let failing = self.first(&values, |need, value: &RBig| Some(need.is_met_by(value)));
+                return failing.map(|failing| self.not_met(failing.index));
+            }
+            Operands::Undefined(node) => return Some(format!("{} is not defined", text(node))),
+            Operands::NotInThese => {}
         }
         let mut found = None;
         for bits in PRECISE {
-            let Some(Ok(values)) = self.values(state, Enclosures::new(bits)) else {
+            let Operands::Values(values) = self.values(state, Enclosures::new(bits)) else {
                 found = Some("what outputs and fields divide by cannot be told from zero".to_owned());
                 continue;
             };
             match self.first(&values, |need, value| need.is_met_by_enclosure(value)) {
                 None => return None,
-                Some((index, false)) => return Some(self.not_met(index)),
-                Some((index, true)) => {
+                Some(Failing { index, may_hold: false }) => return Some(self.not_met(index)),
+                Some(Failing { index, may_hold: true }) => {
                     found = Some(format!("it cannot be told whether {} with {bits} bits", self.texts[index]));
                 }
             }
@@ -82,26 +98,29 @@ impl Defined {
         format!("outside of {}", self.texts[index])
     }
 
-    /// The first guard that is not known to hold, and whether it may.
-    fn first<N>(&self, values: &[N], met: impl Fn(Need, &N) -> Option<bool>) -> Option<(usize, bool)> {
+    /// The first guard that is not known to hold.
+    fn first<N>(&self, values: &[N], met: impl Fn(Need, &N) -> Option<bool>) -> Option<Failing> {
         let known = |(index, value)| match met(self.needs[index], value) {
             Some(true) => None,
-            Some(false) => Some((index, false)),
-            None => Some((index, true)),
+            Some(false) => Some(Failing { index, may_hold: false }),
+            None => Some(Failing { index, may_hold: true }),
         };
         // what certainly fails says more than what may
-        let found: Vec<(usize, bool)> = values.iter().enumerate().filter_map(known).collect();
-        found.iter().find(|(_, may)| !may).or(found.first()).copied()
+        let found: Vec<Failing> = values.iter().enumerate().filter_map(known).collect();
+        found.iter().find(|failing| !failing.may_hold).or(found.first()).copied()
     }
 
-    /// The operands at a state, or what was not defined; `None` where this arithmetic has no values for them.
-    fn values<A: Arithmetic>(&self, state: &State, arithmetic: A) -> Option<Result<Vec<A::Number>, NodeId>> {
-        let inputs = state.inputs(&self.program, &arithmetic).ok()?;
-        match self.program.load(arithmetic).ok()?.run(&inputs, &mut Vec::new()) {
-            Ok(values) => Some(Ok(values)),
+    /// The operands at a state.
+    fn values<A: Arithmetic>(&self, state: &State, arithmetic: A) -> Operands<A::Number> {
+        let Ok(inputs) = state.inputs(&self.program, &arithmetic) else { return Operands::NotInThese };
+        let Ok(loaded) = self.program.load(arithmetic) else { return Operands::NotInThese };
+        match loaded.run(&inputs, &mut Vec::new()) {
+            Ok(values) => Operands::Values(values),
             Err(failure) => match failure.refusal {
-                crate::number::Refusal::DivisionByZero => Some(Err(failure.divisor.unwrap_or(failure.node))),
-                _ => None,
+                crate::number::Refusal::DivisionByZero => {
+                    Operands::Undefined(failure.divisor.unwrap_or(failure.node))
+                }
+                _ => Operands::NotInThese,
             },
         }
     }

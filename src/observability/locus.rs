@@ -2,7 +2,7 @@
 
 use super::conditions::Branch;
 use super::defined::Defined;
-use super::state::{Coordinate, State};
+use super::state::{Coordinate, MissingInput, State};
 use crate::expression::{NodeId, Program, Symbol, expand_angles};
 use crate::number::{Floats, Function, Rationals, Refusal, rational_from_f64, rational_to_f64};
 use crate::system::{Assignment, Kind, System};
@@ -157,8 +157,10 @@ impl Locus {
     /// Adds the symbols that the conditions give.
     pub(crate) fn complete(&self, state: &mut State) -> Result<(), Refusal> {
         let exact = Rationals::default();
-        let inputs =
-            state.inputs(&self.dependent_program, &exact).map_err(|r| r.unwrap_or(Refusal::NotFinite))?;
+        let inputs = state.inputs(&self.dependent_program, &exact).map_err(|missing| match missing {
+            MissingInput::Refused(refusal) => refusal,
+            MissingInput::Unsaid => Refusal::NotFinite,
+        })?;
         let loaded = self.dependent_program.load(exact)?;
         let mut values = loaded.run(&inputs, &mut Vec::new()).map_err(|failure| failure.refusal)?.into_iter();
         for (symbol, is_angle) in &self.dependent {

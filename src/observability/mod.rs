@@ -53,4 +53,4 @@ pub use singular::customary_singular_values;
 pub use singular::{Spectrum, singular_values};
 #[doc(hidden)]
 pub use state::float_inputs;
-pub use state::{Coordinate, NamedCoordinate, State, StateInWords};
+pub use state::{Coordinate, MissingInput, NamedCoordinate, State, StateInWords};

@@ -55,6 +55,21 @@ pub struct NamedCoordinate {
 /// A state in words, in the order of its symbols.
 pub type StateInWords = Vec<NamedCoordinate>;
 
+/// Why a state has nothing to give to a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MissingInput {
+    /// A number has no image in the arithmetic.
+    Refused(Refusal),
+    /// The state says nothing of a symbol, or the program asks for the value of a function.
+    Unsaid,
+}
+
+impl From<Refusal> for MissingInput {
+    fn from(refusal: Refusal) -> Self {
+        MissingInput::Refused(refusal)
+    }
+}
+
 /// Exact values for some symbols.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
@@ -66,32 +81,28 @@ impl State {
     /// What a program needs of this state, in the numbers of an arithmetic.
     ///
     /// # Errors
-    /// Where a number has no image there, or where the state says nothing of a symbol (`Err(None)`).
+    /// Where a number has no image there, or where the state says nothing of a symbol.
     pub fn inputs<A: Arithmetic>(
         &self,
         program: &Program,
         arithmetic: &A,
-    ) -> Result<Vec<A::Number>, Option<Refusal>> {
+    ) -> Result<Vec<A::Number>, MissingInput> {
         let mut inputs = Vec::with_capacity(program.inputs().len());
         for input in program.inputs() {
             let (symbol, function) = match input {
                 Input::Plain(symbol) => (symbol, None),
                 Input::Sine(symbol) => (symbol, Some(Function::Sin)),
                 Input::Cosine(symbol) => (symbol, Some(Function::Cos)),
-                Input::Opaque(_) => return Err(None),
+                Input::Opaque(_) => return Err(MissingInput::Unsaid),
             };
-            let image = |value| arithmetic.rational(value).map_err(Some);
-            inputs.push(match (self.values.get(symbol).ok_or(None)?, function) {
+            let image = |value| arithmetic.rational(value);
+            inputs.push(match (self.values.get(symbol).ok_or(MissingInput::Unsaid)?, function) {
                 (Coordinate::Number(value), None) => image(value)?,
                 // an angle in radians: its sine is no rational, and exact arithmetic refuses
-                (Coordinate::Number(value), Some(function)) => {
-                    arithmetic.apply(function, &image(value)?).map_err(Some)?
-                }
+                (Coordinate::Number(value), Some(function)) => arithmetic.apply(function, &image(value)?)?,
                 (Coordinate::Angle { sine, .. }, Some(Function::Sin)) => image(sine)?,
                 (Coordinate::Angle { cosine, .. }, Some(_)) => image(cosine)?,
-                (Coordinate::Angle { sine, cosine }, None) => {
-                    principal_value(arithmetic, sine, cosine).map_err(Some)?
-                }
+                (Coordinate::Angle { sine, cosine }, None) => principal_value(arithmetic, sine, cosine)?,
             });
         }
         Ok(inputs)

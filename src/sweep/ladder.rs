@@ -13,11 +13,9 @@
 //! Where intervals fall short, a computed rank is taken from enclosures, a certified one by exact numbers.
 
 use super::certainty::Certainty;
-use super::digits::{Digits, Matrices, NoDigits, digits_of};
+use super::digits::{Digits, Matrices, NoDigits, NoEntries, digits_of};
 use crate::expression::{Failure, Graph, Loaded, NodeId, Program, Symbol};
-use crate::number::{
-    Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals, Refusal, Rung,
-};
+use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals, Rung};
 use crate::observability::{
     Defined, Reduction, Spectrum, State, certain_rank, kernel, rank, singular_values,
 };
@@ -81,9 +79,12 @@ struct RowsAt<'j, 'g> {
 }
 
 impl Matrices for RowsAt<'_, '_> {
-    fn entries<A: Arithmetic + Copy>(&self, on: A) -> Result<Vec<Vec<A::Number>>, Option<Refusal>> {
+    fn entries<A: Arithmetic + Copy>(&self, on: A) -> Result<Vec<Vec<A::Number>>, NoEntries> {
         let values = self.judge.values(self.rows, self.state, on);
-        Ok(self.rows.matrix(values.map_err(|failure| failure.map(|failure| failure.refusal))?))
+        Ok(self.rows.matrix(values.map_err(|why| match why {
+            NoValues::Stopped(failure) => NoEntries::Refused(failure.refusal),
+            NoValues::NotInThese => NoEntries::NotInThese,
+        })?))
     }
 }
 
@@ -113,6 +114,14 @@ enum NoExactRank {
     Pole(String),
     /// There is no exact arithmetic for these rows.
     NotExact,
+}
+
+/// Why rows have no values over an arithmetic.
+enum NoValues {
+    /// The state or a constant has no image there.
+    NotInThese,
+    /// An operation has no value.
+    Stopped(Failure),
 }
 
 /// The rank at a state by exact numbers, and a basis of the directions that no row sees.
@@ -230,10 +239,10 @@ impl<'g> Judge<'g> {
         rows: &Rows,
         state: &State,
         arithmetic: A,
-    ) -> Result<Vec<A::Number>, Option<Failure>> {
-        let inputs = state.inputs(&rows.program, &arithmetic).map_err(|_| None)?;
-        let loaded: Loaded<'_, A> = rows.program.load(arithmetic).map_err(|_| None)?;
-        loaded.run(&inputs, &mut Vec::new()).map_err(Some)
+    ) -> Result<Vec<A::Number>, NoValues> {
+        let inputs = state.inputs(&rows.program, &arithmetic).map_err(|_| NoValues::NotInThese)?;
+        let loaded: Loaded<'_, A> = rows.program.load(arithmetic).map_err(|_| NoValues::NotInThese)?;
+        loaded.run(&inputs, &mut Vec::new()).map_err(NoValues::Stopped)
     }
 
     /// Singular values at the doubles nearest to the state, nothing known of their errors.
@@ -282,11 +291,13 @@ impl<'g> Judge<'g> {
                 Ok(values) => certain_rank(&arithmetic, self.all.matrix(values), Enclosure::significance)
                     .map(|rank| (self.all.reduction.eliminated + rank, bits))
                     .map_err(|refusal| refusal.to_string()),
-                Err(Some(Failure { divisor: Some(divisor), .. })) => {
+                Err(NoValues::Stopped(Failure { divisor: Some(divisor), .. })) => {
                     Err(format!("{} cannot be told from zero with {bits} bits", self.graph.text(divisor)))
                 }
-                Err(Some(failure)) => Err(format!("{} is not defined", self.graph.text(failure.node))),
-                Err(None) => return found,
+                Err(NoValues::Stopped(failure)) => {
+                    Err(format!("{} is not defined", self.graph.text(failure.node)))
+                }
+                Err(NoValues::NotInThese) => return found,
             };
             if found == Ok((self.columns, bits)) {
                 break;

@@ -55,18 +55,53 @@ pub enum NoDigits {
     /// Scaling rows and columns in turn does not come to an end: some patterns of zeros have no equilibrium.
     #[error("no equilibrium of rows and columns was found; for some patterns of zeros there is none")]
     NoEquilibrium,
-    /// The numbers refuse, or enclose too widely.
-    #[error("enclosures of {bits} bits do not fix the digits{}", .why.map(|why| format!(" ({why})")).unwrap_or_default())]
-    NotFixed { bits: usize, why: Option<Refusal> },
+    /// The numbers enclose too widely, or have no entries.
+    #[error("enclosures of {bits} bits do not fix the digits")]
+    NotFixed { bits: usize },
+    /// The numbers refuse.
+    #[error("enclosures of {bits} bits do not fix the digits ({why})")]
+    Refused { bits: usize, why: Refusal },
 }
 
-/// A matrix, by rows, over any numbers; `None` where it has none in them.
+/// Why a matrix has no entries over an arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoEntries {
+    /// The numbers refuse an operation.
+    Refused(Refusal),
+    /// What the entries are made of has no image there.
+    NotInThese,
+}
+
+/// Why singular values are not enclosed.
+enum NotEnclosed {
+    /// The equilibrium or the rotations were not found.
+    NoEquilibrium,
+    NoEntries,
+    Refused(Refusal),
+}
+
+impl From<NoEntries> for NotEnclosed {
+    fn from(why: NoEntries) -> Self {
+        match why {
+            NoEntries::Refused(refusal) => NotEnclosed::Refused(refusal),
+            NoEntries::NotInThese => NotEnclosed::NoEntries,
+        }
+    }
+}
+
+impl From<Refusal> for NotEnclosed {
+    fn from(refusal: Refusal) -> Self {
+        NotEnclosed::Refused(refusal)
+    }
+}
+
+/// A matrix, by rows, over any numbers.
 pub trait Matrices {
     /// The entries.
     ///
     /// # Errors
-    /// What the numbers refuse, if they say so.
-    fn entries<A: Arithmetic + Copy>(&self, on: A) -> Result<Vec<Vec<A::Number>>, Option<Refusal>>;
+    /// Where there are none.
+    fn entries<A: Arithmetic + Copy>(&self, on: A) -> Result<Vec<Vec<A::Number>>, NoEntries>;
 }
 
 /// The singular values of the equilibrated matrix to so many digits. `wanted` is as for ranks: *computed* digits are those
@@ -87,7 +122,7 @@ pub fn digits_of<M: Matrices>(matrix: &M, digits: usize, wanted: Certainty) -> R
             }
             climbed += 1;
         }
-        if let Ok(Some(ends)) = enclosed(matrix, Floats::<Interval>::new())
+        if let Ok(ends) = enclosed(matrix, Floats::<Interval>::new())
             && let Some(decimals) = decimals(&ends, digits)
         {
             return found(decimals, Certainty::Certified, Rung::Intervals, climbed);
@@ -97,14 +132,15 @@ pub fn digits_of<M: Matrices>(matrix: &M, digits: usize, wanted: Certainty) -> R
     let mut bits = digits * 7 / 2 + 64;
     for last in (0..=DOUBLINGS).rev() {
         let complaint = match enclosed(matrix, Enclosures::new(bits)) {
-            Ok(Some(ends)) => match decimals(&ends, digits) {
+            Ok(ends) => match decimals(&ends, digits) {
                 Some(decimals) => {
                     return found(decimals, Certainty::Certified, Rung::Enclosures(bits), climbed);
                 }
-                None => NoDigits::NotFixed { bits, why: None },
+                None => NoDigits::NotFixed { bits },
             },
-            Ok(None) => NoDigits::NoEquilibrium,
-            Err(why) => NoDigits::NotFixed { bits, why },
+            Err(NotEnclosed::NoEquilibrium) => NoDigits::NoEquilibrium,
+            Err(NotEnclosed::NoEntries) => NoDigits::NotFixed { bits },
+            Err(NotEnclosed::Refused(why)) => NoDigits::Refused { bits, why },
         };
         if last == 0 {
             return Err(complaint);
@@ -112,7 +148,7 @@ pub fn digits_of<M: Matrices>(matrix: &M, digits: usize, wanted: Certainty) -> R
         climbed += 1;
         bits *= 2;
     }
-    Err(NoDigits::NotFixed { bits, why: None })
+    Err(NoDigits::NotFixed { bits })
 }
 
 /// Lower and upper ends, each in descending order.
@@ -121,13 +157,13 @@ struct Ends {
     high: Vec<RBig>,
 }
 
-/// Enclosures of the singular values; `None` where the equilibrium or the rotations were not found.
-fn enclosed<M: Matrices, A: Enclosing + Copy>(matrix: &M, on: A) -> Result<Option<Ends>, Option<Refusal>> {
+/// Enclosures of the singular values.
+fn enclosed<M: Matrices, A: Enclosing + Copy>(matrix: &M, on: A) -> Result<Ends, NotEnclosed> {
     let (mut low, mut high) = (Vec::new(), Vec::new());
-    let Some(parts) = connected(&on, matrix.entries(on)?) else { return Ok(None) };
+    let parts = connected(&on, matrix.entries(on)?).ok_or(NotEnclosed::NoEquilibrium)?;
     for part in parts {
-        let Some(scaled) = equilibrated(&on, &part)? else { return Ok(None) };
-        let Some(values) = enclosed_values(&on, &as_columns(scaled))? else { return Ok(None) };
+        let scaled = equilibrated(&on, &part)?.ok_or(NotEnclosed::NoEquilibrium)?;
+        let values = enclosed_values(&on, &as_columns(scaled))?.ok_or(NotEnclosed::NoEquilibrium)?;
         for value in values {
             let (left, right) = on.ends(&value).ok_or(Refusal::NotFinite)?;
             low.push(left);
@@ -136,7 +172,7 @@ fn enclosed<M: Matrices, A: Enclosing + Copy>(matrix: &M, on: A) -> Result<Optio
     }
     low.sort_by(|a, b| b.cmp(a));
     high.sort_by(|a, b| b.cmp(a));
-    Ok(Some(Ends { low, high }))
+    Ok(Ends { low, high })
 }
 
 /// What all numbers between the ends are rounded to: the values and the condition.

@@ -4,9 +4,9 @@ use super::*;
 struct Fixed(Vec<Vec<RBig>>);
 
 impl Matrices for Fixed {
-    fn entries<A: Arithmetic + Copy>(&self, on: A) -> Result<Vec<Vec<A::Number>>, Option<Refusal>> {
+    fn entries<A: Arithmetic + Copy>(&self, on: A) -> Result<Vec<Vec<A::Number>>, NoEntries> {
         let row = |row: &Vec<RBig>| row.iter().map(|entry| on.rational(entry)).collect();
-        self.0.iter().map(row).collect::<Result<_, _>>().map_err(Some)
+        self.0.iter().map(row).collect::<Result<_, _>>().map_err(NoEntries::Refused)
     }
 }
 

@@ -3,7 +3,8 @@
 use crate::expression::{Failure, NodeId, Program, expand_angles};
 use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, PrimeField, Rationals, RealNumber, Refusal};
 use crate::observability::{
-    Defined, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank, singular_values,
+    Defined, MissingInput, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank,
+    singular_values,
 };
 use crate::sweep::{Certainty, Judge, JudgedRows, ProofWanted};
 use crate::system::System;
@@ -112,8 +113,8 @@ impl Subject {
 
     fn run<A: Arithmetic>(&self, state: &State, arithmetic: A) -> Evaluated<A::Number> {
         let inputs = state.inputs(&self.program, &arithmetic).map_err(|why| match why {
-            Some(refusal) => format!("{refusal}, in a coordinate of the state"),
-            None => "the state says nothing of a symbol".to_owned(),
+            MissingInput::Refused(refusal) => format!("{refusal}, in a coordinate of the state"),
+            MissingInput::Unsaid => "the state says nothing of a symbol".to_owned(),
         })?;
         let loaded = self.program.load(arithmetic).map_err(|refusal| format!("{refusal}, in a constant"))?;
         let mut registers = Vec::new();

@@ -3,8 +3,8 @@
 
 use super::block::Block;
 use crate::expression::{Program, Symbol};
-use crate::number::{Arithmetic, Enclosure, Enclosures, Function, Rationals, Refusal, rational_to_f64};
-use crate::observability::{Coordinate, State, certain_rank, rank};
+use crate::number::{Arithmetic, Enclosure, Enclosures, Function, Rationals, rational_to_f64};
+use crate::observability::{Coordinate, MissingInput, State, certain_rank, rank};
 use dashu::rational::RBig;
 
 /// A number that is known for certain.
@@ -63,10 +63,10 @@ fn run<A: Arithmetic>(
     program: &Program,
     state: &State,
     arithmetic: A,
-) -> Result<Vec<A::Number>, Option<Refusal>> {
+) -> Result<Vec<A::Number>, MissingInput> {
     let inputs = state.inputs(program, &arithmetic)?;
-    let loaded = program.load(arithmetic).map_err(Some)?;
-    loaded.run(&inputs, &mut Vec::new()).map_err(|failure| Some(failure.refusal))
+    let loaded = program.load(arithmetic)?;
+    Ok(loaded.run(&inputs, &mut Vec::new()).map_err(|failure| failure.refusal)?)
 }
 
 fn measured(values: Vec<RBig>, rows: &[usize]) -> Vec<Exact> {

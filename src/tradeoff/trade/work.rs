@@ -6,8 +6,8 @@ use super::programs::Programs;
 use super::rows::Rows;
 use super::truth::{Truth, radians};
 use crate::expression::{Input, Program, expand_angles};
-use crate::number::{Arithmetic, Refusal};
-use crate::observability::{Branch, Locus, State};
+use crate::number::Arithmetic;
+use crate::observability::{Branch, Locus, MissingInput, State};
 use crate::system::System;
 use dashu::rational::RBig;
 use rayon::prelude::*;
@@ -140,9 +140,10 @@ pub(super) fn inputs<A: Arithmetic>(
     program: &Program,
     arithmetic: &A,
 ) -> Result<Vec<Vec<A::Number>>, String> {
-    let complain = |refusal: Option<Refusal>| match refusal {
-        Some(refusal) => refusal.to_string(),
-        None => match program.inputs().iter().find(|input| matches!(input, Input::Opaque(_))) {
+    let complain = |missing: MissingInput| match missing {
+        MissingInput::Refused(refusal) => refusal.to_string(),
+        MissingInput::Unsaid => match program.inputs().iter().find(|input| matches!(input, Input::Opaque(_)))
+        {
             Some(_) => "a function that is treated as an unknown".to_owned(),
             None => "an angle is met outside sines and cosines".to_owned(),
         },
