@@ -94,13 +94,13 @@ fn parts_are_scaled_one_by_one() {
 fn what_cannot_be_had_says_why() {
     // a triangular matrix has no equilibrium: its corner would have to vanish
     let found = digits_of(&integers(&[[1, 1], [0, 1]]), 20, Certainty::Certified);
-    assert!(matches!(found, Err(NoDigits::NoEquilibrium | NoDigits::NotFixed { .. })), "{found:?}");
+    assert!(matches!(found, Err(NoDigits::NoEquilibrium | NoDigits::Refused { .. })), "{found:?}");
     // a column of zeros: there is no condition
     assert_eq!(digits_of(&integers(&[[1, 0], [2, 0]]), 5, Certainty::Computed), Err(NoDigits::NoEquilibrium));
     // rank one: the smallest singular value is zero, and has no significant digit
     assert!(matches!(
         digits_of(&integers(&[[1, 2], [2, 4]]), 5, Certainty::Certified),
-        Err(NoDigits::NotFixed { .. })
+        Err(NoDigits::Refused { .. })
     ));
 }
 
