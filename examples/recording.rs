@@ -11,7 +11,7 @@
 
 use palmistry::System;
 use palmistry::observer::{
-    FaultRules, HighGain, Kalman, MovingWindow, Observer, Record, Signals, Sought, Task,
+    EstimateQuestion, FaultRules, HighGain, Kalman, MovingWindow, Observer, Record, Signals, Task,
 };
 use std::sync::atomic::AtomicBool;
 
@@ -57,10 +57,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // what is sought, with a first guess of each; rows that cannot be used stop it
     let reading = Record::read_checked(&path, &["phi"], &FaultRules::default())?;
     let signals = Signals::of_record(&reading.record)?;
-    let sought =
-        Sought { guess: vec![("omega".to_owned(), 0.5), ("k".to_owned(), 1.0)], ..Sought::default() };
+    let question = EstimateQuestion {
+        guess: vec![("omega".to_owned(), 0.5), ("k".to_owned(), 1.0)],
+        ..EstimateQuestion::default()
+    };
     let interrupt = AtomicBool::new(false);
-    let mut task = Task::new(&system, &sought, &signals, &interrupt)?;
+    let mut task = Task::new(&system, &question, &signals, &interrupt)?;
     // the error of a rounded reading, evenly spread over the grid
     (task.exact, task.sigma) = (false, 1e-3 / f64::sqrt(12.0));
     let observers: [(&str, &dyn Observer); 3] = [

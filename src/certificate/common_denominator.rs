@@ -5,7 +5,7 @@ use crate::number::Factors;
 use crate::number::polynomial::{Polynomial, Ring};
 
 /// A row over its common denominator.
-pub(super) struct ClearedRow {
+pub(super) struct CommonDenominatorRow {
     /// Its place among all rows.
     pub row: usize,
     /// What all its entries have above the bar, and what stands below it.
@@ -15,7 +15,7 @@ pub(super) struct ClearedRow {
     pub entries: Vec<Polynomial>,
 }
 
-impl ClearedRow {
+impl CommonDenominatorRow {
     /// The number of monomials.
     pub fn length(&self) -> usize {
         self.entries.iter().map(Polynomial::len).sum()
@@ -32,7 +32,7 @@ pub(super) fn clear_denominators(
     row: usize,
     entries: &[NodeId],
     is_angle: impl Fn(Symbol) -> bool,
-) -> Result<(ClearedRow, NodeFractions), String> {
+) -> Result<(CommonDenominatorRow, NodeFractions), String> {
     let (values, nodes) = products.read(graph, entries, is_angle)?;
     let fractions = products.fractions();
     let is_zero = |top: &Factors| top.keys().any(|place| fractions.factor(*place).is_zero());
@@ -56,17 +56,17 @@ pub(super) fn clear_denominators(
         let less = |(place, power): (&u32, &u32)| (*place, power - what.get(place).unwrap_or(&0).min(power));
         from.iter().map(less).filter(|(_, power)| *power > 0).collect()
     };
-    let mut cleared = Vec::new();
+    let mut numerators = Vec::new();
     for value in &values {
         if is_zero(&value.top) {
-            cleared.push(Polynomial::default());
+            numerators.push(Polynomial::default());
             continue;
         }
         let mut top = without(&value.top, &above);
         for (place, power) in without(&below, &value.bottom) {
             *top.entry(place).or_insert(0) += power;
         }
-        cleared.push(fractions.expand(&top).map_err(|refusal| refusal.to_string())?);
+        numerators.push(fractions.expand(&top).map_err(|refusal| refusal.to_string())?);
     }
-    Ok((ClearedRow { row, above, below, entries: cleared }, nodes))
+    Ok((CommonDenominatorRow { row, above, below, entries: numerators }, nodes))
 }

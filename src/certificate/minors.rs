@@ -5,7 +5,7 @@
 //! have in common is taken out at once, so that nothing becomes longer than it has to be. A minor is then the product of
 //! its pivots and of what was taken out, over what rows were multiplied by, which all but always cancels.
 
-use super::common_denominator::ClearedRow;
+use super::common_denominator::CommonDenominatorRow;
 use crate::expression::{Products, Variable};
 use crate::number::polynomial::{Polynomial, Ring};
 use crate::number::split;
@@ -72,7 +72,7 @@ impl Pivot {
 /// Adds rows to minors.
 struct Builder<'a> {
     products: &'a Products,
-    rows: &'a [ClearedRow],
+    rows: &'a [CommonDenominatorRow],
     columns: usize,
     /// All factors that were met, by number.
     factors: Vec<Polynomial>,
@@ -86,7 +86,7 @@ struct Builder<'a> {
 /// `known` are factors that may be met, and receives those that were.
 pub(super) fn minors(
     products: &Products,
-    rows: &[ClearedRow],
+    rows: &[CommonDenominatorRow],
     columns: usize,
     known: &mut Vec<Polynomial>,
 ) -> Minors {

@@ -3,7 +3,7 @@
 use super::boxes::FreeCoordinate;
 use super::choice::choose;
 use super::collector::{Collector, Ranges};
-use super::common_denominator::{ClearedRow, clear_denominators};
+use super::common_denominator::{CommonDenominatorRow, clear_denominators};
 use super::domain::{Domain, domain};
 use super::minors::minors as minors_of;
 use super::part::{FactoredMinor, Part};
@@ -71,26 +71,26 @@ impl Problem {
         let mut collector = Collector::default();
         let mut remarks = Vec::new();
         let Domain { guards, nowhere, written } = domain(system, rows, &mut collector, &values);
-        let mut cleared = Vec::new();
+        let mut ready = Vec::new();
         let columns = block.columns.len();
         for (row, entries) in block.rows.iter().zip(block.entries.chunks(columns.max(1))) {
             match clear_denominators(&mut collector.products, &system.graph, *row, entries, is_angle) {
                 Ok((row, nodes)) => {
                     collector.note(&system.graph, &nodes);
-                    cleared.push(row);
+                    ready.push(row);
                 }
                 Err(why) => remarks.push(format!("{} is left out: {why}", names[*row])),
             }
         }
-        cleared.sort_by_key(ClearedRow::length); // stable: words of one length stay in order
-        let split = minors_of(&collector.products, &cleared, columns, &mut collector.known);
+        ready.sort_by_key(CommonDenominatorRow::length); // stable: words of one length stay in order
+        let split = minors_of(&collector.products, &ready, columns, &mut collector.known);
         let mut minors = Vec::new();
         // to polynomials a root is an unknown of its own, and what is zero by its square is no zero to them
         let has_unknowns =
             collector.products.variables().iter().any(|variable| matches!(variable, Variable::Unknown(_)));
         let mut vanishing: HashMap<usize, bool> = HashMap::new();
         for minor in &split.found {
-            let rows = minor.rows.iter().map(|row| names[cleared[*row].row].clone()).collect();
+            let rows = minor.rows.iter().map(|row| names[ready[*row].row].clone()).collect();
             let graph = &mut system.graph;
             let mut factors: Vec<usize> =
                 minor.factors.iter().map(|factor| collector.polynomial(graph, factor)).collect();
@@ -106,7 +106,7 @@ impl Problem {
             if has_unknowns && factors.iter().any(&mut is_zero) {
                 continue;
             }
-            let places = minor.rows.iter().map(|row| cleared[*row].row).collect();
+            let places = minor.rows.iter().map(|row| ready[*row].row).collect();
             minors.push(FactoredMinor { rows, places, factors, below });
         }
         let mut avoid = Vec::new();

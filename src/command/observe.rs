@@ -115,7 +115,7 @@ impl Observe {
         }
         // a window that cannot be seen is part of the answer; a method that saw none has found nothing
         let unseen =
-            |update: &Update| matches!(update.standing, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
+            |update: &Update| matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
         let found_nothing = |updates: &[Update]| !updates.is_empty() && updates.iter().all(unseen);
         let as_expected = !answers.iter().any(|answer| found_nothing(&answer.track.updates));
         let status = Status::of(as_expected);

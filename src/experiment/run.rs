@@ -3,8 +3,8 @@
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{Simulation, TOUCH, body, constants, deviation};
 use crate::observer::{
-    Fault, ModelError, MovingWindow, Observer, Record, RecordError, RecordReading, Signals, Sought, Task,
-    Track, WindowSearch,
+    EstimateQuestion, Fault, ModelError, MovingWindow, Observer, Record, RecordError, RecordReading, Signals,
+    Task, Track, WindowSearch,
 };
 use crate::sweep::UNINTERRUPTED;
 use crate::system::{Kind, System, nearest};
@@ -33,7 +33,7 @@ pub struct Experiment {
     /// The readings as curves of time.
     pub signals: Signals,
     /// What the observers are asked for.
-    pub sought: Sought,
+    pub question: EstimateQuestion,
 }
 
 /// What one observer made of it.
@@ -70,7 +70,7 @@ impl Experiment {
             _ => None,
         };
         known_states(&scene, &system)?;
-        let told = told(&scene, &system, simulation.as_ref())?;
+        let known = known_constants(&scene, &system, simulation.as_ref())?;
         let RecordReading { record, faults, .. } = match (&simulation, file) {
             (Some(simulation), _) => {
                 let record = simulation.readings(scene.sensor.noise, scene.sensor.resolution, scene.seed);
@@ -79,7 +79,7 @@ impl Experiment {
                 RecordReading { record: record.map_err(place)?, faults: Vec::new(), left_out: Vec::new() }
             }
             (None, Some(file)) => {
-                let needed = needed(&scene, &system, &told);
+                let needed = needed(&scene, &system, &known);
                 let needed: Vec<&str> = needed.iter().map(String::as_str).collect();
                 Record::read_checked(file, &needed, &scene.fault_rules())
                     .map_err(|error| unusable(&scene, &error))?
@@ -93,8 +93,8 @@ impl Experiment {
         let signals = Signals::of_record(&record);
         let signals =
             signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
-        let sought = sought(&scene, &system, simulation.as_ref(), told, &signals)?;
-        let experiment = Experiment { scene, system, simulation, record, faults, signals, sought };
+        let question = estimate_question(&scene, &system, simulation.as_ref(), known, &signals)?;
+        let experiment = Experiment { scene, system, simulation, record, faults, signals, question };
         // whether the model can be made at all is better known now
         experiment.task(&UNINTERRUPTED)?;
         Ok(experiment)
@@ -105,7 +105,7 @@ impl Experiment {
     /// # Errors
     /// Where the system gives no model, with the place in the scene.
     pub fn task<'a>(&'a self, interrupt: &'a AtomicBool) -> Result<Task<'a>, SceneError> {
-        let task = Task::new(&self.system, &self.sought, &self.signals, interrupt);
+        let task = Task::new(&self.system, &self.question, &self.signals, interrupt);
         let mut task = task.map_err(|error| {
             let place = match error {
                 ModelError::NoField { .. } | ModelError::NoSymbol { .. } | ModelError::NotAnInput { .. } => {
@@ -169,7 +169,7 @@ impl Experiment {
 
     /// The names of what is sought.
     pub fn names(&self) -> Vec<&str> {
-        self.sought.guess.iter().map(|(name, _)| name.as_str()).collect()
+        self.question.guess.iter().map(|(name, _)| name.as_str()).collect()
     }
 
     /// The true values of what is sought at a time: none where the readings come from a file, or the time is no sample's.
@@ -215,38 +215,38 @@ fn unusable(scene: &Scene, error: &RecordError) -> SceneError {
     scene.error_at("data", error.to_string(), "the readings of this scene", help)
 }
 
-/// The constants that the observers are told: the scene's own, and those of the bodies that the model knows.
-fn told(
+/// The constants that the observers know: the scene's own, and those of the bodies that the model knows.
+fn known_constants(
     scene: &Scene,
     system: &System,
     simulation: Option<&Simulation>,
 ) -> Result<BTreeMap<String, f64>, SceneError> {
     let settings = &scene.observer;
-    let mut told = settings.known.clone();
-    let mut tell = |name: &str, value: f64| {
+    let mut known = settings.known.clone();
+    let mut give = |name: &str, value: f64| {
         if system.find_symbol(name).is_some() && !settings.estimate.iter().any(|other| other == name) {
-            told.entry(name.to_owned()).or_insert(value);
+            known.entry(name.to_owned()).or_insert(value);
         }
     };
     if let Some(simulation) = simulation {
         for (name, value) in &simulation.constants {
-            tell(name, *value);
+            give(name, *value);
         }
     } else if let Some(simulated) = &scene.simulated {
         // a recording of what the scene describes
         for (name, value) in constants(simulated, &body(scene, simulated)?.0) {
-            tell(&name, value);
+            give(&name, value);
         }
     }
-    Ok(told)
+    Ok(known)
 }
 
 /// The columns without which the model is not determined.
-fn needed(scene: &Scene, system: &System, told: &BTreeMap<String, f64>) -> Vec<String> {
+fn needed(scene: &Scene, system: &System, known: &BTreeMap<String, f64>) -> Vec<String> {
     let settings = &scene.observer;
     let driven: Vec<&String> = settings.inputs.values().collect();
     let unknown =
-        |name: &str| !told.contains_key(name) && !settings.estimate.iter().any(|other| other == name);
+        |name: &str| !known.contains_key(name) && !settings.estimate.iter().any(|other| other == name);
     let symbols = system.symbols().filter(|(symbol, info)| {
         let name = system.symbol_name(*symbol);
         unknown(name)
@@ -259,13 +259,13 @@ fn needed(scene: &Scene, system: &System, told: &BTreeMap<String, f64>) -> Vec<S
     symbols.map(|(symbol, _)| system.symbol_name(symbol).to_owned()).collect()
 }
 
-fn sought(
+fn estimate_question(
     scene: &Scene,
     system: &System,
     simulation: Option<&Simulation>,
     mut known: BTreeMap<String, f64>,
     signals: &Signals,
-) -> Result<Sought, SceneError> {
+) -> Result<EstimateQuestion, SceneError> {
     let settings = &scene.observer;
     // a signal that never changes is a constant: the model then has only what the regime asks for
     for (place, name) in signals.names().iter().enumerate() {
@@ -296,5 +296,5 @@ fn sought(
         guess.push((name.clone(), value.ok_or_else(missing)?));
     }
     let inputs = settings.inputs.iter().map(|(field, symbol)| (field.clone(), symbol.clone())).collect();
-    Ok(Sought { guess, clamped: settings.clamp.clone(), known, inputs })
+    Ok(EstimateQuestion { guess, clamped: settings.clamp.clone(), known, inputs })
 }

@@ -79,7 +79,7 @@ pub fn noise_study(
                 (task.exact, task.sigma) = (false, noise);
                 let rows = first_window(&task, &observer);
                 let update = observer.update(&task, &task.guess, &rows, &task.clamped);
-                matches!(update.standing, UpdateEnd::Converged | UpdateEnd::Stuck).then_some(update.estimate)
+                matches!(update.end, UpdateEnd::Converged | UpdateEnd::Stuck).then_some(update.estimate)
             })();
             done();
             estimate.map_or(Trial::Failed, Trial::Converged)

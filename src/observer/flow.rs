@@ -6,7 +6,7 @@
 //! control (Dormand and Prince, order 8(5,3)). Nothing is differenced.
 
 use super::jet::{Jet, triangle};
-use super::model::{Feed, Formulas};
+use super::model::{Formulas, InputSource};
 use super::{Model, Signals};
 use crate::number::{Duals, Refusal};
 use nalgebra::DMatrix;
@@ -58,7 +58,7 @@ pub struct Sample {
 pub struct ModelFlow<'a> {
     /// The equations.
     pub model: &'a Model,
-    /// What they are told.
+    /// What they are given beside the followed states.
     pub signals: &'a Signals,
     /// The relative and absolute error of a step.
     pub tolerance: f64,
@@ -115,13 +115,13 @@ impl ModelFlow<'_> {
         let registers = RefCell::new(Vec::new());
         let evaluate =
             |formulas: &Formulas, loaded: &crate::expression::Loaded<'_, Duals<J>>, time, y: &[f64]| {
-                let mut told = vec![0.0; model.columns.len()];
-                self.signals.at(&model.columns, time, &mut told);
-                let input = |feed: &Feed| match *feed {
-                    Feed::State(place) => J::unpack(&y[place * J::LENGTH..(place + 1) * J::LENGTH]),
-                    Feed::Column(place) | Feed::Rate(place) => J::constant(told[place]),
+                let mut given = vec![0.0; model.columns.len()];
+                self.signals.at(&model.columns, time, &mut given);
+                let input = |source: &InputSource| match *source {
+                    InputSource::State(place) => J::unpack(&y[place * J::LENGTH..(place + 1) * J::LENGTH]),
+                    InputSource::Column(place) | InputSource::Rate(place) => J::constant(given[place]),
                 };
-                let inputs: Vec<J> = formulas.feeds.iter().map(input).collect();
+                let inputs: Vec<J> = formulas.sources.iter().map(input).collect();
                 loaded.run(&inputs, &mut registers.borrow_mut())
             };
         let failure: Cell<Option<(f64, Refusal)>> = Cell::new(None);

@@ -1,7 +1,7 @@
 //! The high-gain observer of Gauthier, Hammouri and Othman, which section 6.2 of the thesis names.
 
 use super::flow::advance;
-use super::model::{Feed, Formulas};
+use super::model::{Formulas, InputSource};
 use super::task::{Observer, SampleEstimate, Task, Track};
 use super::{Lost, Model};
 use crate::expression::{NodeId, Symbol, gradient};
@@ -62,8 +62,12 @@ impl Observer for HighGain {
             // the outputs of the canonical form are states: they are what is read
             let read = task.readings(row);
             let seen = task.full.outputs.iter().map(|name| task.full.find(name).map(|place| state[place]));
-            let surprise = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
-            track.moments.push(SampleEstimate { time, state: state[..task.sought()].to_vec(), surprise });
+            let residual = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
+            track.estimates.push(SampleEstimate {
+                time,
+                state: state[..task.estimated()].to_vec(),
+                residual,
+            });
         };
         record(times[0], &state, 0, &mut track);
         for row in 1..times.len() {
@@ -80,8 +84,8 @@ impl Observer for HighGain {
                     track.remarks.push(format!("held from there on: {lost}"));
                     track.unseen += times.len() - row;
                     for time in &times[row..] {
-                        let state = state[..task.sought()].to_vec();
-                        track.moments.push(SampleEstimate { time: *time, state, surprise: Vec::new() });
+                        let state = state[..task.estimated()].to_vec();
+                        track.estimates.push(SampleEstimate { time: *time, state, residual: Vec::new() });
                     }
                     break;
                 }
@@ -114,7 +118,7 @@ impl HighGain {
         let failure: Cell<Option<Refusal>> = Cell::new(None);
         let seen = Cell::new(true);
         let right_hand_side = |time: f64, x: &[f64], dx: &mut [f64]| {
-            match rates.run(&told(task, model, &model.rates, time, x), &mut Vec::new()) {
+            match rates.run(&inputs_at(task, model, &model.rates, time, x), &mut Vec::new()) {
                 Ok(values) => dx.copy_from_slice(&values),
                 Err(error) => {
                     failure.set(Some(error.refusal));
@@ -133,19 +137,19 @@ impl HighGain {
 }
 
 /// The inputs of some formulas at a time and a state.
-fn told(task: &Task<'_>, model: &Model, formulas: &Formulas, time: f64, x: &[f64]) -> Vec<f64> {
+fn inputs_at(task: &Task<'_>, model: &Model, formulas: &Formulas, time: f64, x: &[f64]) -> Vec<f64> {
     let mut values = vec![0.0; model.columns.len()];
     let mut slopes = vec![0.0; model.columns.len()];
     task.signals.at(&model.columns, time, &mut values);
-    if formulas.feeds.iter().any(|feed| matches!(feed, Feed::Rate(_))) {
+    if formulas.sources.iter().any(|source| matches!(source, InputSource::Rate(_))) {
         task.signals.rates_at(&model.columns, time, &mut slopes);
     }
-    let feed = |feed: &Feed| match *feed {
-        Feed::State(place) => x[place],
-        Feed::Column(place) => values[place],
-        Feed::Rate(place) => slopes[place],
+    let source = |source: &InputSource| match *source {
+        InputSource::State(place) => x[place],
+        InputSource::Column(place) => values[place],
+        InputSource::Rate(place) => slopes[place],
     };
-    formulas.feeds.iter().map(feed).collect()
+    formulas.sources.iter().map(source).collect()
 }
 
 impl Canonical {
@@ -185,7 +189,7 @@ impl Canonical {
     /// `dPhi/dx`.
     fn matrix(&self, task: &Task<'_>, time: f64, x: &[f64]) -> Option<DMatrix<f64>> {
         let program = self.rows.program.load(Duals::<f64>::default()).ok()?;
-        let inputs = told(task, &self.model, &self.rows, time, x);
+        let inputs = inputs_at(task, &self.model, &self.rows, time, x);
         let values = program.run(&inputs, &mut Vec::new()).ok()?;
         let n = self.model.states.len();
         values.iter().all(|value| value.is_finite()).then(|| DMatrix::from_row_slice(n, n, &values))

@@ -12,7 +12,7 @@ impl Observer for Integration {
         let times = task.signals.times();
         let mut track = Track::default();
         let mut belief = task.guess.clone();
-        track.moments.push(SampleEstimate { time: times[0], state: belief.clone(), surprise: Vec::new() });
+        track.estimates.push(SampleEstimate { time: times[0], state: belief.clone(), residual: Vec::new() });
         for (row, &time) in times.iter().enumerate().skip(1) {
             if task.interrupted() {
                 break;
@@ -26,7 +26,7 @@ impl Observer for Integration {
                     track.unseen += 1;
                 }
             }
-            track.moments.push(SampleEstimate { time, state: belief.clone(), surprise: Vec::new() });
+            track.estimates.push(SampleEstimate { time, state: belief.clone(), residual: Vec::new() });
         }
         track
     }

@@ -43,9 +43,9 @@ impl Observer for Kalman {
         };
         let mut covariance = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| deviation(i).powi(2)));
         let drive = |i: usize| task.sizes.get(i).map_or(0.0, |size| (self.process_noise * size).powi(2));
-        let record = |time: f64, state: &DVector<f64>, surprise: Vec<f64>, track: &mut Track| {
-            let state = state.as_slice()[..task.sought()].to_vec();
-            track.moments.push(SampleEstimate { time, state, surprise });
+        let record = |time: f64, state: &DVector<f64>, residual: Vec<f64>, track: &mut Track| {
+            let state = state.as_slice()[..task.estimated()].to_vec();
+            track.estimates.push(SampleEstimate { time, state, residual });
         };
         record(times[0], &state, Vec::new(), &mut track);
         for row in 1..times.len() {
@@ -66,14 +66,14 @@ impl Observer for Kalman {
                         track.remarks.push(format!("held, with the outputs as they are read: {lost}"));
                     }
                     track.unseen += 1;
-                    let belief = state.as_slice()[..task.sought()].to_vec();
+                    let belief = state.as_slice()[..task.estimated()].to_vec();
                     state = DVector::from_vec(task.full_state(&belief, row));
                     record(times[row], &state, Vec::new(), &mut track);
                     continue;
                 }
             }
-            let surprise = correct(task, &mut state, &mut covariance, sigma, row);
-            record(times[row], &state, surprise.unwrap_or_default(), &mut track);
+            let residual = correct(task, &mut state, &mut covariance, sigma, row);
+            record(times[row], &state, residual.unwrap_or_default(), &mut track);
         }
         track
     }
@@ -107,15 +107,15 @@ fn correct(
         .ok()?;
     let here = here.first()?;
     let read = task.readings(row);
-    let surprise = DVector::from_fn(read.len(), |i, _| here.outputs[i] - read[i]);
+    let residual = DVector::from_fn(read.len(), |i, _| here.outputs[i] - read[i]);
     let h = &here.output_slopes;
     let noise = DMatrix::from_diagonal_element(read.len(), read.len(), sigma * sigma);
     let innovation = h * &*covariance * h.transpose() + &noise;
     let gain = Cholesky::new(innovation)?.solve(&(h * &*covariance)).transpose();
-    *state -= &gain * &surprise;
+    *state -= &gain * &residual;
     // Joseph's form: stays symmetric and positive whatever the rounding
     let rest = DMatrix::identity(state.len(), state.len()) - &gain * h;
     let corrected = &rest * &*covariance * rest.transpose() + &gain * noise * gain.transpose();
     *covariance = (&corrected + corrected.transpose()) * 0.5;
-    Some(surprise.as_slice().to_vec())
+    Some(residual.as_slice().to_vec())
 }

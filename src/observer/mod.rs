@@ -38,5 +38,5 @@ pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
 pub use newton::Newton;
 pub use record::{Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading};
 pub use signal::{SignalError, Signals};
-pub use task::{Observer, SampleEstimate, Sought, Task, Track, Update, UpdateEnd};
+pub use task::{EstimateQuestion, Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
 pub use trust_region::TrustRegion;

@@ -1,4 +1,4 @@
-//! What an observer believes: the equations of some states of a system, everything else being told.
+//! What an observer believes: the equations of some states of a system, everything else being given.
 
 use super::Signals;
 use crate::expression::{Input, NodeId, Program, Symbol};
@@ -27,9 +27,9 @@ pub enum ModelError {
     /// A symbol is unknown.
     #[error("the system declares no '{name}'")]
     NoSymbol { name: String },
-    /// No one tells the value of a symbol.
+    /// Nothing gives the value of a symbol.
     #[error("nothing tells '{name}': estimate it, give it under `known`, or hand over a column of that name")]
-    Untold { name: String },
+    NotGiven { name: String },
     /// A value is infinite or none.
     #[error("the value of '{name}' is not finite")]
     NotFinite { name: String },
@@ -49,9 +49,9 @@ pub enum ModelError {
 /// What a model is made from.
 #[derive(Clone, Debug, Default)]
 pub struct ModelQuestion {
-    /// The states that are followed: their equations are integrated. All others are told.
+    /// The states that are followed: their equations are integrated. All others are given.
     pub followed: Vec<String>,
-    /// Constants that are told, by the names of states or parameters; they come before columns and defaults.
+    /// Constants that are known, by the names of states or parameters; they come before columns and defaults.
     pub known: BTreeMap<String, f64>,
     /// Input fields and the symbols that drive them: `x' = f + sum u_j g_j`, `f` being the system's drift.
     pub inputs: Vec<(String, String)>,
@@ -59,7 +59,7 @@ pub struct ModelQuestion {
 
 /// Where an input of a program comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Feed {
+pub(super) enum InputSource {
     /// A followed state.
     State(usize),
     /// A column of the signals, by its place in [`Model::columns`].
@@ -72,7 +72,7 @@ pub(super) enum Feed {
 #[derive(Clone, Debug)]
 pub(super) struct Formulas {
     pub program: Program,
-    pub feeds: Vec<Feed>,
+    pub sources: Vec<InputSource>,
 }
 
 /// The equations of the followed states, `x' = F(x, t)` and `y = h(x, t)`, with everything else a constant or a signal.
@@ -116,8 +116,8 @@ impl Model {
         let mut model = Model {
             states: question.followed.clone(),
             outputs: Vec::new(),
-            rates: Formulas { program: Program::plain(&system.graph, &[]), feeds: Vec::new() },
-            seen: Formulas { program: Program::plain(&system.graph, &[]), feeds: Vec::new() },
+            rates: Formulas { program: Program::plain(&system.graph, &[]), sources: Vec::new() },
+            seen: Formulas { program: Program::plain(&system.graph, &[]), sources: Vec::new() },
             columns: Vec::new(),
             measured: Vec::new(),
             system,
@@ -148,26 +148,26 @@ impl Model {
         signals: &Signals,
     ) -> Result<Formulas, ModelError> {
         let program = Program::plain(&self.system.graph, nodes);
-        let mut feeds = Vec::new();
+        let mut sources = Vec::new();
         for input in program.inputs() {
             let (Input::Plain(symbol) | Input::Sine(symbol) | Input::Cosine(symbol)) = *input else {
                 continue; // none is asked for
             };
             if let Some(place) = self.symbols.iter().position(|other| *other == symbol) {
-                feeds.push(Feed::State(place));
+                sources.push(InputSource::State(place));
                 continue;
             }
             let whose = rates.get(&symbol).copied();
             let name = self.system.symbol_name(whose.unwrap_or(symbol));
-            let untold = || ModelError::Untold { name: name.to_owned() };
-            let column = signals.find(name).ok_or_else(untold)?;
+            let not_given = || ModelError::NotGiven { name: name.to_owned() };
+            let column = signals.find(name).ok_or_else(not_given)?;
             let place = self.columns.iter().position(|other| *other == column).unwrap_or_else(|| {
                 self.columns.push(column);
                 self.columns.len() - 1
             });
-            feeds.push(if whose.is_some() { Feed::Rate(place) } else { Feed::Column(place) });
+            sources.push(if whose.is_some() { InputSource::Rate(place) } else { InputSource::Column(place) });
         }
-        Ok(Formulas { program, feeds })
+        Ok(Formulas { program, sources })
     }
 
     /// The place of a followed state.

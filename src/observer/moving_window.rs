@@ -69,7 +69,7 @@ impl Observer for MovingWindow {
                 (rows.len() >= self.window.min(samples)).then(|| self.update(task, &belief, &rows, clamped));
             let mut start = task.full_state(&belief, row);
             if let Some(update) = update {
-                sees = !matches!(update.standing, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
+                sees = !matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
                 belief.clone_from(&update.estimate);
                 start = [&update.estimate[..], &update.outputs].concat();
                 track.updates.push(update);
@@ -89,8 +89,8 @@ impl MovingWindow {
         rows: &std::ops::Range<usize>,
         clamped: &[usize],
     ) -> Window<'t> {
-        let sought = (0..task.sought()).filter(|place| !clamped.contains(place));
-        let read = task.sought()..if task.exact { task.sought() } else { task.full.states.len() };
+        let sought = (0..task.estimated()).filter(|place| !clamped.contains(place));
+        let read = task.estimated()..if task.exact { task.estimated() } else { task.full.states.len() };
         Window {
             flow: task.full_flow(),
             times: &task.signals.times()[rows.clone()],
@@ -124,18 +124,18 @@ impl MovingWindow {
             from: window.times[0],
             to: window.times[window.times.len() - 1],
             estimate: belief.to_vec(),
-            outputs: window.start[task.sought()..].to_vec(),
-            deviations: vec![f64::INFINITY; task.sought()],
+            outputs: window.start[task.estimated()..].to_vec(),
+            deviations: vec![f64::INFINITY; task.estimated()],
             condition: f64::INFINITY,
             cost: f64::INFINITY,
             misfit: f64::INFINITY,
             steps: 0,
             troubled: 0,
             seconds: 0.0,
-            standing: UpdateEnd::Stuck,
+            end: UpdateEnd::Stuck,
         };
         let guess = window.unknowns(&window.start);
-        update.standing = match window.expand(&guess, Order::First) {
+        update.end = match window.expand(&guess, Order::First) {
             Err(lost) => UpdateEnd::Lost(lost),
             Ok(expansion) => {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
@@ -160,7 +160,7 @@ impl MovingWindow {
     ) -> Option<UpdateEnd> {
         let bound = cramer_rao(slopes, task.sigma, sizes);
         let mut blind = false;
-        update.deviations = vec![0.0; task.sought()];
+        update.deviations = vec![0.0; task.estimated()];
         for ((place, deviation), size) in window.free.iter().zip(&bound.deviations).zip(sizes) {
             if let Some(own) = update.deviations.get_mut(*place) {
                 *own = *deviation;
@@ -204,16 +204,16 @@ impl MovingWindow {
         update.troubled = troubled;
         let Some(found) = state.get_param() else { return UpdateEnd::Stuck };
         let whole = window.state(found);
-        update.estimate = whole[..task.sought()].to_vec();
-        update.outputs = whole[task.sought()..].to_vec();
+        update.estimate = whole[..task.estimated()].to_vec();
+        update.outputs = whole[task.estimated()..].to_vec();
         // the bound belongs to where one is
         match window.expand(found, Order::First) {
             Err(lost) => return UpdateEnd::Lost(lost),
             Ok(expansion) => {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
                 if let Some(blind) = self.see(task, window, &expansion.slopes, sizes, update) {
-                    update.estimate = window.start[..task.sought()].to_vec();
-                    update.outputs = window.start[task.sought()..].to_vec();
+                    update.estimate = window.start[..task.estimated()].to_vec();
+                    update.outputs = window.start[task.estimated()..].to_vec();
                     return blind;
                 }
             }
@@ -236,8 +236,8 @@ impl MovingWindow {
     ) -> Vec<f64> {
         let times = &task.signals.times()[rows.clone()];
         // the sample that two windows share has its moment by now
-        let skipped = usize::from(!track.moments.is_empty());
-        let belief = &start[..task.sought()];
+        let skipped = usize::from(!track.estimates.is_empty());
+        let belief = &start[..task.estimated()];
         let followed =
             if sees { task.full_flow().follow(start, &[], times, Order::Value) } else { Ok(Vec::new()) };
         if let Ok(samples) = &followed
@@ -245,11 +245,11 @@ impl MovingWindow {
         {
             for (sample, row) in samples.iter().zip(rows.clone()).skip(skipped) {
                 let read = task.readings(row);
-                let surprise = sample.outputs.iter().zip(&read).map(|(seen, read)| seen - read).collect();
-                let state = sample.state[..task.sought()].to_vec();
-                track.moments.push(SampleEstimate { time: sample.time, state, surprise });
+                let residual = sample.outputs.iter().zip(&read).map(|(seen, read)| seen - read).collect();
+                let state = sample.state[..task.estimated()].to_vec();
+                track.estimates.push(SampleEstimate { time: sample.time, state, residual });
             }
-            return last.state[..task.sought()].to_vec();
+            return last.state[..task.estimated()].to_vec();
         }
         if let Err(lost) = followed {
             track.remarks.push(format!("the model could not be followed: {lost}"));
@@ -265,7 +265,7 @@ impl MovingWindow {
         };
         let end = states.last().cloned().unwrap_or_else(|| belief.to_vec());
         for (state, time) in states.into_iter().zip(times).skip(skipped) {
-            track.moments.push(SampleEstimate { time: *time, state, surprise: Vec::new() });
+            track.estimates.push(SampleEstimate { time: *time, state, residual: Vec::new() });
         }
         end
     }

@@ -31,14 +31,14 @@ pub struct Task<'a> {
     pub interrupt: &'a AtomicBool,
 }
 
-/// What is asked for of a system's states.
+/// Which states are to be estimated, and what is known beside the signals.
 #[derive(Clone, Debug, Default)]
-pub struct Sought {
-    /// The states that are sought, and the first guess of each.
+pub struct EstimateQuestion {
+    /// The states that are estimated, and the first guess of each.
     pub guess: Vec<(String, f64)>,
     /// Those that are not changed in the first window.
     pub clamped: Vec<String>,
-    /// Constants that are told.
+    /// Constants that are known.
     pub known: BTreeMap<String, f64>,
     /// Input fields and the symbols that drive them.
     pub inputs: Vec<(String, String)>,
@@ -54,23 +54,23 @@ impl<'a> Task<'a> {
     /// [`ModelError`].
     pub fn new(
         system: &System,
-        sought: &Sought,
+        wanted: &EstimateQuestion,
         signals: &'a Signals,
         interrupt: &'a AtomicBool,
     ) -> Result<Task<'a>, ModelError> {
-        let names: Vec<String> = sought.guess.iter().map(|(name, _)| name.clone()).collect();
+        let names: Vec<String> = wanted.guess.iter().map(|(name, _)| name.clone()).collect();
         let is_state = |name: &str| system.states.iter().any(|state| system.symbol_name(*state) == name);
         let outputs = system.outputs.iter().map(|(name, _)| name).filter(|name| is_state(name));
         let question = |followed: Vec<String>| ModelQuestion {
             followed,
-            known: sought.known.clone(),
-            inputs: sought.inputs.clone(),
+            known: wanted.known.clone(),
+            inputs: wanted.inputs.clone(),
         };
         let reduced = Model::new(system, &question(names.clone()), signals)?;
         // an output is followed where its rate depends on what is sought: the others say nothing
         let mut followed = names.clone();
         for name in outputs {
-            if !names.contains(name) && signals.find(name).is_some() && !sought.known.contains_key(name) {
+            if !names.contains(name) && signals.find(name).is_some() && !wanted.known.contains_key(name) {
                 let alone = Model::new(
                     system,
                     &question([&names[..], std::slice::from_ref(name)].concat()),
@@ -86,7 +86,7 @@ impl<'a> Task<'a> {
         if full.outputs.is_empty() {
             return Err(ModelError::Blind);
         }
-        let guess: Vec<f64> = sought.guess.iter().map(|(_, value)| *value).collect();
+        let guess: Vec<f64> = wanted.guess.iter().map(|(_, value)| *value).collect();
         let largest = guess.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let size =
             |value: &f64| if *value == 0.0 { if largest > 0.0 { largest } else { 1.0 } } else { value.abs() };
@@ -95,7 +95,7 @@ impl<'a> Task<'a> {
             full: Arc::new(full),
             reduced: Arc::new(reduced),
             sizes: guess.iter().map(size).collect(),
-            clamped: (0..names.len()).filter(|i| sought.clamped.contains(&names[*i])).collect(),
+            clamped: (0..names.len()).filter(|i| wanted.clamped.contains(&names[*i])).collect(),
             guess,
             sigma: 1e-9,
             exact: true,
@@ -112,8 +112,8 @@ impl<'a> Task<'a> {
         Task { signals, ..self.clone() }
     }
 
-    /// How many states are sought.
-    pub fn sought(&self) -> usize {
+    /// How many states are estimated.
+    pub fn estimated(&self) -> usize {
         self.guess.len()
     }
 
@@ -160,7 +160,7 @@ pub struct SampleEstimate {
     /// What is sought.
     pub state: Vec<f64>,
     /// The outputs that the model expected minus those that were read; empty where the observer compares none.
-    pub surprise: Vec<f64>,
+    pub residual: Vec<f64>,
 }
 
 /// How an update ended.
@@ -205,14 +205,14 @@ pub struct Update {
     /// The wall time of the update, in s.
     pub seconds: f64,
     /// How it ended.
-    pub standing: UpdateEnd,
+    pub end: UpdateEnd,
 }
 
 /// What an observer makes of a task.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Track {
     /// What it believed, sample by sample.
-    pub moments: Vec<SampleEstimate>,
+    pub estimates: Vec<SampleEstimate>,
     /// Its updates, where it works by windows.
     pub updates: Vec<Update>,
     /// Samples at which it could not see, or not follow its model, and held or integrated instead.
@@ -224,7 +224,7 @@ pub struct Track {
 impl Track {
     /// What it believed last.
     pub fn last(&self) -> Option<&SampleEstimate> {
-        self.moments.last()
+        self.estimates.last()
     }
 }
 

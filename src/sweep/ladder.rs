@@ -44,7 +44,7 @@ pub struct StateReport {
 }
 
 /// What deciding at one state came to.
-pub enum StateJudgement {
+pub enum StateDecision {
     /// It was decided.
     Report(StateReport),
     /// The divisor that is zero there, in words.
@@ -73,14 +73,14 @@ impl Rows {
 
 /// What remains of some rows without unit rows, at a state.
 struct RowsAt<'j, 'g> {
-    judge: &'j Judge<'g>,
+    decider: &'j RankDecider<'g>,
     rows: &'j Rows,
     state: &'j State,
 }
 
 impl Matrices for RowsAt<'_, '_> {
     fn entries<A: Arithmetic + Copy>(&self, on: A) -> Result<Vec<Vec<A::Number>>, NoEntries> {
-        let values = self.judge.values(self.rows, self.state, on);
+        let values = self.decider.values(self.rows, self.state, on);
         Ok(self.rows.matrix(values.map_err(|why| match why {
             NoValues::Stopped(failure) => NoEntries::Refused(failure.refusal),
             NoValues::NotInThese => NoEntries::NotInThese,
@@ -90,7 +90,7 @@ impl Matrices for RowsAt<'_, '_> {
 
 /// Rows, entry after entry, whose rank is decided.
 #[derive(Clone, Copy, Debug)]
-pub struct JudgedRows<'r> {
+pub struct DecidedRows<'r> {
     /// Those that suffice at a generic state: they are tried first.
     pub quick: &'r [NodeId],
     /// All of them: they decide where the quick ones fall short.
@@ -131,7 +131,7 @@ struct ExactRank {
 }
 
 /// Decides the rank of some rows at any state.
-pub struct Judge<'g> {
+pub struct RankDecider<'g> {
     graph: &'g Graph,
     defined: Defined,
     quick: Rows,
@@ -143,18 +143,18 @@ pub struct Judge<'g> {
     wanted: Certainty,
 }
 
-impl<'g> Judge<'g> {
+impl<'g> RankDecider<'g> {
     /// `defined` says where all of the rows exist. Angles must have been expanded.
     pub fn new(
         graph: &'g Graph,
         defined: Defined,
-        rows: JudgedRows<'_>,
+        rows: DecidedRows<'_>,
         is_angle: impl Fn(Symbol) -> bool + Copy,
         proof: ProofWanted,
     ) -> Self {
-        let JudgedRows { quick, all, columns } = rows;
+        let DecidedRows { quick, all, columns } = rows;
         let ProofWanted { field, wanted } = proof;
-        Judge {
+        RankDecider {
             graph,
             defined,
             quick: Rows::new(graph, quick, columns, is_angle),
@@ -172,9 +172,9 @@ impl<'g> Judge<'g> {
     }
 
     /// The rank at a state.
-    pub fn decide(&self, state: &State) -> StateJudgement {
+    pub fn decide(&self, state: &State) -> StateDecision {
         if let Some(undefined) = self.defined.failure(self.graph, state) {
-            return StateJudgement::Pole(undefined);
+            return StateDecision::Pole(undefined);
         }
         let full = self.columns;
         let mut report = StateReport {
@@ -193,20 +193,20 @@ impl<'g> Judge<'g> {
             report.quick = std::ptr::eq(rows, &self.quick);
             report.computed = report.spectrum.as_ref().map(|s| rows.reduction.eliminated + s.rank);
             if certain == Some(full) {
-                return StateJudgement::Report(report);
+                return StateDecision::Report(report);
             }
             if self.wanted == Certainty::Certified && self.residue_rank(rows, state) == Some(full) {
                 report.rung = Rung::Residues;
-                return StateJudgement::Report(report);
+                return StateDecision::Report(report);
             }
         }
         if self.wanted == Certainty::Certified {
             match self.exact(state) {
                 Ok(ExactRank { rank, unseen }) => {
                     (report.rank, report.unseen, report.rung) = (rank, unseen, Rung::Exact);
-                    return StateJudgement::Report(report);
+                    return StateDecision::Report(report);
                 }
-                Err(NoExactRank::Pole(pole)) => return StateJudgement::Pole(pole),
+                Err(NoExactRank::Pole(pole)) => return StateDecision::Pole(pole),
                 Err(NoExactRank::NotExact) => {}
             }
         }
@@ -217,20 +217,20 @@ impl<'g> Judge<'g> {
                 if rank < full {
                     report.certainty = Certainty::Computed;
                 }
-                StateJudgement::Report(report)
+                StateDecision::Report(report)
             }
-            Err(pole) => StateJudgement::Pole(pole),
+            Err(pole) => StateDecision::Pole(pole),
         }
     }
 
-    /// The singular values that [`Judge::decide`] reports of a state, to so many digits.
+    /// The singular values that [`RankDecider::decide`] reports of a state, to so many digits.
     ///
     /// # Errors
     /// Where digits cannot be had, and why.
     pub fn digits(&self, state: &State, digits: usize) -> Result<Digits, NoDigits> {
-        let StateJudgement::Report(report) = self.decide(state) else { return Err(NoDigits::NoState) };
+        let StateDecision::Report(report) = self.decide(state) else { return Err(NoDigits::NoState) };
         let rows = if report.quick { &self.quick } else { &self.all };
-        digits_of(&RowsAt { judge: self, rows, state }, digits, self.wanted)
+        digits_of(&RowsAt { decider: self, rows, state }, digits, self.wanted)
     }
 
     /// The values of rows over an arithmetic.

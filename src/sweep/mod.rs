@@ -3,7 +3,7 @@
 //!
 //! [`answer_rank`] takes a whole question; [`sweep`] decides every state that a [`Locus`](crate::observability::Locus) draws,
 //! once by singular values (*computed*) and once by exact arithmetic at that very state (*certified*); a [`Stream`] does so
-//! eight states at a time, and leaves to [`Judge`] those that it cannot decide.
+//! eight states at a time, and leaves to [`RankDecider`] those that it cannot decide.
 //!
 //! This floor knows nothing of claims or palms.
 
@@ -24,7 +24,7 @@ pub use deviation::{StandardDeviation, StandardDeviations};
 pub use digits::MOST_DIGITS;
 pub use digits::{Digits, NoDigits};
 #[doc(hidden)]
-pub use ladder::{Judge, JudgedRows, ProofWanted, StateJudgement, StateReport};
+pub use ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
 pub use question::{BranchAnswer, RankAnswer, RankError, RankQuestion, TakenRow, answer_rank};
 pub(crate) use states::UNINTERRUPTED;
 pub use states::{RecordedState, SweepOptions, SweepReport, sweep};

@@ -2,7 +2,7 @@
 
 use super::certainty::Certainty;
 use super::digits::{Digits, NoDigits};
-use super::ladder::{Judge, JudgedRows, ProofWanted, StateJudgement, StateReport};
+use super::ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
 use super::stream::{Stream, StreamOptions};
 use super::unseen::{UnseenDirection, UnseenDirections};
 use crate::expression::{Guard, NodeId, add_guard, expand_angles};
@@ -143,17 +143,18 @@ pub fn sweep(
     options.guards.iter().for_each(|guard| add_guard(&system.graph, &mut guards, *guard));
     let defined = Defined::new(system, &guards);
     let field = PrimeField::random(&mut rng);
-    // the judge looks at the graph while the counts asks the system for names
+    // the decider looks at the graph while the counts asks the system for names
     let graph = system.graph.clone();
-    let rows = JudgedRows { quick: &quick, all: &all, columns: system.states.len() };
-    let judge = Judge::new(&graph, defined, rows, is_angle, ProofWanted { wanted: options.wanted, field });
+    let rows = DecidedRows { quick: &quick, all: &all, columns: system.states.len() };
+    let decider =
+        RankDecider::new(&graph, defined, rows, is_angle, ProofWanted { wanted: options.wanted, field });
     // a stream decides full ranks only; where the quick rows cannot have it, there is nothing to stream
     let stream = Stream::new(system, locus, &quick)
         .filter(|_| watched)
         .filter(|stream| stream.full_rank() == system.states.len() && stream.remaining() != (0, 0));
     let mut report = match stream {
-        Some(stream) => streamed(system, &stream, &judge, options)?,
-        None => one_by_one(system, locus, &judge, options)?,
+        Some(stream) => streamed(system, &stream, &decider, options)?,
+        None => one_by_one(system, locus, &decider, options)?,
     };
     report.seconds = begin.elapsed().as_secs_f64();
     Ok(report)
@@ -163,7 +164,7 @@ pub fn sweep(
 fn one_by_one(
     system: &System,
     locus: &Locus,
-    judge: &Judge<'_>,
+    decider: &RankDecider<'_>,
     options: SweepOptions<'_>,
 ) -> Result<SweepReport, LocusError> {
     let mut counts = SweepCounts::default();
@@ -171,22 +172,22 @@ fn one_by_one(
     while done < options.samples && !options.interrupt.load(Ordering::Relaxed) {
         let end = (done + BLOCK).min(options.samples);
         let indices: Vec<u64> = (done..end).collect();
-        judge_all(system, judge, &mut counts, &indices, |index| locus.draw(options.seed, index))?;
+        decide_all(system, decider, &mut counts, &indices, |index| locus.draw(options.seed, index))?;
         done = end;
         (options.progress)(done);
     }
     let worst = counts.worst.as_ref().map(|(state, _)| state.clone());
-    let mut report = counts.finish(system, judge, options.digits, done < options.samples);
-    report.recorded = recorded(judge, worst, options, |index| locus.draw(options.seed, index))?;
-    report.remaining = judge.remaining();
+    let mut report = counts.finish(system, decider, options.digits, done < options.samples);
+    report.recorded = recorded(decider, worst, options, |index| locus.draw(options.seed, index))?;
+    report.remaining = decider.remaining();
     Ok(report)
 }
 
-/// A stream of states; those that it leaves are judged one by one.
+/// A stream of states; those that it leaves are decided one by one.
 fn streamed(
     system: &System,
     stream: &Stream,
-    judge: &Judge<'_>,
+    decider: &RankDecider<'_>,
     options: SweepOptions<'_>,
 ) -> Result<SweepReport, LocusError> {
     let mut counts = SweepCounts::default();
@@ -199,7 +200,7 @@ fn streamed(
             if skipped || trouble.is_some() {
                 return;
             }
-            trouble = judge_all(system, judge, &mut counts, block, state).err();
+            trouble = decide_all(system, decider, &mut counts, block, state).err();
         }
     };
     let SweepOptions { samples: states, seed, wanted, digits, interrupt, progress, .. } = options;
@@ -224,13 +225,13 @@ fn streamed(
         && counts.worst.as_ref().is_none_or(|(_, worst)| condition > worst.condition())
     {
         let state = state(index)?;
-        if let StateJudgement::Report(StateReport { spectrum: Some(spectrum), .. }) = judge.decide(&state) {
+        if let StateDecision::Report(StateReport { spectrum: Some(spectrum), .. }) = decider.decide(&state) {
             counts.worst = Some((state, spectrum));
         }
     }
     let worst = counts.worst.as_ref().map(|(state, _)| state.clone());
-    let mut report = counts.finish(system, judge, digits, found.interrupted || skipped);
-    report.recorded = recorded(judge, worst, options, state)?;
+    let mut report = counts.finish(system, decider, digits, found.interrupted || skipped);
+    report.recorded = recorded(decider, worst, options, state)?;
     report.first = Rung::Doubles;
     report.remaining = found.remaining;
     Ok(report)
@@ -238,7 +239,7 @@ fn streamed(
 
 /// The worst state and others that are spread over the sweep, with their certified ranks.
 fn recorded(
-    judge: &Judge<'_>,
+    decider: &RankDecider<'_>,
     worst: Option<State>,
     options: SweepOptions<'_>,
     state: impl Fn(u64) -> Result<State, LocusError> + Sync,
@@ -252,35 +253,35 @@ fn recorded(
     let drawn: Vec<State> = drawn.collect::<Result<_, _>>()?;
     let first = worst.filter(|_| count > 0);
     let states: Vec<State> = first.into_iter().chain(drawn).take(count as usize).collect();
-    let judged = states.into_par_iter().map(|state| match judge.decide(&state) {
+    let decided = states.into_par_iter().map(|state| match decider.decide(&state) {
         _ if options.interrupt.load(Ordering::Relaxed) => None,
-        StateJudgement::Report(StateReport { rank, unseen, certainty: Certainty::Certified, .. }) => {
+        StateDecision::Report(StateReport { rank, unseen, certainty: Certainty::Certified, .. }) => {
             Some(RecordedState { state, rank, unseen })
         }
         _ => None,
     });
-    Ok(judged.collect::<Vec<_>>().into_iter().flatten().collect())
+    Ok(decided.collect::<Vec<_>>().into_iter().flatten().collect())
 }
 
 /// Judges some states at once and adds them up in their order.
-fn judge_all(
+fn decide_all(
     system: &System,
-    judge: &Judge<'_>,
+    decider: &RankDecider<'_>,
     counts: &mut SweepCounts,
     indices: &[u64],
     state: impl Fn(u64) -> Result<State, LocusError> + Sync,
 ) -> Result<(), LocusError> {
-    let block: Vec<Result<(State, StateJudgement), LocusError>> = indices
+    let block: Vec<Result<(State, StateDecision), LocusError>> = indices
         .par_iter()
         .map(|index| {
             let state = state(*index)?;
-            let judged = judge.decide(&state);
-            Ok((state, judged))
+            let decided = decider.decide(&state);
+            Ok((state, decided))
         })
         .collect();
     for (index, item) in indices.iter().zip(block) {
-        let (state, judged) = item?;
-        counts.add(system, *index, state, judged);
+        let (state, decided) = item?;
+        counts.add(system, *index, state, decided);
     }
     Ok(())
 }
@@ -300,13 +301,13 @@ struct SweepCounts {
 }
 
 impl SweepCounts {
-    fn add(&mut self, system: &System, index: u64, state: State, judged: StateJudgement) {
-        let report = match judged {
-            StateJudgement::Pole(divisor) => {
+    fn add(&mut self, system: &System, index: u64, state: State, decided: StateDecision) {
+        let report = match decided {
+            StateDecision::Pole(divisor) => {
                 *self.poles.entry(divisor).or_insert(0) += 1;
                 return;
             }
-            StateJudgement::Report(report) => report,
+            StateDecision::Report(report) => report,
         };
         self.samples += 1;
         *self.ranks.entry(report.rank).or_insert(0) += 1;
@@ -329,12 +330,12 @@ impl SweepCounts {
     fn finish(
         self,
         system: &System,
-        judge: &Judge<'_>,
+        decider: &RankDecider<'_>,
         digits: Option<usize>,
         interrupted: bool,
     ) -> SweepReport {
         let digits_of_worst = |digits| match &self.worst {
-            Some((state, _)) => judge.digits(state, digits),
+            Some((state, _)) => decider.digits(state, digits),
             None => Err(NoDigits::NoState),
         };
         SweepReport {

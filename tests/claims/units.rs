@@ -8,7 +8,7 @@ use palmistry::observability::{
     Branch, Codistribution, Coordinate, Defined, Length, Locus, State, customary_singular_values,
     parse_condition, solve_conditions,
 };
-use palmistry::sweep::{Certainty, Judge, JudgedRows, ProofWanted, StateJudgement, StateReport};
+use palmistry::sweep::{Certainty, DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
 use palmistry::system::Value;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -100,16 +100,16 @@ fn decide(
     wanted: Certainty,
 ) -> StateReport {
     let is_angle = &case.system.angle_test();
-    let judge = Judge::new(
+    let decider = RankDecider::new(
         &case.system.graph,
         Defined::default(),
-        JudgedRows { quick: rows, all: rows, columns: case.system.states.len() },
+        DecidedRows { quick: rows, all: rows, columns: case.system.states.len() },
         is_angle,
         ProofWanted { wanted, field: PrimeField::random(&mut rand_chacha_rng()) },
     );
-    match judge.decide(state) {
-        StateJudgement::Report(report) => report,
-        StateJudgement::Pole(pole) => panic!("{pole}"),
+    match decider.decide(state) {
+        StateDecision::Report(report) => report,
+        StateDecision::Pole(pole) => panic!("{pole}"),
     }
 }
 

@@ -43,10 +43,10 @@ fn readings(truth: [f64; 3], samples: usize) -> Signals {
     Signals::new(times, vec![("x".to_owned(), x)]).unwrap()
 }
 
-fn sought(guess: &[(&str, f64)]) -> Sought {
-    Sought {
+fn question(guess: &[(&str, f64)]) -> EstimateQuestion {
+    EstimateQuestion {
         guess: guess.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
-        ..Sought::default()
+        ..EstimateQuestion::default()
     }
 }
 
@@ -100,19 +100,19 @@ fn both_methods_by_windows_find_speed_and_frequency() {
     let truth = [0.7, -1.1, 2.3];
     let signals = readings(truth, 151);
     for method in [WindowSearch::Newton, WindowSearch::TrustRegion] {
-        let task =
-            Task::new(&system(OSCILLATOR), &sought(&[("v", -1.21), ("w", 2.53)]), &signals, &NEVER).unwrap();
+        let task = Task::new(&system(OSCILLATOR), &question(&[("v", -1.21), ("w", 2.53)]), &signals, &NEVER)
+            .unwrap();
         let track = window(method).observe(&task);
         assert_eq!(track.updates.len(), 3);
-        assert_eq!(track.moments.len(), 151);
+        assert_eq!(track.estimates.len(), 151);
         for update in &track.updates {
-            assert_eq!(update.standing, UpdateEnd::Converged, "{method:?}");
+            assert_eq!(update.end, UpdateEnd::Converged, "{method:?}");
             let (s, c) = (truth[2] * update.from).sin_cos();
             let v = -truth[0] * truth[2] * s + truth[1] * c;
             assert!((update.estimate[0] - v).abs() < 1e-9, "{method:?}: {:?} and {v}", update.estimate);
             assert!((update.estimate[1] - truth[2]).abs() < 1e-9);
         }
-        assert!(track.moments.iter().all(|moment| moment.surprise[0].abs() < 1e-9));
+        assert!(track.estimates.iter().all(|moment| moment.residual[0].abs() < 1e-9));
     }
 }
 
@@ -122,7 +122,7 @@ fn newton_converges_quadratically() {
     let truth = [0.7, -1.1, 2.3];
     let signals = readings(truth, 50);
     let task =
-        Task::new(&system(OSCILLATOR), &sought(&[("v", -1.21), ("w", 2.53)]), &signals, &NEVER).unwrap();
+        Task::new(&system(OSCILLATOR), &question(&[("v", -1.21), ("w", 2.53)]), &signals, &NEVER).unwrap();
     let error = |steps: u64| {
         let track = MovingWindow { steps, ..window(WindowSearch::Newton) }.observe(&task);
         (track.updates[0].estimate[1] - truth[2]).abs()
@@ -142,7 +142,8 @@ fn newton_converges_quadratically() {
 fn a_filter_ends_near_the_truth() {
     let truth = [0.7, -1.1, 2.3];
     let signals = readings(truth, 301);
-    let task = Task::new(&system(OSCILLATOR), &sought(&[("v", -1.0), ("w", 2.5)]), &signals, &NEVER).unwrap();
+    let task =
+        Task::new(&system(OSCILLATOR), &question(&[("v", -1.0), ("w", 2.5)]), &signals, &NEVER).unwrap();
     let track = Kalman { prior: 0.1, process_noise: 1e-6, least_sigma: 1e-6 }.observe(&task);
     assert!((track.last().unwrap().state[1] - truth[2]).abs() < 1e-4, "{:?}", track.last());
     assert_eq!(track.unseen, 0);
@@ -165,10 +166,10 @@ fn a_high_gain_observer_forgets_its_first_guess() {
     let times: Vec<f64> = (0..201).map(|i| 0.01 * f64::from(i)).collect();
     let x = times.iter().map(|t| place + 0.5 * (2.0 * t).cos()).collect();
     let signals = Signals::new(times, vec![("x".to_owned(), x)]).unwrap();
-    let task = Task::new(&system(text), &sought(&[("v", 0.5), ("b", 3.0)]), &signals, &NEVER).unwrap();
+    let task = Task::new(&system(text), &question(&[("v", 0.5), ("b", 3.0)]), &signals, &NEVER).unwrap();
     let track = HighGain { gain: 15.0 }.observe(&task);
     // the error of each guess, of order one, dies out as (t gain)^2 exp(-gain t)
-    for moment in track.moments.iter().filter(|moment| moment.time >= 1.0) {
+    for moment in track.estimates.iter().filter(|moment| moment.time >= 1.0) {
         let left = 100.0 * (15.0 * moment.time).powi(2) * (-15.0 * moment.time).exp() + 1e-9;
         assert!((moment.state[1] - 4.0 * place).abs() < left, "{moment:?}");
     }
@@ -189,10 +190,10 @@ fn what_cannot_be_told_apart_is_said_to_be_unseen() {
         output x
     "#;
     let signals = readings([0.7, -1.1, 2.0], 60);
-    let task =
-        Task::new(&system(text), &sought(&[("v", -1.1), ("a", 1.0), ("b", 3.0)]), &signals, &NEVER).unwrap();
+    let task = Task::new(&system(text), &question(&[("v", -1.1), ("a", 1.0), ("b", 3.0)]), &signals, &NEVER)
+        .unwrap();
     let track = window(WindowSearch::Newton).observe(&task);
-    let UpdateEnd::Blind { weakest } = &track.updates[0].standing else { panic!("{:?}", track.updates[0]) };
+    let UpdateEnd::Blind { weakest } = &track.updates[0].end else { panic!("{:?}", track.updates[0]) };
     // the two differ against each other, in units of their sizes 1 and 3
     assert!((weakest[0]).abs() < 1e-6 && (weakest[1] + 3.0 * weakest[2]).abs() < 1e-6, "{weakest:?}");
     assert_eq!(track.updates[0].estimate, [-1.1, 1.0, 3.0]);
@@ -203,7 +204,7 @@ fn what_cannot_be_told_apart_is_said_to_be_unseen() {
 fn what_no_one_tells_is_named() {
     let signals = readings([1.0, 0.0, 1.0], 9);
     let refused = |guess: &[(&str, f64)], text: &str| {
-        Task::new(&system(text), &sought(guess), &signals, &NEVER).unwrap_err().to_string()
+        Task::new(&system(text), &question(guess), &signals, &NEVER).unwrap_err().to_string()
     };
     assert_eq!(
         refused(&[("v", 1.0)], OSCILLATOR),

@@ -28,8 +28,8 @@ impl<'a> Observed<'a> {
     }
 }
 
-pub(super) fn standing_name(standing: &UpdateEnd) -> String {
-    match standing {
+pub(super) fn end_name(end: &UpdateEnd) -> String {
+    match end {
         UpdateEnd::Converged => "converged".to_owned(),
         UpdateEnd::StepsSpent => "all steps spent".to_owned(),
         UpdateEnd::Stuck => "no step lowers the error".to_owned(),
@@ -83,7 +83,7 @@ fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
     let mut found = json!({
         "from": update.from,
         "to": update.to,
-        "standing": standing_name(&update.standing),
+        "standing": end_name(&update.end),
         "iterations": update.steps,
         "troubled": update.troubled,
         "seconds": update.seconds,
@@ -92,7 +92,7 @@ fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
         "misfit": finite(update.misfit),
         "states": states(observed, update.from, &update.estimate, Some(&update.deviations)),
     });
-    if let UpdateEnd::Blind { weakest } = &update.standing {
+    if let UpdateEnd::Blind { weakest } = &update.end {
         found["unseen"] = json!(weakest);
     }
     found
@@ -120,7 +120,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         })
     });
     let guess: Map<String, Value> =
-        experiment.sought.guess.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+        experiment.question.guess.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
     let mut found = json!({
         "scene": experiment.scene.title,
         "model": experiment.system.title,
@@ -129,8 +129,8 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         "duration": times.last(),
         "sensor": { "noise": experiment.scene.sensor.noise, "resolution": experiment.scene.sensor.resolution },
         "first_guess": guess,
-        "clamped": experiment.sought.clamped,
-        "told": experiment.sought.known,
+        "clamped": experiment.question.clamped,
+        "told": experiment.question.known,
         "faults": fault_lines(&experiment.faults),
         "observers": answers.collect::<Vec<_>>(),
         "interrupted": observed.interrupted,
@@ -199,7 +199,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         let _ = writeln!(text, "\n{}{time}", answer.method.name());
         for update in &answer.track.updates {
             let time = if is_timed { format!(", {:.1} ms", 1e3 * update.seconds) } else { String::new() };
-            let standing = standing_name(&update.standing);
+            let standing = end_name(&update.end);
             let _ =
                 writeln!(text, "  from {:.3} s: {standing} after {} steps{time}", update.from, update.steps);
             let bounds = Some(&update.deviations[..]);

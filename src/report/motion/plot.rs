@@ -70,7 +70,7 @@ pub(super) fn state(observed: &Observed<'_>, place: usize) -> String {
     let Some(name) = names.get(place) else { return String::new() };
     let truth = truth(observed, name);
     let recovered = |answer: &Answer| {
-        let points = answer.track.moments.iter().map(|moment| (moment.time, moment.state[place]));
+        let points = answer.track.estimates.iter().map(|moment| (moment.time, moment.state[place]));
         Curve::of_method(answer.method, points.collect())
     };
     let mut curves: Vec<Curve> = observed.answers.iter().map(recovered).collect();
@@ -125,7 +125,7 @@ pub(super) fn errors(observed: &Observed<'_>, place: usize) -> Option<String> {
     let truth = truth(observed, name);
     let at = |time: f64| truth.get(truth.partition_point(|point| point.0 < time)).map(|point| point.1);
     let error = |answer: &Answer| {
-        let moments = answer.track.moments.iter();
+        let moments = answer.track.estimates.iter();
         let points = moments.filter_map(|moment| Some((moment.time, moment.state[place] - at(moment.time)?)));
         Curve::of_method(answer.method, logarithms(points))
     };
@@ -175,8 +175,8 @@ fn sizes(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 pub(super) fn sensor_errors(observed: &Observed<'_>) -> Vec<String> {
     let Some((names, sigma)) = outputs(observed) else { return Vec::new() };
     let surprises = |answer: &Answer, output: usize| -> Vec<(f64, f64)> {
-        let moments = answer.track.moments.iter();
-        moments.filter_map(|moment| Some((moment.time, *moment.surprise.get(output)?))).collect()
+        let moments = answer.track.estimates.iter();
+        moments.filter_map(|moment| Some((moment.time, *moment.residual.get(output)?))).collect()
     };
     let limits = limits(observed);
     let mut pictures = Vec::new();

@@ -56,7 +56,7 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
     let (first, last) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
     let sensor = &scene.sensor;
     let guesses =
-        experiment.sought.guess.iter().map(|(name, value)| format!("{name} = {}", shortest(*value)));
+        experiment.question.guess.iter().map(|(name, value)| format!("{name} = {}", shortest(*value)));
     html! {
         (headline(observed))
         p {
@@ -89,8 +89,8 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
         }
         p {
             "Sought, with the first guesses: " code { (guesses.collect::<Vec<_>>().join(", ")) }
-            @if !experiment.sought.clamped.is_empty() {
-                "; held at its guess in the first window: " code { (experiment.sought.clamped.join(", ")) }
+            @if !experiment.question.clamped.is_empty() {
+                "; held at its guess in the first window: " code { (experiment.question.clamped.join(", ")) }
             }
             ". A window has " (scene.observer.window) " steps of time."
         }

@@ -45,7 +45,7 @@ fn told(experiment: &Experiment, name: &str, row: usize) -> Option<f64> {
     if let Some(place) = signals.find(name) {
         return signals.column(place).get(row).copied();
     }
-    experiment.sought.known.get(name).copied().or_else(|| {
+    experiment.question.known.get(name).copied().or_else(|| {
         let symbol = experiment.system.find_symbol(name)?;
         let info = experiment.system.symbols().find(|(other, _)| *other == symbol)?.1;
         info.default.as_ref().map(rational_to_f64)
@@ -72,7 +72,7 @@ pub(super) fn outline(observed: &Observed<'_>) -> Option<Outline> {
     let mut orientation = start.map_or(0.0, |moment| moment.phi0);
     let mut before: Option<(f64, f64)> = None;
     let mut instants = Vec::new();
-    for moment in &answer.track.moments {
+    for moment in &answer.track.estimates {
         let row = times.partition_point(|time| *time < moment.time);
         let of = |name: &str| match place(name) {
             Some(place) => Some(moment.state[place]),
@@ -104,7 +104,7 @@ pub(super) fn outline(observed: &Observed<'_>) -> Option<Outline> {
             centre: [contacts[0][0] - arms[0][0], contacts[0][1] - arms[0][1]],
             orientation,
             points: arms.map(|arm| turned(arm, -orientation)),
-            seen: answer.track.updates.is_empty() || !moment.surprise.is_empty(),
+            seen: answer.track.updates.is_empty() || !moment.residual.is_empty(),
         });
     }
     (!instants.is_empty()).then_some(Outline { method: answer.method, instants })

@@ -3,7 +3,7 @@
 use crate::experiment::{Answer, error};
 use crate::observer::{Update, UpdateEnd};
 use crate::report::axis::unit_of;
-use crate::report::motion::answers::{Observed, standing_name};
+use crate::report::motion::answers::{Observed, end_name};
 use maud::{Markup, html};
 
 /// More updates than these are in the JSON only.
@@ -65,7 +65,7 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
             } }
             tbody {
                 @for answer in observed.answers {
-                    @let converged = answer.track.updates.iter().filter(|u| u.standing == UpdateEnd::Converged).count();
+                    @let converged = answer.track.updates.iter().filter(|u| u.end == UpdateEnd::Converged).count();
                     tr {
                         td { b { (answer.method.name()) } }
                         @if let Some(last) = answer.track.last() {
@@ -141,7 +141,7 @@ fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
                     tr {
                         @if place == 0 {
                             td.number rowspan=(names.len()) { (format!("{:.3} to {:.3} s", update.from, update.to)) }
-                            td rowspan=(names.len()) { (standing_name(&update.standing)) }
+                            td rowspan=(names.len()) { (end_name(&update.end)) }
                             td.number rowspan=(names.len()) {
                                 (update.steps) @if update.troubled > 0 { " (" (update.troubled) " mended)" }
                             }
@@ -184,12 +184,12 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
         }
         for update in &answer.track.updates {
             let from = update.from;
-            match &update.standing {
+            match &update.end {
                 UpdateEnd::Blind { weakest } => {
                     lines.push(format!("{name} from {from:.3} s: {}", blind(observed, update, weakest)));
                 }
                 UpdateEnd::Converged => {}
-                _ => lines.push(format!("{name} from {from:.3} s: {}", standing_name(&update.standing))),
+                _ => lines.push(format!("{name} from {from:.3} s: {}", end_name(&update.end))),
             }
         }
         lines.extend(answer.track.remarks.iter().map(|remark| format!("{name}: {remark}")));
@@ -212,7 +212,7 @@ fn blind(observed: &Observed<'_>, update: &Update, weakest: &[f64]) -> String {
     let first = experiment.signals.times().first() == Some(&update.from);
     // what the first window may not change has no part in the direction; readings that are unknown come last
     let names = experiment.names();
-    let clamped = |name: &str| first && experiment.sought.clamped.iter().any(|other| other == name);
+    let clamped = |name: &str| first && experiment.question.clamped.iter().any(|other| other == name);
     let mut parts: Vec<(&str, f64)> =
         names.into_iter().filter(|name| !clamped(name)).zip(weakest.iter().copied()).collect();
     parts.retain(|(_, part)| part.abs() > 0.05);

@@ -4,7 +4,7 @@ use super::subject::{Subject, Truth};
 use super::{Mark, StressVerdict, Way, jacobi};
 use crate::number::{DoubleDouble, Floats, Interval, RealNumber, rational_to_f64};
 use crate::observability::{Spectrum, State, certain_rank, customary_singular_values, singular_values};
-use crate::sweep::{Judge, StateJudgement};
+use crate::sweep::{RankDecider, StateDecision};
 use dashu::rational::RBig;
 
 /// What one way finds at a state.
@@ -38,7 +38,7 @@ impl Subject {
     /// (a power of two, so that nothing is rounded).
     pub fn findings(
         &self,
-        judge: &Judge<'_>,
+        decider: &RankDecider<'_>,
         state: &State,
         truth: &Truth,
         column: Option<(usize, f64)>,
@@ -85,7 +85,7 @@ impl Subject {
                     (self.by_jacobi(picked, 2f64.powi(-104)), worst)
                 }),
                 Way::Ladder => {
-                    StressFinding { verdict: self.by_ladder(judge, state, &intervals), digits: None }
+                    StressFinding { verdict: self.by_ladder(decider, state, &intervals), digits: None }
                 }
             })
             .collect()
@@ -167,7 +167,7 @@ impl Subject {
     /// so that units (which multiply a column) say nothing to them.
     fn by_ladder(
         &self,
-        judge: &Judge<'_>,
+        decider: &RankDecider<'_>,
         state: &State,
         intervals: &Result<Vec<Interval>, String>,
     ) -> StressVerdict {
@@ -177,9 +177,9 @@ impl Subject {
         {
             return StressVerdict::Rank(rank);
         }
-        match judge.decide(state) {
-            StateJudgement::Report(report) => StressVerdict::Rank(report.rank),
-            StateJudgement::Pole(why) => StressVerdict::Refused(why),
+        match decider.decide(state) {
+            StateDecision::Report(report) => StressVerdict::Rank(report.rank),
+            StateDecision::Pole(why) => StressVerdict::Refused(why),
         }
     }
 

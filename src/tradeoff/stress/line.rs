@@ -156,13 +156,13 @@ impl Prepared {
 
     /// What all ways find from one base state, at each distance.
     pub fn walk(&self, subject: &Subject, base: &State, halvings: &[usize]) -> Walk {
-        let judge = subject.judge();
+        let decider = subject.decider();
         halvings
             .iter()
             .map(|halvings| {
                 let state = self.at(base, *halvings);
                 let truth = subject.truth(&state).ok()?;
-                let findings = subject.findings(&judge, &state, &truth, None);
+                let findings = subject.findings(&decider, &state, &truth, None);
                 let marked = findings.into_iter().zip(Way::ALL).map(|(finding, way)| {
                     let mark = finding.mark(way, &truth);
                     MarkedFinding { finding, mark }
@@ -179,10 +179,10 @@ impl Prepared {
         if self.to_infinity {
             return found;
         }
-        let judge = subject.judge();
+        let decider = subject.decider();
         for state in states {
             let Ok(truth) = subject.truth(state) else { continue };
-            let findings = subject.findings(&judge, state, &truth, None);
+            let findings = subject.findings(&decider, state, &truth, None);
             for ((finding, way), count) in findings.iter().zip(Way::ALL).zip(&mut found) {
                 count.count(finding.mark(way, &truth));
             }

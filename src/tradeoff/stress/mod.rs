@@ -50,7 +50,7 @@ pub enum Way {
     Interval,
     /// Double-doubles throughout: singular values as for single precision.
     DoubleDouble,
-    /// The ladder of [`Judge`](crate::sweep::Judge), certified: intervals, residues, exact numbers, enclosures.
+    /// The ladder of [`RankDecider`](crate::sweep::RankDecider), certified: intervals, residues, exact numbers, enclosures.
     Ladder,
 }
 

@@ -278,11 +278,11 @@ impl Stress {
 
     /// States of the box and of the sets, but poles.
     fn seen(&self, options: &StressOptions<'_>) -> Vec<Seen> {
-        let judge = self.subject.judge();
+        let decider = self.subject.decider();
         let mut states = self.of_box(options, options.samples);
         states.extend(self.bases(options).map(|(_, base)| base.clone()));
         let seen: Vec<Option<Seen>> =
-            states.into_par_iter().map(|state| Seen::new(&self.subject, &judge, state)).collect();
+            states.into_par_iter().map(|state| Seen::new(&self.subject, &decider, state)).collect();
         seen.into_iter().flatten().collect()
     }
 }

@@ -70,7 +70,7 @@ impl Quantity {
 
     /// Takes the quantity from one end to the other.
     pub(super) fn scale(&self, subject: &Subject, state: &State) -> Scaling {
-        let judge = subject.judge();
+        let decider = subject.decider();
         let exponents: Vec<i32> = (-FARTHEST..=FARTHEST).step_by(STEP).collect();
         let found: Vec<Option<Vec<(Mark, String)>>> = exponents
             .iter()
@@ -80,7 +80,7 @@ impl Quantity {
                 let state =
                     scaled(state, self.powers.iter().map(|(symbol, power)| (*symbol, factor(*power))));
                 let truth = subject.truth(&state).ok()?;
-                let findings = subject.findings(&judge, &state, &truth, None).into_iter().zip(Way::ALL);
+                let findings = subject.findings(&decider, &state, &truth, None).into_iter().zip(Way::ALL);
                 let marked = findings.map(|(finding, way)| {
                     let mark = finding.mark(way, &truth);
                     let cause =

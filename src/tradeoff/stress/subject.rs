@@ -6,7 +6,7 @@ use crate::observability::{
     Defined, MissingInput, Reduction, Spectrum, State, certain_rank, customary_singular_values, rank,
     singular_values,
 };
-use crate::sweep::{Certainty, Judge, JudgedRows, ProofWanted};
+use crate::sweep::{Certainty, DecidedRows, ProofWanted, RankDecider};
 use crate::system::System;
 use dashu::rational::RBig;
 use rand::SeedableRng;
@@ -80,11 +80,11 @@ impl Subject {
     }
 
     /// The ladder for these rows, certified.
-    pub(super) fn judge(&self) -> Judge<'_> {
-        let rows = JudgedRows { quick: &self.expanded, all: &self.expanded, columns: self.columns };
+    pub(super) fn decider(&self) -> RankDecider<'_> {
+        let rows = DecidedRows { quick: &self.expanded, all: &self.expanded, columns: self.columns };
         let is_angle = |symbol| self.system.is_angle(symbol);
         let proof = ProofWanted { wanted: Certainty::Certified, field: self.field };
-        Judge::new(&self.system.graph, Defined::default(), rows, is_angle, proof)
+        RankDecider::new(&self.system.graph, Defined::default(), rows, is_angle, proof)
     }
 
     /// The rows that remain without unit rows, and their columns.

@@ -7,7 +7,7 @@ use super::subject::{Subject, Truth};
 use super::{Mark, Way};
 use crate::expression::Symbol;
 use crate::observability::{Spectrum, State};
-use crate::sweep::Judge;
+use crate::sweep::RankDecider;
 use dashu::rational::RBig;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -65,16 +65,16 @@ pub(super) struct Seen {
 
 impl Seen {
     /// `None` at a pole.
-    pub fn new(subject: &Subject, judge: &Judge<'_>, state: State) -> Option<Seen> {
+    pub fn new(subject: &Subject, decider: &RankDecider<'_>, state: State) -> Option<Seen> {
         let truth = subject.truth(&state).ok()?;
-        let findings = subject.findings(judge, &state, &truth, None);
+        let findings = subject.findings(decider, &state, &truth, None);
         Some(Seen { state, truth, findings })
     }
 }
 
 /// The marks of all ways at all states in some units; the file's own without a rescaling.
 pub(super) fn in_units(subject: &Subject, seen: &[Seen], name: &str, other: Option<&Rescaling>) -> UnitsRow {
-    let judge = subject.judge();
+    let decider = subject.decider();
     let mut ways = vec![WayInUnits::default(); Way::ALL.len()];
     let mut states = 0;
     for one in seen {
@@ -83,12 +83,12 @@ pub(super) fn in_units(subject: &Subject, seen: &[Seen], name: &str, other: Opti
             Some(Rescaling::Symbols(factors)) => {
                 let state = scaled(&one.state, factors.iter().cloned());
                 let Ok(truth) = subject.truth(&state) else { continue };
-                let findings = subject.findings(&judge, &state, &truth, None);
+                let findings = subject.findings(&decider, &state, &truth, None);
                 Some((truth, findings))
             }
             Some(Rescaling::Column { place, power }) => {
                 let column = Some((*place, 2f64.powi(*power)));
-                Some((one.truth.clone(), subject.findings(&judge, &one.state, &one.truth, column)))
+                Some((one.truth.clone(), subject.findings(&decider, &one.state, &one.truth, column)))
             }
         };
         states += 1;

@@ -67,13 +67,13 @@ fn all_four_regimes_are_recovered_in_the_first_window_from_ten_percent_off() {
         assert!(sought.starts_with("r1 r2 omega0"), "{sought}");
         assert_eq!(sought.contains("rho"), ["fixed_palms", "general"].contains(&name));
         let truth = experiment.truth_at(0.0).unwrap();
-        for ((_, guess), truth) in experiment.sought.guess.iter().zip(truth) {
+        for ((_, guess), truth) in experiment.question.guess.iter().zip(truth) {
             assert!((guess / truth - 1.1).abs() < 1e-12, "{name}: {guess} for {truth}");
         }
         let answers = answers(&experiment);
         for method in [Method::Newton, Method::TrustRegion] {
             let update = &answer(&answers, method).track.updates[0];
-            assert_eq!(update.standing, UpdateEnd::Converged, "{name} {method:?}");
+            assert_eq!(update.end, UpdateEnd::Converged, "{name} {method:?}");
             let worst = worst(&experiment, update);
             assert!(worst < 1e-8, "{name} {method:?}: {worst:e}");
         }
@@ -87,7 +87,7 @@ fn spent_steps_are_not_called_convergence() {
     let answers = answers(&experiment);
     for method in [Method::Newton, Method::TrustRegion] {
         let update = &answer(&answers, method).track.updates[0];
-        assert_eq!((&update.standing, update.steps), (&UpdateEnd::StepsSpent, 2), "{method:?}");
+        assert_eq!((&update.end, update.steps), (&UpdateEnd::StepsSpent, 2), "{method:?}");
         assert!(worst(&experiment, update) > 1e-3, "{method:?}: the test has looked at something unfinished");
     }
 }
@@ -97,12 +97,12 @@ fn spent_steps_are_not_called_convergence() {
 fn section_4_6_converges_within_five_steps_from_two_and_two() {
     let experiment = experiment(&text("section_4_6"));
     assert_eq!(
-        experiment.sought.guess,
+        experiment.question.guess,
         [("r1", 2.0), ("r2", 2.0), ("omega0", 0.0)].map(|(n, v)| (n.to_owned(), v))
     );
     let answers = answers(&experiment);
     let update = &answer(&answers, Method::Newton).track.updates[0];
-    assert_eq!((&update.standing, update.from), (&UpdateEnd::Converged, 0.0));
+    assert_eq!((&update.end, update.from), (&UpdateEnd::Converged, 0.0));
     assert!(update.steps <= 5, "{}", update.steps);
     assert_eq!(update.estimate[2], 0.0, "a body at rest, clamped");
     assert!(worst(&experiment, update) < 1e-8, "{:e}", worst(&experiment, update));
@@ -126,10 +126,10 @@ fn a_turning_point_is_said_not_to_be_seen_and_is_integrated() {
     let track = &answer(&answers, Method::Newton).track;
     for update in &track.updates {
         let turns_here = update.from <= turns[0] && turns[0] <= update.to;
-        let unseen = matches!(update.standing, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
-        assert_eq!(unseen, turns_here, "{} to {}: {:?}", update.from, update.to, update.standing);
+        let unseen = matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
+        assert_eq!(unseen, turns_here, "{} to {}: {:?}", update.from, update.to, update.end);
         if turns_here {
-            let inside = track.moments.iter().filter(|m| update.from < m.time && m.time <= update.to);
+            let inside = track.estimates.iter().filter(|m| update.from < m.time && m.time <= update.to);
             let mut moved = 0;
             for moment in inside {
                 let truth = experiment.truth_at(moment.time).unwrap();
