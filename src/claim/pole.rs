@@ -6,7 +6,7 @@
 
 use super::identity::RANDOM_PRIMES;
 use super::verdict::{Verdict, Witness};
-use crate::expression::{Input, Node, NodeId, Program, Symbol, draw_residues, expand_angles};
+use crate::expression::{Input, Node, NodeId, Program, Symbol, SymbolInput, draw_residues, expand_angles};
 use crate::number::polynomial::Size;
 use crate::number::{Arithmetic, Enclosures, Function, Laurent, PrimeField, Refusal, Series};
 use crate::observability::NamedCoordinate;
@@ -205,14 +205,9 @@ fn leading_coefficient_is_nonzero(
     let base = Enclosures::new(600);
     let all = Laurent { base, terms: TERMS };
     let number = |index: usize| -> Result<_, Refusal> {
-        let (symbol, function) = match program.inputs()[index] {
-            Input::Plain(symbol) => (symbol, None),
-            Input::Sine(symbol) => (symbol, Some(Function::Sin)),
-            Input::Cosine(symbol) => (symbol, Some(Function::Cos)),
-            Input::Opaque(_) => return Err(Refusal::NoExactPi),
-        };
-        let value = base.rational(point.get(&symbol).ok_or(Refusal::NotFinite)?)?;
-        function.map_or(Ok(value.clone()), |function| base.apply(function, &value))
+        let SymbolInput { symbol, function } =
+            program.inputs()[index].of_symbol().ok_or(Refusal::NoExactPi)?;
+        function.of(&base, base.rational(point.get(&symbol).ok_or(Refusal::NotFinite)?)?)
     };
     let inputs = series(program, &all, approach, false, number)
         .map_err(|_| "at a point with fixed angles, all other symbols need values too".to_owned())?;

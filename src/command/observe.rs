@@ -114,8 +114,7 @@ impl Observe {
             note(&format!("the motion ended early: {}", ended_in_words(simulation.ended())));
         }
         // a window that cannot be seen is part of the answer; a method that saw none has found nothing
-        let unseen =
-            |update: &Update| matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
+        let unseen = |update: &Update| matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
         let found_nothing = |updates: &[Update]| !updates.is_empty() && updates.iter().all(unseen);
         let as_expected = !answers.iter().any(|answer| found_nothing(&answer.track.updates));
         let status = Status::of(as_expected);

@@ -1,7 +1,8 @@
 //! Do two rational expressions vanish together on more than a thin set? On a random line they then share a root.
 
 use super::graph::{Graph, NodeId, Symbol};
-use super::program::{Input, Program};
+use super::input::Input;
+use super::program::Program;
 use crate::number::polynomial::Ring;
 use crate::number::univariate::Univariate;
 use crate::number::{Arithmetic, Fraction, Fractions};

@@ -2,7 +2,8 @@
 //! `simplify` leaves it.
 
 use super::graph::{Graph, NodeId, Symbol};
-use super::program::{Input, Program};
+use super::input::Input;
+use super::program::Program;
 use crate::expression::expand_angles;
 use crate::number::polynomial::{Exponents, LARGEST_ARITY, Polynomial, Ring};
 use crate::number::{Arithmetic, Fractions, Refusal};

@@ -7,7 +7,8 @@
 //! Functions other than these are unknowns of their own.
 
 use super::graph::{Graph, NodeId, Symbol};
-use super::program::{Input, Program};
+use super::input::Input;
+use super::program::Program;
 use crate::number::polynomial::{LARGEST_ARITY, Polynomial, Ring};
 use crate::number::{Arithmetic, Fraction, Fractions, Function};
 use dashu::base::Gcd;

@@ -2,22 +2,10 @@
 //! over any [`Arithmetic`].
 
 use super::graph::{Graph, Node, NodeId, Symbol};
+use super::input::Input;
 use crate::number::{Arithmetic, Function, Refusal};
 use dashu::rational::RBig;
 use std::collections::HashMap;
-
-/// What a program has to be given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Input {
-    /// The value of a symbol.
-    Plain(Symbol),
-    /// The sine of a symbol that is an angle.
-    Sine(Symbol),
-    /// The cosine of a symbol that is an angle.
-    Cosine(Symbol),
-    /// The value of a function that is treated as an unknown of its own (the node is the function's value), or pi.
-    Opaque(NodeId),
-}
 
 #[derive(Clone, Copy, Debug)]
 enum Operation {

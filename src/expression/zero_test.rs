@@ -10,7 +10,8 @@
 //! (1980); R. Zippel, *Probabilistic algorithms for sparse polynomials* (1979).
 
 use super::graph::{Graph, NodeId, Symbol};
-use super::program::{Input, Program};
+use super::input::Input;
+use super::program::Program;
 use crate::number::polynomial::Size;
 use crate::number::{Arithmetic, Fractions, LOG2_PRIMES, PrimeField, Refusal};
 use dashu::rational::RBig;

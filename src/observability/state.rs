@@ -1,6 +1,6 @@
 //! A state in exact numbers.
 
-use crate::expression::{Input, Program, Symbol};
+use crate::expression::{Input, Program, Symbol, SymbolFunction, SymbolInput};
 use crate::number::{Arithmetic, Function, RealNumber, Refusal, rational_to_f64};
 use crate::system::System;
 use dashu::rational::RBig;
@@ -89,20 +89,16 @@ impl State {
     ) -> Result<Vec<A::Number>, MissingInput> {
         let mut inputs = Vec::with_capacity(program.inputs().len());
         for input in program.inputs() {
-            let (symbol, function) = match input {
-                Input::Plain(symbol) => (symbol, None),
-                Input::Sine(symbol) => (symbol, Some(Function::Sin)),
-                Input::Cosine(symbol) => (symbol, Some(Function::Cos)),
-                Input::Opaque(_) => return Err(MissingInput::Unsaid),
-            };
+            let SymbolInput { symbol, function } = input.of_symbol().ok_or(MissingInput::Unsaid)?;
             let image = |value| arithmetic.rational(value);
-            inputs.push(match (self.values.get(symbol).ok_or(MissingInput::Unsaid)?, function) {
-                (Coordinate::Number(value), None) => image(value)?,
-                // an angle in radians: its sine is no rational, and exact arithmetic refuses
-                (Coordinate::Number(value), Some(function)) => arithmetic.apply(function, &image(value)?)?,
-                (Coordinate::Angle { sine, .. }, Some(Function::Sin)) => image(sine)?,
-                (Coordinate::Angle { cosine, .. }, Some(_)) => image(cosine)?,
-                (Coordinate::Angle { sine, cosine }, None) => principal_value(arithmetic, sine, cosine)?,
+            inputs.push(match (self.values.get(&symbol).ok_or(MissingInput::Unsaid)?, function) {
+                // of an angle in radians the sine is no rational, and exact arithmetic refuses
+                (Coordinate::Number(value), function) => function.of(arithmetic, image(value)?)?,
+                (Coordinate::Angle { sine, .. }, SymbolFunction::Sine) => image(sine)?,
+                (Coordinate::Angle { cosine, .. }, SymbolFunction::Cosine) => image(cosine)?,
+                (Coordinate::Angle { sine, cosine }, SymbolFunction::Itself) => {
+                    principal_value(arithmetic, sine, cosine)?
+                }
             });
         }
         Ok(inputs)

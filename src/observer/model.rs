@@ -1,7 +1,7 @@
 //! What an observer believes: the equations of some states of a system, everything else being given.
 
 use super::Signals;
-use crate::expression::{Input, NodeId, Program, Symbol};
+use crate::expression::{NodeId, Program, Symbol};
 use crate::number::{rational_from_f64, rational_to_f64};
 use crate::system::{Kind, Role, System};
 use std::collections::{BTreeMap, HashMap};
@@ -150,9 +150,7 @@ impl Model {
         let program = Program::plain(&self.system.graph, nodes);
         let mut sources = Vec::new();
         for input in program.inputs() {
-            let (Input::Plain(symbol) | Input::Sine(symbol) | Input::Cosine(symbol)) = *input else {
-                continue; // none is asked for
-            };
+            let Some(symbol) = input.symbol() else { continue };
             if let Some(place) = self.symbols.iter().position(|other| *other == symbol) {
                 sources.push(InputSource::State(place));
                 continue;

@@ -40,10 +40,7 @@ impl PointPrograms {
         let place = |symbol: &Symbol| symbols.partition_point(|other| other < symbol);
         let function = |nodes: &[NodeId]| {
             let program = Program::plain(&system.graph, nodes);
-            let symbol = |input: &Input| match input {
-                Input::Plain(symbol) | Input::Sine(symbol) | Input::Cosine(symbol) => Some(place(symbol)),
-                Input::Opaque(_) => None, // none is asked for
-            };
+            let symbol = |input: &Input| input.symbol().map(|symbol| place(&symbol));
             let places = program.inputs().iter().filter_map(symbol).collect();
             Function { program, places }
         };

@@ -1,8 +1,8 @@
 //! What happens to a determinant when a computer-algebra system multiplies it out and adds up the monomials in ten
 //! digits.
 
-use crate::expression::{Expansion, Input, Symbol};
-use crate::number::{Arithmetic, Decimals, Function, Refusal, rational_to_f64};
+use crate::expression::{Expansion, Input, Symbol, SymbolInput};
+use crate::number::{Arithmetic, Decimals, Refusal, rational_to_f64};
 use dashu::rational::RBig;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -51,14 +51,8 @@ pub fn study_rounding(
 ) -> Result<RoundingStudy, Refusal> {
     let arithmetic = Decimals::new(digits);
     let value = |input: &Input| {
-        let (symbol, function) = match input {
-            Input::Plain(symbol) => (symbol, None),
-            Input::Sine(symbol) => (symbol, Some(Function::Sin)),
-            Input::Cosine(symbol) => (symbol, Some(Function::Cos)),
-            Input::Opaque(_) => return Err(Refusal::NotFinite),
-        };
-        let argument = arithmetic.rational(point.get(symbol).ok_or(Refusal::NotFinite)?)?;
-        function.map_or(Ok(argument.clone()), |function| arithmetic.apply(function, &argument))
+        let SymbolInput { symbol, function } = input.of_symbol().ok_or(Refusal::NotFinite)?;
+        function.of(&arithmetic, arithmetic.rational(point.get(&symbol).ok_or(Refusal::NotFinite)?)?)
     };
     let values: Vec<_> = expansion.variables.iter().map(value).collect::<Result<_, _>>()?;
     let monomials = expansion.numerator.len();

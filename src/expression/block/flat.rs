@@ -5,7 +5,7 @@
 //! and changes only the rounding.
 
 use crate::expression::graph::{Graph, Node, NodeId};
-use crate::expression::program::Input;
+use crate::expression::input::Input;
 use crate::number::{Arithmetic, Function, Rationals, Refusal, rational_to_f64};
 use dashu::base::{Abs, BitTest, Signed};
 use dashu::rational::RBig;

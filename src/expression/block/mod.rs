@@ -16,7 +16,7 @@ mod sharing;
 mod tape;
 
 use super::graph::{Graph, Node, NodeId, Symbol};
-use super::program::Input;
+use super::input::Input;
 use crate::number::{Function, Instructions, Lanes, MOST_LANES, Vectorised};
 use dashu::rational::RBig;
 use flat::Flat;

@@ -4,7 +4,7 @@
 //! so that its sine and cosine are rational numbers.
 
 use super::random::{threefry, unit};
-use crate::expression::{BlockProgram, Input, Machine, Symbol};
+use crate::expression::{BlockProgram, Input, Machine, Symbol, SymbolFunction, SymbolInput};
 use crate::number::{Bounded, LaneTask, Lanes, MOST_LANES, rational_from_f64, rational_to_f64};
 use crate::observability::{ATTEMPTS, AVOIDED, Source};
 use dashu::rational::RBig;
@@ -79,19 +79,17 @@ pub(super) struct DrawnProgram {
 impl DrawnProgram {
     /// `None` where it needs something that is not drawn.
     pub fn new(program: BlockProgram, axes: &[Axis]) -> Option<DrawnProgram> {
-        let axis = |symbol: &Symbol, is_turn: bool| {
-            axes.iter()
-                .position(|axis| axis.symbol == *symbol)
-                .filter(|place| axes[*place].is_turn == is_turn)
+        let axis = |symbol: Symbol, is_turn: bool| {
+            axes.iter().position(|axis| axis.symbol == symbol).filter(|place| axes[*place].is_turn == is_turn)
         };
         let drawn = |(place, input): (usize, &Input)| {
-            let function = match input {
-                Input::Plain(symbol) => axis(symbol, false).map(AxisFunction::Plain),
-                Input::Sine(symbol) => axis(symbol, true).map(AxisFunction::Sine),
-                Input::Cosine(symbol) => axis(symbol, true).map(AxisFunction::Cosine),
-                Input::Opaque(_) => None,
+            let SymbolInput { symbol, function } = input.of_symbol()?;
+            let function = match function {
+                SymbolFunction::Itself => AxisFunction::Plain(axis(symbol, false)?),
+                SymbolFunction::Sine => AxisFunction::Sine(axis(symbol, true)?),
+                SymbolFunction::Cosine => AxisFunction::Cosine(axis(symbol, true)?),
             };
-            Some(DrawnInput { place, function: function? })
+            Some(DrawnInput { place, function })
         };
         let used = program.inputs().iter().enumerate().filter(|(place, _)| program.is_used(*place));
         let inputs = used.map(drawn).collect::<Option<_>>()?;

@@ -17,7 +17,7 @@ mod jacobi;
 mod random;
 mod report;
 
-use crate::expression::{BlockProgram, Graph, Guard, Input, Need, Node, NodeId, Symbol, expand_angles};
+use crate::expression::{BlockProgram, Graph, Guard, Input, Need, Node, NodeId, expand_angles};
 use crate::number::{Bounded, Function, Instructions, Lanes, MOST_LANES, Vectorised, rational_from_f64};
 use crate::observability::{Coordinate, Locus, LocusError, Reduction, Source, State};
 use crate::sweep::certainty::Certainty;
@@ -99,7 +99,7 @@ impl Stream {
         watched.extend(watches(&mut system.graph, there, &[&watched[..], &entries].concat()));
         let reduction = Reduction::new(&system.graph, &entries, system.states.len());
         watched.extend(&entries);
-        let known = |input: Input| match (input, locus.sources.get(&symbol_of(input)?)?) {
+        let known = |input: Input| match (input, locus.sources.get(&input.symbol()?)?) {
             (Input::Sine(_), Source::Fixed(Coordinate::Angle { sine, .. })) => Some(sine.clone()),
             (Input::Cosine(_), Source::Fixed(Coordinate::Angle { cosine, .. })) => Some(cosine.clone()),
             _ => None,
@@ -239,13 +239,6 @@ fn watches(graph: &mut Graph, guards: impl Iterator<Item = Guard>, computed: &[N
         found.push(graph.div(one, divisor));
     }
     found
-}
-
-fn symbol_of(input: Input) -> Option<Symbol> {
-    match input {
-        Input::Plain(symbol) | Input::Sine(symbol) | Input::Cosine(symbol) => Some(symbol),
-        Input::Opaque(_) => None,
-    }
 }
 
 /// The one value of a plain coordinate, where there is only one.
