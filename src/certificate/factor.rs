@@ -7,7 +7,7 @@
 //! defined and continuous all over the box, so that this is asked before.
 
 use super::boxes::Place;
-use super::tape::Tape;
+use super::tape::{Range, Tape};
 use super::workspace::{BoxAtWork, Workspace};
 use crate::expression::Need;
 use crate::number::Interval;
@@ -74,10 +74,11 @@ impl Factor {
 
     /// Whether what is needed of the factor is so all over the box. `true` is proved; `false` says nothing.
     pub fn holds_everywhere(&self, at: &mut BoxAtWork<'_>, negative: bool) -> bool {
-        if self.shown_by(self.value_on_the_box(at)) {
+        let range = self.range_on_the_box(at);
+        if self.shown_by(range.value) {
             return true;
         }
-        let continuous = self.tape.is_defined(&at.room.intervals);
+        let continuous = range.is_defined();
         for witness in &self.witnesses {
             let Workspace { slots, intervals, .. } = &mut *at.room;
             if !witness.value(slots.at(Place::All), intervals).contains_zero() {
@@ -126,9 +127,9 @@ impl Factor {
     }
 
     /// The range over the box, enclosed as the factor is written.
-    fn value_on_the_box(&self, at: &mut BoxAtWork<'_>) -> Interval {
+    fn range_on_the_box<'r>(&'r self, at: &'r mut BoxAtWork<'_>) -> Range<'r> {
         let Workspace { slots, intervals, .. } = &mut *at.room;
-        self.tape.value(slots.at(Place::All), intervals)
+        self.tape.range(slots.at(Place::All), intervals)
     }
 
     /// The range over the face that is being looked at.
@@ -181,8 +182,7 @@ impl Factor {
     /// Whether the factor is zero somewhere in the box: proved by two corners, at one of which it is not negative and at the
     /// other not positive.
     pub fn vanishes(&self, at: &mut BoxAtWork<'_>) -> bool {
-        self.value_on_the_box(at);
-        if !self.tape.is_defined(&at.room.intervals) {
+        if !self.range_on_the_box(at).is_defined() {
             return false; // it may change its sign at a pole
         }
         self.slopes_in_the_middle(at);
@@ -200,8 +200,7 @@ impl Factor {
 
     /// Whether what is needed of the factor is so nowhere in the box, where it is defined.
     pub fn fails_everywhere(&self, at: &mut BoxAtWork<'_>) -> bool {
-        let value = self.value_on_the_box(at);
-        self.need.is_met_by_interval(value) == Some(false)
+        self.need.is_met_by_interval(self.range_on_the_box(at).value) == Some(false)
     }
 
     /// What is needed of it, in the notation of the proof language; the bare factor where it must not be zero.

@@ -1,5 +1,8 @@
 //! What tapes are given: the coordinates of a box, and their sines and cosines.
 
+use crate::expression::{Graph, Node, NodeId, Symbol};
+use crate::number::Function;
+
 /// A function of one coordinate that is given to a tape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum CoordinateFunction {
@@ -76,4 +79,30 @@ impl Slots {
     pub fn slope(&self, place: usize) -> Option<(usize, f64)> {
         self.slopes[place]
     }
+}
+
+/// A symbol, or the sine or cosine of one or of half of one.
+pub(super) fn as_coordinate_function(graph: &Graph, id: NodeId) -> Option<(Symbol, CoordinateFunction)> {
+    let (function, argument) = match graph.node(id) {
+        Node::Symbol(symbol) => return Some((symbol, CoordinateFunction::Itself)),
+        Node::Apply(function @ (Function::Sin | Function::Cos), argument) => (function, argument),
+        _ => return None,
+    };
+    if let Some(symbol) = graph.as_symbol(argument) {
+        return Some((
+            symbol,
+            if function == Function::Sin { CoordinateFunction::Sine } else { CoordinateFunction::Cosine },
+        ));
+    }
+    let Node::Mul(a, b) = graph.node(argument) else { return None };
+    let is_half = |id| graph.constant_value(id).is_some_and(|c| (c + c).is_one());
+    let symbol = match (graph.as_symbol(a), graph.as_symbol(b)) {
+        (Some(symbol), None) if is_half(b) => symbol,
+        (None, Some(symbol)) if is_half(a) => symbol,
+        _ => return None,
+    };
+    Some((
+        symbol,
+        if function == Function::Sin { CoordinateFunction::HalfSine } else { CoordinateFunction::HalfCosine },
+    ))
 }

@@ -4,7 +4,7 @@
 //! What does not depend on a coordinate is folded into constants. The sine and the cosine of a coordinate, or of half of
 //! it, are inputs of their own: the same few are needed by every expression, at the same few places.
 
-use super::slots::{CoordinateFunction, Slots};
+use super::slots::{Slots, as_coordinate_function};
 use crate::expression::{Graph, Need, Node, NodeId, Symbol};
 use crate::number::{Function, Interval, RealNumber};
 use std::collections::HashMap;
@@ -74,6 +74,24 @@ pub(super) struct Room<T> {
 impl<T> Default for Room<T> {
     fn default() -> Self {
         Room { values: Vec::new(), slopes: Vec::new(), by_slots: Vec::new() }
+    }
+}
+
+/// The range of an expression, and the values of its operations on the way to it.
+pub(super) struct Range<'r> {
+    pub value: Interval,
+    tape: &'r Tape,
+    room: &'r Room<Interval>,
+}
+
+impl Range<'_> {
+    /// Whether all operations are defined, and continuous, wherever the slots may lie.
+    pub fn is_defined(&self) -> bool {
+        let met = |(place, need): &(u32, Need)| {
+            let value = self.room.values.get(*place as usize);
+            value.is_some_and(|value| need.is_met_by_interval(*value) == Some(true))
+        };
+        self.tape.needs.iter().all(met)
     }
 }
 
@@ -196,14 +214,10 @@ impl Tape {
         room.values.last().copied().unwrap_or(T::from_f64(f64::NAN))
     }
 
-    /// Whether all its operations are defined, and continuous, wherever the slots may lie with which its value was
-    /// computed last.
-    pub fn is_defined(&self, room: &Room<Interval>) -> bool {
-        let met = |(place, need): &(u32, Need)| {
-            let value = room.values.get(*place as usize);
-            value.is_some_and(|value| need.is_met_by_interval(*value) == Some(true))
-        };
-        self.needs.iter().all(met)
+    /// The range over what the slots enclose.
+    pub fn range<'r>(&'r self, slots: &[Interval], room: &'r mut Room<Interval>) -> Range<'r> {
+        let value = self.value(slots, room);
+        Range { value, tape: self, room }
     }
 
     /// The value, and in `room.by_slots` the derivatives by the slots.
@@ -299,32 +313,6 @@ fn need(operation: Operation) -> Option<(u32, Need)> {
         Operation::Apply(function, a) => Need::of(function).map(|need| (a, need)),
         _ => None,
     }
-}
-
-/// A symbol, or the sine or cosine of one or of half of one.
-fn as_coordinate_function(graph: &Graph, id: NodeId) -> Option<(Symbol, CoordinateFunction)> {
-    let (function, argument) = match graph.node(id) {
-        Node::Symbol(symbol) => return Some((symbol, CoordinateFunction::Itself)),
-        Node::Apply(function @ (Function::Sin | Function::Cos), argument) => (function, argument),
-        _ => return None,
-    };
-    if let Some(symbol) = graph.as_symbol(argument) {
-        return Some((
-            symbol,
-            if function == Function::Sin { CoordinateFunction::Sine } else { CoordinateFunction::Cosine },
-        ));
-    }
-    let Node::Mul(a, b) = graph.node(argument) else { return None };
-    let is_half = |id| graph.constant_value(id).is_some_and(|c| (c + c).is_one());
-    let symbol = match (graph.as_symbol(a), graph.as_symbol(b)) {
-        (Some(symbol), None) if is_half(b) => symbol,
-        (None, Some(symbol)) if is_half(a) => symbol,
-        _ => return None,
-    };
-    Some((
-        symbol,
-        if function == Function::Sin { CoordinateFunction::HalfSine } else { CoordinateFunction::HalfCosine },
-    ))
 }
 
 /// `a^n`; what is not defined is a NaN, or the whole line.
