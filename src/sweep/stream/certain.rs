@@ -29,11 +29,19 @@ impl<L: Lanes> Elimination<L> {
         self.matrix[row * self.columns + column] = value;
     }
 
-    /// Sets the weights of a row or of a column; the weight of the longer side counts.
+    /// Sets the weight of a row; it counts where rows are the longer side.
     #[inline(always)]
-    pub fn set_weight(&mut self, is_row: bool, place: usize, weight: L) {
-        if is_row != self.transposed {
-            self.weights[place] = weight;
+    pub fn set_row_weight(&mut self, row: usize, weight: L) {
+        if !self.transposed {
+            self.weights[row] = weight;
+        }
+    }
+
+    /// Sets the weight of a column; it counts where columns are the longer side.
+    #[inline(always)]
+    pub fn set_column_weight(&mut self, column: usize, weight: L) {
+        if self.transposed {
+            self.weights[column] = weight;
         }
     }
 
@@ -122,8 +130,8 @@ mod tests {
         for (place, entry) in entries.iter().enumerate() {
             room.set(place / columns, place % columns, *entry);
         }
-        (0..rows).for_each(|row| room.set_weight(true, row, 1.0));
-        (0..columns).for_each(|column| room.set_weight(false, column, 1.0));
+        (0..rows).for_each(|row| room.set_row_weight(row, 1.0));
+        (0..columns).for_each(|column| room.set_column_weight(column, 1.0));
         room.is_full(1.0) == 1.0
     }
 

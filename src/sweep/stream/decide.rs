@@ -104,7 +104,7 @@ impl<L: Lanes> Decider<L> {
         let mut noise = zero;
         for i in 0..self.rows {
             let row = self.equilibrium.row_factor(i);
-            self.elimination.set_weight(true, i, row);
+            self.elimination.set_row_weight(i, row);
             for j in 0..self.columns {
                 let column = self.equilibrium.column_factor(j);
                 let entry = self.entries[i * self.columns + j];
@@ -114,7 +114,7 @@ impl<L: Lanes> Decider<L> {
             }
         }
         for j in 0..self.columns {
-            self.elimination.set_weight(false, j, self.equilibrium.column_factor(j));
+            self.elimination.set_column_weight(j, self.equilibrium.column_factor(j));
         }
         let certain = if certify { self.elimination.is_full(one) } else { zero };
 

@@ -196,10 +196,10 @@ impl Vectorised for Eliminations<'_> {
                     *of_column = of_column.larger(value.abs());
                     room.set(i, j, Bounded { value, units });
                 }
-                room.set_weight(true, i, inverse(of_row));
+                room.set_row_weight(i, inverse(of_row));
             }
             for (j, of_column) in of_columns.iter().enumerate() {
-                room.set_weight(false, j, inverse(*of_column));
+                room.set_column_weight(j, inverse(*of_column));
             }
             let (mut found, mut lost) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
             room.is_full(one).store(&mut found);
