@@ -47,7 +47,7 @@ pub(crate) struct Observe {
     /// Write all of the simulated motion to a file, CSV or Parquet: poses, contact forces, torques, energies, the truth.
     #[arg(long, value_name = "FILE")]
     motion: Option<PathBuf>,
-    /// Tell no times: two runs with one seed then write the same to the last byte.
+    /// Tell no times: two runs with one seed on one machine then write the same to the last byte.
     #[arg(long)]
     no_times: bool,
     /// Print one JSON object: 'observers' with their 'updates' and 'end', and the studies.

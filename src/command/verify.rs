@@ -34,7 +34,7 @@ pub(crate) struct Verify {
     /// Seed of the random points and the sampled states.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
-    /// Measure no times: two runs with one seed then write the same to the last byte. Speed against accuracy is left out.
+    /// Measure no times: two runs with one seed on one machine then write the same to the last byte. Speed against accuracy is left out.
     #[arg(long)]
     no_times: bool,
     /// Print everything that was found as one JSON object.

@@ -53,7 +53,7 @@ pub struct FileFindings {
 
 impl FileFindings {
     /// Nothing found yet.
-    pub(super) fn begun(system: System) -> FileFindings {
+    pub fn begun(system: System) -> FileFindings {
         FileFindings {
             system,
             outcomes: Vec::new(),

@@ -213,29 +213,32 @@ const LINES: [RGBColor; 4] =
 /// The stripes of a line, which are as wide as a finger.
 const STRIPES: usize = 16;
 
-/// A stripe around every few distances, and what stands there; neighbours with the same values are one.
+/// A stripe around every few distances, and what stands there; neighbours are one where all distances between them have the same
+/// values, those that have no stripe too.
 fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -> Vec<Hover> {
-    let all: Vec<(&f64, &Vec<f64>)> = slope.distance.iter().zip(&slope.values).collect();
-    let shown: Vec<_> = all.iter().step_by(all.len().div_ceil(STRIPES).max(1)).copied().collect();
-    let places: Vec<i32> = shown.iter().map(|(distance, _)| place(**distance)).collect();
     let said = |values: &Vec<f64>| match values.is_empty() {
         true => "a pole".to_owned(),
         false => values.iter().map(|value| format!("{value:.1e}")).collect::<Vec<_>>().join(", "),
     };
-    let texts: Vec<String> = shown.iter().map(|(_, values)| said(values)).collect();
+    let all: Vec<(f64, String)> = slope
+        .distance
+        .iter()
+        .zip(&slope.values)
+        .map(|(distance, values)| (*distance, said(values)))
+        .collect();
+    let shown: Vec<usize> = (0..all.len()).step_by(all.len().div_ceil(STRIPES).max(1)).collect();
+    let places: Vec<i32> = shown.iter().map(|index| place(all[*index].0)).collect();
     let mut stripes = Vec::new();
     let mut first = 0;
-    for run in texts.chunk_by(|a, b| a == b) {
+    for run in shown.chunk_by(|a, b| all[*a..=*b].windows(2).all(|pair| pair[0].1 == pair[1].1)) {
         let last = first + run.len() - 1;
         let half = |a: usize, b: usize| (places[a] + places[b]) / 2;
         let ends = [half(first.saturating_sub(1), first), half(last, (last + 1).min(places.len() - 1))];
-        let distances = match first == last {
-            true => format!("{:.0e}", shown[first].0),
-            false => format!("{:.0e} to {:.0e}", shown[first].0, shown[last].0),
-        };
+        let [(from, values), (to, _)] = [&all[shown[first]], &all[shown[last]]];
+        let distances = if first == last { format!("{from:.0e}") } else { format!("{from:.0e} to {to:.0e}") };
         let corners = [ends[0].min(ends[1]), top, ends[0].max(ends[1]), bottom];
         if corners[2] > corners[0] {
-            stripes.push(Hover { corners, text: format!("{distances}: {}", run[0]) });
+            stripes.push(Hover { corners, text: format!("{distances}: {values}") });
         }
         first = last + 1;
     }
@@ -322,6 +325,24 @@ pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
 mod tests {
     use super::*;
     use crate::system::CoordinateRange;
+
+    /// Neighbours are one stripe where nothing between them differs: a dip that no stripe shows keeps them apart.
+    #[test]
+    fn a_stripe_says_what_holds_all_over_it() {
+        let stripes = |dip: Option<usize>| {
+            let value = |i: usize| if Some(i) == dip { vec![1e-3] } else { vec![1.0] };
+            let slope = Slope {
+                distance: (0..64).map(|i| 10f64.powi(-i)).collect(),
+                values: (0..64).map(value).collect(),
+            };
+            let place = |distance: f64| (10.0 * -distance.log10()).round() as i32;
+            columns(&slope, place, [0, 9]).into_iter().map(|hover| hover.text).collect::<Vec<_>>()
+        };
+        assert_eq!(stripes(None), ["1e0 to 1e-60: 1.0e0"]);
+        assert_eq!(stripes(Some(17)), ["1e0 to 1e-16: 1.0e0", "1e-20 to 1e-60: 1.0e0"]);
+        let nothing = Slope { distance: vec![], values: vec![] };
+        assert!(columns(&nothing, |_| 0, [0, 9]).is_empty());
+    }
 
     /// What differs by rounding alone is one value, said once; what differs by little has a scale that tells.
     #[test]

@@ -1,40 +1,10 @@
 //! What is found at a state is that state's own: neither its neighbours nor where a stream is cut change a bit of it.
 
-use palmistry::System;
-use palmistry::expression::NodeId;
+use crate::stream::{regime, run, stream};
 use palmistry::number::Instructions;
-use palmistry::observability::{Locus, solve_conditions};
-use palmistry::sweep::{Certainty, StateVerdict, Stream, StreamOptions, StreamReport, Verdicts};
-use palmistry::system::Value;
+use palmistry::sweep::{Certainty, StateVerdict, Stream, Verdicts};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::collections::BTreeMap;
-use std::path::Path;
-
-fn regime(name: &str) -> System {
-    let file =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(name).with_extension("proof");
-    System::read(&file).unwrap()
-}
-
-fn rows(system: &System) -> Vec<NodeId> {
-    let Some(Value::Matrix(rows)) = system.definition("rows") else { panic!("no rows") };
-    rows.entries.clone()
-}
-
-fn stream(system: &mut System) -> Stream {
-    let rows = rows(system);
-    let branch = solve_conditions(system, &[]).unwrap().remove(0);
-    let locus = Locus::new(system, &branch, &BTreeMap::new(), &rows).unwrap();
-    Stream::new(system, &locus, &rows).unwrap()
-}
-
-fn run(stream: &Stream, states: u64, wanted: Certainty) -> (StreamReport, Vec<u64>) {
-    let mut left = Vec::new();
-    let options = StreamOptions { states, seed: 7, wanted, interrupt: &false.into(), progress: &|_| () };
-    let report = stream.run(&options, &mut |indices| left.extend_from_slice(indices)).unwrap();
-    (report, left)
-}
 
 /// Coordinates of the first states that a stream draws, angles in radians.
 fn drawn(stream: &Stream, count: u64) -> Vec<Vec<f64>> {

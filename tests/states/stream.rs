@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-fn regime(name: &str) -> System {
+pub(crate) fn regime(name: &str) -> System {
     let file =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002").join(name).with_extension("proof");
     System::read(&file).unwrap()
@@ -26,14 +26,14 @@ fn rows(system: &System) -> Vec<NodeId> {
     rows.entries.clone()
 }
 
-fn stream(system: &mut System) -> Stream {
+pub(crate) fn stream(system: &mut System) -> Stream {
     let rows = rows(system);
     let branch = solve_conditions(system, &[]).unwrap().remove(0);
     let locus = Locus::new(system, &branch, &BTreeMap::new(), &rows).unwrap();
     Stream::new(system, &locus, &rows).unwrap()
 }
 
-fn run(stream: &Stream, states: u64, wanted: Certainty) -> (StreamReport, Vec<u64>) {
+pub(crate) fn run(stream: &Stream, states: u64, wanted: Certainty) -> (StreamReport, Vec<u64>) {
     let mut left = Vec::new();
     let options = StreamOptions { states, seed: 7, wanted, interrupt: &false.into(), progress: &|_| () };
     let report = stream.run(&options, &mut |indices| left.extend_from_slice(indices)).unwrap();

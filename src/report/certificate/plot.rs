@@ -74,7 +74,7 @@ const MOST_PATCHES: usize = 200;
 /// Cells across and up.
 const GRID: [usize; 2] = [84, 60];
 
-/// What is in each cell, by rows from the top: of several the one that a reader must not miss.
+/// What is in each cell, by rows from the top: of several boxes the one that a reader must not miss.
 fn cells(map: &RegionMap) -> Vec<BoxStanding> {
     let weight = |standing: &BoxStanding| match standing {
         BoxStanding::Proved => 0,
@@ -83,17 +83,15 @@ fn cells(map: &RegionMap) -> Vec<BoxStanding> {
         BoxStanding::Pole => 3,
     };
     let mut found = vec![BoxStanding::Proved; GRID[0] * GRID[1]];
-    // a box covers the cells whose middle it holds, and at least the one in which it lies
-    let covered = |(low, high): (f64, f64), (from, to): (f64, f64), count: usize| {
-        let place = |value: f64| (value - from) / (to - from) * count as f64;
-        let first = ((place(low) - 0.5).ceil().max(0.0) as usize).min(count);
-        let last = ((place(high) - 0.5).ceil().max(0.0) as usize).min(count);
-        let middle = (place(f64::midpoint(low, high)).max(0.0) as usize).min(count - 1);
-        if last > first { first..last } else { middle..middle + 1 }
+    // all that a box touches: a cell is pale only where nothing else reaches into it
+    let touched = |(low, high): (f64, f64), (from, to): (f64, f64), count: usize| {
+        let place = |value: f64| ((value - from) / (to - from) * count as f64).clamp(0.0, count as f64);
+        let first = (place(low).floor() as usize).min(count - 1);
+        first..(place(high).ceil() as usize).clamp(first + 1, count)
     };
     for patch in &map.patches {
-        for row in covered(patch.y, (map.y.low, map.y.high), GRID[1]) {
-            for column in covered(patch.x, (map.x.low, map.x.high), GRID[0]) {
+        for row in touched(patch.y, (map.y.low, map.y.high), GRID[1]) {
+            for column in touched(patch.x, (map.x.low, map.x.high), GRID[0]) {
                 let cell = &mut found[(GRID[1] - 1 - row) * GRID[0] + column];
                 *cell = [*cell, patch.standing].into_iter().max_by_key(weight).unwrap_or(*cell);
             }
@@ -171,4 +169,36 @@ fn drawn(map: &RegionMap, title: &str, units: [Option<&str>; 2], most_patches: u
             .draw()?;
         Ok(())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::CoordinateRange;
+
+    /// A cell is pale only where nothing else reaches into it: a small box on the border of two cells is seen in both.
+    #[test]
+    fn a_cell_shows_what_reaches_into_it() {
+        let patch = |x, y, standing| Patch { x, y, standing };
+        let wide = (1.0 - 0.01, 1.0 + 0.01);
+        let patches = vec![
+            patch((0.0, GRID[0] as f64), (0.0, GRID[1] as f64), BoxStanding::Proved),
+            patch(wide, (0.0, 0.5), BoxStanding::Undecided),
+            patch((5.0, 5.0), (GRID[1] as f64, GRID[1] as f64), BoxStanding::Pole),
+        ];
+        let axis = |name: &str, count: usize| CoordinateRange {
+            name: name.to_owned(),
+            low: 0.0,
+            high: count as f64,
+        };
+        let map = RegionMap { x: axis("x", GRID[0]), y: axis("y", GRID[1]), patches, at: Vec::new() };
+        let found = cells(&map);
+        let lowest = (GRID[1] - 1) * GRID[0];
+        assert_eq!(
+            found[lowest..lowest + 3],
+            [BoxStanding::Undecided, BoxStanding::Undecided, BoxStanding::Proved]
+        );
+        assert_eq!(found[4..6], [BoxStanding::Proved, BoxStanding::Pole]);
+        assert_eq!(found.iter().filter(|standing| **standing != BoxStanding::Proved).count(), 3);
+    }
 }

@@ -63,6 +63,15 @@ fn without_quotes(tag: &str) -> String {
 mod tests {
     use super::*;
 
+    /// A page without anything, a tag that never ends, a row that never does.
+    #[test]
+    fn what_is_no_page_stays_what_it_is() {
+        for text in ["", "plain", "<p", "<math><mrow>", "<math><mi>", "</mrow>", "<style>", "<math></math>"] {
+            assert!(compact(text).len() <= text.len() + "</mi>".len(), "{text}");
+        }
+        assert_eq!(compact("plain <b>a</b>"), "plain <b>a</b>");
+    }
+
     /// By hand: what needs its quotes keeps them, and an end tag goes only where HTML implies it.
     #[test]
     fn quotes_and_end_tags_go_where_nothing_needs_them() {

@@ -39,8 +39,8 @@ impl Leaf {
             {
                 ("<mn>", text)
             }
-            // a letter that is not slanted: it is when it stands in an element for names
-            Leaf::Operand(text) if text.len() == 1 => ("<mtext>", text),
+            // a letter that stands upright: in an element for names it would be slanted
+            Leaf::Operand(text) if slanted(&text).as_ref() != Some(&text) => ("<mtext>", text),
             Leaf::Operand(text) | Leaf::Alone(text) => ("<mi>", text),
             Leaf::Sign(text) => ("<mo>", text),
             Leaf::Minus => (MINUS, "−".to_owned()),
@@ -259,5 +259,57 @@ mod tests {
         let long = "<math><mi>a</mi><mo>−</mo><mo>(</mo><mo>−</mo><mi>b</mi><mo>)</mo><mo>·</mo><mi>c</mi><mo>∈</mo><mi>d</mi></math>";
         let plain = text(&compact(long)).replace(['\u{205f}', '\u{2005}', '\u{2009}'], "");
         assert_eq!(plain, "𝑎−(−𝑏)·𝑐∈𝑑");
+    }
+
+    /// What is written, without spaces, and letters as they are on a keyboard.
+    fn bare(html: &str) -> String {
+        let plain = |c: char| {
+            let from = |first: char, moved: u32| char::from_u32(c as u32 - moved + first as u32);
+            match c as u32 {
+                0x210e => Some('h'),
+                0x1d434..0x1d44e => from('A', 0x1d434),
+                0x1d44e..0x1d468 => from('a', 0x1d44e),
+                0x1d6e2..=0x1d6fa => from('Α', 0x1d6e2),
+                0x1d6fc..=0x1d714 => from('α', 0x1d6fc),
+                _ => Some(c),
+            }
+        };
+        let mut is_tag = false;
+        let mut found = String::new();
+        for c in html.chars() {
+            match c {
+                '<' => is_tag = true,
+                '>' => is_tag = false,
+                c if !is_tag && !c.is_whitespace() => found.extend(plain(c)),
+                _ => {}
+            }
+        }
+        found
+    }
+
+    /// On the statements of all shipped files: every symbol stays, in its order, and what stands above or below something stays
+    /// there; the formula as it was is the witness.
+    #[test]
+    fn no_formula_says_anything_else() {
+        let papers = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs");
+        let folders = std::fs::read_dir(papers).unwrap().map(|folder| folder.unwrap().path());
+        let files =
+            folders.flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|file| file.unwrap().path());
+        let (mut formulas, mut before, mut after) = (0, 0, 0);
+        for file in files.filter(|file| file.extension().is_some_and(|extension| extension == "proof")) {
+            let system = crate::System::read(&file).unwrap();
+            for statement in system.claims.iter().flat_map(|claim| claim.body.statements()) {
+                let text = &system.source[statement.span.clone()];
+                let long = crate::report::formula_mathml(text).unwrap();
+                let short = compact(&long);
+                assert_eq!(bare(&short), bare(&long), "{text}");
+                for kept in ["<mfrac", "<msub", "<msup", "<mover", "<math"] {
+                    assert_eq!(short.matches(kept).count(), long.matches(kept).count(), "{kept} in {text}");
+                }
+                assert_eq!(short.matches("</").count() * 2, short.matches('<').count(), "{short}");
+                (formulas, before, after) = (formulas + 1, before + long.len(), after + short.len());
+            }
+        }
+        assert!(formulas > 900 && 10 * after < 9 * before, "{formulas}: {after} of {before} bytes");
     }
 }

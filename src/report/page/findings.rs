@@ -178,7 +178,7 @@ pub fn findings_json(found: &Findings) -> Value {
 }
 
 /// Replaces each time on the wall that a page would tell by NaN, and leaves out what rests on such times: two runs with one seed
-/// then tell the same to the last byte.
+/// on one machine then tell the same to the last byte.
 pub fn forget_times(found: &mut Findings) {
     found.seconds = f64::NAN;
     for file in &mut found.files {

@@ -319,7 +319,7 @@ proptest! {
             let (drift, bound) = (path.energy_drift(), 1e-9 * size);
             // a step across a kink of a spline's curvature may be worse than its estimate says (2.6e-9 was met): then it is a
             // matter of steps, and finer ones have no such drift
-            prop_assert!(drift < bound || spline && drift < 100.0 * bound, "{drift:e} of {size:e} J");
+            prop_assert!(drift < bound || spline && drift < 10.0 * bound, "{drift:e} of {size:e} J");
             if drift >= bound {
                 scene.tolerance = DEFAULT_TOLERANCE / 10.0;
                 let finer = simulate(&scene, &times()).unwrap().energy_drift();
