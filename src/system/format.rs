@@ -3,7 +3,7 @@
 
 use super::error::{Problem, ReadError};
 use super::grammar::{ENTRIES, parse_file};
-use super::read::{refuse_reordering, with_plain_line_ends};
+use super::source_text::{refuse_reordering, with_plain_line_ends};
 use super::views;
 
 /// What lies within an entry is moved in by so many blanks.

@@ -14,6 +14,7 @@ mod error;
 mod extent;
 mod format;
 mod grammar;
+mod imports;
 mod lie;
 mod matrices;
 mod model;
@@ -23,6 +24,7 @@ mod problems;
 mod read;
 mod references;
 mod restates;
+mod source_text;
 mod standing;
 mod views;
 #[doc(hidden)]
@@ -46,9 +48,9 @@ pub(crate) use outline::{Declaration, DeclarationKind, Outline};
 #[doc(hidden)]
 pub use problems::MOST_PROBLEMS;
 pub use read::Examination;
-pub(crate) use read::load;
+pub(crate) use source_text::load;
 #[cfg(feature = "cli")]
-pub(crate) use read::with_plain_line_ends;
+pub(crate) use source_text::with_plain_line_ends;
 pub use standing::{Basis, Flaw, Reference};
 #[doc(hidden)]
 pub use views::{CoordinateRange, LineEnd};

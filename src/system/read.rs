@@ -1,32 +1,21 @@
 //! From a file to a system.
 
 use super::dimension::{self, Declared};
-use super::domain::Domain;
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Entries, Item, Statement, parse_entries};
-use super::model::{Field, FieldPlace, Kind, Matrix, Range, Role, SymbolInfo, System, Value};
+use super::imports::Reading;
+use super::model::{Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
 use super::problems::{Cause, Full, Problems, Remnant, names_of_text};
+use super::source_text::{load, refuse_reordering, with_plain_line_ends};
 use super::written::{Scope, Written, in_one_line, places_in};
-use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Expr, Name, Relation, Span};
 use crate::expression::{Derivation, Graph, Guard, Symbol, parse_expression};
-use crate::file::{self, ReadFailure, read_text};
+use crate::file;
 use miette::NamedSource;
-use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Imports of imports beyond this are refused.
-const DEEPEST_IMPORT: usize = 8;
-
-/// More names than this are not imported: what an import imports comes with it, so that ten files of ten lines, each
-/// of which imports the next ten times, would bring ten thousand million.
-const MOST_NAMES: usize = 200_000;
-
-/// Files longer than this are refused.
-const LONGEST_FILE: u64 = 16 << 20;
 
 impl std::str::FromStr for System {
     type Err = ReadError;
@@ -120,7 +109,7 @@ impl System {
     }
 
     /// Reads a text into a graph; where the reading ends before the text does, that is given back.
-    fn build(
+    pub(super) fn build(
         name: &str,
         text: &str,
         folder: &Path,
@@ -518,154 +507,6 @@ impl System {
         }
         Ok(())
     }
-
-    /// Reads another file into the same graph. Its symbols are those of the same name here; its fields and definitions
-    /// go under `alias.name`.
-    fn import(
-        &mut self,
-        alias: &Name,
-        path: &Path,
-        span: &Span,
-        reading: &mut Reading,
-    ) -> Result<(), Problem> {
-        let refuse = |message: String| Problem::new(span, message, "this file");
-        reading.files.insert(path.to_owned());
-        let place =
-            file::identity(path).map_err(|e| refuse(format!("cannot read {}: {e}", path.display())))?;
-        if let Some(begin) = reading.open.iter().position(|open| *open == place) {
-            let round = reading.open[begin..].iter().chain([&place]);
-            let names: Vec<String> = round.map(|file| name_of(file)).collect();
-            return Err(refuse(format!("the file imports itself: {}", names.join(" -> ")))
-                .help("put what both need into a third file, and import that"));
-        }
-        if alias.text.contains('.') {
-            let message = "a name with a dot belongs to what an imported system imports";
-            return Err(Problem::new(&alias.span, message, "choose one without"));
-        }
-        if self.aliases.iter().any(|(known, _)| *known == alias.text) {
-            let message = format!("'{}' is the name of an imported system already", alias.text);
-            return Err(
-                Problem::new(&alias.span, message, "the second one").help("choose another name for this one")
-            );
-        }
-        self.aliases.push((alias.text.clone(), path.to_owned()));
-        let other = match reading.done.get(&place) {
-            Some(known) => known.clone(),
-            None if reading.open.len() > DEEPEST_IMPORT => {
-                let message = format!("imports within imports, more than {DEEPEST_IMPORT} deep");
-                return Err(refuse(message).help("import fewer files from one another"));
-            }
-            None => {
-                reading.open.push(place.clone());
-                let other = Arc::new(self.import_anew(path, span, reading)?);
-                reading.open.pop();
-                reading.done.insert(place, other.clone());
-                other
-            }
-        };
-        let names = self.definitions.len() + other.definitions.len();
-        if names > MOST_NAMES {
-            let message = format!("the imports bring more than {MOST_NAMES} names");
-            return Err(
-                refuse(message).help("each import brings all that its file imports, under a name of its own")
-            );
-        }
-        for (symbol, info) in &other.symbols {
-            if self.definitions.contains_key(self.graph.symbol_name(*symbol)) {
-                let hidden = self.graph.symbol_name(*symbol);
-                let message = format!("'{hidden}' is a definition above, and a symbol of {}", path.display());
-                return Err(Problem::new(span, message, "imported here")
-                    .help("choose another name for the definition"));
-            }
-            match self.symbols.entry(*symbol) {
-                Entry::Vacant(place) => {
-                    place.insert(SymbolInfo { kind: Kind::Imported, ..info.clone() });
-                }
-                Entry::Occupied(mut place) => {
-                    let known = place.get_mut();
-                    known.is_angle |= info.is_angle;
-                    // where imported files differ neither speaks for this one
-                    if known.kind == Kind::Imported {
-                        known.default =
-                            known.default.take().filter(|value| Some(value) == info.default.as_ref());
-                        let own = self.sampled.contains(symbol);
-                        known.range =
-                            known.range.take().filter(|range| own || Some(range) == info.range.as_ref());
-                    }
-                }
-            }
-        }
-        self.imported_dimensions.push((alias.text.clone(), span.clone(), other.dimensions.clone()));
-        for field in other.fields.iter().chain(&other.imported_fields) {
-            let name = format!("{}.{}", alias.text, field.name);
-            // of two of one name the first is meant
-            let place = FieldPlace::Imported(self.imported_fields.len());
-            self.field_places.entry(name.clone()).or_insert(place);
-            let written = field.written.clone().under(&alias.text);
-            self.imported_fields.push(Field { name, written, ..field.clone() });
-        }
-        for (name, written) in &other.written {
-            self.written.insert(format!("{}.{name}", alias.text), written.clone().under(&alias.text));
-        }
-        for (name, value) in &other.definitions {
-            self.definitions.insert(format!("{}.{name}", alias.text), value.clone());
-        }
-        if !other.outputs.is_empty() {
-            // a word of the language, so that no definition has this name
-            let name = format!("{}.output", alias.text);
-            let entries: Vec<_> = other.outputs.iter().map(|(_, output)| *output).collect();
-            let column = Matrix { rows: entries.len(), columns: 1, entries };
-            self.definition_domains
-                .insert(name.clone(), Domain::of(other.output_guards.iter().flatten().copied()));
-            self.definitions.insert(name, Value::Matrix(column));
-        }
-        self.calculated.extend(other.calculated.iter().map(|name| format!("{}.{name}", alias.text)));
-        for (name, domain) in &other.definition_domains {
-            let domain = domain.clone().under(&alias.text);
-            self.definition_domains.insert(format!("{}.{name}", alias.text), domain);
-        }
-        Ok(())
-    }
-
-    /// Reads a file that was not imported yet. The graph comes back here.
-    fn import_anew(&mut self, path: &Path, span: &Span, reading: &mut Reading) -> Result<System, Problem> {
-        let name = path.display().to_string();
-        let text = load(path).map_err(|message| Problem::new(span, message, "this file"))?;
-        let text = with_plain_line_ends(&text);
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let graph = std::mem::take(&mut self.graph);
-        // what is wrong with an imported file is told of that file: here is said that something is
-        let mut problems = Problems::up_to(1);
-        let built = System::build(&name, &text, folder, graph, reading, &mut problems);
-        let mut other = built.map_err(|graph| {
-            // what was declared above the import is in it
-            self.graph = *graph;
-            let first = problems.into_found().into_iter().next();
-            let problem = first.unwrap_or_else(|| Problem::new(&(0..0), "the file cannot be read", ""));
-            let inner = problem.locate(&name, &text);
-            let (line, column) = inner.line_and_column();
-            let problem =
-                Problem::new(span, format!("{name}:{line}:{column}: {}", inner.message), "imported here");
-            match inner.help {
-                Some(help) => problem.help(help),
-                None => problem,
-            }
-        })?;
-        self.graph = std::mem::take(&mut other.graph);
-        Ok(other)
-    }
-}
-
-/// The files of one reading.
-#[derive(Default)]
-struct Reading {
-    /// Those that are being read: each is imported by the one before.
-    open: Vec<PathBuf>,
-    /// Those that are read, so that none is read twice, however many others import it. Their graphs are empty: all are
-    /// in the one graph of the reading.
-    done: HashMap<PathBuf, Arc<System>>,
-    /// All that were asked for, whether they are there or not.
-    files: BTreeSet<PathBuf>,
 }
 
 /// What examining a file came to.
@@ -696,48 +537,6 @@ impl Examination {
                 .unwrap_or_else(|| Problem::new(&(0..0), "the file cannot be read", "").locate("", ""))),
         }
     }
-}
-
-/// The last part of a path, for messages.
-fn name_of(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
-}
-
-/// A text in which every line ends with a line feed, whatever its editor took for the end of a line, and without a
-/// byte-order mark: so that the reader, the error and the person who looks count the same lines.
-pub(crate) fn with_plain_line_ends(text: &str) -> String {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut plain = String::with_capacity(text.len());
-    let mut characters = text.chars().peekable();
-    while let Some(c) = characters.next() {
-        // a carriage return before a line feed stays, and is blank
-        let within_an_end = c == '\r' && characters.peek() == Some(&'\n');
-        plain.push(if ends_a_line(c) && !within_an_end { '\n' } else { c });
-    }
-    plain
-}
-
-/// Refuses characters that make a text look other than it is read: marks of the direction of writing, behind which an
-/// editor shows a claim as a comment or a comment as a claim.
-pub(super) fn refuse_reordering(text: &str) -> Result<(), Problem> {
-    let reorders = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}');
-    match text.char_indices().find(|(_, c)| reorders(*c)) {
-        None => Ok(()),
-        Some((at, c)) => {
-            let message = format!("U+{:04X} changes the order in which the text is shown", c as u32);
-            Err(Problem::new(&(at..at + c.len_utf8()), message, "an invisible character").help("remove it"))
-        }
-    }
-}
-
-/// The text of a file, or what is wrong with it in words. A byte-order mark is no part of it.
-pub(crate) fn load(path: &Path) -> Result<String, String> {
-    read_text(path, LONGEST_FILE).map_err(|why| match why {
-        why @ (ReadFailure::TooLong(_) | ReadFailure::NotText { .. }) => {
-            why.to_string().replacen("it", &path.display().to_string(), 1)
-        }
-        why => format!("cannot read {}: {why}", path.display()),
-    })
 }
 
 fn expected(error: crate::expression::Expected) -> Problem {

@@ -4,7 +4,7 @@ use super::error::{Problem, nearest};
 use super::grammar::{ClaimBody, ClaimSyntax, Item, parse_file};
 use super::model::System;
 use super::problems::{Cause, Full, Problems};
-use super::read::{load, with_plain_line_ends};
+use super::source_text::{load, with_plain_line_ends};
 use super::standing::{Basis, Reference};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
