@@ -48,6 +48,12 @@ impl<L: Lanes> Decider<L> {
         }
     }
 
+    /// How many entries a matrix has.
+    #[inline(always)]
+    pub fn places(&self) -> usize {
+        self.entries.len()
+    }
+
     /// Sets an entry.
     #[inline(always)]
     pub fn set(&mut self, place: usize, entry: Bounded<L>) {

@@ -5,6 +5,7 @@
 
 use super::decide::Decider;
 use super::draw::AxisFunction;
+use super::lane::{Entry, LaneFound, decide_lane};
 use super::{Stream, StreamReport};
 use crate::expression::{Machine, Symbol};
 use crate::number::{Bounded, Lanes, MOST_LANES, Vectorised};
@@ -116,6 +117,7 @@ impl Given<'_> {
     #[inline(always)]
     fn decide<N: Entry<L>, L: Lanes>(self, mut machine: Machine<'_, N>, number: N, zero: L) {
         let Given { stream, states, wanted, found } = self;
+        let certify = wanted == Certainty::Certified;
         let report = stream.nothing();
         let (rows, columns) = report.remaining;
         let mut decider = Decider::new(rows, columns, zero);
@@ -134,23 +136,11 @@ impl Given<'_> {
                 if first >= count {
                     break;
                 }
-                for place in 0..rows * columns {
-                    decider.set(place, machine.output(place, lane).bounded());
-                }
-                let mut lanes_found = decider.decide(wanted == Certainty::Certified);
-                let health = machine.health(lane).bounded();
-                let (mut finite, mut bounds) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
-                health.value.store(&mut finite);
-                health.error().store(&mut bounds);
+                let LaneFound { found: decided, finite } =
+                    decide_lane(&stream.matrix.program, &machine, lane, &mut decider, certify);
                 let here = L::COUNT.min(count - first);
                 for i in 0..here {
-                    if !bounds[i].is_finite() {
-                        lanes_found.certain[i] = 0.0;
-                    }
-                    let finite = finite[i] == 0.0
-                        && lanes_found.finite[i] == 0.0
-                        && !stream.matrix.program.is_undefined();
-                    found.verdicts[first + i] = verdict(&report, &lanes_found, i, finite);
+                    found.verdicts[first + i] = verdict(&report, &decided, i, finite[i]);
                 }
                 let range = first..first + here;
                 write(decider.singular_values(), &mut found.singular_values, range.clone());
@@ -172,26 +162,6 @@ fn verdict(report: &StreamReport, found: &super::decide::Found, lane: usize, fin
         StateVerdict::Full(Certainty::Computed)
     } else {
         StateVerdict::Open(report.eliminated + found.rank[lane] as usize)
-    }
-}
-
-/// A number in which entries are computed.
-trait Entry<L>: Lanes {
-    /// With the bound on its error, as far as one is known.
-    fn bounded(self) -> Bounded<L>;
-}
-
-impl<L: Lanes> Entry<L> for L {
-    #[inline(always)]
-    fn bounded(self) -> Bounded<L> {
-        Bounded::exact(self)
-    }
-}
-
-impl<L: Lanes> Entry<L> for Bounded<L> {
-    #[inline(always)]
-    fn bounded(self) -> Bounded<L> {
-        self
     }
 }
 

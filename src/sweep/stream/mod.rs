@@ -14,11 +14,12 @@ mod draw;
 mod equilibrate;
 mod given;
 mod jacobi;
+mod lane;
 mod random;
 mod report;
 
 use crate::expression::{BlockProgram, Graph, Guard, Input, Need, Node, NodeId, expand_angles};
-use crate::number::{Bounded, Function, Instructions, Lanes, MOST_LANES, Vectorised, rational_from_f64};
+use crate::number::{Bounded, Function, Instructions, Lanes, Vectorised, rational_from_f64};
 use crate::observability::{Coordinate, Locus, LocusError, Reduction, Source, State};
 use crate::sweep::certainty::Certainty;
 use crate::system::System;
@@ -29,6 +30,7 @@ use draw::{Axis, BlockOf, Drawer, DrawnProgram};
 pub(super) use equilibrate::Equilibrium;
 pub use given::{StateVerdict, StatesError, Verdicts};
 pub use jacobi::Jacobi;
+use lane::{LaneFound, decide_lane};
 use rayon::prelude::*;
 pub use report::StreamReport;
 use std::collections::HashSet;
@@ -291,23 +293,11 @@ impl Vectorised for Chunk<'_, '_> {
                 if here >= count {
                     break;
                 }
-                for place in 0..rows * columns {
-                    decider.set(place, machine.output(place, lane));
-                }
-                let mut found = decider.decide(true);
-                let health = machine.health(lane);
-                let (mut finite, mut bounds) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
-                health.value.store(&mut finite);
-                health.error().store(&mut bounds);
+                let LaneFound { found, finite } =
+                    decide_lane(&stream.matrix.program, &machine, lane, &mut decider, true);
                 for i in 0..L::COUNT.min((count - here) as usize) {
-                    // a divisor that is not known well enough is no ground to stand on
-                    if !bounds[i].is_finite() {
-                        found.certain[i] = 0.0;
-                    }
-                    let finite =
-                        finite[i] == 0.0 && found.finite[i] == 0.0 && !stream.matrix.program.is_undefined();
                     let index = first + here + i as u64;
-                    if report.add(index, &found, i, finite, options.wanted) {
+                    if report.add(index, &found, i, finite[i], options.wanted) {
                         left.push(index);
                     }
                 }
