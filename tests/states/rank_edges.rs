@@ -55,3 +55,14 @@ fn a_state_that_is_certified_to_be_seen_is_not_said_not_to_be() {
     assert!(deviations(&answer).iter().all(|state| !state.is_seen && state.infinite == 40));
     assert!(!rank_text(&answer).contains("unknown"));
 }
+
+/// What is drawn in blocks is drawn in doubles: a box wider than these is drawn state by state.
+#[test]
+fn a_box_wider_than_doubles_has_ranks() {
+    let answer = ranks(
+        "system \"s\" state x, y drift f x' = 0 y' = 0 output x + x^3, y^3 + x \
+         sample x in [-10^400, 10^400] y in [2, 3]",
+    );
+    let full = &answer.branches[0].full;
+    assert_eq!((full.certified, &full.rank_histogram), (40, &[(2, 40)].into()), "{:?}", full.poles);
+}
