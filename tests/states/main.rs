@@ -11,6 +11,7 @@ mod certify_verdicts;
 mod neighbours;
 mod observable;
 mod rank_edges;
+mod region_edges;
 mod stream;
 mod stress;
 mod trade;
