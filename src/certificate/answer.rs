@@ -86,7 +86,7 @@ pub struct Patch {
     pub standing: BoxStanding,
 }
 
-/// A plane through the box: the other coordinates of its parts are a third of their ranges from the low end.
+/// A plane through the box: the other coordinates are a third of their ranges from the low end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegionMap {
     /// One coordinate.

@@ -1,7 +1,7 @@
 //! The answer so far: the volumes of the parts multiplied exactly, and rounded once, in the end.
 
 use super::answer::{BoxStanding, Patch, RegionAnswer, RegionMap, RegionMinor};
-use super::boxes::Side;
+use super::boxes::{FreeCoordinate, Side};
 use super::explain::{Why, explain};
 use super::part::Part;
 use super::part_volumes::{PartVolumes, part_answer, standing};
@@ -147,7 +147,7 @@ impl Region {
         Some(worst)
     }
 
-    /// The map: what the boxes of the parts of its coordinates cut out of it.
+    /// The map: what the boxes of the parts cut out of it.
     fn map(&self, volumes: &[PartVolumes]) -> Option<RegionMap> {
         let (x, y) = self.map?;
         let ranges = &self.problem.ranges;
@@ -158,6 +158,12 @@ impl Region {
         {
             let plane = search.plane;
             if plane.x.is_none() && plane.y.is_none() {
+                // the same all over the map: what the part is a third of its ranges from the low ends
+                let open = part_volumes.sections.iter().map(|(_, standing)| *standing).max();
+                let open = open.unwrap_or(BoxStanding::Proved);
+                patches.iter_mut().for_each(|(_, how)| *how = (*how).max(open));
+                let rest = |c: &FreeCoordinate| (c.name.clone(), c.middle_of(super::search::Plane::REST));
+                at.extend(part.chart.coordinates().iter().map(rest));
                 continue;
             }
             let proved = search.sections.iter().map(|section| (*section, BoxStanding::Proved));

@@ -3,7 +3,7 @@
 use super::left_out::LeftOut;
 use crate::expression::NodeId;
 use crate::observability::{Codistribution, CodistributionError, Length, OWN_ROWS};
-use crate::sweep::{BranchAnswer, RankAnswer, RankError, RankQuestion, answer_rank};
+use crate::sweep::{BranchAnswer, RankAnswer, RankError, RankQuestion, SweepReport, answer_rank};
 use crate::system::{Assignment, CoordinateRange, LineView, MapView, NamedSet, System, Value};
 use crate::tradeoff::{Landscape, LandscapeRows, Map, Slope};
 use dashu::rational::RBig;
@@ -38,8 +38,10 @@ impl SetRank {
             Err(why) => matches!(why, RankError::Codistribution(CodistributionError::Pole { .. })),
             // the words that were taken exist, and the fields do not
             Ok(answer) => {
-                let left_out =
-                    |branch: &BranchAnswer| branch.full.samples == 0 && !branch.full.poles.is_empty();
+                let left_out = |branch: &BranchAnswer| {
+                    let SweepReport { samples, poles, interrupted, .. } = &branch.full;
+                    *samples == 0 && !poles.is_empty() && !interrupted
+                };
                 !answer.branches.is_empty() && answer.branches.iter().all(left_out)
             }
         }
@@ -50,10 +52,11 @@ impl SetRank {
         match &self.found {
             Err(why) => Err(why.to_string()),
             Ok(answer) if self.is_pole() => {
-                let divisors = answer.branches.iter().flat_map(|branch| branch.full.poles.keys());
-                let divisors: std::collections::BTreeSet<&str> = divisors.map(String::as_str).collect();
-                let divisors: Vec<&str> = divisors.into_iter().collect();
-                Err(format!("every state there is a pole: {} is divided by", divisors.join(", ")))
+                // not all of them are divisors, and the states are those that were drawn
+                let reasons = answer.branches.iter().flat_map(|branch| branch.full.poles.keys());
+                let reasons: std::collections::BTreeSet<&str> = reasons.map(String::as_str).collect();
+                let reasons: Vec<&str> = reasons.into_iter().collect();
+                Err(format!("no state that was drawn there has a rank: {}", reasons.join(", ")))
             }
             Ok(answer) => Ok(answer),
         }
@@ -157,5 +160,27 @@ pub(super) fn own_rows(system: &System) -> Option<Vec<NodeId>> {
     match system.definition(OWN_ROWS) {
         Some(Value::Matrix(matrix)) if matrix.columns == system.states.len() => Some(matrix.entries.clone()),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nothing is divided by; and a sweep that was stopped says nothing of the states that it did not come to.
+    #[test]
+    fn states_without_a_rank_are_told_by_what_is_missing() {
+        let text = "system \"s\" state x, v drift f x' = v v' = sqrt(-1 - x^2) output x \
+                    sample x in [-1, 1] v in [-1, 1]";
+        let mut found = rank_on(&text.parse().unwrap(), None, 1, &false.into());
+        assert!(found.is_pole());
+        assert_eq!(
+            found.answer().map(|answer| answer.branches.len()),
+            Err("no state that was drawn there has a rank: outside of -1 - x^2 > 0".to_owned())
+        );
+        if let Ok(answer) = &mut found.found {
+            answer.branches[0].full.interrupted = true;
+        }
+        assert!(!found.is_pole());
     }
 }

@@ -13,9 +13,10 @@
 //!
 //! All of it is computed in doubles, and proves nothing.
 
+use super::states::SweepReport;
 use crate::expression::{NodeId, Program, Symbol, expand_angles};
 use crate::number::{Floats, rational_to_f64};
-use crate::observability::{Codistribution, Locus, LocusError, State};
+use crate::observability::{Codistribution, Defined, Locus, LocusError, State};
 use crate::system::System;
 use nalgebra::DMatrix;
 
@@ -33,7 +34,7 @@ const NOISE: f64 = 1e-12;
 pub struct StandardDeviation {
     /// The state's name.
     pub state: String,
-    /// Its own spread over the sample box, in its own unit.
+    /// Its own spread over the sample box, in its own unit; one where it has none.
     pub spread: f64,
     /// The middle one of its standard deviations at the states that were looked at, in parts of its spread. Infinite where it
     /// is not seen, or where doubles cannot tell.
@@ -42,6 +43,9 @@ pub struct StandardDeviation {
     pub worst: f64,
     /// At how many states it is infinite.
     pub infinite: usize,
+    /// Whether the ranks of the sweep say that it is seen at every state: where it is infinite all the same, doubles cannot
+    /// tell how well.
+    pub is_seen: bool,
 }
 
 /// How well each state is seen, at some states of a sweep.
@@ -72,7 +76,17 @@ fn spread(values: &[f64]) -> Option<f64> {
     (spread > 1e-14).then_some(spread * scale)
 }
 
-/// How well each state is seen by the words that were needed, at up to two hundred states drawn from a locus.
+/// Whether a sweep says of a state of the system that it is seen at every state that was drawn.
+fn is_seen(system: &System, state: Symbol, swept: &SweepReport) -> bool {
+    let name = system.symbol_name(state);
+    let is_full = swept.rank_histogram.keys().all(|rank| *rank == system.states.len());
+    let is_told = swept.certified == swept.samples;
+    is_full
+        || is_told && !swept.unseen.iter().any(|direction| direction.states.iter().any(|part| part == name))
+}
+
+/// How well each state is seen by the words that were needed, at up to two hundred states drawn from a locus; those that the
+/// sweep left out, since something does not exist there, are left out here too.
 ///
 /// # Errors
 /// Where states cannot be drawn.
@@ -80,9 +94,12 @@ pub(crate) fn standard_deviations(
     system: &mut System,
     locus: &Locus,
     codistribution: &Codistribution,
+    swept: &SweepReport,
     seed: u64,
     samples: u64,
 ) -> Result<Option<StandardDeviations>, LocusError> {
+    let guards = system.smooth_guards(&system.moving_fields());
+    let defined = Defined::new(system, &guards);
     let is_angle = &system.angle_test();
     let values: Vec<NodeId> = codistribution.needed.iter().map(|word| codistribution.values[*word]).collect();
     let values = expand_angles(&mut system.graph, &values, is_angle);
@@ -93,7 +110,7 @@ pub(crate) fn standard_deviations(
     let (mut states, mut found, mut measured) = (Vec::new(), Vec::new(), Vec::new());
     for index in 0..STATES.min(samples) {
         let state = locus.draw(seed, index)?;
-        let Some(entries) = values_at(&rows, &state) else { continue };
+        let Some(entries) = values_at(&rows, &state).filter(|_| defined.holds(&state)) else { continue };
         found.push(DMatrix::from_row_slice(entries.len() / columns.max(1), columns, &entries));
         measured.push(values_at(&values, &state));
         states.push(state);
@@ -115,6 +132,7 @@ pub(crate) fn standard_deviations(
             median: each[each.len() / 2],
             worst: each[each.len() - 1],
             infinite: each.iter().filter(|deviation| deviation.is_infinite()).count(),
+            is_seen: is_seen(system, system.states[column], swept),
         }
     });
     let list = list.collect();
@@ -175,6 +193,10 @@ fn deviations_of(matrix: &DMatrix<f64>, units: &[f64], spreads: &[f64]) -> Vec<f
         column /= *length;
     }
     let nowhere = vec![f64::INFINITY; columns];
+    // beyond the range of doubles nothing can be told, and a decomposition would panic
+    if !scaled.iter().chain(&lengths).all(|value| value.is_finite()) {
+        return nowhere;
+    }
     let Some(found) = scaled.try_svd(false, true, f64::EPSILON, MOST_ITERATIONS) else { return nowhere };
     let Some(directions) = found.v_t else { return nowhere };
     let values = &found.singular_values;
@@ -216,6 +238,14 @@ mod tests {
         let found = deviations_of(&matrix, &[1.0, 2.0], &[1.0, 1.0, 1.0]);
         assert!(found[0].is_infinite() && found[1].is_infinite(), "{found:?}");
         assert!((found[2] - 0.5).abs() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn what_leaves_the_doubles_is_told_of_no_state() {
+        for entry in [1e300, f64::INFINITY, f64::NAN] {
+            let matrix = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, entry]);
+            assert_eq!(deviations_of(&matrix, &[1.0, 1.0], &[1e10, 1e10]), [f64::INFINITY; 2], "{entry}");
+        }
     }
 
     #[test]

@@ -248,7 +248,9 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         let full = codistribution.sweep(system, &locus, options)?;
         let deviations = match full.interrupted {
             true => None,
-            false => standard_deviations(system, &locus, &codistribution, question.seed, question.samples)?,
+            false => {
+                standard_deviations(system, &locus, &codistribution, &full, question.seed, question.samples)?
+            }
         };
         let rows = match &own {
             Some(own) => {

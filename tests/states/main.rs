@@ -10,6 +10,8 @@ mod certify_domains;
 mod certify_verdicts;
 mod neighbours;
 mod observable;
+mod rank_edges;
+mod region_edges;
 mod stream;
 mod stress;
 mod trade;

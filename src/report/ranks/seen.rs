@@ -58,32 +58,34 @@ pub(super) fn deviations_text(found: &StandardDeviations, out: &mut String) {
     let width = found.list.iter().map(|row| row.state.chars().count()).max().unwrap_or(0).max(5);
     let _ = writeln!(out, "  {:<width$}  {:>10}  {:>10}  {:>10}", "state", "spread", "median", "worst");
     for row in &found.list {
+        // what doubles cannot tell of a state that is seen is not that it is not
+        let infinite = if row.is_seen { "unknown" } else { "not seen" };
+        let deviation = |value: f64| if value.is_finite() { number_text(value) } else { infinite.to_owned() };
         let remark = match (row.infinite, row.median >= NEARLY_INVISIBLE) {
             (0, true) => "  nearly invisible".to_owned(),
             (0, false) => String::new(),
             (count, _) if count == found.states => String::new(),
-            (count, _) => format!("  not seen at {count} of them"),
+            (count, _) => format!("  {infinite} at {count} of them"),
         };
         let line = format!(
             "  {:<width$}  {:>10}  {:>10}  {:>10}{remark}",
             row.state,
-            deviation_text(row.spread),
-            deviation_text(row.median),
-            deviation_text(row.worst)
+            number_text(row.spread),
+            deviation(row.median),
+            deviation(row.worst)
         );
         let _ = writeln!(out, "{}", line.trim_end());
     }
 }
 
-fn deviation_text(value: f64) -> String {
+fn number_text(value: f64) -> String {
     match value {
-        value if value.is_infinite() => "not seen".to_owned(),
         value if (0.01..1e4).contains(&value) => format!("{value:.3}"),
         value => format!("{value:.2e}"),
     }
 }
 
-/// The same as JSON: `null` where a state is not seen.
+/// The same as JSON: `null` where a state is not seen, or where doubles cannot tell how well.
 pub(super) fn deviations_json(found: &StandardDeviations) -> Value {
     let finite = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
     json!({
@@ -95,7 +97,8 @@ pub(super) fn deviations_json(found: &StandardDeviations) -> Value {
             "spread": row.spread,
             "median": finite(row.median),
             "worst": finite(row.worst),
-            "not_seen_at": row.infinite,
+            "not_seen_at": if row.is_seen { 0 } else { row.infinite },
+            "unknown_at": if row.is_seen { row.infinite } else { 0 },
             "nearly_invisible": row.median.is_finite() && row.median >= NEARLY_INVISIBLE,
         })).collect::<Vec<_>>(),
     })

@@ -30,6 +30,11 @@ impl Axis {
         (low < high).then_some(Axis { symbol, low, high, is_turn })
     }
 
+    /// Whether the width of the range is a double.
+    pub fn is_held_by_doubles(&self) -> bool {
+        (self.high - self.low).is_finite()
+    }
+
     /// The coordinate at parts of the range between zero and one.
     #[inline(always)]
     fn at<L: Lanes>(self, part: L) -> L {

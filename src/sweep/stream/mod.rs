@@ -69,8 +69,8 @@ pub struct Stream {
 
 impl Stream {
     /// Prepares the rows, by entries of as many columns as the system has states. `None` where something is needed that
-    /// is not drawn: an angle outside of sines and cosines; and where inequalities cut the box, which are decided in exact
-    /// numbers, state by state.
+    /// is not drawn: an angle outside of sines and cosines; where a range is wider than doubles are; and where inequalities cut
+    /// the box, which are decided in exact numbers, state by state.
     pub fn new(system: &mut System, locus: &Locus, rows: &[NodeId]) -> Option<Stream> {
         if locus.is_cut {
             return None;
@@ -78,6 +78,9 @@ impl Stream {
         let is_angle = &system.angle_test();
         let axes: Vec<Axis> =
             locus.sources.iter().filter_map(|(symbol, source)| Axis::new(*symbol, source)).collect();
+        if axes.iter().any(|axis| !axis.is_held_by_doubles()) {
+            return None;
+        }
         // what has one value is put in, before unit rows are looked for
         let mut values = locus.values.clone();
         for (symbol, source) in &locus.sources {
