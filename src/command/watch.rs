@@ -146,6 +146,7 @@ impl Watch {
                     again.iter().map(|path| json!(path.display().to_string())).collect();
                 object["errors"] =
                     wrong.iter().flat_map(|file| errors_json(file)).collect::<Vec<Value>>().into();
+                written.note_in(&mut object);
                 print_text(&versioned(object).to_string())?;
             }
             Form::Text => {
@@ -170,7 +171,11 @@ impl Watch {
         if !self.asked.json {
             file::note("waiting for changes (interrupt to end)");
         }
-        let status = if ok { Status::AsExpected } else { Status::NotAsExpected };
-        Ok(if wrong.is_empty() { status } else { Status::Unusable })
+        Ok(match ok {
+            _ if !wrong.is_empty() => Status::Unusable,
+            _ if !written.whole() => Status::Unwritten,
+            true => Status::AsExpected,
+            false => Status::NotAsExpected,
+        })
     }
 }

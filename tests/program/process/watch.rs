@@ -127,6 +127,18 @@ fn reports_in_words_say_what_was_decided_and_the_status_is_that_of_the_last() {
     assert_eq!(run.end(), Some(1));
 }
 
+/// As without `--watch`: it stands in the report, and the status is 2.
+#[test]
+fn what_cannot_be_written_is_named_in_each_report() {
+    let folder = folder();
+    let file = write(&folder, "a.proof", "system \"s\"\nstate x\nclaim 1: x = x + 0\n");
+    let inside = file.join("claims.xml");
+    let run = Run::begin(&[file.to_str().unwrap(), "--json", "--junit", inside.to_str().unwrap()]);
+    let report = run.report();
+    assert_eq!(report["unwritten"][0]["file"], inside.display().to_string(), "{report}");
+    assert_eq!((&report["ok"], run.end()), (&true.into(), Some(2)));
+}
+
 /// A folder that has lost its files takes no other ones with it, and a file without claims is not taken for an interrupt.
 #[test]
 fn what_is_gone_or_empty_is_told_as_that() {
