@@ -132,6 +132,24 @@ fn every_field_of_a_claim_is_named() {
     assert!(missing.is_empty(), "{missing:?} are not told");
 }
 
+/// What the chapter on the library says that an example prints is what the example's head says, which CI holds to the output.
+#[test]
+fn the_example_prints_what_the_library_chapter_shows() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let example = std::fs::read_to_string(root.join("examples/pendulum.rs")).expect("an example");
+    let head: Vec<&str> = example
+        .lines()
+        .skip_while(|line| *line != "//! ```text")
+        .skip(1)
+        .take_while(|line| *line != "//! ```")
+        .map(|line| line.trim_start_matches("//!").trim())
+        .collect();
+    let chapter = chapter("library.md");
+    let shown = blocks(&chapter).into_iter().find(|block| block.kind == "text").expect("what it prints").text;
+    assert!(head.len() > 5, "{head:?}");
+    assert_eq!(shown.lines().map(str::trim).collect::<Vec<_>>(), head);
+}
+
 /// Each file of tests stands in the map of them, by itself or with its folder.
 #[test]
 fn every_test_file_is_on_the_map() {
