@@ -172,7 +172,8 @@ impl Finding {
         match self {
             Finding::Confirmed { .. } => "confirmed",
             Finding::Consistent { .. } => "consistent",
-            Finding::NotChecked => "not checked",
+            // a signal says nothing against a verdict
+            Finding::NotChecked | Finding::NotConfirmed(Doubt::Interrupted) => "not checked",
             Finding::NotConfirmed(_) => "NOT CONFIRMED",
         }
     }

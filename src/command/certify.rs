@@ -28,7 +28,7 @@ use std::time::Instant;
 /// what the file says to avoid is part of the box, and the fraction is given without it, too.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  palmistry certify proofs/moll2002/fixed_palms.proof --box omega0=1/2..3 --budget 30")]
+  palmistry certify proofs/martinelli2005/polar.proof --box r=1/10..10 --budget 30")]
 pub(crate) struct Certify {
     /// The proof file.
     file: PathBuf,

@@ -121,3 +121,8 @@ pub(crate) fn no_such_claim(unmet: &UnmetPattern) -> miette::Report {
     let help = unmet.nearest.as_ref().map(|near| format!("perhaps you meant '{near}'"));
     Unusable::report(unmet.to_string(), help.unwrap_or_default())
 }
+
+/// That there is nothing to decide.
+pub(crate) fn no_claims() -> miette::Report {
+    Unusable::report("these files claim nothing", "add a line such as: claim 1: L(f, x) = v")
+}

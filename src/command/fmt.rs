@@ -1,6 +1,6 @@
 //! `palmistry fmt`: proof files in their normal form.
 
-use super::interrupt::interrupted;
+use super::interrupt::{interrupted, nothing_found};
 use super::output::{Files, Form, proof_files};
 use super::{Status, Unusable};
 use clap::Args;
@@ -45,24 +45,35 @@ impl Fmt {
                 changed.push((path, formatted));
             }
         }
+        let form = Form::of(self.json);
         let mut files = Files::default();
-        if !self.check && !interrupted() {
+        if !self.check {
+            if interrupted() {
+                return nothing_found(form);
+            }
             for (path, text) in &changed {
                 files.text(path, text);
             }
         }
-        let paths: Vec<&PathBuf> = changed.iter().map(|(path, _)| path).collect();
         let ok = !self.check || changed.is_empty();
         let status = Status::of(ok);
         let words = || {
-            let what = if self.check { "not in normal form" } else { "changed" };
-            let mut lines: Vec<String> =
-                paths.iter().map(|path| format!("{what}: {}", path.display())).collect();
-            if lines.is_empty() {
-                lines.push("all files are in normal form".to_owned());
+            let line = |(path, _): &(PathBuf, String)| {
+                let what = match self.check {
+                    true => "not in normal form",
+                    false if files.has_written(path) => "changed",
+                    false => "left as it is",
+                };
+                format!("{what}: {}", path.display())
+            };
+            match changed.is_empty() {
+                true => "all files are in normal form".to_owned(),
+                false => changed.iter().map(line).collect::<Vec<_>>().join("\n"),
             }
-            lines.join("\n")
         };
-        files.print(Form::of(self.json), json!({ "ok": ok, "changed": paths }), words, status)
+        let paths: Vec<&PathBuf> =
+            changed.iter().map(|(path, _)| path).filter(|path| files.has_written(path)).collect();
+        let (object, words) = (json!({ "ok": ok, "changed": paths }), words());
+        files.print(form, object, || words, status)
     }
 }

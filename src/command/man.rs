@@ -50,7 +50,8 @@ impl Man {
         for (name, text) in &pages {
             files.text(&folder.join(name), text);
         }
-        let words = || format!("{} pages in {}", pages.len(), folder.display());
+        let written = pages.iter().filter(|(name, _)| files.has_written(&folder.join(name))).count();
+        let words = || format!("{written} pages in {}", folder.display());
         files.print(Form::Text, json!({}), words, Status::AsExpected)
     }
 }

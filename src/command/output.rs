@@ -75,9 +75,14 @@ impl Files {
         }
     }
 
+    /// Whether nothing went wrong with a file.
+    pub fn has_written(&self, path: &Path) -> bool {
+        self.failures.iter().all(|failure| failure.file != path)
+    }
+
     /// Says on standard error that a file was written, if it was.
     pub fn announce(&self, path: &Path) {
-        if path != Path::new("-") && self.failures.iter().all(|failure| failure.file != path) {
+        if path != Path::new("-") && self.has_written(path) {
             file::note(&format!("written: {}", path.display()));
         }
     }
@@ -95,6 +100,17 @@ impl Files {
         text: impl FnOnce() -> String,
         status: Status,
     ) -> miette::Result<Status> {
+        self.note_in(&mut object);
+        match form {
+            Form::Json => print_json(&object)?,
+            Form::Text => print_text(&text())?,
+        }
+        self.note_failures();
+        Ok(if self.whole() { status } else { Status::Unwritten })
+    }
+
+    /// Names in an object what could not be written, if there is anything.
+    pub fn note_in(&self, object: &mut Value) {
         if !self.whole() {
             object["unwritten"] = self
                 .failures
@@ -102,12 +118,6 @@ impl Files {
                 .map(|failure| json!({ "file": failure.file.display().to_string(), "why": failure.why }))
                 .collect();
         }
-        match form {
-            Form::Json => print_json(&object)?,
-            Form::Text => print_text(&text())?,
-        }
-        self.note_failures();
-        Ok(if self.whole() { status } else { Status::Unwritten })
     }
 
     /// Says on standard error what could not be written.

@@ -1,10 +1,10 @@
 //! `palmistry prove`: every claim of some files.
 
-use super::claims::Claims;
+use super::Status;
+use super::claims::{Claims, no_claims};
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
 use super::output::{Form, progress};
 use super::watch::Watch;
-use super::{Status, Unusable};
 use clap::Args;
 use palmistry::Outcome;
 use palmistry::claim::decide_all_keeping;
@@ -38,8 +38,8 @@ pub(crate) struct Prove {
 /// What is decided so far.
 #[derive(Default)]
 struct Decided {
-    /// How many claims there are.
-    claims: usize,
+    /// How many claims there are, once all files are read.
+    claims: Option<usize>,
     /// The place of each claim, by its file and its name, in the order of the files.
     places: HashMap<(String, String), usize>,
     /// As they were decided.
@@ -72,14 +72,11 @@ impl Prove {
             .collect();
         let claims = names.len();
         if claims == 0 {
-            return Err(Unusable::report(
-                "these files claim nothing",
-                "add a line such as: claim 1: L(f, x) = v",
-            ));
+            return Err(no_claims());
         }
         {
             let mut decided = hold(decided);
-            decided.claims = claims;
+            decided.claims = Some(claims);
             decided.places = names.into_iter().zip(0..).collect();
         }
         let bar = progress(claims as u64, "deciding claims");
@@ -99,7 +96,7 @@ impl Prove {
         let Decided { claims, places, mut outcomes } = std::mem::take(&mut *hold(decided));
         outcomes
             .sort_by_cached_key(|outcome| places.get(&(outcome.file.clone(), outcome.id.clone())).copied());
-        let whole = claims > 0 && outcomes.len() == claims;
+        let whole = claims == Some(outcomes.len());
         let as_expected = outcomes.iter().all(|outcome| outcome.ok) && (whole || interrupted());
         let status = Status::of(as_expected);
         let summary = ClaimsSummary { claims, seconds: begin.elapsed().as_secs_f64() };

@@ -6,7 +6,7 @@
 
 use super::Status;
 use super::check::{errors_json, problems_text};
-use super::claims::{Claims, no_such_claim};
+use super::claims::{Claims, no_claims, no_such_claim};
 use super::interrupt::{INTERRUPTED, interrupted};
 use super::output::{Form, print_text, progress, proof_files, versioned};
 use super::terminal::is_terminal;
@@ -70,7 +70,10 @@ impl Watch {
             let paths = match (proof_files(&self.asked.paths), status) {
                 (Ok(paths), _) => paths,
                 (Err(error), None) => return Err(error),
-                (Err(_), Some(_)) => Vec::new(),
+                (Err(_), Some(_)) => {
+                    let there = |path| proof_files(std::slice::from_ref(path)).unwrap_or_default();
+                    self.asked.paths.iter().flat_map(there).collect()
+                }
             };
             let before = self.files.len();
             self.files.retain(|path, _| paths.contains(path));
@@ -130,8 +133,8 @@ impl Watch {
         let wrong: Vec<&Examination> = known.iter().filter_map(|file| file.wrong.as_ref()).collect();
         let ids = known.iter().flat_map(|file| &file.ids).map(String::as_str);
         let unmet = self.asked.selection().unmet(ids).filter(|_| wrong.is_empty());
-        let claims = known.iter().map(|file| file.claims).sum();
-        let summary = ClaimsSummary { claims, seconds: begin.elapsed().as_secs_f64() };
+        let claims: usize = known.iter().map(|file| file.claims).sum();
+        let summary = ClaimsSummary { claims: Some(claims), seconds: begin.elapsed().as_secs_f64() };
         let written = self.asked.written(&outcomes);
         let ok =
             wrong.is_empty() && unmet.is_none() && outcomes.iter().all(|outcome| outcome.ok) && claims > 0;
@@ -143,13 +146,17 @@ impl Watch {
                     again.iter().map(|path| json!(path.display().to_string())).collect();
                 object["errors"] =
                     wrong.iter().flat_map(|file| errors_json(file)).collect::<Vec<Value>>().into();
+                written.note_in(&mut object);
                 print_text(&versioned(object).to_string())?;
             }
             Form::Text => {
                 let names: Vec<String> = again.iter().map(|path| path.display().to_string()).collect();
                 // a terminal is cleared, together with what has left it
                 let begin = if is_terminal() { "\u{1b}[2J\u{1b}[3J\u{1b}[H" } else { "" };
-                let mut text = format!("{begin}decided: {}\n", names.join(", "));
+                let mut text = match names.is_empty() {
+                    true => format!("{begin}a file is gone\n"),
+                    false => format!("{begin}decided: {}\n", names.join(", ")),
+                };
                 wrong.iter().for_each(|file| text.push_str(&problems_text(file)));
                 text.push_str(&self.asked.in_words(&outcomes, summary));
                 print_text(&text)?;
@@ -157,12 +164,18 @@ impl Watch {
         }
         if let Some(unmet) = unmet {
             file::note(&format!("{:?}", no_such_claim(&unmet)));
+        } else if claims == 0 && wrong.is_empty() {
+            file::note(&format!("{:?}", no_claims()));
         }
         written.note_failures();
         if !self.asked.json {
             file::note("waiting for changes (interrupt to end)");
         }
-        let status = if ok { Status::AsExpected } else { Status::NotAsExpected };
-        Ok(if wrong.is_empty() { status } else { Status::Unusable })
+        Ok(match ok {
+            _ if !wrong.is_empty() => Status::Unusable,
+            _ if !written.whole() => Status::Unwritten,
+            true => Status::AsExpected,
+            false => Status::NotAsExpected,
+        })
     }
 }

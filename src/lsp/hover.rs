@@ -2,7 +2,7 @@
 
 use super::lookup::Found;
 use super::source::Source;
-use crate::system::{DeclarationKind, Role, System, Value};
+use crate::system::{DeclarationKind, Dimension, Role, System, Value};
 
 /// No more lines of an entry than these are shown.
 const MOST_LINES: usize = 8;
@@ -42,12 +42,7 @@ fn facts(kind: DeclarationKind, name: &str, system: &System) -> Vec<String> {
             if info.is_angle {
                 facts.push("an angle".to_owned());
             }
-            if let Some(dimension) = system.dimension_of(symbol) {
-                facts.push(match dimension.is_none() {
-                    true => "without dimension".to_owned(),
-                    false => format!("dimension {dimension} ({})", dimension.unit()),
-                });
-            }
+            facts.extend(system.dimension_of(symbol).map(Dimension::in_words));
             facts.extend(info.default.as_ref().map(|value| format!("value {value} unless given")));
             facts.extend(
                 info.range.as_ref().map(|range| format!("drawn from [{}, {}]", range.low, range.high)),

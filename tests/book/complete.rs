@@ -97,6 +97,59 @@ fn every_field_of_the_json_is_named() {
     }
 }
 
+/// The fields of the lists that the chapter takes apart: of each kind of claim, of a witness, of what is wrong with a file.
+#[test]
+fn every_field_of_a_claim_is_named() {
+    let folder = folder();
+    let text = "system \"s\"\nstate x\nparam k = 2\ndrift f\n  x' = -k*x\noutput x\nlet a = k*x\nclaim 1: L(f, x) = -a \"why\"\n\
+                claim 2: x = 2*x\nclaim 3: [x; k] = [x; 2]\nclaim 4 restates 1: L(f, x) = -k*x\nclaim 5: rank = 1\n\
+                erratum 6: printed \"x\" as x = k*x/2 + 1 corrected x = x + 0\nerratum 7: printed k = 2 corrected k = k + 0\n\
+                convention 8 follows 6: printed x = 1 + x meant x = x + 0\ndefinition 9: \"words\"\nundecided 10: \"open\"\n";
+    let file = write(&folder, "a.proof", text);
+    let verdicts = folder.path().join("v.json").display().to_string();
+    let found =
+        json(&palmistry(&["prove", file.to_str().unwrap(), "--json", "--latex", "--verdicts", &verdicts]));
+    let checked = json(&palmistry(&["recheck", &verdicts, "--json"]));
+    let bad = write(&folder, "bad.proof", "system \"s\"\nstate x\nclaim 1: y = x\n");
+    let wrong = json(&palmistry(&["check", bad.to_str().unwrap(), "--json"]));
+    let chapter = chapter("json.md");
+    let claims = found["claims"].as_array().unwrap_or_else(|| panic!("{found}"));
+    assert_eq!(claims.len(), 10, "{found}");
+    let mut missing = BTreeSet::new();
+    let mut look = |title: &str, list: &[&serde_json::Value]| {
+        let part = chapter.split("\n## ").find(|part| part.starts_with(title)).expect("a part");
+        let fields = list.iter().flat_map(|one| one.as_object().expect("an object").keys());
+        missing.extend(fields.filter(|field| !part.contains(&format!("`{field}`"))).cloned());
+        list.len()
+    };
+    look("`prove`", &claims.iter().collect::<Vec<_>>());
+    for inner in ["witness", "printed", "corrected", "at_the_files_values"] {
+        let list: Vec<_> = claims.iter().map(|claim| &claim[inner]).filter(|one| one.is_object()).collect();
+        assert!(look("`prove`", &list) > 0, "no {inner} in {found}");
+    }
+    assert!(look("`recheck`", &checked["verdicts"].as_array().unwrap().iter().collect::<Vec<_>>()) > 5);
+    assert_eq!(look("`check`", &wrong["errors"].as_array().unwrap().iter().collect::<Vec<_>>()), 1);
+    assert!(missing.is_empty(), "{missing:?} are not told");
+}
+
+/// What the chapter on the library says that an example prints is what the example's head says, which CI holds to the output.
+#[test]
+fn the_example_prints_what_the_library_chapter_shows() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let example = std::fs::read_to_string(root.join("examples/pendulum.rs")).expect("an example");
+    let head: Vec<&str> = example
+        .lines()
+        .skip_while(|line| *line != "//! ```text")
+        .skip(1)
+        .take_while(|line| *line != "//! ```")
+        .map(|line| line.trim_start_matches("//!").trim())
+        .collect();
+    let chapter = chapter("library.md");
+    let shown = blocks(&chapter).into_iter().find(|block| block.kind == "text").expect("what it prints").text;
+    assert!(head.len() > 5, "{head:?}");
+    assert_eq!(shown.lines().map(str::trim).collect::<Vec<_>>(), head);
+}
+
 /// Each file of tests stands in the map of them, by itself or with its folder.
 #[test]
 fn every_test_file_is_on_the_map() {

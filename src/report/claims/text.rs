@@ -28,8 +28,8 @@ pub struct ClaimsForm {
 /// What stands below a report.
 #[derive(Clone, Copy, Debug)]
 pub struct ClaimsSummary {
-    /// How many claims there are, decided or not.
-    pub claims: usize,
+    /// How many claims there are, decided or not; none where the files were not all read when the run was cut off.
+    pub claims: Option<usize>,
     /// How long it took in all.
     pub seconds: f64,
 }
@@ -66,10 +66,12 @@ pub fn claims_text(
     let colon = if counts.is_empty() { "" } else { ": " };
     let total = format!("{} claims{colon}{counts}; {unexpected}, {:.1} s", outcomes.len(), summary.seconds);
     lines.push(layout.wrap("", 2, &total));
-    if outcomes.len() < summary.claims {
-        lines.push(format!("interrupted: {} claims are not decided", summary.claims - outcomes.len()));
-    } else if summary.claims == 0 {
-        lines.push("interrupted while the files were read".to_owned());
+    match summary.claims {
+        Some(claims) if outcomes.len() < claims => {
+            lines.push(format!("interrupted: {} claims are not decided", claims - outcomes.len()));
+        }
+        Some(_) => {}
+        None => lines.push("interrupted while the files were read".to_owned()),
     }
     lines.join("\n")
 }

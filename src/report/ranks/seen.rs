@@ -1,6 +1,6 @@
 //! What is not seen at a state, and how well everything else is.
 
-use crate::number::rational_to_f64;
+use crate::number::{rational_to_f64, round_to_decimal};
 use crate::observability::{NamedCoordinate, StateInWords};
 use crate::report::names::plain_number;
 use crate::sweep::{NEARLY_INVISIBLE, StandardDeviations, UnseenDirection};
@@ -15,7 +15,9 @@ const LONGEST: usize = 12;
 pub(super) fn place_text(state: &StateInWords) -> String {
     let coordinate = |NamedCoordinate { name, exact, value }: &NamedCoordinate| match exact.len() <= LONGEST {
         true => format!("{name} = {exact}"),
-        false => format!("{name} = {value:.6}"),
+        // an angle is nought
+        false if *value == 0.0 || has_decimals(*value) => format!("{name} = {value:.6}"),
+        false => format!("{name} = {value:.5e}"),
     };
     state.iter().map(coordinate).collect::<Vec<_>>().join(", ")
 }
@@ -43,8 +45,17 @@ pub(super) fn direction_text(direction: &UnseenDirection) -> String {
 }
 
 fn part_text(part: &RBig) -> String {
-    let exact = plain_number(part);
-    if exact.len() <= LONGEST { exact } else { format!("{:.6}", rational_to_f64(part)) }
+    let (exact, near) = (plain_number(part), rational_to_f64(part));
+    match exact.len() <= LONGEST {
+        true => exact,
+        false if has_decimals(near) => format!("{near:.6}"),
+        false => round_to_decimal(part, 6),
+    }
+}
+
+/// Whether six decimals say what a number is: of one that is nearer to zero they would be zeros.
+fn has_decimals(value: f64) -> bool {
+    (1e-4..1e9).contains(&value.abs())
 }
 
 /// Standard deviations as a table.

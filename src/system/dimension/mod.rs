@@ -11,6 +11,8 @@
 //! `square` those of determinants, `check` a whole file.
 
 mod check;
+#[cfg(feature = "cli")]
+mod definition;
 mod exponents;
 mod expression;
 mod form;

@@ -2,7 +2,6 @@
 
 use super::check::problems_of;
 use super::exponents::Dimension;
-use super::quantity::{Entry, Quantity};
 use crate::expression::Symbol;
 use crate::system::error::ReadError;
 use crate::system::grammar::Statement;
@@ -33,31 +32,6 @@ impl System {
     /// ```
     pub fn dimension_of(&self, symbol: Symbol) -> Option<&Dimension> {
         self.dimensions.of(symbol)
-    }
-
-    /// The dimension of a definition in words, as far as it is known: of a matrix, that of all entries where they have one.
-    #[cfg_attr(not(feature = "cli"), allow(dead_code))] // editors ask for it
-    pub(crate) fn dimension_of_definition(&self, name: &str) -> Option<String> {
-        let Quantity::Table(table) = self.dimensions.definitions.get(name)? else { return None };
-        let mut solution = self.dimensions.solution.clone();
-        let mut found: Option<Dimension> = None;
-        for entry in &table.entries {
-            match entry {
-                Entry::Zero => {}
-                Entry::Open => return None,
-                Entry::Of(form) => {
-                    let dimension = solution.dimension(form)?;
-                    if found.as_ref().is_some_and(|known| *known != dimension) {
-                        return Some("entries of several dimensions".to_owned());
-                    }
-                    found = Some(dimension);
-                }
-            }
-        }
-        found.map(|dimension| match dimension.is_none() {
-            true => "without dimension".to_owned(),
-            false => format!("dimension {dimension} ({})", dimension.unit()),
-        })
     }
 
     /// Whether the numbers of a state in other units are those of the file's units, each times what its dimension says, and

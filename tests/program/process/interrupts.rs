@@ -2,6 +2,7 @@
 
 use crate::common::{folder, json, write};
 use crate::process::{end_of, files, finish, program, signal, words};
+use serde_json::Value;
 use std::process::{Child, Command, Output, Stdio};
 
 /// Work of many seconds: words of twelve fields of the thesis's general system.
@@ -84,6 +85,37 @@ fn what_is_wrong_stays_wrong_when_the_rest_is_cut_off() {
     let found = json(&output);
     assert_eq!((&found["interrupted"], &found["ok"]), (&true.into(), &false.into()), "{}", words(&output));
     assert_eq!(found["claims"][0]["verdict"], "refuted", "{}", words(&output));
+}
+
+/// What was not looked at any more is not checked, which is no fault of it.
+#[test]
+fn a_recheck_that_is_cut_off_finds_no_fault() {
+    let folder = folder();
+    let file = folder.path().join("verdicts.json");
+    let name = file.to_str().unwrap();
+    let all = finish(&mut program(&["prove", "proofs/martinelli2005", "-q", "--verdicts", name]));
+    assert_eq!(all.status.code(), Some(0), "{}", words(&all));
+    // many times over, so that it takes seconds
+    let mut verdicts: Value = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
+    let once = verdicts["verdicts"].as_array().unwrap().clone();
+    let all = once.len() * 40;
+    verdicts["verdicts"] = once.into_iter().cycle().take(all).collect();
+    write(&folder, "verdicts.json", verdicts.to_string());
+    // it has to be read before anything of it is checked
+    let output = (5..14).map(|doublings| 1 << doublings).find_map(|ticks| {
+        let child = started_for(&mut program(&["recheck", name, "--json"]), ticks);
+        signal("INT", &child.id().to_string());
+        let output = end_of(child);
+        json(&output)["verdicts"].is_array().then_some(output)
+    });
+    let output = output.expect("something is checked");
+    let found = json(&output);
+    assert_eq!(output.status.code(), Some(3), "{}", output.status);
+    assert_eq!((&found["interrupted"], &found["ok"]), (&true.into(), &false.into()));
+    assert_eq!(found["not_confirmed"], 0);
+    let counts =
+        ["confirmed", "consistent", "not_checked"].map(|word| found[word].as_u64().expect("a count"));
+    assert!(counts[2] > 40 && counts.iter().sum::<u64>() == all as u64, "{counts:?}");
 }
 
 /// Claims for which nobody waits, half a minute in all, and before them one that is decided at once.

@@ -115,3 +115,15 @@ fn a_vector_that_is_the_same_everywhere_is_told_in_small_integers() {
     );
     assert!(text.contains("(r1, r2) += t (1, -2), that is d/dr1 - 2 d/dr2"), "{text}");
 }
+
+/// What is not zero is not shown as zero, however small it is.
+#[test]
+fn a_small_part_of_a_direction_is_told() {
+    for (factor, part) in [("1e-20", "-1.00000e-20"), ("1e-400", "-1.00000e-400"), ("1e-3", "-0.001")] {
+        let (_, text) = rank(&format!(
+            "system \"s\" state x, y drift f others' = 0 output {factor}*x + y sample x in [1, 2] y in [1, 2]"
+        ));
+        let field = format!("(x, y) += t (1, {part}), that is d/dx - {} d/dy", &part[1..]);
+        assert!(text.contains(&field), "{field}: {text}");
+    }
+}

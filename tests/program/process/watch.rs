@@ -127,6 +127,52 @@ fn reports_in_words_say_what_was_decided_and_the_status_is_that_of_the_last() {
     assert_eq!(run.end(), Some(1));
 }
 
+/// As without `--watch`: it stands in the report, and the status is 2.
+#[test]
+fn what_cannot_be_written_is_named_in_each_report() {
+    let folder = folder();
+    let file = write(&folder, "a.proof", "system \"s\"\nstate x\nclaim 1: x = x + 0\n");
+    let inside = file.join("claims.xml");
+    let run = Run::begin(&[file.to_str().unwrap(), "--json", "--junit", inside.to_str().unwrap()]);
+    let report = run.report();
+    assert_eq!(report["unwritten"][0]["file"], inside.display().to_string(), "{report}");
+    assert_eq!((&report["ok"], run.end()), (&true.into(), Some(2)));
+}
+
+/// A folder that has lost its files takes no other ones with it, and a file without claims is not taken for an interrupt.
+#[test]
+fn what_is_gone_or_empty_is_told_as_that() {
+    let (one, other) = (folder(), folder());
+    let text = |rest: &str| format!("system \"s\"\nstate x\n{rest}");
+    write(&one, "a.proof", text("claim 1: x = x + 0\n"));
+    let kept = write(&other, "b.proof", text("claim 2: x = x + 0\n"));
+    let run = Run::begin(&[one.path().to_str().unwrap(), kept.to_str().unwrap(), "--json"]);
+    assert_eq!(run.report()["claims"].as_array().map(Vec::len), Some(2));
+    std::fs::remove_file(one.path().join("a.proof")).unwrap();
+    let left = run.report();
+    assert_eq!((&left["claims"][0]["id"], &left["ok"]), (&"2".into(), &true.into()), "{left}");
+    assert_eq!((left["claims"].as_array().map(Vec::len), again(&left).len()), (Some(1), 0), "{left}");
+    assert_eq!(run.end(), Some(0));
+
+    let run = Run::begin(&[kept.to_str().unwrap()]);
+    let until_the_summary = || {
+        let mut lines = vec![run.line()];
+        while !lines.last().unwrap().contains(" not as expected, ") {
+            lines.push(run.line());
+        }
+        lines
+    };
+    until_the_summary();
+    write(&other, "b.proof", text(""));
+    assert!(until_the_summary().last().unwrap().starts_with("0 claims; "));
+    // what stands below that summary would be the first line of the next report
+    write(&other, "b.proof", text("claim 2: x = y\n"));
+    assert!(until_the_summary()[0].starts_with("decided: "));
+    write(&other, "b.proof", text("claim 2: x = x + 1\n"));
+    assert!(until_the_summary()[0].starts_with("decided: "));
+    assert_eq!(run.end(), Some(1));
+}
+
 /// What is not there when it begins is a mistake, as it is without it.
 #[test]
 fn a_folder_without_files_ends_it() {

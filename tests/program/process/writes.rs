@@ -111,6 +111,31 @@ fn results_that_cannot_be_kept_are_still_printed() {
     assert_eq!(files(folder.path()), ["small.proof", "taken"]);
 }
 
+/// What is said to be written is what was.
+#[test]
+fn what_could_not_be_written_is_not_said_to_be() {
+    let folder = folder();
+    let spoilt = "system \"s\"\n  state x\n";
+    let (file, other) = (write(&folder, "a.proof", spoilt), write(&folder, "b.proof", "system \"s\"\n"));
+    // no file may grow
+    let full = "trap '' XFSZ; ulimit -f 0; exec \"$0\" \"$@\"";
+    let run = ["fmt", file.to_str().unwrap(), other.to_str().unwrap()];
+    let output = finish(&mut in_shell(full, &run));
+    assert_eq!(output.status.code(), Some(2), "{}", words(&output));
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(said, format!("left as it is: {}\n", file.display()));
+    let found = json(&finish(&mut in_shell(full, &[&run[..], &["--json"]].concat())));
+    assert_eq!(found["changed"], serde_json::json!([]), "{found}");
+    assert_eq!(found["unwritten"][0]["file"], file.display().to_string(), "{found}");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), spoilt);
+
+    let inside = file.join("man1");
+    let output = finish(&mut program(&["man", "--out", inside.to_str().unwrap()]));
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(said, format!("0 pages in {}\n", inside.display()));
+}
+
 /// Devices, links and pipes are what they were; the same words arrive as in a file.
 #[test]
 fn only_files_are_replaced() {
