@@ -1,6 +1,6 @@
 //! The rank of a matrix of expressions at almost all points.
 
-use super::elimination::rank;
+use crate::observability::elimination::rank;
 use crate::expression::{Graph, NodeId, Program, Symbol, draw_residues, expand_angles, failure_bound, sizes};
 use crate::number::PrimeField;
 use crate::number::polynomial::Size;
