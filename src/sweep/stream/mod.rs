@@ -102,7 +102,7 @@ impl Stream {
         let nodes = put_in(system, &nodes);
         let there = guards.iter().zip(nodes).map(|(guard, node)| Guard { node, need: guard.need });
         watched.extend(watches(&mut system.graph, there, &[&watched[..], &entries].concat()));
-        let reduction = Reduction::new(&system.graph, &entries, system.states.len());
+        let reduction = Reduction::new(&system.graph, &entries, system.unknown_count());
         watched.extend(&entries);
         let known = |input: Input| match (input, locus.sources.get(&input.symbol()?)?) {
             (Input::Sine(_), Source::Fixed(Coordinate::Angle { sine, .. })) => Some(sine.clone()),
