@@ -146,17 +146,17 @@ impl PrimeField {
         let minus_one = self.p - self.one;
         let (twos, odd) = ((self.p - 1).trailing_zeros(), (self.p - 1) >> (self.p - 1).trailing_zeros());
         let euler = (self.p - 1) / 2;
-        if self.to_the(a, euler) != self.one {
+        if self.raised(a, euler) != self.one {
             return None;
         }
         // any number that is no square; every second one is none
         let mut candidate = self.sum(self.one, self.one);
-        while self.to_the(candidate, euler) != minus_one {
+        while self.raised(candidate, euler) != minus_one {
             candidate = self.sum(candidate, self.one);
         }
-        let (mut generator, mut order) = (self.to_the(candidate, odd), twos);
-        let mut root = self.to_the(a, odd.div_ceil(2));
-        let mut rest = self.to_the(a, odd);
+        let (mut generator, mut order) = (self.raised(candidate, odd), twos);
+        let mut root = self.raised(a, odd.div_ceil(2));
+        let mut rest = self.raised(a, odd);
         while rest != self.one {
             // the rest has order 2^k, k below the generator's
             let (mut k, mut power) = (0, rest);
@@ -176,7 +176,7 @@ impl PrimeField {
     }
 
     /// `a^exponent`
-    fn to_the(&self, a: u64, mut exponent: u64) -> u64 {
+    fn raised(&self, a: u64, mut exponent: u64) -> u64 {
         let (mut result, mut square) = (self.one, a);
         while exponent > 0 {
             if exponent & 1 == 1 {
@@ -193,7 +193,7 @@ impl PrimeField {
         if a == 0 {
             return None;
         }
-        Some(self.to_the(a, self.p - 2))
+        Some(self.raised(a, self.p - 2))
     }
 }
 

@@ -24,13 +24,17 @@ pub(super) struct Rounds {
 /// Where there is none, in words.
 pub(super) fn rounds(equations: &Equations, orders: usize) -> Result<Rounds, String> {
     let columns = equations.columns.len().max(1);
-    let program = Program::with_unknown_functions(&equations.graph, &equations.measured, &equations.is_angle());
+    let program =
+        Program::with_unknown_functions(&equations.graph, &equations.measured, equations.is_angle());
     let of_entries = sizes(&program).map_err(|refusal| refusal.to_string())?;
     let most = |of: fn(&Size) -> f64| of_entries.iter().map(|(top, _)| of(top)).fold(0.0, f64::max);
     let all = |of: fn(&Size) -> f64| of_entries.iter().map(|(_, bottom)| of(bottom)).sum::<f64>();
     let r = Size { degree: all(|size| size.degree), bits: all(|size| size.bits) };
     // the tangent t of half an angle moves by t' = (1 + t^2)/2 times the angle's rate
-    let p = Size { degree: most(|size| size.degree) + r.degree + 2.0, bits: most(|size| size.bits) + r.bits + 1.0 };
+    let p = Size {
+        degree: most(|size| size.degree) + r.degree + 2.0,
+        bits: most(|size| size.bits) + r.bits + 1.0,
+    };
     let step = (p.degree + r.degree - 1.0).max(2.0 * r.degree).max(1.0);
     let (mut row, mut power) = (p, 1.0);
     for _ in 0..orders {

@@ -49,8 +49,7 @@ impl Covector {
                 let from = (k + 1).saturating_sub(entry.series.len());
                 let to = k.min(factor.len() - 1);
                 if from <= to {
-                    let product =
-                        field.dot_reversed(&factor[from..=to], &entry.series[k - to..=k - from]);
+                    let product = field.dot_reversed(&factor[from..=to], &entry.series[k - to..=k - from]);
                     *sum = field.sum(*sum, product);
                 }
             }

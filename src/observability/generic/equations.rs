@@ -82,7 +82,8 @@ impl Equations {
                 rates.insert(*symbol, sum);
             }
         }
-        let moved: Vec<Symbol> = system.states.iter().copied().filter(|state| rates.contains_key(state)).collect();
+        let moved: Vec<Symbol> =
+            system.states.iter().copied().filter(|state| rates.contains_key(state)).collect();
         let mut written: Vec<NodeId> = moved.iter().map(|state| rates[state]).collect();
         written.extend(system.outputs.iter().map(|(_, node)| *node));
         let written = graph.substitute(&written, &fixed);
@@ -122,7 +123,9 @@ impl Equations {
         let square_root = |node: &NodeId| matches!(graph.node(*node), Node::Apply(Function::Sqrt, _));
         Equations {
             states: system.states.len(),
-            columns: (0..system.states.len()).collect(),
+            columns: (0..system.states.len())
+                .filter(|place| !system.known.contains(&system.states[*place]))
+                .collect(),
             outputs: outputs.len(),
             measured,
             starts,
@@ -182,14 +185,19 @@ impl Equations {
             signals[*place] = (0..length.max(1)).map(|_| field.draw(&mut rng)).collect();
         }
         let arithmetic = Adjoined::new(field, seed, signs);
-        let series = self.flow.coefficients(&arithmetic, &signals, order).map_err(|failure| failure.refusal)?;
+        let series =
+            self.flow.coefficients(&arithmetic, &signals, order).map_err(|failure| failure.refusal)?;
         let mut series = series.into_iter().map(residues);
         let blank = || Covector { series: vec![Vec::new(); self.states], length };
         let mut covectors: Vec<Covector> = (0..self.outputs).map(|_| blank()).collect();
         for (output, column) in &self.differentials {
             covectors[*output].series[*column] = series.next().unwrap_or_default();
         }
-        let entry = |((row, column), series): (&(usize, usize), Vec<u64>)| Entry { row: *row, column: *column, series };
+        let entry = |((row, column), series): (&(usize, usize), Vec<u64>)| Entry {
+            row: *row,
+            column: *column,
+            series,
+        };
         let entries = self.entries.iter().zip(series).map(entry).collect();
         Ok(Trajectory { covectors, entries })
     }

@@ -19,7 +19,8 @@ pub(super) fn independent(
     is_angle: &dyn Fn(Symbol) -> bool,
     rng: &mut ChaCha8Rng,
 ) -> bool {
-    let (mut exponents, mut turns, mut forms): (Vec<NodeId>, Vec<NodeId>, Vec<(NodeId, NodeId)>) = Default::default();
+    let (mut exponents, mut turns, mut forms): (Vec<NodeId>, Vec<NodeId>, Vec<(NodeId, NodeId)>) =
+        Default::default();
     for id in functions {
         let Node::Apply(function, argument) = graph.node(*id) else { return false };
         let met = graph.reachable([argument]);

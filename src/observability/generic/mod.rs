@@ -18,6 +18,8 @@ mod echelon;
 mod equations;
 mod independence;
 mod matrix;
+#[cfg(test)]
+mod tests;
 
 pub use matrix::{GenericRank, generic_rank};
 
@@ -134,7 +136,8 @@ impl Probe {
                 let mut further = Vec::new();
                 for covector in open {
                     let value = covector.value();
-                    let raised = echelon.insert(equations.columns.iter().map(|column| value[*column]).collect());
+                    let raised =
+                        echelon.insert(equations.columns.iter().map(|column| value[*column]).collect());
                     if raised {
                         order = k;
                     }
@@ -147,7 +150,8 @@ impl Probe {
                     break;
                 }
                 if k + 1 < length {
-                    let next = |covector: &Covector| covector.next(&draw.field, &trajectory.entries, &integers);
+                    let next =
+                        |covector: &Covector| covector.next(&draw.field, &trajectory.entries, &integers);
                     open = open.iter().map(next).collect();
                 }
             }
@@ -260,14 +264,16 @@ pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> 
         };
         answer.rounds += 1;
         best.resize(found.len(), (0, vec![false; dimension]));
-        for (best, here) in best.iter_mut().zip(&found) {
-            answer.order = answer.order.max(here.order);
-            let seen = here.echelon.seen();
-            if here.rank() > best.0 {
-                *best = (here.rank(), seen);
-            } else if here.rank() == best.0 {
+        answer.order = found.iter().map(|here| here.order).fold(answer.order, usize::max);
+        // which choice of signs is which is another matter at every point
+        let mut found: Vec<_> = found.iter().map(|here| (here.rank(), here.echelon.seen())).collect();
+        found.sort_unstable();
+        for (best, here) in best.iter_mut().zip(found) {
+            if here.0 > best.0 {
+                *best = here;
+            } else if here.0 == best.0 {
                 // seen is what the others do without at no point
-                best.1.iter_mut().zip(seen).for_each(|(best, here)| *best &= here);
+                best.1.iter_mut().zip(here.1).for_each(|(best, here)| *best &= here);
             }
         }
         if best.iter().all(|(rank, _)| *rank == dimension) {
@@ -283,7 +289,12 @@ fn functions_are_known(equations: &mut Equations, rng: &mut ChaCha8Rng) -> bool 
     let functions = std::mem::take(&mut equations.functions);
     let angles = equations.angles.clone();
     let known = functions.is_empty()
-        || independence::independent(&mut equations.graph, &functions, &|symbol| angles.contains(&symbol), rng);
+        || independence::independent(
+            &mut equations.graph,
+            &functions,
+            &|symbol| angles.contains(&symbol),
+            rng,
+        );
     equations.functions = functions;
     known && (equations.roots == 0 || equations.roots <= MOST_ROOTS)
 }
@@ -301,7 +312,10 @@ fn conclude(
     if known_functions {
         answer.at_least = least;
     } else {
-        answer.open = Some("functions are met that may satisfy relations; a rank at a true state is a lower bound".to_owned());
+        answer.open = Some(
+            "functions are met that may satisfy relations; a rank at a true state is a lower bound"
+                .to_owned(),
+        );
     }
     match bounds {
         Ok(bounds) if rests => {
@@ -311,15 +325,15 @@ fn conclude(
             }
         }
         Ok(_) if least < answer.dimension => {
-            answer.open = Some("the fields leave the set: derivatives of higher orders may see more".to_owned());
+            answer.open =
+                Some("the fields leave the set: derivatives of higher orders may see more".to_owned());
         }
         Err(why) if least < answer.dimension => answer.open = Some(why.clone()),
         _ => {}
     }
     if least < most && answer.open.is_none() {
-        answer.open = Some(format!(
-            "the rank is {least} with some signs of the square roots and {most} with others"
-        ));
+        answer.open =
+            Some(format!("the rank is {least} with some signs of the square roots and {most} with others"));
     }
     let known = answer.is_final();
     for (place, (_, seen)) in answer.unknowns.iter_mut().enumerate() {
