@@ -195,6 +195,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
     for text in &question.conditions {
         equations.extend(parse_condition(text).map_err(RankError::Condition)?);
     }
+    equations.extend(system.initial_conditions().iter().cloned());
     let mut branches = solve_conditions(system, &equations)?;
     for branch in &mut branches {
         for symbol in question.fixed.keys() {

@@ -6,6 +6,7 @@
 //!
 //! This floor knows nothing of ranks, verdicts or palms.
 
+mod declare;
 mod determinant;
 mod dimension;
 mod domain;
@@ -24,6 +25,7 @@ mod problems;
 mod read;
 mod references;
 mod restates;
+mod signals;
 mod source_text;
 mod standing;
 mod unknowns;
