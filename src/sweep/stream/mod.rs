@@ -298,9 +298,10 @@ impl Vectorised for Chunk<'_, '_> {
                 }
                 let LaneFound { found, finite } =
                     decide_lane(&stream.matrix.program, &machine, lane, &mut decider, true);
-                for i in 0..L::COUNT.min((count - here) as usize) {
+                for (i, finite) in finite.into_iter().enumerate().take(L::COUNT.min((count - here) as usize))
+                {
                     let index = first + here + i as u64;
-                    if report.add(index, &found, i, finite[i], options.wanted) {
+                    if report.add(index, &found, i, finite, options.wanted) {
                         left.push(index);
                     }
                 }
