@@ -10,6 +10,7 @@ mod declare;
 mod determinant;
 mod dimension;
 mod domain;
+mod drawn;
 mod elaborate;
 mod error;
 mod extent;

@@ -3,4 +3,5 @@
 pub(super) mod answer;
 mod seen;
 
+pub(super) use answer::taken_for_granted;
 pub use answer::{rank_json, rank_text};
