@@ -5,19 +5,21 @@ use super::series::sweep_by_series;
 use super::states::{SweepOptions, SweepReport, UNINTERRUPTED, sweep};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
-    Codistribution, CodistributionError, GenericAnswer, Length, Locus, LocusError, OWN_ROWS, Probe, Stop,
-    Unsolved, parse_condition, solve_conditions,
+    Codistribution, CodistributionError, Frame, GenericAnswer, Length, Locus, LocusError, MissingRange,
+    OWN_ROWS, Probe, Stop, Unsolved, parse_condition, solve_conditions,
 };
 use crate::sweep::certainty::Certainty;
-use crate::system::{Assignment, FieldRole, Kind, SymbolInfo, System, UnknownKind, Value};
+use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, UnknownKind, Value};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
 
 /// What is asked.
 pub struct RankQuestion<'a> {
-    /// States drawn on each branch of the conditions.
+    /// States drawn on each branch of the conditions; none, and no words are taken either.
     pub samples: u64,
+    /// Whether states are drawn only where the words that show what is seen are short enough to be written down in a moment.
+    pub only_if_short: bool,
     /// The seed of the drawn states.
     pub seed: u64,
     /// What every rank has to be, at the least.
@@ -43,6 +45,7 @@ impl Default for RankQuestion<'_> {
     fn default() -> Self {
         RankQuestion {
             samples: 1000,
+            only_if_short: false,
             seed: 1,
             wanted: Certainty::Certified,
             digits: None,
@@ -71,6 +74,8 @@ pub struct BranchAnswer {
     /// The parameters that the rank depends on and the file gives a value to: they were held at it. A claim about the rank is
     /// about all values.
     pub held: Vec<(String, RBig)>,
+    /// What is drawn from a range that the file does not give, and this range.
+    pub by_default: Vec<(String, Range)>,
     /// The words that were needed, as a paper writes them.
     pub words: Vec<String>,
     /// What is seen at almost all states of the branch, and of each unknown whether it is.
@@ -113,6 +118,10 @@ pub struct RankAnswer {
     pub seed: u64,
     /// The number of states of the system: the rank of one that is seen.
     pub dimension: usize,
+    /// The coordinates that are known and have no column, by name.
+    pub known: Vec<String>,
+    /// What is assumed of signals that are not known.
+    pub assumed: Vec<String>,
     /// An answer for each branch of the conditions; one where there are none.
     pub branches: Vec<BranchAnswer>,
 }
@@ -127,9 +136,7 @@ impl RankAnswer {
 impl RankAnswer {
     /// Whether a search ended before its end: longer words might say more, and no series did.
     pub fn cut_off(&self) -> bool {
-        let cut =
-            |branch: &BranchAnswer| !branch.is_final && matches!(branch.stop, Stop::TooMany | Stop::Order);
-        self.branches.iter().any(cut)
+        self.branches.iter().any(|branch| branch.cut_off)
     }
 }
 
@@ -228,6 +235,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
     for text in &question.conditions {
         equations.extend(parse_condition(text).map_err(RankError::Condition)?);
     }
+    equations.extend(system.initial_conditions().iter().cloned());
     let mut branches = solve_conditions(system, &equations)?;
     for branch in &mut branches {
         for symbol in question.fixed.keys() {
@@ -264,14 +272,20 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             conditions.insert(*known, value);
         }
         let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
-        let codistribution = Codistribution::new(system, &conditions, length)?;
+        let frame = Frame::new(system, &conditions)?;
+        let wanted = question.samples > 0 && (!question.only_if_short || frame.words_are_short(system));
+        let samples = if wanted { question.samples } else { 0 };
+        let codistribution = match wanted {
+            true => Codistribution::within(system, &conditions, length, frame)?,
+            false => Codistribution::without_words(frame),
+        };
         let all = codistribution.entries();
         let mut mentioned: Vec<NodeId> = all.clone();
         mentioned.extend(own.iter().flatten());
         mentioned.extend(guarded(system));
-        let locus = Locus::new(system, &branch, &question.fixed, &mentioned)?;
+        let locus = Locus::of(system, &branch, &question.fixed, &mentioned, MissingRange::Default)?;
         let options = SweepOptions {
-            samples: question.samples,
+            samples,
             seed: question.seed,
             most: None,
             guards: &[],
@@ -288,18 +302,16 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         } else {
             codistribution.sweep(system, &locus, options)?
         };
-        let deviations = match full.interrupted || codistribution.is_cut_off() {
+        let deviations = match full.interrupted || codistribution.is_cut_off() || !wanted {
             true => None,
-            false => {
-                standard_deviations(system, &locus, &codistribution, &full, question.seed, question.samples)?
-            }
+            false => standard_deviations(system, &locus, &codistribution, &full, question.seed, samples)?,
         };
         let rows = match &own {
-            Some(own) => {
+            Some(own) if wanted => {
                 let silent = SweepOptions { guards: &own_guards, progress: &|_| (), ..options };
                 Some(sweep(system, &locus, own, own, silent)?)
             }
-            None => None,
+            _ => None,
         };
         let known = codistribution.generic.is_final() && question.order.is_none();
         let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
@@ -315,14 +327,22 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
             own: own_rows.enumerate().map(numbered).collect(),
             conditions: locus.conditions.clone(),
+            by_default: locus.by_default.clone(),
             held: held_parameters(system, question, &branch.values, own.iter().flatten()),
             words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
             unknowns: named_unknowns(system),
             order: codistribution.order,
             stop: codistribution.stop,
-            generic_rank: codistribution.generic_rank(),
-            is_final: codistribution.is_final()
-                || codistribution.generic.is_final() && question.order.is_none(),
+            generic_rank: codistribution
+                .generic
+                .rank()
+                .filter(|_| known)
+                .unwrap_or(codistribution.generic_rank()),
+            is_final: codistribution.is_final() || known,
+            cut_off: question.order.is_none()
+                && !known
+                && !codistribution.is_final()
+                && !codistribution.has_rested(),
             generic: codistribution.generic,
             full,
             deviations,
@@ -336,6 +356,8 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         fields: system.roles(),
         seed: question.seed,
         dimension: system.unknown_count(),
+        known: system.known_names(),
+        assumed: system.assumed_of_signals(),
         branches: answers,
     })
 }
