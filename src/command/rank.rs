@@ -8,7 +8,7 @@ use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::evidence::rank_records;
 use palmistry::report::{rank_json, rank_text};
-use palmistry::sweep::MOST_DIGITS;
+use palmistry::sweep::{MOST_DIGITS, answer_rank_at_once};
 use palmistry::{RankQuestion, System, answer_rank};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -73,11 +73,12 @@ impl Rank {
         let fixed: BTreeMap<_, _> = assignments(&system, &self.at)?.into_iter().collect();
         let samples = self.samples.unwrap_or(RankQuestion::default().samples);
         let bar = progress(samples, "sampling states");
+        let nothing_asked = self.samples.is_none() && self.order.is_none() && self.verdicts.is_none();
+        let answer_rank = if nothing_asked { answer_rank_at_once } else { answer_rank };
         let answer = answer_rank(
             &mut system,
             &RankQuestion {
                 samples,
-                only_if_short: self.samples.is_none() && self.order.is_none() && self.verdicts.is_none(),
                 seed: self.seed,
                 wanted: self.verdict.into(),
                 digits: self.digits.map(usize::from),

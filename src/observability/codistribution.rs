@@ -24,13 +24,21 @@ pub struct Word {
 }
 
 impl Word {
-    /// As a paper writes it: `Lg1 Lf s1`.
+    /// As a paper writes it: `Lg1 Lf s1`; long words in powers, `Lg1 Lf^14 s1`.
     pub fn text(&self, system: &System) -> String {
         let mut text = String::new();
-        for field in &self.fields {
+        // nobody counts more than a dozen of the same
+        let in_powers = self.fields.len() > LONGEST;
+        let mut rest = self.fields.as_slice();
+        while let Some(field) = rest.first() {
+            let run = if in_powers { rest.iter().take_while(|other| *other == field).count() } else { 1 };
             text.push('L');
             text.push_str(&system.fields[*field].name);
+            if run > 1 {
+                text.push_str(&format!("^{run}"));
+            }
             text.push(' ');
+            rest = &rest[run..];
         }
         text + &system.outputs[self.output].0
     }

@@ -18,8 +18,6 @@ use std::sync::atomic::AtomicBool;
 pub struct RankQuestion<'a> {
     /// States drawn on each branch of the conditions; none, and no words are taken either.
     pub samples: u64,
-    /// Whether states are drawn only where the words that show what is seen are short enough to be written down in a moment.
-    pub only_if_short: bool,
     /// The seed of the drawn states.
     pub seed: u64,
     /// What every rank has to be, at the least.
@@ -45,7 +43,6 @@ impl Default for RankQuestion<'_> {
     fn default() -> Self {
         RankQuestion {
             samples: 1000,
-            only_if_short: false,
             seed: 1,
             wanted: Certainty::Certified,
             digits: None,
@@ -227,6 +224,25 @@ fn named_unknowns(system: &System) -> Vec<(String, UnknownKind)> {
 /// # Errors
 /// No states or outputs, no drift or input, conditions that cannot be solved, a pole everywhere, an empty sample box.
 pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<RankAnswer, RankError> {
+    answer(system, question, false)
+}
+
+/// The same, but states are drawn only where the words that show what is seen are short enough to be written down in a moment.
+///
+/// # Errors
+/// As for [`answer_rank`].
+pub fn answer_rank_at_once(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+) -> Result<RankAnswer, RankError> {
+    answer(system, question, true)
+}
+
+fn answer(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    only_if_short: bool,
+) -> Result<RankAnswer, RankError> {
     if system.unknown_count() == 0 || system.outputs.is_empty() {
         return Err(RankError::NothingToSee(system.name.clone()));
     }
@@ -273,7 +289,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         }
         let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
         let frame = Frame::new(system, &conditions)?;
-        let wanted = question.samples > 0 && (!question.only_if_short || frame.words_are_short(system));
+        let wanted = question.samples > 0 && (!only_if_short || frame.words_are_short(system));
         let samples = if wanted { question.samples } else { 0 };
         let codistribution = match wanted {
             true => Codistribution::within(system, &conditions, length, frame)?,
