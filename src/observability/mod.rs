@@ -42,7 +42,7 @@ pub use generic::{Directions, Probe};
 pub use generic::{GenericAnswer, GenericRank, Seen, generic_answer, generic_rank};
 pub(crate) use locus::AVOIDED;
 pub(crate) use locus::{ATTEMPTS, Source};
-pub use locus::{Locus, LocusError, MissingRange};
+pub use locus::{Locus, LocusError};
 #[doc(hidden)]
 pub use nested::{differential_by_duals, lie_derivative_by_duals};
 #[doc(hidden)]

@@ -4,7 +4,7 @@ use super::deviation::{StandardDeviations, standard_deviations};
 use super::states::{SweepOptions, SweepReport, UNINTERRUPTED, sweep};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
-    Codistribution, CodistributionError, Length, Locus, LocusError, MissingRange, OWN_ROWS, Stop, Unsolved,
+    Codistribution, CodistributionError, Length, Locus, LocusError, OWN_ROWS, Stop, Unsolved,
     parse_condition, solve_conditions,
 };
 use crate::sweep::certainty::Certainty;
@@ -243,7 +243,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         let mut mentioned: Vec<NodeId> = all.clone();
         mentioned.extend(own.iter().flatten());
         mentioned.extend(guarded(system));
-        let locus = Locus::of(system, &branch, &question.fixed, &mentioned, MissingRange::Default)?;
+        let locus = Locus::new(system, &branch, &question.fixed, &mentioned)?;
         let options = SweepOptions {
             samples: question.samples,
             seed: question.seed,
