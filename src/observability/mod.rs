@@ -42,7 +42,7 @@ pub use generic::{Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, gen
 pub use generic::{Directions, Probe};
 pub(crate) use locus::AVOIDED;
 pub(crate) use locus::{ATTEMPTS, Source};
-pub use locus::{Locus, LocusError, MissingRange};
+pub use locus::{Locus, LocusError};
 #[doc(hidden)]
 pub use nested::{differential_by_duals, lie_derivative_by_duals};
 #[doc(hidden)]

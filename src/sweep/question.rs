@@ -5,8 +5,8 @@ use super::series::sweep_by_series;
 use super::states::{SweepOptions, SweepReport, UNINTERRUPTED, sweep};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
-    Codistribution, CodistributionError, Frame, GenericAnswer, Length, Locus, LocusError, MissingRange,
-    OWN_ROWS, Probe, Stop, Unsolved, parse_condition, solve_conditions,
+    Codistribution, CodistributionError, Frame, GenericAnswer, Length, Locus, LocusError, OWN_ROWS, Probe,
+    Stop, Unsolved, parse_condition, solve_conditions,
 };
 use crate::sweep::certainty::Certainty;
 use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, UnknownKind, Value};
@@ -299,7 +299,7 @@ fn answer(
         let mut mentioned: Vec<NodeId> = all.clone();
         mentioned.extend(own.iter().flatten());
         mentioned.extend(guarded(system));
-        let locus = Locus::of(system, &branch, &question.fixed, &mentioned, MissingRange::Default)?;
+        let locus = Locus::new(system, &branch, &question.fixed, &mentioned)?;
         let options = SweepOptions {
             samples,
             seed: question.seed,
