@@ -135,10 +135,11 @@ fn begins_an_entry(line: &str) -> Option<&'static str> {
 /// Where the sign stands in `name' = rate` or `name in [low, high]`.
 fn row(line: &str, sign: &str) -> Option<usize> {
     let end = line.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))?;
-    let mut rest = line[end..].trim_start();
     if end == 0 {
         return None;
     }
+    let component = if line[end..].starts_with('[') { line[end..].find(']')? + 1 } else { 0 };
+    let mut rest = line[end + component..].trim_start();
     if sign == "=" {
         rest = rest.strip_prefix('\'')?.trim_start();
     }
@@ -185,6 +186,8 @@ fn align(lines: &mut [Line]) {
                     line.text = format!("{}{pad}{}", line.text[..place].trim_end(), &line.text[place..]);
                     shift = (widest + 1) as isize - before as isize;
                 }
+                // what is avoided goes on with no row
+                LineKind::Rest if line.text.starts_with("avoid") => shift = 0,
                 LineKind::Rest => {
                     line.indent = line.indent.saturating_add_signed(shift).max(INDENT);
                 }
@@ -234,6 +237,17 @@ mod tests {
         let wanted = "system \"s\"\nstate x, long\n\nparam set\ndrift f\n  x'    = long\n         + 1  # why\n  long' =x\nsample\n  \
                       x    in [0, 1]\n  long in [0, 1]\n  avoid x\nclaim 1: x\n  = x\n  \"two  \n   lines\"\n  # note\n\
                       set \"a\": x = 0\n";
+        assert_eq!(formatted(text), wanted);
+        assert_eq!(formatted(wanted), wanted);
+    }
+
+    /// By hand: components and ranges are names of rows, and what is avoided stays where it is.
+    #[test]
+    fn components_are_rows() {
+        let text = "system \"s\"\nstate x[1..3]\ndrift f\nx[1]' = x[2]\n  x[i+1]' = -x[i]\n for i in 1..2\nsample\n \
+                    x[1..2] in [0, 1]\n  x[3] in [0, 2]\n  avoid x[1]\n";
+        let wanted = "system \"s\"\nstate x[1..3]\ndrift f\n  x[1]'   = x[2]\n  x[i+1]' = -x[i]\n  for i in 1..2\nsample\n  \
+                      x[1..2] in [0, 1]\n  x[3]    in [0, 2]\n  avoid x[1]\n";
         assert_eq!(formatted(text), wanted);
         assert_eq!(formatted(wanted), wanted);
     }

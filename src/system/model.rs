@@ -9,7 +9,7 @@ use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation}
 use crate::expression::syntax::Span;
 use crate::expression::{Derivation, Graph, Guard, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
-use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -244,6 +244,8 @@ pub struct System {
     pub(crate) calculated: HashSet<String>,
     /// What is known of dimensions.
     pub(crate) dimensions: Arc<Dimensions>,
+    /// The vectors, by their names: those whose components are symbols or definitions.
+    pub(crate) vectors: BTreeSet<String>,
     /// The dimensions of the files that this one imports, while it is read.
     pub(crate) imported_dimensions: Vec<Import>,
 }

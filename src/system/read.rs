@@ -1,15 +1,16 @@
 //! From a file to a system.
 
+use super::components::is_component;
 use super::dimension::{self, Declared};
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
-use super::grammar::{ClaimSyntax, Entries, Item, Statement, parse_entries};
+use super::grammar::{ClaimSyntax, Entries, Item, OutputSyntax, Statement, parse_entries};
 use super::imports::Reading;
 use super::model::{Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
 use super::problems::{Cause, Full, Problems, Remnant, names_of_text};
 use super::source_text::{load, refuse_reordering, with_plain_line_ends};
 use super::written::{Scope, Written, in_one_line, places_in};
-use crate::expression::syntax::{Expr, Name, Relation, Span};
+use crate::expression::syntax::{Expr, ExprKind, Name, Relation, Span};
 use crate::expression::{Derivation, Graph, Guard, Symbol, parse_expression};
 use crate::file;
 use miette::NamedSource;
@@ -147,6 +148,7 @@ impl System {
             calculated: HashSet::new(),
             dimensions: Default::default(),
             imported_dimensions: Vec::new(),
+            vectors: BTreeSet::new(),
         };
         match system.fill(folder, reading, problems) {
             Ok(()) => Ok(system),
@@ -160,7 +162,7 @@ impl System {
         if let Err(problem) = refuse_reordering(&text) {
             problems.add(problem)?;
         }
-        let Entries { items, damage, .. } = parse_entries(&text, problems.room());
+        let Entries { items, damage, indices, .. } = parse_entries(&text, problems.room());
         for part in damage {
             problems.add(expected(part.expected))?;
             if let Some((word, names)) = names_of_text(&text[part.left_out]) {
@@ -186,6 +188,11 @@ impl System {
                     let remnant = Remnant::of_statement(statement, problems);
                     self.entry_failed(problem, remnant, problems)?;
                 }
+            }
+        }
+        for index in &indices {
+            if let Err(problem) = self.refuse_taken_index(index) {
+                problems.add(problem)?;
             }
         }
         self.domain = Default::default();
@@ -274,7 +281,13 @@ impl System {
                         "claim it as it is",
                     ));
                 }
-                self.written.insert(name.text.clone(), self.written_as(&expr.span, [expr]));
+                self.note_component(&name.text);
+                let written = match (&value, is_component(&name.text)) {
+                    // the text speaks of all components
+                    (Value::Scalar(value), true) => Written::plain(self.graph.text(*value)),
+                    _ => self.written_as(&expr.span, [expr]),
+                };
+                self.written.insert(name.text.clone(), written);
                 self.definition_domains.insert(name.text.clone(), domain);
                 self.definitions.insert(name.text.clone(), value);
             }
@@ -282,7 +295,7 @@ impl System {
                 self.enter_field(*role, name.clone(), components, *others_are_zero)?
             }
             Item::Output(list) => {
-                for (expr, _) in list {
+                for OutputSyntax { value: expr, is_repeated, .. } in list {
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
                     // what is seen twice is seen once: a second time it would count as a measurement of its own
                     let guards = self.guards_of(&domain);
@@ -290,7 +303,12 @@ impl System {
                         Some(place) => self.output_guards[place].extend(guards),
                         None => {
                             self.output_guards.push(guards);
-                            self.outputs.push((in_one_line(&self.source, &expr.span), value));
+                            let text = match (&expr.kind, is_repeated) {
+                                (_, false) => in_one_line(&self.source, &expr.span),
+                                (ExprKind::Name(name), true) => name.clone(),
+                                (_, true) => self.graph.text(value),
+                            };
+                            self.outputs.push((text, value));
                         }
                     }
                 }
@@ -381,11 +399,12 @@ impl System {
             let message = "a name with a dot belongs to an imported system";
             return Err(Problem::new(&name.span, message, "choose one without"));
         }
-        Ok(())
+        self.refuse_mixed(name)
     }
 
     fn declare(&mut self, name: &Name, kind: Kind) -> Result<Symbol, Problem> {
         self.refuse_taken(name)?;
+        self.note_component(&name.text);
         let symbol = self.graph.intern(&name.text);
         let is_angle = self.is_angle(symbol);
         self.symbols.insert(symbol, SymbolInfo { kind, is_angle, default: None, range: None });

@@ -20,4 +20,5 @@ mod published;
 mod recheck;
 mod series;
 mod units;
+mod vectors;
 mod words;

@@ -3,7 +3,7 @@
 
 use crate::expression::syntax::{Expr, ExprKind, Name, Span};
 use crate::number::parse_decimal;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use winnow::combinator::{alt, opt};
 use winnow::error::{AddContext, ErrMode, ModalResult, ParserError};
 use winnow::prelude::*;
@@ -13,9 +13,16 @@ use winnow::token::{literal, one_of, take_till, take_while};
 /// Text with the place in it, and how deep in brackets we are.
 pub(crate) type Text<'a> = Stateful<LocatingSlice<&'a str>, &'a Depth>;
 
-/// How many brackets are open, and how many may be.
+/// What is counted while a text is read.
 #[derive(Debug, Default)]
-pub(crate) struct Depth(pub(super) Cell<usize>);
+pub(crate) struct Depth {
+    /// How many brackets are open.
+    pub(super) open: Cell<usize>,
+    /// How many parts of expressions were written out for values of indices.
+    pub(super) written_out: Cell<usize>,
+    /// The indices that were met, where each gets its range.
+    pub(crate) indices: RefCell<Vec<Name>>,
+}
 
 /// More brackets within brackets than this are refused: nobody means them.
 pub(super) const DEEPEST: usize = 120;
@@ -94,7 +101,7 @@ pub(crate) fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<
 }
 
 /// Words that begin something and so cannot be names.
-pub(crate) const RESERVED: [&str; 30] = [
+pub(crate) const RESERVED: [&str; 31] = [
     "system",
     "cite",
     "use",
@@ -125,6 +132,7 @@ pub(crate) const RESERVED: [&str; 30] = [
     "at",
     "within",
     "expect",
+    "for",
 ];
 
 /// Words with a meaning at some places; elsewhere they are names.
@@ -235,7 +243,7 @@ pub(crate) fn within<'a, T>(
     inner: impl Parser<Text<'a>, T, ErrMode<Expected>>,
 ) -> Read<T> {
     let depth = input.state;
-    if depth.0.get() >= DEEPEST {
+    if depth.open.get() >= DEEPEST {
         let at = input.current_token_start();
         return stop(
             at,
@@ -243,9 +251,9 @@ pub(crate) fn within<'a, T>(
             Some("name the inner part with 'let'".into()),
         );
     }
-    depth.0.set(depth.0.get() + 1);
+    depth.open.set(depth.open.get() + 1);
     let mut inner = inner;
     let result = inner.parse_next(input);
-    depth.0.set(depth.0.get() - 1);
+    depth.open.set(depth.open.get() - 1);
     result
 }
