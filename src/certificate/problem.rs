@@ -163,6 +163,11 @@ fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> Res
     let mut exactly = Vec::new();
     let mut found = Ranges { free: Vec::new(), held: Default::default() };
     let mut values = Vec::new();
+    if let Some(open) = system.initial_value_without_a_number() {
+        return Err(format!(
+            "'{open}' has a value at the beginning that is no number: give the parameters in it numbers there"
+        ));
+    }
     for (symbol, info) in system.symbols().filter(|(_, info)| info.kind != Kind::Imported) {
         let range = info.range.as_ref().map(|range| (range.low.clone(), range.high.clone()));
         let value = info.default.as_ref().map(|value| (value.clone(), value.clone()));

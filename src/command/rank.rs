@@ -7,9 +7,9 @@ use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::evidence::rank_records;
-use palmistry::report::{rank_json, rank_text};
+use palmistry::report::{accessibility_json, accessibility_text, rank_json, rank_text};
 use palmistry::sweep::MOST_DIGITS;
-use palmistry::{RankQuestion, System, answer_rank};
+use palmistry::{RankQuestion, System, answer_accessibility, answer_rank};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -24,7 +24,8 @@ use std::path::PathBuf;
   palmistry rank mysystem.proof --samples 100000
   palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
-  palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain")]
+  palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain
+  palmistry rank mysystem.proof --accessible               what the inputs can move, by brackets")]
 pub(crate) struct Rank {
     /// The proof file.
     file: PathBuf,
@@ -60,6 +61,11 @@ pub(crate) struct Rank {
     /// How many states that file holds at most; they are spread over the sweep, the worst conditioned one is among them.
     #[arg(long, default_value_t = 1000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     verdict_states: u64,
+    /// Ask the dual question instead: whether the drift and the inputs can move the state in every direction. That is the rank of
+    /// the distribution that they and their brackets span (accessibility), and without the drift itself (strong
+    /// accessibility), at almost all states and at the sampled ones. Outputs play no part.
+    #[arg(long, conflicts_with_all = ["digits", "verdicts"])]
+    accessible: bool,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -70,21 +76,22 @@ impl Rank {
         let mut system = System::read(&self.file)?;
         let fixed: BTreeMap<_, _> = assignments(&system, &self.at)?.into_iter().collect();
         let bar = progress(self.samples, "sampling states");
-        let answer = answer_rank(
-            &mut system,
-            &RankQuestion {
-                samples: self.samples,
-                seed: self.seed,
-                wanted: self.verdict.into(),
-                digits: self.digits.map(usize::from),
-                order: self.order.map(usize::from),
-                fixed,
-                conditions: self.conditions.clone(),
-                recorded: if self.verdicts.is_some() { self.verdict_states } else { 0 },
-                interrupt: &INTERRUPTED,
-                progress: &|done| bar.set_position(done),
-            },
-        );
+        let question = &RankQuestion {
+            samples: self.samples,
+            seed: self.seed,
+            wanted: self.verdict.into(),
+            digits: self.digits.map(usize::from),
+            order: self.order.map(usize::from),
+            fixed,
+            conditions: self.conditions.clone(),
+            recorded: if self.verdicts.is_some() { self.verdict_states } else { 0 },
+            interrupt: &INTERRUPTED,
+            progress: &|done| bar.set_position(done),
+        };
+        if self.accessible {
+            return accessible(&mut system, question, &bar, self.json);
+        }
+        let answer = answer_rank(&mut system, question);
         bar.finish_and_clear();
         let answer = answer.map_err(|why| Unusable::report(why.to_string(), ""))?;
         begin_to_tell();
@@ -99,4 +106,25 @@ impl Rank {
         let status = if answer.interrupted() { Status::CutOff } else { Status::AsExpected };
         files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
     }
+}
+
+/// The answer to the dual question.
+fn accessible(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    bar: &indicatif::ProgressBar,
+    json: bool,
+) -> miette::Result<Status> {
+    let answer = answer_accessibility(system, question);
+    bar.finish_and_clear();
+    let answer = answer.map_err(|why| Unusable::report(why.to_string(), ""))?;
+    begin_to_tell();
+    let is_whole = answer.is_final() && !answer.interrupted();
+    let status = if is_whole { Status::AsExpected } else { Status::CutOff };
+    Files::default().print(
+        Form::of(json),
+        accessibility_json(&answer),
+        || accessibility_text(&answer),
+        status,
+    )
 }

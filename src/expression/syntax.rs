@@ -59,8 +59,8 @@ pub enum ExprKind {
 /// The forms of an expression with indices.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Indexed {
-    /// `x[2*i - 1]`, or `x[1..3]`, which is three entries of a list
-    Component { vector: String, place: Place },
+    /// `x[2*i - 1]`, or `x[1..3]`, which is three entries of a list; and what stands behind it, as in `x[1]'` and `x[1]@2`
+    Component { vector: String, place: Place, suffix: String },
     /// `sum(i in 1..20, e)`, or `product(...)`
     Fold { is_product: bool, over: Loop, body: Expr },
 }

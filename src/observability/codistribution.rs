@@ -4,7 +4,7 @@
 use super::conditions::{all_vanish, vanishes};
 use super::elimination::independent_rows;
 use super::series::lie_derivative_by_series;
-use crate::expression::{NodeId, Program, draw_residues, expand_angles};
+use crate::expression::{NodeId, Program, draw_residues, expand_angles, gradient};
 use crate::number::PrimeField;
 use crate::system::{Assignment, System};
 use rand::SeedableRng;
@@ -81,7 +81,8 @@ const PATIENCE: usize = 300;
 pub enum Stop {
     /// The rank has reached the dimension of the state space.
     Full,
-    /// The rank has reached that at almost all states around, which no state of the locus can exceed.
+    /// The rank has reached that at almost all states around, which no state of the locus can exceed. Where values are
+    /// known at the beginning: that of the differentials by these too.
     Ceiling,
     /// One further order did not raise the rank.
     NoGrowth,
@@ -133,10 +134,11 @@ impl Codistribution {
         let fields = system.moving_fields();
         let dimension = system.unknown_count();
         let invariant = is_invariant(system, conditions);
-        let ceiling = if invariant { dimension } else { rank_around(system, conditions, length)? };
+        let closed = system.closed_coordinates();
+        let ceiling = if invariant { closed.len() } else { rank_around(system, conditions, length)? };
         let (at_least, longest, most) = match length {
             Length::UntilItStops if invariant => (0, LONGEST, MOST_WORDS),
-            Length::UntilItStops => (dimension, dimension, PATIENCE),
+            Length::UntilItStops => (closed.len(), closed.len(), PATIENCE),
             Length::Exactly(order) => (order, order, MOST_WORDS),
         };
         let mut result = Codistribution {
@@ -149,6 +151,9 @@ impl Codistribution {
             invariant,
             guessed: false,
         };
+        // a state that is known at the beginning has no column, and yet what it does not see may be seen through its rate: the
+        // words have ended where those of all that moves have
+        let (mut with_all, mut closed_rank) = (Vec::new(), 0);
         let mut last: Vec<(Word, NodeId)> = (0..system.outputs.len())
             .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
             .collect();
@@ -162,6 +167,9 @@ impl Codistribution {
             }
             for (word, value) in &last {
                 let value = cheaper(system, word, *value);
+                if closed.len() > dimension {
+                    with_all.push(gradient(&mut system.graph, value, &closed));
+                }
                 let row = system.differential(value);
                 // a row that is zero on the locus adds nothing; in floating point it would be noise
                 let on_the_locus = system.graph.substitute(&row, conditions);
@@ -173,17 +181,23 @@ impl Codistribution {
                 result.rows.push(row);
             }
             result.order = order;
-            let before = result.needed.len();
+            let before = (result.needed.len(), closed_rank);
             (result.needed, result.guessed) = needed(system, &result.rows, conditions)?;
+            closed_rank = match closed.len() > dimension {
+                true => needed(system, &with_all, conditions)?.0.len(),
+                false => result.needed.len(),
+            };
             if result.needed.len() == dimension && (length == Length::UntilItStops || order == longest) {
                 result.stop = Stop::Full;
                 break;
             }
-            if result.needed.len() == ceiling && length == Length::UntilItStops {
+            if closed_rank == ceiling && length == Length::UntilItStops {
                 result.stop = Stop::Ceiling;
                 break;
             }
-            if last.is_empty() || invariant && order > at_least && result.needed.len() == before {
+            if last.is_empty()
+                || invariant && order > at_least && (result.needed.len(), closed_rank) == before
+            {
                 result.stop = Stop::NoGrowth;
                 break;
             }
@@ -215,7 +229,9 @@ impl Codistribution {
 }
 
 /// The rank at almost all states, with only those conditions kept that concern parameters; the dimension, where that
-/// rank is not known for good. A rank falls on a special set, and never rises.
+/// rank is not known for good. A rank falls on a special set, and never rises. Values that are known at the beginning count as
+/// unknown here: where the words that were taken have this rank they span, around such a state, the differentials of all words,
+/// so that at it no longer word adds anything to them, whichever columns are left out.
 fn rank_around(
     system: &mut System,
     conditions: &Assignment,
@@ -230,12 +246,17 @@ fn rank_around(
         })
         .map(|(symbol, value)| (*symbol, *value))
         .collect();
-    let around = Codistribution::new(system, &kept, length)?;
-    Ok(if around.is_final() { around.generic_rank() } else { system.unknown_count() })
+    let closed = system.closed_coordinates();
+    let known = system.known.clone();
+    system.known.retain(|symbol| !closed.contains(symbol));
+    let around = Codistribution::new(system, &kept, length);
+    system.known = known;
+    let around = around?;
+    Ok(if around.is_final() { around.generic_rank() } else { closed.len() })
 }
 
 /// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
-fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
+pub(super) fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
     let mut solved: Vec<_> = conditions.iter().map(|(symbol, value)| (*symbol, *value)).collect();
     solved.sort_unstable();
     solved.into_iter().all(|(symbol, value)| {
@@ -283,7 +304,7 @@ fn cheaper(system: &mut System, word: &Word, derived: NodeId) -> NodeId {
 }
 
 /// The rows that raise the rank at a random point of the locus, and whether unknown functions took part.
-fn needed(
+pub(super) fn needed(
     system: &mut System,
     rows: &[Vec<NodeId>],
     conditions: &Assignment,
@@ -306,8 +327,8 @@ fn needed(
         let inputs = draw_residues(&program, &field, &mut rng);
         match loaded.run(&inputs, &mut registers) {
             Ok(values) => {
-                let matrix: Vec<Vec<u64>> =
-                    values.chunks(system.unknown_count().max(1)).map(<[u64]>::to_vec).collect();
+                let columns = rows.first().map_or(1, Vec::len);
+                let matrix: Vec<Vec<u64>> = values.chunks(columns.max(1)).map(<[u64]>::to_vec).collect();
                 let kept = independent_rows(&field, &matrix)
                     .map_err(|refusal| CodistributionError::NotEvaluated(refusal.to_string()))?;
                 if best.as_ref().is_none_or(|b| kept.len() > b.len()) {

@@ -13,9 +13,10 @@ pub(super) fn is_component(name: &str) -> bool {
     vector_of(name).is_some()
 }
 
-/// The vector of a component, and its number in it.
+/// The vector of a component, and its number in it; of a derivative, and in another experiment, those of the component.
 fn vector_of(name: &str) -> Option<(&str, i64)> {
-    let (vector, number) = name.strip_suffix(']')?.split_once('[')?;
+    let (vector, rest) = name.split_once('[')?;
+    let (number, _) = rest.split_once(']')?;
     Some((vector, number.parse().ok()?))
 }
 
@@ -128,6 +129,10 @@ impl System {
             let help = format!("it has {}; in a list a range stands for all of them", self.components(name));
             return Some(Problem::new(span, message, "which one?").help(help));
         };
+        if self.find_symbol(&format!("{vector}[{number}]")).is_some() {
+            // it is there, and not what stands behind its name
+            return None;
+        }
         let problem = if self.vectors.contains(vector) {
             let known = self.components(vector);
             let message = format!("'{vector}' has no component {number}: it has {known}");
@@ -156,7 +161,7 @@ impl System {
             }
         };
         match (indexed, index) {
-            (Indexed::Component { vector, place: Place::Range(..) }, None) => {
+            (Indexed::Component { vector, place: Place::Range(..), .. }, None) => {
                 let message = "a range of components stands for several, and one is needed here";
                 Problem::new(span, message, "this range").help(format!(
                     "write sum(i in 1..3, {vector}[i]) to add up; a range by itself is an entry of a list"

@@ -3,12 +3,13 @@
 use super::dimension::{Declared, DeclaredDimension, annotation, declared};
 use super::model::Role;
 use super::problems::{Damage, indentation, is_first_in_line, next_entry, open_quotation};
+use super::signals::{DeclaredInitial, DeclaredSignal, Knowledge, entry};
 use super::standing::{Basis, Flaw, Reference, basis, fault};
 use super::views::{View, begins, view};
 use crate::expression::Expected;
 use crate::expression::parse::{
-    Depth, Read, Text, blank, conditions, ends_a_line, equations, keyword, loops, name, range, read_all,
-    repeat, sign, stop, sum, target, written_out,
+    Depth, Read, Text, blank, conditions, ends_a_line, equations, keyword, loops, moved, name, range,
+    read_all, repeat, sign, stop, sum, target, written_out,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};
@@ -20,15 +21,47 @@ use winnow::token::{literal, take_till, take_while};
 /// One entry of a file.
 #[derive(Clone, Debug)]
 pub(crate) enum Item {
-    System { title: String, cite: Option<String>, span: Span },
-    Use { alias: Name, path: String, span: Span },
+    System {
+        title: String,
+        cite: Option<String>,
+        span: Span,
+    },
+    Use {
+        alias: Name,
+        path: String,
+        span: Span,
+    },
     State(Vec<Declared>),
     Param(Vec<Declared>),
     Angle(Vec<Name>),
-    Let { name: Name, dimension: Option<DeclaredDimension>, value: Expr },
-    Field { role: Role, name: Name, components: Vec<(Name, Expr)>, others_are_zero: bool },
+    Let {
+        name: Name,
+        dimension: Option<DeclaredDimension>,
+        value: Expr,
+    },
+    Field {
+        role: Role,
+        name: Name,
+        components: Vec<(Name, Expr)>,
+        others_are_zero: bool,
+    },
     Output(Vec<OutputSyntax>),
-    Sample { ranges: Vec<(Name, Expr, Expr)>, avoid: Vec<Expr> },
+    /// Signals that somebody knows, or nobody.
+    Signals {
+        knowledge: Knowledge,
+        list: Vec<DeclaredSignal>,
+    },
+    /// What is known at the beginning.
+    Initial(Vec<DeclaredInitial>),
+    /// How often the system was looked at.
+    Experiments {
+        count: Expr,
+        span: Span,
+    },
+    Sample {
+        ranges: Vec<(Name, Expr, Expr)>,
+        avoid: Vec<Expr>,
+    },
     Claim(Box<ClaimSyntax>),
     View(Box<View>),
 }
@@ -234,8 +267,7 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     .parse_next(input)?;
     let title = cut_err(name).context("the field's name").parse_next(input)?;
     let component = |input: &mut Text<'_>| -> Read<Vec<(Name, Expr)>> {
-        let state = target(input)?;
-        cut_err(sign("'")).context("' after the state, as in r1' = ...").parse_next(input)?;
+        let state = moved(input)?;
         cut_err(sign("=")).context("'=' and the rate of change").parse_next(input)?;
         let rate = cut_err(sum).parse_next(input)?;
         let loops = loops(input)?;
@@ -398,7 +430,7 @@ fn remark_only(input: &mut Text<'_>) -> Read<Item> {
 }
 
 const ENTRY: &str = "one of: system, use, state, param, angle, let, drift, input, field, output, sample, claim, erratum, \
-                     damaged, scan, convention, loose, definition, undecided, set, pole, map, line, reduction";
+                     damaged, scan, convention, loose, definition, undecided, set, pole, map, line, reduction, known, unknown, initial, experiments";
 
 fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
     let one = alt((
@@ -409,13 +441,13 @@ fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
         preceded(keyword("angle"), names).map(Item::Angle),
         field,
         outputs,
-        alt((sample, claim, faulty, remark_only, view)),
+        alt((sample, claim, faulty, remark_only, view, entry)),
     ));
     alt((definitions, one.map(|item| vec![item]))).parse_next(input)
 }
 
 /// The words that begin an entry.
-pub(super) const ENTRIES: [&str; 24] = [
+pub(super) const ENTRIES: [&str; 28] = [
     "system",
     "use",
     "state",
@@ -440,6 +472,10 @@ pub(super) const ENTRIES: [&str; 24] = [
     "map",
     "line",
     "reduction",
+    "known",
+    "unknown",
+    "initial",
+    "experiments",
 ];
 
 /// What to say where no entry begins.

@@ -7,6 +7,7 @@
 //! This floor knows nothing of ranks, verdicts or palms.
 
 mod components;
+mod declare;
 mod determinant;
 mod dimension;
 mod domain;
@@ -25,6 +26,7 @@ mod problems;
 mod read;
 mod references;
 mod restates;
+mod signals;
 mod source_text;
 mod standing;
 mod unknowns;

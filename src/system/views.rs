@@ -5,6 +5,7 @@ use super::elaborate::Wanted;
 use super::error::Problem;
 use super::grammar::{Item, quoted};
 use super::model::System;
+use super::signals;
 use super::written::in_one_line;
 use crate::expression::parse::{
     Read, Text, assignments, conditions, equations, keyword, name, range, repeat, sign, stop, sum, target,
@@ -160,12 +161,12 @@ pub(crate) enum End {
 /// The words that begin these entries; they are names too.
 pub(super) const WORDS: [&str; 5] = ["set", "pole", "map", "line", "reduction"];
 
-/// Whether one of these entries begins here, and not a name that is one of their words: a quotation mark or `of` follows.
+/// Whether one of these entries begins here, or one of what is known, and not a name that is one of their words: a quotation mark or `of` follows.
 pub(super) fn begins(input: &mut Text<'_>) -> bool {
     let title = |word: &'static str| (keyword(word), winnow::token::literal("\"")).void();
     let reduction = (keyword("reduction"), keyword("of"), name, sign(":")).void();
     let mut any = alt((title("set"), title("pole"), title("map"), title("line"), reduction));
-    peek(any.by_ref()).parse_next(input).is_ok()
+    peek(any.by_ref()).parse_next(input).is_ok() || signals::begins(input)
 }
 
 fn title(input: &mut Text<'_>) -> Read<(String, Span)> {
@@ -252,7 +253,7 @@ fn reduction(input: &mut Text<'_>) -> Read<View> {
 
 /// One of these entries, where one begins.
 pub(super) fn view(input: &mut Text<'_>) -> Read<Item> {
-    if !begins(input) {
+    if !begins(input) || signals::begins(input) {
         return winnow::combinator::fail.parse_next(input);
     }
     alt((set, map, line, reduction)).map(|view| Item::View(Box::new(view))).parse_next(input)

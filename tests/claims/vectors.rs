@@ -111,7 +111,11 @@ fn what_is_wrong_is_said_at_its_place() {
         ("sample x[1..3] in [0, 1] x[2] in [0, 1]", "'x[2]' has a range already", "x[2]"),
         ("claim 1: y = 1 where x[1..4] = 0", "'x' has no component 4: it has x[1..3]", "x[1..4]"),
         ("claim 1: y at {x[1..2] = 0, x[2] = 1} = 1", "'x[2]' is given twice", "x[2]"),
-        ("map \"m\": x[1..2] in [0, 1], y in [0, 1]", "expected a coordinate and its range, as in x in [0, 1]", "x"),
+        (
+            "map \"m\": x[1..2] in [0, 1], y in [0, 1]",
+            "expected a coordinate and its range, as in x in [0, 1]",
+            "x",
+        ),
     ] {
         let text = format!("{head}{text}\n");
         let error = System::parse("v.proof", &text, Path::new("")).expect_err(&text);

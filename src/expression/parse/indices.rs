@@ -2,7 +2,9 @@
 //! `for i in 1..20`. What has indices is written out where the last of them gets its value, so that nobody but the reader
 //! meets any: a component is a symbol like others, with the name `x[3]`.
 
-use super::tokens::{Depth, Expected, Read, Text, blank, closing, keyword, name, sign, stop, within};
+use super::tokens::{
+    Depth, Expected, Read, Text, bare_name, blank, closing, keyword, name, sign, stop, suffix, within,
+};
 use super::{cut_err, opt, read_all, sum};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Indexed, Loop, Name, Place, Span, Whole};
 use dashu::rational::RBig;
@@ -11,7 +13,7 @@ use winnow::combinator::{alt, preceded, repeat as many};
 use winnow::error::ErrMode;
 use winnow::prelude::*;
 use winnow::stream::Location;
-use winnow::token::take_while;
+use winnow::token::{literal, take_while};
 
 /// A range has no more numbers than these.
 const MOST_COMPONENTS: i64 = 5000;
@@ -25,8 +27,10 @@ const MOST_DIGITS: usize = 9;
 /// What is declared, moved or given a value: a name, a component, or several of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
-    name: String,
+    pub name: String,
     place: Option<Place>,
+    /// Primes and the number of an experiment behind it.
+    suffix: String,
     pub span: Span,
 }
 
@@ -78,8 +82,8 @@ fn numbers(from: &Whole, to: &Whole, may_be_empty: bool) -> Result<std::ops::Ran
     Ok(low..=high)
 }
 
-fn component_name(vector: &str, place: i64) -> String {
-    format!("{vector}[{place}]")
+fn component_name(vector: &str, place: i64, suffix: &str) -> String {
+    format!("{vector}[{place}]{suffix}")
 }
 
 impl Indices<'_> {
@@ -127,7 +131,7 @@ impl Indices<'_> {
                 ExprKind::At(one(inner)?, values.collect::<Result<_, _>>()?)
             }
             ExprKind::Indexed(indexed) => match &**indexed {
-                Indexed::Component { vector, place } => component_of(vector, place.of(self)?),
+                Indexed::Component { vector, place, suffix } => component_of(vector, place.of(self)?, suffix),
                 Indexed::Fold { is_product, over, body } => {
                     let (from, to) = (over.from.of(self)?, over.to.of(self)?);
                     let over = Loop { index: over.index.clone(), from, to };
@@ -195,21 +199,26 @@ impl Place {
     }
 
     /// The names of the components, where all indices have values.
-    fn names(&self, vector: &str) -> Option<Vec<String>> {
+    fn names(&self, vector: &str, suffix: &str) -> Option<Vec<String>> {
         match self {
-            Place::One(one) => Some(vec![component_name(vector, one.value()?)]),
+            Place::One(one) => Some(vec![component_name(vector, one.value()?, suffix)]),
             Place::Range(from, to) => {
                 let range = from.value()?..=to.value()?;
-                Some(range.map(|place| component_name(vector, place)).collect())
+                Some(range.map(|place| component_name(vector, place, suffix)).collect())
             }
         }
     }
 }
 
-fn component_of(vector: &str, place: Place) -> ExprKind {
+fn component_of(vector: &str, place: Place, suffix: &str) -> ExprKind {
     match &place {
-        Place::One(one) if let Some(value) = one.value() => ExprKind::Name(component_name(vector, value)),
-        _ => ExprKind::Indexed(Box::new(Indexed::Component { vector: vector.to_owned(), place })),
+        Place::One(one) if let Some(value) = one.value() => {
+            ExprKind::Name(component_name(vector, value, suffix))
+        }
+        _ => {
+            let (vector, suffix) = (vector.to_owned(), suffix.to_owned());
+            ExprKind::Indexed(Box::new(Indexed::Component { vector, place, suffix }))
+        }
     }
 }
 
@@ -229,7 +238,7 @@ pub(super) fn spread(list: Vec<Expr>) -> Vec<Expr> {
 pub(crate) fn written_out(entry: Expr) -> Vec<Expr> {
     let names = match &entry.kind {
         ExprKind::Indexed(indexed) => match &**indexed {
-            Indexed::Component { vector, place } => place.names(vector),
+            Indexed::Component { vector, place, suffix } => place.names(vector, suffix),
             Indexed::Fold { .. } => None,
         },
         _ => None,
@@ -244,13 +253,27 @@ pub(crate) fn written_out(entry: Expr) -> Vec<Expr> {
 }
 
 impl Target {
+    /// Whether it is a name and nothing more.
+    pub fn is_plain(&self) -> bool {
+        self.place.is_none() && self.suffix.is_empty()
+    }
+
+    /// What it stands for in an expression.
+    pub fn expression(self) -> Expr {
+        let kind = match self.place {
+            None => ExprKind::Name(self.name + &self.suffix),
+            Some(place) => component_of(&self.name, place, &self.suffix),
+        };
+        Expr { kind, span: self.span }
+    }
+
     /// The names that it stands for.
     pub fn names(&self, indices: &Indices<'_>) -> Result<Vec<Name>, Expected> {
         let span = &self.span;
         let name = |text| Name { text, span: span.clone() };
-        let Some(place) = &self.place else { return Ok(vec![name(self.name.clone())]) };
+        let Some(place) = &self.place else { return Ok(vec![name(format!("{}{}", self.name, self.suffix))]) };
         let place = place.of(indices)?;
-        match place.names(&self.name) {
+        match place.names(&self.name, &self.suffix) {
             Some(names) => {
                 names.iter().try_for_each(|_| indices.count(span.start))?;
                 Ok(names.into_iter().map(name).collect())
@@ -376,13 +399,11 @@ fn run(
     Ok(())
 }
 
-/// `[3]`, `[i + 1]` or `[1..20]` right behind a name, if it is there, and where it ends.
-fn place(input: &mut Text<'_>, name: &Name) -> Read<Option<(Place, usize)>> {
-    let follows = input.current_token_start() == name.span.end && input.input.as_ref().starts_with('[');
-    if !follows {
+/// `[3]`, `[i + 1]` or `[1..20]`, if it is there.
+fn place(input: &mut Text<'_>) -> Read<Option<Place>> {
+    if opt(sign("[")).parse_next(input)?.is_none() {
         return Ok(None);
     }
-    sign("[").parse_next(input)?;
     let from = whole(input)?;
     let place = match opt(sign("..")).parse_next(input)? {
         None => Place::One(from),
@@ -393,29 +414,51 @@ fn place(input: &mut Text<'_>, name: &Name) -> Read<Option<(Place, usize)>> {
         let help = "name several vectors, one for each row";
         return stop(at, "']': a vector has one index", Some(help.to_owned()));
     }
-    let end = cut_err(closing("]")).context("']' or '..'").parse_next(input)?;
+    cut_err(literal("]").void()).context("']' or '..'").parse_next(input)?;
     if let Place::Range(from, to) = &place
         && from.value().and(to.value()).is_some()
     {
         numbers(from, to, false).map_err(ErrMode::Cut)?;
     }
-    Ok(Some((place, end)))
+    Ok(Some(place))
 }
 
-/// A name that was read, or the component of it that follows.
-pub(super) fn component(input: &mut Text<'_>, name: Name) -> Read<Expr> {
-    Ok(match place(input, &name)? {
-        None => Expr { kind: ExprKind::Name(name.text), span: name.span },
-        Some((place, end)) => Expr { kind: component_of(&name.text, place), span: name.span.start..end },
-    })
+/// A target, without the blanks behind it.
+fn located_target(input: &mut Text<'_>) -> Read<Target> {
+    let name = bare_name(input)?;
+    let place = place(input)?;
+    let suffix = suffix(input)?;
+    Ok(Target { name: name.text, place, suffix, span: name.span.start..input.current_token_start() })
 }
 
-/// A name, a component or a range of them.
+/// A name, a component or a range of them, derivatives and experiments included.
 pub(crate) fn target(input: &mut Text<'_>) -> Read<Target> {
-    let name = name(input)?;
-    let found = place(input, &name)?;
-    let end = found.as_ref().map_or(name.span.end, |(_, end)| *end);
-    Ok(Target { name: name.text, place: found.map(|(place, _)| place), span: name.span.start..end })
+    let found = located_target(input)?;
+    blank(input)?;
+    Ok(found)
+}
+
+/// A target with one prime more: `x'` is how `x` moves, `u''` how the derivative `u'` of a signal does. The prime at the end
+/// may stand apart.
+pub(crate) fn moved(input: &mut Text<'_>) -> Read<Target> {
+    let mut found = located_target(input)?;
+    let suffix = found.suffix.clone();
+    let (primes, experiment) = suffix.split_at(suffix.find('@').unwrap_or(suffix.len()));
+    match primes.strip_suffix('\'') {
+        Some(primes) => {
+            found.suffix = format!("{primes}{experiment}");
+            // the mark is no part of the name
+            if experiment.is_empty() {
+                found.span.end -= 1;
+            }
+            blank(input)?;
+        }
+        None => {
+            blank(input)?;
+            cut_err(sign("'")).context("' after the state, as in r1' = ...").parse_next(input)?;
+        }
+    }
+    Ok(found)
 }
 
 /// The names that a text stands for: one, or the components of a range. None where it is no such text.
@@ -429,8 +472,8 @@ pub(crate) fn names_of_range(text: &str) -> Option<Vec<String>> {
 }
 
 /// `sum(i in 1..20, e)`, behind its opening bracket.
-pub(super) fn fold(input: &mut Text<'_>, name: &Name) -> Read<Expr> {
-    let what = format!("an index and its range, as in {}(i in 1..20, x[i])", name.text);
+pub(super) fn fold(input: &mut Text<'_>, name: &str, begin: usize) -> Read<Expr> {
+    let what = format!("an index and its range, as in {name}(i in 1..20, x[i])");
     let at = input.current_token_start();
     let (over, body) = within(input, |input: &mut Text<'_>| {
         let over = over(input).map_err(|error| match error {
@@ -442,6 +485,6 @@ pub(super) fn fold(input: &mut Text<'_>, name: &Name) -> Read<Expr> {
     })?;
     let end = cut_err(closing(")")).context("')' or an operator").parse_next(input)?;
     let indices = Indices { values: Vec::new(), written_out: &input.state.written_out };
-    let kind = indices.fold(name.text == "product", over, body).map_err(ErrMode::Cut)?;
-    Ok(Expr { kind, span: name.span.start..end })
+    let kind = indices.fold(name == "product", over, body).map_err(ErrMode::Cut)?;
+    Ok(Expr { kind, span: begin..end })
 }

@@ -5,8 +5,8 @@ mod indices;
 mod tokens;
 
 use super::syntax::{Equation, Expr, ExprKind, Name, Relation};
-pub(crate) use indices::{Target, loops, names_of_range, repeat, target, written_out};
-use indices::{component, fold, spread};
+pub(crate) use indices::{Target, loops, moved, names_of_range, repeat, target, written_out};
+use indices::{fold, spread};
 pub use tokens::Expected;
 use tokens::{DEEPEST, closing, number};
 pub(crate) use tokens::{
@@ -44,16 +44,17 @@ fn matrix(input: &mut Text<'_>) -> Read<Expr> {
 
 /// A name, a call where a bracket follows at once, or a component of a vector where a square one does.
 fn name_or_call(input: &mut Text<'_>) -> Read<Expr> {
-    let name = name(input)?;
-    if opt(sign("(")).parse_next(input)?.is_none() {
-        return component(input, name);
+    let name = target(input)?;
+    if !name.is_plain() || opt(sign("(")).parse_next(input)?.is_none() {
+        return Ok(name.expression());
     }
-    if ["sum", "product"].contains(&name.text.as_str()) {
-        return fold(input, &name);
+    let Target { name, span, .. } = name;
+    if ["sum", "product"].contains(&name.as_str()) {
+        return fold(input, &name, span.start);
     }
     let arguments: Vec<Expr> = within(input, cut_err(separated(1.., sum, sign(","))))?;
     let end = cut_err(closing(")")).context("')' or ',' in the list of arguments").parse_next(input)?;
-    Ok(Expr { kind: ExprKind::Call(name.text, spread(arguments)), span: name.span.start..end })
+    Ok(Expr { kind: ExprKind::Call(name, spread(arguments)), span: span.start..end })
 }
 
 /// `name = value, ...` in braces, and where they end

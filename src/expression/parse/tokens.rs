@@ -136,7 +136,7 @@ pub(crate) const RESERVED: [&str; 31] = [
 ];
 
 /// Words with a meaning at some places; elsewhere they are names.
-pub(crate) const SPECIAL: [&str; 23] = [
+pub(crate) const SPECIAL: [&str; 27] = [
     "proved",
     "refuted",
     "restates",
@@ -160,6 +160,10 @@ pub(crate) const SPECIAL: [&str; 23] = [
     "to",
     "from",
     "infinity",
+    "known",
+    "unknown",
+    "initial",
+    "experiments",
 ];
 
 /// Letters, digits and underscores, beginning with a letter.
@@ -202,6 +206,28 @@ pub(crate) fn keyword<'a>(text: &'static str) -> impl Parser<Text<'a>, Span, Err
 
 /// A name that is not reserved, with parts joined by dots (`general.f`), and the blank after it.
 pub(crate) fn name(input: &mut Text<'_>) -> Read<Name> {
+    let name = bare_name(input)?;
+    blank(input)?;
+    Ok(name)
+}
+
+/// Right behind a name that has been declared: `'` for a derivative of a signal, `@2` for the second experiment, or both. As it is
+/// written in names: the primes first, and of the first experiment nothing.
+pub(super) fn suffix(input: &mut Text<'_>) -> Read<String> {
+    let before = take_while(0.., '\'').parse_next(input)?;
+    let experiment =
+        opt((literal("@"), take_while(1.., |c: char| c.is_ascii_digit())).take()).parse_next(input)?;
+    // the primes may stand behind the experiment too
+    let behind = match experiment {
+        Some(_) => take_while(0.., '\'').parse_next(input)?,
+        None => "",
+    };
+    let experiment = experiment.filter(|experiment| *experiment != "@1").unwrap_or_default();
+    Ok(format!("{before}{behind}{experiment}"))
+}
+
+/// A name without the blank after it.
+pub(super) fn bare_name(input: &mut Text<'_>) -> Read<Name> {
     let start = input.checkpoint();
     let ((first, _), span) = (word, winnow::combinator::repeat::<_, _, (), _, _>(0.., (literal("."), word)))
         .map(|((text, span), ())| (text, span))
@@ -215,7 +241,6 @@ pub(crate) fn name(input: &mut Text<'_>) -> Read<Name> {
     let mut whole = *input;
     whole.reset(&start);
     let text = whole.input.as_ref()[..span.len()].to_owned();
-    blank(input)?;
     Ok(Name { text, span })
 }
 

@@ -18,7 +18,7 @@ fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
 }
 
 /// JSON has no infinity; a gap without bound is null.
-fn finite(value: f64) -> Value {
+pub(super) fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }
 
@@ -61,7 +61,7 @@ fn digits_json(found: &Result<Digits, NoDigits>) -> Value {
     }
 }
 
-fn sweep_json(report: &SweepReport) -> Value {
+pub(super) fn sweep_json(report: &SweepReport) -> Value {
     let worst = report.worst.as_ref().map(|(state, spectrum)| {
         let (values_of_worst, condition) = nearest_doubles(report, spectrum);
         let values: serde_json::Map<String, Value> = state

@@ -9,6 +9,7 @@ use crate::expression::parse::{
 };
 use crate::expression::syntax::{Expr, Loop, Name, Span};
 use crate::system::nearest;
+use crate::system::signals::{Knowledge, knowledge, spread_knowledge};
 use dashu::rational::RBig;
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};
 use winnow::prelude::*;
@@ -31,6 +32,8 @@ pub(crate) struct Declared {
     pub name: Name,
     pub value: Option<Expr>,
     pub dimension: Option<DeclaredDimension>,
+    /// Whether somebody knows the value; of a parameter, where it is said.
+    pub knowledge: Option<Knowledge>,
 }
 
 /// `: DIMENSION`, if there is one.
@@ -56,15 +59,16 @@ fn length_without_blanks(text: &str) -> usize {
 }
 
 /// Names as they are declared in one place of a list, before they are written out.
-struct DeclaredTarget {
+pub(crate) struct DeclaredTarget {
     target: Target,
-    value: Option<Expr>,
+    pub value: Option<Expr>,
     dimension: Option<DeclaredDimension>,
+    pub knowledge: Option<Knowledge>,
     loops: Vec<Loop>,
 }
 
 /// A list of names, components and ranges of them, each perhaps with a dimension, and where `with_values` with a value before
-/// or behind it.
+/// or behind it and whether that is known.
 pub(crate) fn declared<'a>(with_values: bool) -> impl FnMut(&mut Text<'a>) -> Read<Vec<Declared>> {
     move |input: &mut Text<'a>| {
         let one = |input: &mut Text<'a>| -> Read<DeclaredTarget> {
@@ -75,15 +79,19 @@ pub(crate) fn declared<'a>(with_values: bool) -> impl FnMut(&mut Text<'a>) -> Re
             if value.is_some() && dimension.is_none() {
                 dimension = annotation(input)?;
             }
-            Ok(DeclaredTarget { target, value, dimension, loops: loops(input)? })
+            let knowledge = if with_values { knowledge(input)? } else { None };
+            Ok(DeclaredTarget { target, value, dimension, knowledge, loops: loops(input)? })
         };
         let mut list: Vec<DeclaredTarget> = separated(1.., one, sign(",")).parse_next(input)?;
         spread(&mut list);
+        spread_knowledge(&mut list);
         let mut found = Vec::new();
-        for DeclaredTarget { target, value, dimension, loops } in &list {
+        for DeclaredTarget { target, value, dimension, knowledge, loops } in &list {
+            let knowledge = *knowledge;
             found.extend(repeat(input, loops, |indices| {
                 let value = value.as_ref().map(|value| indices.bind(value)).transpose()?;
-                let one = |name| Declared { name, value: value.clone(), dimension: dimension.clone() };
+                let one =
+                    |name| Declared { name, value: value.clone(), dimension: dimension.clone(), knowledge };
                 Ok(target.names(indices)?.into_iter().map(one).collect())
             })?);
         }
