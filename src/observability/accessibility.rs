@@ -33,9 +33,17 @@ pub struct RankBounds {
     pub at_most: usize,
     /// Minus infinity where there is nothing to err about.
     pub log2_error: f64,
+    /// Whether the lower bound was shown at a true state, because functions are met: it holds at almost all states that the
+    /// domain of the functions connects with that one.
+    pub from_a_state: bool,
 }
 
 impl RankBounds {
+    /// Nothing but that the rank is no more.
+    fn open(at_most: usize) -> RankBounds {
+        RankBounds { at_least: 0, at_most, log2_error: f64::NEG_INFINITY, from_a_state: false }
+    }
+
     /// The rank, where it is known.
     pub fn rank(&self) -> Option<usize> {
         (self.at_least == self.at_most).then_some(self.at_least)
@@ -96,7 +104,7 @@ impl Accessibility {
         let columns = Accessibility::columns_of(system);
         let full = columns.len();
         let invariant = is_invariant(system, conditions);
-        let unbounded = RankBounds { at_least: 0, at_most: full, log2_error: f64::NEG_INFINITY };
+        let unbounded = RankBounds::open(full);
         let around = match invariant {
             true => Around { whole: unbounded, strong: unbounded },
             false => around(system, conditions, order)?,
@@ -304,7 +312,7 @@ fn bounds(
     let columns = rows.first().map_or(0, Vec::len);
     if columns == 0 {
         let at_most = if closed.is_some() { 0 } else { around.at_most };
-        return Ok(RankBounds { at_least: 0, at_most, log2_error: f64::NEG_INFINITY });
+        return Ok(RankBounds::open(at_most));
     }
     let written: Vec<NodeId> = rows.iter().flatten().copied().collect();
     let entries = system.graph.substitute(&written, conditions);
@@ -316,8 +324,8 @@ fn bounds(
             // where functions are related it may be less
             let at_least = if is_formal { 0 } else { rank };
             Ok(match closed {
-                _ if rank == columns => RankBounds { at_least, at_most: rank, log2_error },
-                Some(found) if found == rank => RankBounds { at_least, at_most: rank, log2_error },
+                _ if rank == columns => RankBounds { at_least, log2_error, ..RankBounds::open(rank) },
+                Some(found) if found == rank => RankBounds { at_least, log2_error, ..RankBounds::open(rank) },
                 _ => RankBounds { at_least, ..around },
             })
         }

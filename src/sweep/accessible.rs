@@ -141,7 +141,7 @@ pub fn answer_accessibility(
         };
         let sampled = sweep(system, &locus, &quick, &all, options)?;
         // where functions are met, a true state has to show that the rank is no less
-        let mut shown =
+        let shown =
             |system: &mut System, bounds: RankBounds, strong: bool| -> Result<RankBounds, RankError> {
                 if bounds.at_least > 0 || bounds.at_most == 0 || question.interrupt.load(Ordering::Relaxed) {
                     return Ok(bounds);
@@ -159,7 +159,7 @@ pub fn answer_accessibility(
                 let sure = report.certified == report.samples;
                 let rank =
                     if sure { report.rank_histogram.keys().next_back().copied().unwrap_or(0) } else { 0 };
-                Ok(RankBounds { at_least: rank.min(bounds.at_most), ..bounds })
+                Ok(RankBounds { at_least: rank.min(bounds.at_most), from_a_state: true, ..bounds })
             };
         let (whole, strong) = (shown(system, found.whole, false)?, shown(system, found.strong, true)?);
         system.known = known.clone();

@@ -14,6 +14,7 @@ fn bounds_json(bounds: &RankBounds) -> Value {
         "at_least": bounds.at_least,
         "at_most": bounds.at_most,
         "log2_error": finite(bounds.log2_error),
+        "from_a_state": bounds.from_a_state,
     })
 }
 
@@ -58,7 +59,11 @@ fn bounds_text(what: &str, bounds: &RankBounds, full: usize, out: &mut String) {
                 true => format!("no more, but for a probability below 2^{}", bounds.log2_error.ceil()),
                 false => "certain".to_owned(),
             };
-            writeln!(out, "{what}: rank {rank} of {full} at almost all states ({sure})")
+            let where_to = match bounds.from_a_state {
+                true => "states that the domain connects with the sampled ones",
+                false => "states",
+            };
+            writeln!(out, "{what}: rank {rank} of {full} at almost all {where_to} ({sure})")
         }
         None => writeln!(
             out,
