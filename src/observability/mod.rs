@@ -6,6 +6,7 @@
 //!
 //! This floor knows nothing of claims or palms.
 
+mod accessibility;
 mod codistribution;
 mod conditions;
 mod defined;
@@ -20,6 +21,7 @@ mod series;
 mod singular;
 mod state;
 
+pub use accessibility::{Accessibility, Minor, RankBounds};
 #[doc(hidden)]
 pub use codistribution::OWN_ROWS;
 pub use codistribution::{Codistribution, CodistributionError, Frame, Length, Stop, Word};

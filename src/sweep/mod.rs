@@ -7,6 +7,7 @@
 //!
 //! This floor knows nothing of claims or palms.
 
+mod accessible;
 mod certainty;
 mod deviation;
 mod digits;
@@ -17,6 +18,7 @@ mod states;
 mod stream;
 mod unseen;
 
+pub use accessible::{AccessibilityAnswer, AccessibilityBranch, answer_accessibility};
 pub use certainty::Certainty;
 #[doc(hidden)]
 pub use deviation::NEARLY_INVISIBLE;

@@ -161,7 +161,7 @@ pub enum RankError {
 }
 
 /// Symbols that every drawn state has the same value of: parameters with a value and no range, and ranges of no width.
-fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol, RBig)> {
+pub(super) fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol, RBig)> {
     let held = |(symbol, info): (Symbol, &SymbolInfo)| {
         let value = match &info.range {
             Some(range) => (range.low == range.high).then(|| range.low.clone()),
@@ -175,7 +175,7 @@ fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol
 }
 
 /// The parameters with a value in the file, and no other from the question, that outputs, fields and own rows mention.
-fn held_parameters<'a>(
+pub(super) fn held_parameters<'a>(
     system: &System,
     question: &RankQuestion<'_>,
     solved: &Assignment,
@@ -196,7 +196,7 @@ fn held_parameters<'a>(
 
 /// What outputs and fields divide by, and take roots and logarithms of: a state has to have values for it too, also where no entry
 /// of the codistribution mentions it, as the mass in `v' = -x/m` where `x` and `v` are seen.
-fn guarded(system: &System) -> Vec<NodeId> {
+pub(super) fn guarded(system: &System) -> Vec<NodeId> {
     let guards = system.smooth_guards(&system.moving_fields());
     let open = guards.iter().filter(|guard| guard.is_obvious(&system.graph) != Some(true));
     open.map(|guard| guard.node).collect()

@@ -45,7 +45,7 @@ impl System {
             }
             ExprKind::Power(base, _) => self.calculates_nothing(base),
             ExprKind::Matrix(rows) => rows.iter().flatten().all(|entry| self.calculates_nothing(entry)),
-            ExprKind::At(..) => false,
+            ExprKind::At(..) | ExprKind::Indexed(_) => false,
             ExprKind::Call(name, arguments) => match (name.as_str(), arguments.as_slice()) {
                 // the components of a field are looked up, those of a bracket are calculated
                 ("L", [field, of]) => matches!(field.kind, ExprKind::Name(_)) && self.are_states(of),
@@ -62,7 +62,7 @@ impl System {
     /// Whether an expression mentions something whose meaning stands elsewhere in the file.
     fn looks_up(&self, expr: &Expr) -> bool {
         match &expr.kind {
-            ExprKind::Number(_) => false,
+            ExprKind::Number(_) | ExprKind::Indexed(_) => false,
             ExprKind::Name(name) => self.definition(name).is_some(),
             ExprKind::Sum(parts) | ExprKind::Product(parts) => {
                 parts.iter().any(|(_, part)| self.looks_up(part))

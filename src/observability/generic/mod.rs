@@ -21,6 +21,7 @@ mod matrix;
 #[cfg(test)]
 mod tests;
 
+pub(super) use matrix::formal_rank;
 pub use matrix::{GenericRank, generic_rank};
 
 use crate::expression::Symbol;

@@ -65,7 +65,7 @@ fn digits_json(found: &Result<Digits, NoDigits>) -> Value {
     }
 }
 
-fn sweep_json(report: &SweepReport) -> Value {
+pub(super) fn sweep_json(report: &SweepReport) -> Value {
     let worst = report.worst.as_ref().map(|(state, spectrum)| {
         let (values_of_worst, condition) = nearest_doubles(report, spectrum);
         let values: serde_json::Map<String, Value> = state

@@ -1,8 +1,10 @@
 //! The rank at many states.
 
+mod accessible;
 pub(super) mod answer;
 mod generic;
 mod seen;
 
+pub use accessible::{accessibility_json, accessibility_text};
 pub(super) use answer::taken_for_granted;
 pub use answer::{rank_json, rank_text};
