@@ -25,6 +25,8 @@ pub(crate) struct Dimensions {
     /// Whether the file, or one that it imports, declares a dimension.
     pub(super) is_declared: bool,
     pub(super) solution: Solution,
+    /// The dimensions of powers whose exponents are no numbers, as `length^(n)`, by what they are called.
+    pub(super) symbolic: HashMap<String, Form>,
     pub(super) symbols: Arc<BTreeMap<Symbol, Form>>,
     pub(super) definitions: Arc<HashMap<String, Quantity>>,
     /// The dimension by which a derivative along the field differs from what is differentiated.
