@@ -116,9 +116,12 @@ impl Checker<'_> {
             let form = theirs.resolve(form, &mut Default::default());
             let mut found = Form::known(form.known);
             for (unknown, power) in &form.unknown {
-                let place = places
-                    .entry(*unknown)
-                    .or_insert_with(|| mine.unknown(theirs.origin(*unknown).0.to_owned()));
+                let place = places.entry(*unknown).or_insert_with(|| {
+                    match (theirs.origin(*unknown).0.to_owned(), theirs.is_rigid(*unknown)) {
+                        (of, true) => mine.rigid(of),
+                        (of, false) => mine.unknown(of),
+                    }
+                });
                 found = found.times_power(place, power);
             }
             found

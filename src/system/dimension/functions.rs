@@ -7,6 +7,7 @@ use super::problem::Asked;
 use super::quantity::{Entry, Quantity, Table};
 use crate::expression::syntax::{Expr, ExprKind, Span};
 use dashu::rational::RBig;
+use std::collections::BTreeMap;
 
 impl Checker<'_> {
     /// `abs`, `min` and `max` measure what their arguments do, which all measure one thing; signs and angles are numbers.
@@ -50,28 +51,92 @@ impl Checker<'_> {
         Quantity::Table(table.with(vec![entry]))
     }
 
-    /// `length^n` where `n` is no number: a dimension of its own for each base dimension and each exponent as it is written.
+    /// `length^n` where `n` is no number: a dimension of its own for each base dimension and each symbol in the exponent.
     fn symbolic_power(&mut self, form: &Form, exponent: &Expr) -> Entry {
         let form = self.known.solution.resolve(form, &mut Default::default());
+        if form.unknown.iter().any(|(unknown, _)| !self.known.solution.is_rigid(*unknown)) {
+            return Entry::Open;
+        }
+        if form == Form::number() {
+            return Entry::number();
+        }
+        let mut parts = Parts::default();
+        self.linear(exponent, &RBig::ONE, &mut parts);
+        let mut found = form.power(&parts.number);
+        if parts.atoms.is_empty() {
+            return Entry::Of(found);
+        }
         if !form.unknown.is_empty() {
             return Entry::Open;
         }
-        let written = self.system.source.get(exponent.span.clone()).unwrap_or_default();
-        let written: String = written.chars().filter(|c| !c.is_whitespace()).collect();
-        let mut found = Form::number();
-        for base in Base::ALL {
-            let power = form.known.exponent(base).clone();
-            if power.is_zero() {
-                continue;
+        for (atom, (factor, is_symbol)) in parts.atoms {
+            for base in Base::ALL {
+                let power = form.known.exponent(base) * &factor;
+                if power.is_zero() {
+                    continue;
+                }
+                let name = format!("{}^{atom}", base.name());
+                let of_base = match self.known.symbolic.get(&name) {
+                    Some(known) => known.clone(),
+                    // of a symbol nothing is known; what else stands there may be anything
+                    None if is_symbol => self.known.solution.rigid(name.clone()),
+                    None => self.known.solution.unknown(name.clone()),
+                };
+                self.known.symbolic.insert(name, of_base.clone());
+                found = found.times_power(&of_base, &power);
             }
-            let name = format!("{}^({written})", base.name());
-            let known = self.known.symbolic.get(&name).cloned();
-            let of_base = known.unwrap_or_else(|| self.known.solution.unknown(name.clone()));
-            self.known.symbolic.insert(name, of_base.clone());
-            found = found.times_power(&of_base, &power);
         }
         Entry::Of(found)
     }
+
+    /// An exponent as a number and multiples of what is none.
+    fn linear(&self, expr: &Expr, factor: &RBig, parts: &mut Parts) {
+        if let Some(value) = number(expr) {
+            parts.number += value * factor;
+            return;
+        }
+        match &expr.kind {
+            ExprKind::Sum(terms) => {
+                for (minus, term) in terms {
+                    self.linear(term, &if *minus { -factor.clone() } else { factor.clone() }, parts);
+                }
+            }
+            ExprKind::Product(factors) => {
+                let (numbers, others): (Vec<_>, Vec<_>) = factors
+                    .iter()
+                    .partition(|(_, factor)| number(factor).is_some_and(|value| !value.is_zero()));
+                match others.as_slice() {
+                    [(false, only)] => {
+                        let scale =
+                            numbers.iter().filter_map(|(divides, value)| Some((*divides, number(value)?)));
+                        let scale = scale.fold(factor.clone(), |all, (divides, value)| match divides {
+                            true => all / value,
+                            false => all * value,
+                        });
+                        self.linear(only, &scale, parts);
+                    }
+                    _ => self.atom(expr, factor, parts),
+                }
+            }
+            _ => self.atom(expr, factor, parts),
+        }
+    }
+
+    fn atom(&self, expr: &Expr, factor: &RBig, parts: &mut Parts) {
+        let written = self.system.source.get(expr.span.clone()).unwrap_or_default();
+        let written: String = written.chars().filter(|c| !c.is_whitespace()).collect();
+        let is_symbol = matches!(&expr.kind, ExprKind::Name(name)
+            if self.system.find_symbol(name).is_some() && self.system.definition(name).is_none());
+        let name = if is_symbol { written } else { format!("({written})") };
+        parts.atoms.entry(name).or_insert((RBig::ZERO, is_symbol)).0 += factor;
+    }
+}
+
+/// An exponent: a number, and multiples of what is none, by how it is written and whether it is a symbol.
+#[derive(Default)]
+struct Parts {
+    number: RBig,
+    atoms: BTreeMap<String, (RBig, bool)>,
 }
 
 /// An exponent that is made of written numbers.
