@@ -30,7 +30,7 @@ mod zero_test;
 
 pub(crate) mod parse;
 
-pub(crate) use adjoin::{Related, zero_by_relations};
+pub(crate) use adjoin::{GeneratorPoints, Related, over_generators, zero_by_relations};
 pub use angle::expand_angles;
 #[doc(hidden)]
 pub use block::BlockProgram;
