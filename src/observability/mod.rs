@@ -17,6 +17,7 @@ mod locus;
 mod nested;
 mod reduction;
 mod series;
+mod signs;
 mod singular;
 mod state;
 
@@ -49,6 +50,7 @@ pub use nested::{differential_by_duals, lie_derivative_by_duals};
 pub use reduction::Reduction;
 #[doc(hidden)]
 pub use series::lie_derivative_by_series;
+pub(crate) use signs::{Edges, SignCell, in_sign_cell, sign_cells};
 pub(crate) use singular::SEPARATED;
 #[doc(hidden)]
 pub use singular::customary_singular_values;

@@ -37,26 +37,23 @@ impl Adjunction<'_> {
         Some(product)
     }
 
-    fn original_generator(&mut self, variable: u32, depth: usize) -> Option<NodeId> {
-        let apart = |all: &mut Self, monomial: &Monomial, measure| {
-            let parts = all.generators.divisors.get(&(measure, monomial.clone())).copied().unwrap_or(1);
-            let whole = all.original_monomial(monomial, depth)?;
-            let parts = all.graph.integer(i64::from(parts));
-            Some(all.graph.div(whole, parts))
-        };
+    pub(super) fn original_generator(&mut self, variable: u32, depth: usize) -> Option<NodeId> {
+        if depth > DEEPEST {
+            return None;
+        }
         match self.generators.key(variable).clone() {
             Key::Symbol(symbol) => Some(self.graph.symbol(symbol)),
             Key::Pi => Some(self.graph.pi()),
             Key::Exp(monomial) => {
-                let exponent = apart(self, &monomial, Measure::Exponent)?;
+                let exponent = self.original_part(&monomial, Measure::Exponent, depth)?;
                 Some(self.graph.apply(Function::Exp, exponent))
             }
             Key::Sine(monomial) => {
-                let angle = apart(self, &monomial, Measure::Angle)?;
+                let angle = self.original_part(&monomial, Measure::Angle, depth)?;
                 Some(self.graph.apply(Function::Sin, angle))
             }
             Key::Cosine(monomial) => {
-                let angle = apart(self, &monomial, Measure::Angle)?;
+                let angle = self.original_part(&monomial, Measure::Angle, depth)?;
                 Some(self.graph.apply(Function::Cos, angle))
             }
             Key::Root(form) => {
@@ -68,8 +65,7 @@ impl Adjunction<'_> {
                 Some(self.graph.absolute(inner))
             }
             Key::Log(form) => {
-                let inner = self.original_within(&form, depth)?;
-                let inner = self.graph.absolute(inner);
+                let inner = self.original_magnitude(&form, depth)?;
                 Some(self.graph.apply(Function::Log, inner))
             }
             Key::Value(function, form) => {
@@ -87,7 +83,38 @@ impl Adjunction<'_> {
                 let exponent = self.graph.rational(RBig::from_parts(1.into(), parts.into()));
                 Some(self.graph.real_power(inner, exponent))
             }
-            Key::Turn | Key::Power(..) | Key::Opaque(..) => None,
+            Key::Power(form, parts) => {
+                let inner = self.original_magnitude(&form, depth)?;
+                let exponent = self.graph.rational(RBig::from_parts(1.into(), parts.into()));
+                Some(self.graph.real_power(inner, exponent))
+            }
+            Key::Turn | Key::Opaque(..) => None,
+        }
+    }
+
+    /// The absolute value of a form: itself or its negative where its sign is known.
+    fn original_magnitude(&mut self, form: &Form, depth: usize) -> Option<NodeId> {
+        let inner = self.original_within(form, depth)?;
+        Some(match self.sign(form) {
+            Some(true) => inner,
+            Some(false) => self.graph.neg(inner),
+            None => self.graph.absolute(inner),
+        })
+    }
+
+    /// The part of a monomial of which multiples are met in exponents, or in sines.
+    fn original_part(&mut self, monomial: &Monomial, measure: Measure, depth: usize) -> Option<NodeId> {
+        let parts = self.generators.divisors.get(&(measure, monomial.clone())).copied().unwrap_or(1);
+        let whole = self.original_monomial(monomial, depth)?;
+        let parts = self.graph.integer(i64::from(parts));
+        Some(self.graph.div(whole, parts))
+    }
+
+    /// The angle of which a generator is the sine.
+    pub(super) fn original_angle(&mut self, variable: u32) -> Option<NodeId> {
+        match self.generators.key(variable).clone() {
+            Key::Sine(monomial) | Key::Cosine(monomial) => self.original_part(&monomial, Measure::Angle, 0),
+            _ => None,
         }
     }
 }

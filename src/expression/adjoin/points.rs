@@ -6,7 +6,7 @@
 //! an upper bound at every such state. Where the generators satisfy no other equations ([`GeneratorPoints::independent`]) it is
 //! the rank at almost all states of every component of the domain.
 
-use super::{Adjunction, Halt, MOST_NODES, MOST_PASSES};
+use super::Adjunction;
 use crate::expression::zero_test::failure_bound;
 use crate::expression::{Graph, Guard, NodeId, Program, Symbol};
 use crate::number::polynomial::Size;
@@ -44,9 +44,6 @@ pub(crate) fn over_generators(
     rng: &mut impl Rng,
     visit: &mut dyn FnMut(&Extension, &[Vec<u64>]) -> bool,
 ) -> Result<GeneratorPoints, String> {
-    if graph.reachable(entries.iter().copied()).len() > MOST_NODES {
-        return Err(format!("functions are met in more than {MOST_NODES} operations"));
-    }
     let turn = Turn::new(1).ok_or("no turn is divided")?;
     let extent = graph.extent();
     let found = Adjunction::new(graph, turn, rng.random()).matrix(entries, columns, assumptions, visit);
@@ -64,18 +61,7 @@ impl Adjunction<'_> {
         assumptions: &[Guard],
         visit: &mut dyn FnMut(&Extension, &[Vec<u64>]) -> bool,
     ) -> Result<GeneratorPoints, String> {
-        let mut images = None;
-        for _ in 0..MOST_PASSES {
-            match self.rewritten_all(entries, assumptions) {
-                Ok(found) => {
-                    images = Some(found);
-                    break;
-                }
-                Err(Halt::Stop(why)) => return Err(why),
-                Err(Halt::Again) => {}
-            }
-        }
-        let images = images.ok_or("the arguments of its functions have too many denominators")?;
+        let images = self.images_of(entries, assumptions)?;
         let standing = self.standing(&images);
         let open_signs = standing.open.iter().filter_map(|form| self.original(form)).collect();
         let known = GeneratorPoints {

@@ -16,7 +16,6 @@ mod bound;
 mod covectors;
 mod echelon;
 mod equations;
-mod independence;
 mod matrix;
 #[cfg(test)]
 mod tests;
@@ -234,7 +233,7 @@ pub struct Directions {
 /// What is seen at almost all states that satisfy the conditions. `rests` says that the fields leave no state of that set: there what
 /// has stopped growing has stopped for good.
 pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> GenericAnswer {
-    let mut probe = Probe::new(system, conditions);
+    let probe = Probe::new(system, conditions);
     let columns = probe.equations.columns.clone();
     let dimension = columns.len();
     let mut answer = GenericAnswer {
@@ -253,7 +252,7 @@ pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> 
     let rounds = bounds.as_ref().map_or(1, |bounds| bounds.rounds);
     // of each choice of signs the ranks of all columns, and of all but one
     let mut best: Vec<(usize, Vec<bool>)> = Vec::new();
-    let known_functions = functions_are_known(&mut probe.equations, &mut rng);
+    let known_functions = functions_are_known(&probe.equations);
     for _ in 0..rounds {
         let found = match probe.round(&mut rng, rests) {
             Ok(found) => found,
@@ -285,18 +284,8 @@ pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> 
 }
 
 /// Whether values of functions are known by their relations, so that a random one shows what the true one does.
-fn functions_are_known(equations: &mut Equations, rng: &mut ChaCha8Rng) -> bool {
-    let functions = std::mem::take(&mut equations.functions);
-    let angles = equations.angles.clone();
-    let known = functions.is_empty()
-        || independence::independent(
-            &mut equations.graph,
-            &functions,
-            &|symbol| angles.contains(&symbol),
-            rng,
-        );
-    equations.functions = functions;
-    known && (equations.roots == 0 || equations.roots <= MOST_ROOTS)
+fn functions_are_known(equations: &Equations) -> bool {
+    equations.related && (equations.roots == 0 || equations.roots <= MOST_ROOTS)
 }
 
 /// What follows from the ranks of each choice of signs.
