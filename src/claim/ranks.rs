@@ -13,6 +13,10 @@ use rand::Rng;
 /// A nonzero minor, the certain half of a statement about a rank.
 const MINOR: &str = "a minor that is not zero modulo a prime";
 
+/// The same of the differentials of derivatives along a trajectory, and the other half.
+const MINOR_OF_SERIES: &str = "a minor of the differentials of power series that is not zero modulo a prime";
+const SERIES: &str = "power series at random points of random prime fields";
+
 /// Decides `rank(M) = claimed` on a branch; the entries are the sides of the terms.
 pub(crate) fn decide_rank(
     system: &mut System,
@@ -24,7 +28,7 @@ pub(crate) fn decide_rank(
     let entries = on.terms.sides.clone();
     let exists = existence(system, on, rng);
     let rows = Rows { entries: &entries, columns, scope: "", on };
-    on_one_branch(system, exists, &rows, claimed, rng)
+    on_one_branch(exists, || decide(system, &rows, claimed, rng))
 }
 
 /// Decides `rank = claimed` for the codistribution, on the states of a branch.
@@ -47,8 +51,15 @@ pub(crate) fn decide_codistribution(
         return Ok(OnOneBranch::Empty(guard));
     }
     let words = Codistribution::new(system, &branch.values, Length::UntilItStops)?;
-    let entries = system.graph.substitute(&words.entries(), &branch.values);
     let found = words.generic_rank();
+    if let Some(rank) = words.generic.rank()
+        && (words.guessed || rank > found)
+    {
+        // no words were written down that show it, or it is not known of them: the series are
+        let log2_error = words.generic.log2_error;
+        return Ok(on_one_branch(exists, || by_series(rank, claimed, log2_error)));
+    }
+    let entries = system.graph.substitute(&words.entries(), &branch.values);
     if !words.is_final() && found <= claimed && found < system.unknown_count() {
         return Err(format!(
             "words of up to {} fields give the rank {found}; the fields leave these states, so that longer words may add \
@@ -65,7 +76,7 @@ pub(crate) fn decide_codistribution(
     let terms = Terms { sides: words.needed_entries(), guards: on.terms.guards.clone(), ..Terms::default() };
     let needed = OnBranch::new(system, branch, &terms)?;
     let rows = Rows { entries: &entries, columns, scope, on: &needed };
-    Ok(on_one_branch(system, exists, &rows, claimed, rng))
+    Ok(on_one_branch(exists, || decide(system, &rows, claimed, rng)))
 }
 
 /// Rows of expressions, one after the other.
@@ -78,21 +89,26 @@ struct Rows<'a> {
     on: &'a OnBranch,
 }
 
-fn on_one_branch(
-    system: &mut System,
-    exists: Existence,
-    rows: &Rows<'_>,
-    claimed: usize,
-    rng: &mut impl Rng,
-) -> OnOneBranch {
+fn on_one_branch(exists: Existence, verdict: impl FnOnce() -> Verdict) -> OnOneBranch {
     match exists {
         Existence::Nowhere(guard) => OnOneBranch::Empty(guard),
         Existence::NotShown(guard) => {
             let why = format!("no state was found at which all of it exists; it needs {guard}");
             OnOneBranch::Verdict(Verdict::undecided(why), Existence::NotShown(guard))
         }
-        Existence::Shown => OnOneBranch::Verdict(decide(system, rows, claimed, rng), exists),
+        Existence::Shown => OnOneBranch::Verdict(verdict(), exists),
     }
+}
+
+/// What is known of the rank without words.
+fn by_series(rank: usize, claimed: usize, log2_error: f64) -> Verdict {
+    let engine = if log2_error == f64::NEG_INFINITY { MINOR_OF_SERIES } else { SERIES };
+    if rank == claimed {
+        return Verdict::Proved { engine: engine.to_owned(), log2_error };
+    }
+    let (left, right) = (rank.to_string(), claimed.to_string());
+    let witness = Witness { state: Vec::new(), left, right, entry: None, refutation: None };
+    Verdict::Refuted { engine: engine.to_owned(), witness }
 }
 
 fn decide(system: &mut System, rows: &Rows<'_>, claimed: usize, rng: &mut impl Rng) -> Verdict {

@@ -96,7 +96,8 @@ impl Rank {
             });
             files.text_or(path, text);
         }
-        let status = if answer.interrupted() { Status::CutOff } else { Status::AsExpected };
+        let status =
+            if answer.interrupted() || answer.cut_off() { Status::CutOff } else { Status::AsExpected };
         files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
     }
 }

@@ -3,6 +3,7 @@
 
 use super::conditions::{all_vanish, vanishes};
 use super::elimination::independent_rows;
+use super::generic::{Ceiling, GenericAnswer, generic_answer};
 use super::series::lie_derivative_by_series;
 use crate::expression::{NodeId, Program, draw_residues, expand_angles};
 use crate::number::PrimeField;
@@ -109,11 +110,15 @@ pub struct Codistribution {
     /// Whether the fields leave no state of the locus. There a rank that has stopped growing has stopped for good: the
     /// span of the words is then mapped into itself by every field.
     pub invariant: bool,
+    /// What is seen at almost all states of the locus, by series and not by words.
+    pub generic: GenericAnswer,
     /// Whether functions other than sines and cosines of angles are met, which the choice of words takes for
     /// independent unknowns: the generic rank is then no more than a guess.
     pub guessed: bool,
 }
 
+/// Expressions of words that are taken by need have no more nodes than this.
+const MOST_NODES: usize = 2_000_000;
 /// No more words than this are taken.
 const MOST_WORDS: usize = 1500;
 const ATTEMPTS: usize = 40;
@@ -133,7 +138,13 @@ impl Codistribution {
         let fields = system.moving_fields();
         let dimension = system.unknown_count();
         let invariant = is_invariant(system, conditions);
-        let ceiling = if invariant { dimension } else { rank_around(system, conditions, length)? };
+        let ceiling =
+            if invariant { Ceiling::Rests } else { Ceiling::Around(rank_around(system, conditions)) };
+        let generic = generic_answer(system, conditions, ceiling);
+        let ceiling = match ceiling {
+            Ceiling::Rests => dimension,
+            Ceiling::Around(rank) => rank,
+        };
         let (at_least, longest, most) = match length {
             Length::UntilItStops if invariant => (0, LONGEST, MOST_WORDS),
             Length::UntilItStops => (dimension, dimension, PATIENCE),
@@ -147,6 +158,7 @@ impl Codistribution {
             order: 0,
             stop: Stop::Order,
             invariant,
+            generic,
             guessed: false,
         };
         let mut last: Vec<(Word, NodeId)> = (0..system.outputs.len())
@@ -188,14 +200,92 @@ impl Codistribution {
                 break;
             }
         }
+        let missing = result.generic.at_least > result.needed.len();
+        if length == Length::UntilItStops && missing && matches!(result.stop, Stop::TooMany | Stop::Order) {
+            result.take_by_need(system, conditions, &fields)?;
+        }
         Ok(result)
+    }
+
+    /// Takes only words that raise the rank, and of longer ones only those that continue one of these: over the field of functions the
+    /// differentials of all others lie in the span of theirs, and so do those of what continues them.
+    fn take_by_need(
+        &mut self,
+        system: &mut System,
+        conditions: &Assignment,
+        fields: &[usize],
+    ) -> Result<(), CodistributionError> {
+        let begin = system.graph.len();
+        let mut taken =
+            Codistribution { words: Vec::new(), values: Vec::new(), rows: Vec::new(), ..self.clone() };
+        (taken.needed, taken.order, taken.stop) = (Vec::new(), 0, Stop::NoGrowth);
+        let outputs = (0..system.outputs.len()).map(|output| Word { fields: Vec::new(), output });
+        let mut candidates: Vec<Word> = outputs.collect();
+        while !candidates.is_empty() {
+            let before = taken.words.len();
+            for word in candidates.drain(..) {
+                if system.graph.len() - begin > MOST_NODES {
+                    // what was taken before names more
+                    self.stop = Stop::TooMany;
+                    if taken.words.len() > self.needed.len() {
+                        taken.stop = Stop::TooMany;
+                        *self = taken;
+                    }
+                    return Ok(());
+                }
+                let output = system.outputs[word.output].1;
+                let Ok(value) = lie_derivative_by_series(system, &word.fields, output) else { continue };
+                taken.rows.push(system.differential(value));
+                taken.words.push(word);
+                taken.values.push(value);
+            }
+            let (needed, guessed) = needed(system, &taken.rows, conditions)?;
+            let keep = |list: &[usize]| list.to_vec();
+            taken.rows = keep(&needed).into_iter().map(|place| taken.rows[place].clone()).collect();
+            taken.words = keep(&needed).into_iter().map(|place| taken.words[place].clone()).collect();
+            taken.values = keep(&needed).into_iter().map(|place| taken.values[place]).collect();
+            taken.needed = (0..needed.len()).collect();
+            taken.guessed = guessed;
+            taken.order = taken.words.iter().map(|word| word.fields.len()).max().unwrap_or(0);
+            if taken.words.len() >= self.generic.at_most {
+                taken.stop =
+                    if taken.words.len() == system.unknown_count() { Stop::Full } else { Stop::NoGrowth };
+                break;
+            }
+            for word in &taken.words[before.min(taken.words.len())..] {
+                for field in fields {
+                    let fields = std::iter::once(*field).chain(word.fields.iter().copied()).collect();
+                    candidates.push(Word { fields, output: word.output });
+                }
+            }
+        }
+        *self = taken;
+        Ok(())
+    }
+
+    /// Whether the words that were taken show less than is there: those that are missing were too long, or too many, to be written.
+    pub fn is_cut_off(&self) -> bool {
+        self.needed.len() < self.generic.at_least && matches!(self.stop, Stop::TooMany | Stop::Order)
+    }
+
+    /// Whether the search came to its own end, and was not cut off.
+    pub fn has_rested(&self) -> bool {
+        !matches!(self.stop, Stop::TooMany | Stop::Order)
+    }
+
+    /// What no rank can exceed at any state of the locus, for certain but for the error of the generic answer.
+    pub fn most(&self) -> usize {
+        self.generic.at_most
     }
 
     /// Whether longer words cannot raise the rank at a generic state of the locus.
     pub fn is_final(&self) -> bool {
-        !self.guessed
-            && (matches!(self.stop, Stop::Full | Stop::Ceiling)
-                || self.stop == Stop::NoGrowth && self.invariant)
+        let stopped = match self.stop {
+            Stop::Full | Stop::Ceiling => true,
+            Stop::NoGrowth => self.invariant,
+            _ => false,
+        };
+        self.generic.rank() == Some(self.needed.len()) || !self.guessed && stopped
     }
 
     /// The rank at a generic state of the locus, by the words that were taken.
@@ -216,11 +306,7 @@ impl Codistribution {
 
 /// The rank at almost all states, with only those conditions kept that concern parameters; the dimension, where that
 /// rank is not known for good. A rank falls on a special set, and never rises.
-fn rank_around(
-    system: &mut System,
-    conditions: &Assignment,
-    length: Length,
-) -> Result<usize, CodistributionError> {
+fn rank_around(system: &mut System, conditions: &Assignment) -> usize {
     let states = system.states.clone();
     let kept: Assignment = conditions
         .iter()
@@ -230,8 +316,7 @@ fn rank_around(
         })
         .map(|(symbol, value)| (*symbol, *value))
         .collect();
-    let around = Codistribution::new(system, &kept, length)?;
-    Ok(if around.is_final() { around.generic_rank() } else { system.unknown_count() })
+    generic_answer(system, &kept, Ceiling::Rests).at_most
 }
 
 /// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.

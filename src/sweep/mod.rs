@@ -12,6 +12,7 @@ mod deviation;
 mod digits;
 mod ladder;
 mod question;
+mod series;
 mod states;
 mod stream;
 mod unseen;

@@ -1,16 +1,17 @@
 //! The whole question of a rank, from a system and some conditions to sweeps of every branch.
 
 use super::deviation::{StandardDeviations, standard_deviations};
+use super::series::sweep_by_series;
 use super::states::{SweepOptions, SweepReport, UNINTERRUPTED, sweep};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
-    Codistribution, CodistributionError, Length, Locus, LocusError, OWN_ROWS, Stop, Unsolved,
-    parse_condition, solve_conditions,
+    Codistribution, CodistributionError, GenericAnswer, Length, Locus, LocusError, OWN_ROWS, Probe, Stop,
+    Unsolved, parse_condition, solve_conditions,
 };
 use crate::sweep::certainty::Certainty;
-use crate::system::{Assignment, FieldRole, Kind, SymbolInfo, System, Value};
+use crate::system::{Assignment, FieldRole, Kind, SymbolInfo, System, UnknownKind, Value};
 use dashu::rational::RBig;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
 
 /// What is asked.
@@ -72,6 +73,10 @@ pub struct BranchAnswer {
     pub held: Vec<(String, RBig)>,
     /// The words that were needed, as a paper writes them.
     pub words: Vec<String>,
+    /// What is seen at almost all states of the branch, and of each unknown whether it is.
+    pub generic: GenericAnswer,
+    /// The unknowns: their names and what they are.
+    pub unknowns: Vec<(String, UnknownKind)>,
     /// The length of the longest word taken, and why no longer ones were.
     pub order: usize,
     /// Why no longer words were taken.
@@ -80,6 +85,8 @@ pub struct BranchAnswer {
     pub generic_rank: usize,
     /// Whether longer words cannot raise it there.
     pub is_final: bool,
+    /// Whether the rank is not known because no longer words were looked at, though nobody asked for shorter ones.
+    pub cut_off: bool,
     /// The rank of the full codistribution at the sampled states.
     pub full: SweepReport,
     /// How well each state is seen where what is measured has noise; none where the sweep was interrupted.
@@ -114,6 +121,15 @@ impl RankAnswer {
     /// Whether any sweep was stopped early.
     pub fn interrupted(&self) -> bool {
         self.branches.iter().any(|branch| branch.full.interrupted)
+    }
+}
+
+impl RankAnswer {
+    /// Whether a search ended before its end: longer words might say more, and no series did.
+    pub fn cut_off(&self) -> bool {
+        let cut =
+            |branch: &BranchAnswer| !branch.is_final && matches!(branch.stop, Stop::TooMany | Stop::Order);
+        self.branches.iter().any(cut)
     }
 }
 
@@ -182,6 +198,23 @@ fn guarded(system: &System) -> Vec<NodeId> {
     open.map(|guard| guard.node).collect()
 }
 
+/// The unknowns of a system, by name; a state that no field moves is a parameter, whatever it is called.
+fn named_unknowns(system: &System) -> Vec<(String, UnknownKind)> {
+    let fields = || system.moving_fields().into_iter().flat_map(|field| &system.fields[field].components);
+    let moved: HashSet<Symbol> = fields()
+        .filter(|(_, rate)| !system.graph.constant_value(*rate).is_some_and(RBig::is_zero))
+        .map(|(symbol, _)| *symbol)
+        .collect();
+    let named = |symbol: Symbol| {
+        let kind = match system.unknown_kind(symbol) {
+            Some(UnknownKind::State) | None if !moved.contains(&symbol) => UnknownKind::Parameter,
+            kind => kind.unwrap_or(UnknownKind::State),
+        };
+        (system.symbol_name(symbol).to_owned(), kind)
+    };
+    system.unknowns().into_iter().map(named).collect()
+}
+
 /// Answers a question about the rank of a system's observability codistribution.
 ///
 /// # Errors
@@ -240,6 +273,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         let options = SweepOptions {
             samples: question.samples,
             seed: question.seed,
+            most: None,
             guards: &[],
             wanted: question.wanted,
             digits: question.digits,
@@ -247,8 +281,14 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             interrupt: question.interrupt,
             progress: question.progress,
         };
-        let full = codistribution.sweep(system, &locus, options)?;
-        let deviations = match full.interrupted {
+        let full = if codistribution.is_cut_off() {
+            let probe = Probe::new(system, &conditions);
+            let options = SweepOptions { most: Some(codistribution.most()), ..options };
+            sweep_by_series(system, &locus, &probe, &options)?
+        } else {
+            codistribution.sweep(system, &locus, options)?
+        };
+        let deviations = match full.interrupted || codistribution.is_cut_off() {
             true => None,
             false => {
                 standard_deviations(system, &locus, &codistribution, &full, question.seed, question.samples)?
@@ -261,6 +301,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             }
             None => None,
         };
+        let known = codistribution.generic.is_final() && question.order.is_none();
         let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
             word: word.text(system),
             entries: entries.clone(),
@@ -276,10 +317,13 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             conditions: locus.conditions.clone(),
             held: held_parameters(system, question, &branch.values, own.iter().flatten()),
             words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
+            unknowns: named_unknowns(system),
             order: codistribution.order,
             stop: codistribution.stop,
             generic_rank: codistribution.generic_rank(),
-            is_final: codistribution.is_final(),
+            is_final: codistribution.is_final()
+                || codistribution.generic.is_final() && question.order.is_none(),
+            generic: codistribution.generic,
             full,
             deviations,
             rows,

@@ -54,6 +54,14 @@ impl UnseenDirections {
         entry.count += 1;
     }
 
+    /// Counts a direction of which only the unknowns that take part are known; whether there is an example of such.
+    pub fn count(&mut self, system: &System, parts: &[bool]) -> bool {
+        let part_of = parts.iter().zip(system.unknowns()).filter(|(takes_part, _)| **takes_part);
+        let names: Vec<String> = part_of.map(|(_, symbol)| system.symbol_name(symbol).to_owned()).collect();
+        let known = self.0.get_mut(&names);
+        known.map(|direction| direction.count += 1).is_some()
+    }
+
     /// All of them, in order of the names.
     pub fn into_list(self) -> Vec<UnseenDirection> {
         self.0.into_values().collect()

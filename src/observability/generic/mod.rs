@@ -24,6 +24,7 @@ pub use matrix::{GenericRank, generic_rank};
 
 use crate::expression::Symbol;
 use crate::number::{PrimeField, Refusal};
+use crate::observability::State;
 use crate::system::{Assignment, System};
 use bound::Rounds;
 use covectors::Covector;
@@ -161,6 +162,20 @@ impl Probe {
         }
     }
 
+    /// The rank at a state modulo a prime: no more than it is there. `most` is what it cannot exceed: where it is that, it
+    /// is so for certain. Nothing where the state or a function has no residue.
+    pub fn rank_at(&self, state: &State, field: PrimeField, seed: u64, most: usize) -> Option<usize> {
+        if !self.equations.functions.is_empty() {
+            return None;
+        }
+        let inputs = state.inputs(&self.equations.starts, &field).ok()?;
+        let start = self.equations.start(field, &inputs, seed).ok()?;
+        let draw = Draw { field, seed, signs: None };
+        let quick = self.evaluate(&start, draw, true).ok()?.rank();
+        // at a state of its own a derivative may add nothing and the next one may
+        if quick == most { Some(quick) } else { Some(self.evaluate(&start, draw, false).ok()?.rank()) }
+    }
+
     /// The equations at a random point, for every choice of signs of the roots where there are few.
     fn round(&self, rng: &mut ChaCha8Rng, rests: bool) -> Result<Vec<Evaluated>, String> {
         let roots = self.equations.roots;
@@ -230,9 +245,18 @@ pub struct Directions {
     pub kernel: Vec<Vec<u64>>,
 }
 
-/// What is seen at almost all states that satisfy the conditions. `rests` says that the fields leave no state of that set: there what
-/// has stopped growing has stopped for good.
-pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> GenericAnswer {
+/// What bounds a rank from above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ceiling {
+    /// The fields leave no state of the set: what has stopped growing has stopped for good.
+    Rests,
+    /// They may, and the rank at almost all states around is this; a rank falls on a special set, and never rises.
+    Around(usize),
+}
+
+/// What is seen at almost all states that satisfy the conditions.
+pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
+    let rests = ceiling == Ceiling::Rests;
     let probe = Probe::new(system, conditions);
     let columns = probe.equations.columns.clone();
     let dimension = columns.len();
@@ -279,7 +303,7 @@ pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> 
             break;
         }
     }
-    conclude(&mut answer, &best, &bounds, known_functions, rests);
+    conclude(&mut answer, &best, &bounds, known_functions, ceiling);
     answer
 }
 
@@ -294,7 +318,7 @@ fn conclude(
     best: &[(usize, Vec<bool>)],
     bounds: &Result<Rounds, String>,
     known_functions: bool,
-    rests: bool,
+    ceiling: Ceiling,
 ) {
     let ranks = || best.iter().map(|(rank, _)| *rank);
     let (least, most) = (ranks().min().unwrap_or(0), ranks().max().unwrap_or(0));
@@ -306,18 +330,24 @@ fn conclude(
                 .to_owned(),
         );
     }
-    match bounds {
-        Ok(bounds) if rests => {
+    match (bounds, ceiling) {
+        (Ok(bounds), Ceiling::Rests) => {
             answer.at_most = most;
             if most < answer.dimension {
                 answer.log2_error = bounds.log2_error;
             }
         }
-        Ok(_) if least < answer.dimension => {
-            answer.open =
-                Some("the fields leave the set: derivatives of higher orders may see more".to_owned());
+        (Ok(bounds), Ceiling::Around(around)) => {
+            answer.at_most = around;
+            if around < answer.dimension {
+                answer.log2_error = bounds.log2_error;
+            }
+            if answer.at_least < around && answer.open.is_none() {
+                answer.open =
+                    Some("the fields leave the set: derivatives of higher orders may see more".to_owned());
+            }
         }
-        Err(why) if least < answer.dimension => answer.open = Some(why.clone()),
+        (Err(why), _) if least < answer.dimension => answer.open = Some(why.clone()),
         _ => {}
     }
     if least < most && answer.open.is_none() {

@@ -5,7 +5,7 @@ use crate::observability::{Codistribution, Length};
 
 fn answer(text: &str) -> (System, GenericAnswer) {
     let system: System = format!("system \"s\" {text}").parse().unwrap();
-    let answer = generic_answer(&system, &Assignment::new(), true);
+    let answer = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
     (system, answer)
 }
 
@@ -36,7 +36,7 @@ fn words_and_series_span_the_same() {
             let Ok(words) = Codistribution::new(&mut system, &Assignment::new(), Length::UntilItStops) else {
                 continue;
             };
-            let series = generic_answer(&system, &Assignment::new(), true);
+            let series = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
             if words.is_final() {
                 assert_eq!(series.rank(), Some(words.generic_rank()), "{}: {series:?}", path.display());
                 seen += 1;

@@ -1,5 +1,6 @@
 //! Answers about ranks, as JSON and as text.
 
+use super::generic::{add_generic_json, generic_text};
 use super::seen::{deviations_json, deviations_text, direction_text, place_text};
 use crate::number::rational_to_f64;
 use crate::observability::{NamedCoordinate, Spectrum, Stop};
@@ -18,7 +19,7 @@ fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
 }
 
 /// JSON has no infinity; a gap without bound is null.
-fn finite(value: f64) -> Value {
+pub(super) fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }
 
@@ -129,6 +130,7 @@ fn branch_json(branch: &BranchAnswer) -> Value {
     object["stopped_because"] = json!(stop_text(branch.stop));
     object["generic_rank"] = json!(branch.generic_rank);
     object["longer_words_cannot_raise_it"] = json!(branch.is_final);
+    add_generic_json(branch, &mut object);
     object["standard_deviations"] = branch.deviations.as_ref().map_or(Value::Null, deviations_json);
     object["own_rows"] = branch.rows.as_ref().map_or(Value::Null, sweep_json);
     object
@@ -253,6 +255,7 @@ pub fn rank_text(answer: &RankAnswer) -> String {
                 values_text(&branch.held)
             );
         }
+        generic_text(branch, &mut out);
         let _ = writeln!(out, "words that were needed: {}", branch.words.join(", "));
         let _ =
             writeln!(out, "words of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
