@@ -323,6 +323,9 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             generic_rank: codistribution.generic_rank(),
             is_final: codistribution.is_final()
                 || codistribution.generic.is_final() && question.order.is_none(),
+            cut_off: question.order.is_none()
+                && !codistribution.has_rested()
+                && !codistribution.generic.is_final(),
             generic: codistribution.generic,
             full,
             deviations,
