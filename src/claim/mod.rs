@@ -15,6 +15,7 @@ mod identity;
 mod inequality;
 mod pole;
 mod question;
+mod rank_bounds;
 mod rank_witness;
 mod ranks;
 mod selection;

@@ -28,6 +28,8 @@ pub(crate) struct GeneratorPoints {
     pub constants_known: bool,
     /// Expressions that are known up to their sign only, each of them nowhere zero where everything has derivatives.
     pub open_signs: Vec<NodeId>,
+    /// Whether there are such expressions, whether or not they can be written down.
+    pub signs_are_open: bool,
 }
 
 /// Evaluates a matrix of so many columns over generators at random points; `visit` is given the ring and the entries, row by row,
@@ -69,6 +71,7 @@ impl Adjunction<'_> {
             independent: standing.independent,
             constants_known: standing.constants_known,
             open_signs,
+            signs_are_open: !standing.open.is_empty(),
         };
         if !standing.open.is_empty() {
             // of each branch by itself more is known, and its elements are shorter
