@@ -236,7 +236,7 @@ impl<'g> RankDecider<'g> {
             Ok((rank, bits)) => {
                 report.rank = rank;
                 report.rung = Rung::Enclosures(bits);
-                if rank < full {
+                if rank < full && rank != self.most {
                     report.certainty = Certainty::Computed;
                 }
                 StateDecision::Report(report)
