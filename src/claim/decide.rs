@@ -242,6 +242,13 @@ fn attempt(
         // every Lie derivative of the outputs has to exist
         guards.extend(system.smooth_guards(&system.moving_fields()));
     }
+    // a rank is that at the beginning, where some values are known
+    let mut at_first = None;
+    if of_rank && !system.initial_conditions().is_empty() {
+        let initial = system.initial_conditions().iter().cloned();
+        at_first.insert(statement.clone()).conditions.extend(initial);
+    }
+    let statement = at_first.as_ref().unwrap_or(statement);
     guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
     notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
     if let Some(tolerance) = &equation.within {

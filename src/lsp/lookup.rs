@@ -115,7 +115,10 @@ impl Library {
         deep: usize,
         met: &mut HashSet<String>,
     ) -> Vec<Found> {
-        let is_symbol = |kind| matches!(kind, DeclarationKind::State | DeclarationKind::Parameter);
+        let is_symbol = |kind| {
+            use DeclarationKind::{Parameter, Signal, State};
+            matches!(kind, State | Parameter | Signal(_))
+        };
         let found =
             |declaration: &Declaration| Found { source: source.clone(), declaration: declaration.clone() };
         let own: Vec<Found> = source

@@ -6,7 +6,7 @@ use super::elimination::independent_rows;
 use super::generic::{Ceiling, GenericAnswer, generic_answer};
 use super::related_rank::related_rank;
 use super::series::lie_derivative_by_series;
-use crate::expression::{NodeId, Program, draw_residues, expand_angles};
+use crate::expression::{NodeId, Program, draw_residues, expand_angles, gradient};
 use crate::number::PrimeField;
 use crate::system::{Assignment, System};
 use rand::SeedableRng;
@@ -25,13 +25,21 @@ pub struct Word {
 }
 
 impl Word {
-    /// As a paper writes it: `Lg1 Lf s1`.
+    /// As a paper writes it: `Lg1 Lf s1`; long words in powers, `Lg1 Lf^14 s1`.
     pub fn text(&self, system: &System) -> String {
         let mut text = String::new();
-        for field in &self.fields {
+        // nobody counts more than a dozen of the same
+        let in_powers = self.fields.len() > LONGEST;
+        let mut rest = self.fields.as_slice();
+        while let Some(field) = rest.first() {
+            let run = if in_powers { rest.iter().take_while(|other| *other == field).count() } else { 1 };
             text.push('L');
             text.push_str(&system.fields[*field].name);
+            if run > 1 {
+                text.push_str(&format!("^{run}"));
+            }
             text.push(' ');
+            rest = &rest[run..];
         }
         text + &system.outputs[self.output].0
     }
@@ -83,7 +91,8 @@ const PATIENCE: usize = 300;
 pub enum Stop {
     /// The rank has reached the dimension of the state space.
     Full,
-    /// The rank has reached that at almost all states around, which no state of the locus can exceed.
+    /// The rank has reached that at almost all states around, which no state of the locus can exceed. Where values are
+    /// known at the beginning: that of the differentials by these too.
     Ceiling,
     /// One further order did not raise the rank.
     NoGrowth,
@@ -91,6 +100,8 @@ pub enum Stop {
     Order,
     /// There are more words of the next length than are worth taking.
     TooMany,
+    /// No words were asked for.
+    NotTaken,
 }
 
 /// The rows from which the rank is decided.
@@ -120,6 +131,39 @@ pub struct Codistribution {
 
 /// Expressions of words that are taken by need have no more nodes than this.
 const MOST_NODES: usize = 2_000_000;
+/// What is known of a locus before any words are taken.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    around: Ceiling,
+    /// What is seen at almost all of its states.
+    pub generic: GenericAnswer,
+}
+
+impl Frame {
+    /// What is seen at almost all states that satisfy `conditions`, values for solved symbols.
+    ///
+    /// # Errors
+    /// Where no field is a drift or an input.
+    pub fn new(system: &mut System, conditions: &Assignment) -> Result<Frame, CodistributionError> {
+        system.require_motion().map_err(CodistributionError::NoMotion)?;
+        let around =
+            if is_invariant(system, conditions) { Ceiling::Rests } else { rank_around(system, conditions) };
+        let generic = generic_answer(system, conditions, around);
+        Ok(Frame { around, generic })
+    }
+
+    /// Whether the words that show what is seen are short enough to be written down in a moment: along one field the k-th has of
+    /// the order of `k^2` operations for each of the system's, and so has its differential.
+    pub fn words_are_short(&self, system: &System) -> bool {
+        let mut nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
+        for field in system.moving_fields() {
+            nodes.extend(system.fields[field].components.iter().map(|(_, rate)| *rate));
+        }
+        let operations = system.graph.reachable(nodes).len();
+        operations * (self.generic.order + 1).pow(3) <= MOST_NODES
+    }
+}
+
 /// No more words than this are taken.
 const MOST_WORDS: usize = 1500;
 const ATTEMPTS: usize = 40;
@@ -135,33 +179,53 @@ impl Codistribution {
         conditions: &Assignment,
         length: Length,
     ) -> Result<Codistribution, CodistributionError> {
-        system.require_motion().map_err(CodistributionError::NoMotion)?;
-        let fields = system.moving_fields();
-        let dimension = system.unknown_count();
-        let invariant = is_invariant(system, conditions);
-        let ceiling =
-            if invariant { Ceiling::Rests } else { Ceiling::Around(rank_around(system, conditions)) };
-        let generic = generic_answer(system, conditions, ceiling);
-        let ceiling = match ceiling {
-            Ceiling::Rests => dimension,
-            Ceiling::Around(rank) => rank,
-        };
-        let (at_least, longest, most) = match length {
-            Length::UntilItStops if invariant => (0, LONGEST, MOST_WORDS),
-            Length::UntilItStops => (dimension, dimension, PATIENCE),
-            Length::Exactly(order) => (order, order, MOST_WORDS),
-        };
-        let mut result = Codistribution {
+        let frame = Frame::new(system, conditions)?;
+        Codistribution::within(system, conditions, length, frame)
+    }
+
+    /// No words at all, and what is known without them.
+    pub fn without_words(frame: Frame) -> Codistribution {
+        Codistribution {
             words: Vec::new(),
             values: Vec::new(),
             rows: Vec::new(),
             needed: Vec::new(),
             order: 0,
-            stop: Stop::Order,
-            invariant,
-            generic,
+            stop: Stop::NotTaken,
+            invariant: frame.around == Ceiling::Rests,
+            generic: frame.generic,
             guessed: false,
+        }
+    }
+
+    /// The same as [`Codistribution::new`], of what is known without words.
+    ///
+    /// # Errors
+    /// Where every state of the locus is a pole or an angle is met outside sines and cosines.
+    pub fn within(
+        system: &mut System,
+        conditions: &Assignment,
+        length: Length,
+        frame: Frame,
+    ) -> Result<Codistribution, CodistributionError> {
+        let fields = system.moving_fields();
+        let dimension = system.unknown_count();
+        let closed = system.closed_coordinates();
+        let ceiling = match frame.around {
+            Ceiling::Rests => closed.len(),
+            Ceiling::Around { closed, .. } => closed,
         };
+        let invariant = frame.around == Ceiling::Rests;
+        let (at_least, longest, most) = match length {
+            Length::UntilItStops if invariant => (0, LONGEST, MOST_WORDS),
+            Length::UntilItStops => (closed.len(), closed.len(), PATIENCE),
+            Length::Exactly(order) => (order, order, MOST_WORDS),
+        };
+        let mut result = Codistribution::without_words(frame);
+        result.stop = Stop::Order;
+        // a state that is known at the beginning has no column, and yet what it does not see may be seen through its rate: the
+        // words have ended where those of all that moves have
+        let (mut with_all, mut closed_rank) = (Vec::new(), 0);
         let mut last: Vec<(Word, NodeId)> = (0..system.outputs.len())
             .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
             .collect();
@@ -175,6 +239,9 @@ impl Codistribution {
             }
             for (word, value) in &last {
                 let value = cheaper(system, word, *value);
+                if closed.len() > dimension {
+                    with_all.push(gradient(&mut system.graph, value, &closed));
+                }
                 let row = system.differential(value);
                 // a row that is zero on the locus adds nothing; in floating point it would be noise
                 let on_the_locus = system.graph.substitute(&row, conditions);
@@ -186,17 +253,23 @@ impl Codistribution {
                 result.rows.push(row);
             }
             result.order = order;
-            let before = result.needed.len();
+            let before = (result.needed.len(), closed_rank);
             (result.needed, result.guessed) = needed(system, &result.rows, conditions)?;
+            closed_rank = match closed.len() > dimension {
+                true => needed(system, &with_all, conditions)?.0.len(),
+                false => result.needed.len(),
+            };
             if result.needed.len() == dimension && (length == Length::UntilItStops || order == longest) {
                 result.stop = Stop::Full;
                 break;
             }
-            if result.needed.len() == ceiling && length == Length::UntilItStops {
+            if closed_rank == ceiling && length == Length::UntilItStops {
                 result.stop = Stop::Ceiling;
                 break;
             }
-            if last.is_empty() || invariant && order > at_least && result.needed.len() == before {
+            if last.is_empty()
+                || invariant && order > at_least && (result.needed.len(), closed_rank) == before
+            {
                 result.stop = Stop::NoGrowth;
                 break;
             }
@@ -306,8 +379,10 @@ impl Codistribution {
 }
 
 /// The rank at almost all states, with only those conditions kept that concern parameters; the dimension, where that
-/// rank is not known for good. A rank falls on a special set, and never rises.
-fn rank_around(system: &mut System, conditions: &Assignment) -> usize {
+/// rank is not known for good. A rank falls on a special set, and never rises. Values that are known at the beginning count as
+/// unknown here: where the words that were taken have this rank they span, around such a state, the differentials of all words,
+/// so that at it no longer word adds anything to them, whichever columns are left out.
+fn rank_around(system: &mut System, conditions: &Assignment) -> Ceiling {
     let states = system.states.clone();
     let kept: Assignment = conditions
         .iter()
@@ -317,7 +392,8 @@ fn rank_around(system: &mut System, conditions: &Assignment) -> usize {
         })
         .map(|(symbol, value)| (*symbol, *value))
         .collect();
-    generic_answer(system, &kept, Ceiling::Rests).at_most
+    let around = generic_answer(system, &kept, Ceiling::Rests);
+    Ceiling::Around { closed: around.closed_at_most, unknown: around.at_most }
 }
 
 /// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
@@ -402,8 +478,8 @@ fn needed(
         let inputs = draw_residues(&program, &field, &mut rng);
         match loaded.run(&inputs, &mut registers) {
             Ok(values) => {
-                let matrix: Vec<Vec<u64>> =
-                    values.chunks(system.unknown_count().max(1)).map(<[u64]>::to_vec).collect();
+                let columns = rows.first().map_or(1, Vec::len);
+                let matrix: Vec<Vec<u64>> = values.chunks(columns.max(1)).map(<[u64]>::to_vec).collect();
                 let kept = independent_rows(&field, &matrix)
                     .map_err(|refusal| CodistributionError::NotEvaluated(refusal.to_string()))?;
                 if best.as_ref().is_none_or(|b| kept.len() > b.len()) {

@@ -5,7 +5,7 @@ use super::defined::Defined;
 use super::state::{Coordinate, MissingInput, State};
 use crate::expression::{NodeId, Program, Symbol, expand_angles};
 use crate::number::{Floats, Function, Rationals, Refusal, rational_from_f64, rational_to_f64};
-use crate::system::{Assignment, Kind, System};
+use crate::system::{Assignment, Kind, Range, System};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use rand::{RngExt, SeedableRng};
@@ -60,6 +60,17 @@ pub struct Locus {
     inside: Defined,
     /// The conditions and fixed values, in words.
     pub conditions: Vec<String>,
+    /// The symbols that are drawn from a range that the file does not give, and this range.
+    pub by_default: Vec<(String, Range)>,
+}
+
+/// What is done where the file says nothing of where a symbol is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MissingRange {
+    /// It is drawn from a default range, which the answer has to tell.
+    Default,
+    /// Nothing is drawn.
+    Refused,
 }
 
 impl Locus {
@@ -73,6 +84,20 @@ impl Locus {
         branch: &Branch,
         fixed: &BTreeMap<Symbol, RBig>,
         mentioned: &[NodeId],
+    ) -> Result<Locus, LocusError> {
+        Locus::of(system, branch, fixed, mentioned, MissingRange::Refused)
+    }
+
+    /// The same, with a word on what is done with a symbol that the file gives neither range nor value.
+    ///
+    /// # Errors
+    /// Where such a symbol is needed, and refused.
+    pub fn of(
+        system: &mut System,
+        branch: &Branch,
+        fixed: &BTreeMap<Symbol, RBig>,
+        mentioned: &[NodeId],
+        missing: MissingRange,
     ) -> Result<Locus, LocusError> {
         let is_angle = &system.angle_test();
         let mut dependent: Vec<(Symbol, bool)> =
@@ -98,8 +123,17 @@ impl Locus {
         needed.sort_unstable();
         needed.dedup();
         let mut sources = BTreeMap::new();
+        let mut by_default = Vec::new();
         for symbol in needed {
             if branch.values.contains_key(&symbol) {
+                continue;
+            }
+            if missing == MissingRange::Default
+                && !fixed.contains_key(&symbol)
+                && let Some(range) = system.default_range(symbol)
+            {
+                sources.insert(symbol, drawn_from(&range, is_angle(symbol)));
+                by_default.push((system.symbol_name(symbol).to_owned(), range));
                 continue;
             }
             sources.insert(symbol, source(system, symbol, fixed.get(&symbol))?);
@@ -120,6 +154,7 @@ impl Locus {
             is_cut: !branch.assumed.is_empty(),
             inside: Defined::new(system, &branch.assumed),
             conditions,
+            by_default,
         })
     }
 
@@ -231,11 +266,15 @@ fn source(system: &System, symbol: Symbol, fixed: Option<&RBig>) -> Result<Sourc
         }));
     }
     match info.and_then(|info| info.range.as_ref()) {
-        Some(range) if is_angle => {
-            Ok(Source::Turn(rational_to_f64(&range.low), rational_to_f64(&range.high)))
-        }
-        Some(range) => Ok(Source::Between(range.low.clone(), range.high.clone())),
+        Some(range) => Ok(drawn_from(range, is_angle)),
         None => Err(LocusError::NoRange(system.symbol_name(symbol).to_owned())),
+    }
+}
+
+fn drawn_from(range: &Range, is_angle: bool) -> Source {
+    match is_angle {
+        true => Source::Turn(rational_to_f64(&range.low), rational_to_f64(&range.high)),
+        false => Source::Between(range.low.clone(), range.high.clone()),
     }
 }
 

@@ -24,7 +24,7 @@ mod state;
 
 #[doc(hidden)]
 pub use codistribution::OWN_ROWS;
-pub use codistribution::{Codistribution, CodistributionError, Length, Stop, Word};
+pub use codistribution::{Codistribution, CodistributionError, Frame, Length, Stop, Word};
 pub(crate) use conditions::vanishes;
 pub use conditions::{Branch, Unsolved, parse_condition, solve_conditions};
 pub(crate) use conditions::{also_met_otherwise, assumed, linear_solution, solve};
@@ -44,7 +44,7 @@ pub use generic::{Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, gen
 pub use generic::{Directions, Probe};
 pub(crate) use locus::AVOIDED;
 pub(crate) use locus::{ATTEMPTS, Source};
-pub use locus::{Locus, LocusError};
+pub use locus::{Locus, LocusError, MissingRange};
 #[doc(hidden)]
 pub use nested::{differential_by_duals, lie_derivative_by_duals};
 #[doc(hidden)]

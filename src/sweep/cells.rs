@@ -1,8 +1,8 @@
 //! The branches of a question, taken apart by the signs on which roots of squares depend.
 
-use super::question::RankQuestion;
+use super::question::{RankQuestion, held_conditions};
 use crate::expression::{Guard, NodeId, add_guard};
-use crate::observability::{Branch, Edges, Locus, LocusError, SignCell, sign_cells};
+use crate::observability::{Branch, Edges, Locus, LocusError, MissingRange, SignCell, sign_cells};
 use crate::system::System;
 
 /// The parts of the branches by signs; and, in words, those of which no state was found in the sample box.
@@ -23,9 +23,10 @@ pub(super) fn by_signs(
     let smooth = system.smooth_guards(&system.moving_fields());
     let (mut found, mut left_out, mut trouble) = (Vec::new(), Vec::new(), None);
     for branch in branches {
-        let there = system.graph.substitute(&nodes, &branch.values);
+        let held = held_conditions(system, question, &branch);
+        let there = system.graph.substitute(&nodes, &held);
         let guards: Vec<Guard> = branch.guards.iter().chain(&smooth).copied().collect();
-        let guards = system.substitute_guards(&guards, &branch.values);
+        let guards = system.substitute_guards(&guards, &held);
         let cells = match sign_cells(system, &there, &guards, Edges::LeftOut) {
             Ok(cells) => cells,
             // too many to be told apart: the states are looked at as they are
@@ -41,7 +42,7 @@ pub(super) fn by_signs(
             if several && question.samples > 0 {
                 let operands = smooth.iter().map(|guard| guard.node);
                 let mentioned: Vec<NodeId> = nodes.iter().copied().chain(operands).collect();
-                let drawn = Locus::new(system, &part, &question.fixed, &mentioned)
+                let drawn = Locus::of(system, &part, &question.fixed, &mentioned, MissingRange::Default)
                     .and_then(|locus| locus.draw(question.seed, 0));
                 if let Err(error) = drawn {
                     left_out.push(cell.words.join(", "));

@@ -98,8 +98,6 @@ pub struct DecidedRows<'r> {
     pub all: &'r [NodeId],
     /// How many entries a row has.
     pub columns: usize,
-    /// No state's rank is higher.
-    pub most: usize,
 }
 
 /// How certain a rank has to be, and the numbers by which it may become so.
@@ -162,7 +160,7 @@ impl<'g> RankDecider<'g> {
         is_angle: impl Fn(Symbol) -> bool + Copy,
         proof: ProofWanted,
     ) -> Self {
-        let DecidedRows { quick, all, columns, most } = rows;
+        let DecidedRows { quick, all, columns } = rows;
         let ProofWanted { field, wanted } = proof;
         RankDecider {
             graph,
@@ -171,10 +169,16 @@ impl<'g> RankDecider<'g> {
             all: Rows::new(graph, all, columns, is_angle),
             exact: Program::new(graph, all, is_angle),
             columns,
-            most,
+            most: columns,
             field,
             wanted,
         }
+    }
+
+    /// The same where no state's rank exceeds `most`, for certain.
+    #[must_use]
+    pub fn at_most(self, most: usize) -> Self {
+        RankDecider { most: most.min(self.columns), ..self }
     }
 
     /// Rows and columns of what remains of the quick rows without unit rows.

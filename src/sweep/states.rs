@@ -149,9 +149,10 @@ pub fn sweep(
     // the decider looks at the graph while the counts asks the system for names
     let graph = system.graph.clone();
     let columns = system.unknown_count();
-    let rows = DecidedRows { quick: &quick, all: &all, columns, most: options.most.unwrap_or(columns) };
+    let rows = DecidedRows { quick: &quick, all: &all, columns };
     let decider =
-        RankDecider::new(&graph, defined, rows, is_angle, ProofWanted { wanted: options.wanted, field });
+        RankDecider::new(&graph, defined, rows, is_angle, ProofWanted { wanted: options.wanted, field })
+            .at_most(options.most.unwrap_or(columns));
     // a stream decides full ranks only; where the quick rows cannot have it, there is nothing to stream
     let stream = Stream::new(system, locus, &quick)
         .filter(|_| watched)

@@ -163,6 +163,9 @@ impl System {
         if let Some(symbol) = self.find_symbol(name) {
             return Ok(Value::Scalar(self.graph.symbol(symbol)));
         }
+        if let Some(value) = self.named_in_experiment(name, span)? {
+            return Ok(value);
+        }
         match name {
             "pi" => Ok(Value::Scalar(self.graph.pi())),
             "rank" => Ok(Value::CodistributionRank),

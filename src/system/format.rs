@@ -3,6 +3,7 @@
 
 use super::error::{Problem, ReadError};
 use super::grammar::{ENTRIES, parse_file};
+use super::signals;
 use super::source_text::{refuse_reordering, with_plain_line_ends};
 use super::views;
 
@@ -129,17 +130,20 @@ fn begins_an_entry(line: &str) -> Option<&'static str> {
     let word = ENTRIES.into_iter().find(|known| *known == word)?;
     let rest = rest.trim_start();
     let is_name = views::WORDS.contains(&word) && !rest.starts_with('"') && !rest.starts_with("of ");
+    let is_name = is_name || signals::WORDS.contains(&word) && !signals::goes_on(word, rest);
     (!is_name).then_some(word)
 }
 
 /// Where the sign stands in `name' = rate` or `name in [low, high]`.
 fn row(line: &str, sign: &str) -> Option<usize> {
     let end = line.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))?;
-    let mut rest = line[end..].trim_start();
     if end == 0 {
         return None;
     }
-    if sign == "=" {
+    // a derivative of a signal, or what something is in another experiment
+    let end = end + line[end..].find(|c: char| !(c.is_ascii_digit() || matches!(c, '@' | '\'')))?;
+    let (name, mut rest) = (&line[..end], line[end..].trim_start());
+    if sign == "=" && !name.ends_with('\'') {
         rest = rest.strip_prefix('\'')?.trim_start();
     }
     let after = rest.strip_prefix(sign)?;

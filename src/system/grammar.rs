@@ -3,11 +3,13 @@
 use super::dimension::{Declared, DeclaredDimension, annotation, declared};
 use super::model::Role;
 use super::problems::{Damage, indentation, is_first_in_line, next_entry, open_quotation};
+use super::signals::{DeclaredInitial, DeclaredSignal, Knowledge, entry};
 use super::standing::{Basis, Flaw, Reference, basis, fault};
 use super::views::{View, begins, view};
 use crate::expression::Expected;
 use crate::expression::parse::{
-    Depth, Read, Text, blank, ends_a_line, equations, keyword, name, range, read_all, sign, stop, sum,
+    Depth, Read, Text, blank, ends_a_line, equations, keyword, moved, name, range, read_all, reference, sign,
+    stop, sum,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};
@@ -19,15 +21,47 @@ use winnow::token::{literal, take_till, take_while};
 /// One entry of a file.
 #[derive(Clone, Debug)]
 pub(crate) enum Item {
-    System { title: String, cite: Option<String>, span: Span },
-    Use { alias: Name, path: String, span: Span },
+    System {
+        title: String,
+        cite: Option<String>,
+        span: Span,
+    },
+    Use {
+        alias: Name,
+        path: String,
+        span: Span,
+    },
     State(Vec<Declared>),
     Param(Vec<Declared>),
     Angle(Vec<Name>),
-    Let { name: Name, dimension: Option<DeclaredDimension>, value: Expr },
-    Field { role: Role, name: Name, components: Vec<(Name, Expr)>, others_are_zero: bool },
+    Let {
+        name: Name,
+        dimension: Option<DeclaredDimension>,
+        value: Expr,
+    },
+    Field {
+        role: Role,
+        name: Name,
+        components: Vec<(Name, Expr)>,
+        others_are_zero: bool,
+    },
     Output(Vec<(Expr, Option<DeclaredDimension>)>),
-    Sample { ranges: Vec<(Name, Expr, Expr)>, avoid: Vec<Expr> },
+    /// Signals that somebody knows, or nobody.
+    Signals {
+        knowledge: Knowledge,
+        list: Vec<DeclaredSignal>,
+    },
+    /// What is known at the beginning.
+    Initial(Vec<DeclaredInitial>),
+    /// How often the system was looked at.
+    Experiments {
+        count: Expr,
+        span: Span,
+    },
+    Sample {
+        ranges: Vec<(Name, Expr, Expr)>,
+        avoid: Vec<Expr>,
+    },
     Claim(Box<ClaimSyntax>),
     View(Box<View>),
 }
@@ -190,8 +224,7 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     .parse_next(input)?;
     let title = cut_err(name).context("the field's name").parse_next(input)?;
     let component = |input: &mut Text<'_>| -> Read<(Name, Expr)> {
-        let name = name(input)?;
-        cut_err(sign("'")).context("' after the state, as in r1' = ...").parse_next(input)?;
+        let name = moved(input)?;
         cut_err(sign("=")).context("'=' and the rate of change").parse_next(input)?;
         Ok((name, cut_err(sum).parse_next(input)?))
     };
@@ -221,7 +254,7 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
 fn sample(input: &mut Text<'_>) -> Read<Item> {
     keyword("sample").parse_next(input)?;
     let ranged = |input: &mut Text<'_>| -> Read<(Name, Expr, Expr)> {
-        let name = name(input)?;
+        let name = reference(input)?;
         cut_err(keyword("in")).context("'in' and a range [low, high]").parse_next(input)?;
         let (low, high, _) = cut_err(range).parse_next(input)?;
         opt(sign(",")).parse_next(input)?;
@@ -352,7 +385,7 @@ fn remark_only(input: &mut Text<'_>) -> Read<Item> {
 }
 
 const ENTRY: &str = "one of: system, use, state, param, angle, let, drift, input, field, output, sample, claim, erratum, \
-                     damaged, scan, convention, loose, definition, undecided, set, pole, map, line, reduction";
+                     damaged, scan, convention, loose, definition, undecided, set, pole, map, line, reduction, known, unknown, initial, experiments";
 
 fn item(input: &mut Text<'_>) -> Read<Item> {
     alt((
@@ -364,13 +397,13 @@ fn item(input: &mut Text<'_>) -> Read<Item> {
         definition,
         field,
         outputs,
-        alt((sample, claim, faulty, remark_only, view)),
+        alt((sample, claim, faulty, remark_only, view, entry)),
     ))
     .parse_next(input)
 }
 
 /// The words that begin an entry.
-pub(super) const ENTRIES: [&str; 24] = [
+pub(super) const ENTRIES: [&str; 28] = [
     "system",
     "use",
     "state",
@@ -395,6 +428,10 @@ pub(super) const ENTRIES: [&str; 24] = [
     "map",
     "line",
     "reduction",
+    "known",
+    "unknown",
+    "initial",
+    "experiments",
 ];
 
 /// What to say where no entry begins.

@@ -6,9 +6,11 @@
 //!
 //! This floor knows nothing of ranks, verdicts or palms.
 
+mod declare;
 mod determinant;
 mod dimension;
 mod domain;
+mod drawn;
 mod elaborate;
 mod error;
 mod extent;
@@ -25,6 +27,7 @@ mod problems;
 mod read;
 mod references;
 mod restates;
+mod signals;
 mod source_text;
 mod standing;
 mod unknowns;

@@ -4,7 +4,7 @@ use super::dimension::{Dimensions, Import};
 use super::domain::Domain;
 use super::error::Problem;
 use super::grammar::{ClaimBody, ClaimSyntax};
-use super::unknowns::UnknownKind;
+use super::unknowns::Coordinates;
 use super::views::{LineView, MapView, NamedSet, ReductionTo};
 use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};
 use crate::expression::syntax::Span;
@@ -233,8 +233,8 @@ pub struct System {
     /// The systems that this one is under conditions.
     pub reductions: Vec<ReductionTo>,
     pub(crate) symbols: BTreeMap<Symbol, SymbolInfo>,
-    /// What unknown coordinates are, where they are no states.
-    pub(crate) unknown_kinds: BTreeMap<Symbol, UnknownKind>,
+    /// What the coordinates were declared as.
+    pub(crate) coordinates: Coordinates,
     pub(crate) definitions: BTreeMap<String, Value>,
     /// Where each definition exists, imported ones included.
     pub(crate) definition_domains: HashMap<String, Domain>,

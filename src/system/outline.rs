@@ -3,6 +3,7 @@
 
 use super::grammar::{ClaimBody, Entries, Item, parse_entries};
 use super::model::Role;
+use super::signals::Knowledge;
 use super::standing::{Basis, Reference};
 use super::views::View;
 use crate::expression::parse::ends_a_line;
@@ -15,6 +16,8 @@ pub(crate) enum DeclarationKind {
     Import,
     State,
     Parameter,
+    /// A signal, and whether it is known.
+    Signal(bool),
     Definition,
     Field(Role),
     Output,
@@ -33,6 +36,8 @@ impl DeclarationKind {
             DeclarationKind::Import => "use",
             DeclarationKind::State => "state",
             DeclarationKind::Parameter => "param",
+            DeclarationKind::Signal(true) => "known",
+            DeclarationKind::Signal(false) => "unknown",
             DeclarationKind::Definition => "let",
             DeclarationKind::Field(role) => role.name(),
             DeclarationKind::Output => "output",
@@ -43,8 +48,8 @@ impl DeclarationKind {
 
     /// Whether expressions and fields refer to it by its name.
     pub fn has_a_name(self) -> bool {
-        use DeclarationKind::{Definition, Field, Import, Parameter, State};
-        matches!(self, Import | State | Parameter | Definition | Field(_))
+        use DeclarationKind::{Definition, Field, Import, Parameter, Signal, State};
+        matches!(self, Import | State | Parameter | Signal(_) | Definition | Field(_))
     }
 }
 
@@ -153,7 +158,11 @@ impl Outline {
                 View::Line { title, span, .. } => add(DeclarationKind::View("line"), title, span),
                 View::Reduction { alias, .. } => add(DeclarationKind::Reduction, &alias.text, &alias.span),
             },
-            Item::Angle(_) | Item::Sample { .. } => {}
+            Item::Signals { knowledge, list } => {
+                let kind = DeclarationKind::Signal(*knowledge == Knowledge::Known);
+                list.iter().for_each(|one| add(kind, &one.name.text, &one.name.span));
+            }
+            Item::Angle(_) | Item::Initial(_) | Item::Experiments { .. } | Item::Sample { .. } => {}
         }
     }
 }

@@ -103,12 +103,7 @@ fn decide(
     let decider = RankDecider::new(
         &case.system.graph,
         Defined::default(),
-        DecidedRows {
-            quick: rows,
-            all: rows,
-            columns: case.system.states.len(),
-            most: case.system.states.len(),
-        },
+        DecidedRows { quick: rows, all: rows, columns: case.system.states.len() },
         is_angle,
         ProofWanted { wanted, field: PrimeField::random(&mut rand_chacha_rng()) },
     );

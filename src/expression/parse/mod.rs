@@ -7,7 +7,8 @@ use super::syntax::{Equation, Expr, ExprKind, Name, Relation};
 pub use tokens::Expected;
 use tokens::{DEEPEST, closing, number};
 pub(crate) use tokens::{
-    Depth, RESERVED, Read, SPECIAL, Text, blank, ends_a_line, keyword, name, sign, stop, within, word,
+    Depth, RESERVED, Read, SPECIAL, Text, blank, ends_a_line, keyword, moved, name, reference, sign, stop,
+    within, word,
 };
 use winnow::combinator::{alt, cut_err, not, opt, preceded, separated};
 use winnow::error::ErrMode;
@@ -39,7 +40,7 @@ fn matrix(input: &mut Text<'_>) -> Read<Expr> {
 
 /// A name, or a call where a bracket follows at once.
 fn name_or_call(input: &mut Text<'_>) -> Read<Expr> {
-    let name = name(input)?;
+    let name = reference(input)?;
     if opt(sign("(")).parse_next(input)?.is_none() {
         return Ok(Expr { kind: ExprKind::Name(name.text), span: name.span });
     }
@@ -51,7 +52,7 @@ fn name_or_call(input: &mut Text<'_>) -> Read<Expr> {
 /// `name = value, ...` in braces, and where they end
 pub(crate) fn assignments(input: &mut Text<'_>) -> Read<(Vec<(Name, Expr)>, usize)> {
     let one = |input: &mut Text<'_>| -> Read<(Name, Expr)> {
-        let name = name.context("a name to give a value to").parse_next(input)?;
+        let name = reference.context("a name to give a value to").parse_next(input)?;
         cut_err(sign("=")).context("'=' and a value").parse_next(input)?;
         Ok((name, cut_err(sum).parse_next(input)?))
     };

@@ -128,7 +128,7 @@ pub(crate) const RESERVED: [&str; 30] = [
 ];
 
 /// Words with a meaning at some places; elsewhere they are names.
-pub(crate) const SPECIAL: [&str; 23] = [
+pub(crate) const SPECIAL: [&str; 27] = [
     "proved",
     "refuted",
     "restates",
@@ -152,6 +152,10 @@ pub(crate) const SPECIAL: [&str; 23] = [
     "to",
     "from",
     "infinity",
+    "known",
+    "unknown",
+    "initial",
+    "experiments",
 ];
 
 /// Letters, digits and underscores, beginning with a letter.
@@ -194,6 +198,64 @@ pub(crate) fn keyword<'a>(text: &'static str) -> impl Parser<Text<'a>, Span, Err
 
 /// A name that is not reserved, with parts joined by dots (`general.f`), and the blank after it.
 pub(crate) fn name(input: &mut Text<'_>) -> Read<Name> {
+    let name = bare_name(input)?;
+    blank(input)?;
+    Ok(name)
+}
+
+/// The same where something is meant that has been declared: `u'` is a derivative of the signal `u`, `x@2` what `x` is in the
+/// second experiment, `u'@2` both.
+pub(crate) fn reference(input: &mut Text<'_>) -> Read<Name> {
+    let name = located_reference(input)?;
+    blank(input)?;
+    Ok(name)
+}
+
+/// A reference with one prime more: `x'` is how `x` moves, `u''` how the derivative `u'` of a signal does. The prime at the
+/// end may stand apart.
+pub(crate) fn moved(input: &mut Text<'_>) -> Read<Name> {
+    let mut name = located_reference(input)?;
+    let (base, experiment) = match name.text.split_once('@') {
+        Some((base, experiment)) => (base, Some(experiment)),
+        None => (name.text.as_str(), None),
+    };
+    match base.strip_suffix('\'') {
+        Some(base) => {
+            name.text = experiment.map_or(base.to_owned(), |experiment| format!("{base}@{experiment}"));
+            blank(input)?;
+        }
+        None => {
+            blank(input)?;
+            alt((sign("'"), fail_to_move)).parse_next(input)?;
+        }
+    }
+    Ok(name)
+}
+
+fn fail_to_move(input: &mut Text<'_>) -> Read<()> {
+    stop(input.current_token_start(), "' after the state, as in r1' = ...", None)
+}
+
+fn located_reference(input: &mut Text<'_>) -> Read<Name> {
+    let Name { mut text, mut span } = bare_name(input)?;
+    let primes = take_while(0.., '\'').parse_next(input)?;
+    text.push_str(primes);
+    let experiment =
+        opt((literal("@"), take_while(1.., |c: char| c.is_ascii_digit())).take()).parse_next(input)?;
+    // the first experiment has the names of the file
+    let experiment = experiment.filter(|experiment| *experiment != "@1");
+    text.push_str(experiment.unwrap_or_default());
+    // the primes may stand behind the experiment too
+    let primes = take_while(0.., '\'').parse_next(input)?;
+    if experiment.is_some() && !primes.is_empty() {
+        let at = text.find('@').unwrap_or(text.len());
+        text.insert_str(at, primes);
+    }
+    span.end = input.current_token_start();
+    Ok(Name { text, span })
+}
+
+fn bare_name(input: &mut Text<'_>) -> Read<Name> {
     let start = input.checkpoint();
     let ((first, _), span) = (word, winnow::combinator::repeat::<_, _, (), _, _>(0.., (literal("."), word)))
         .map(|((text, span), ())| (text, span))
@@ -207,7 +269,6 @@ pub(crate) fn name(input: &mut Text<'_>) -> Read<Name> {
     let mut whole = *input;
     whole.reset(&start);
     let text = whole.input.as_ref()[..span.len()].to_owned();
-    blank(input)?;
     Ok(Name { text, span })
 }
 

@@ -21,6 +21,8 @@ pub(super) struct Equations {
     /// The states, and among them the unknowns, by their places.
     pub states: usize,
     pub columns: Vec<usize>,
+    /// The unknowns and what is known at the beginning: the rows of these are what rests when it has stopped growing.
+    pub closed: Vec<usize>,
     pub outputs: usize,
     /// What the bound of degrees is taken from: rates, outputs, and how functions move.
     pub measured: Vec<NodeId>,
@@ -127,9 +129,8 @@ impl Equations {
         let square_root = |node: &NodeId| matches!(graph.node(*node), Node::Apply(Function::Sqrt, _));
         Equations {
             states: system.states.len(),
-            columns: (0..system.states.len())
-                .filter(|place| !system.known.contains(&system.states[*place]))
-                .collect(),
+            columns: places(system, &system.unknowns()),
+            closed: places(system, &system.closed_coordinates()),
             outputs: outputs.len(),
             measured,
             starts,
@@ -206,6 +207,11 @@ impl Equations {
         let entries = self.entries.iter().zip(series).map(entry).collect();
         Ok(Trajectory { covectors, entries })
     }
+}
+
+/// The places of some states among all.
+fn places(system: &System, wanted: &[Symbol]) -> Vec<usize> {
+    (0..system.states.len()).filter(|place| wanted.contains(&system.states[*place])).collect()
 }
 
 /// Coefficients up to the last that is not zero.

@@ -53,6 +53,8 @@ pub struct GenericAnswer {
     pub at_least: usize,
     /// Nor more, but for an error of probability below `2^log2_error`.
     pub at_most: usize,
+    /// The same bound where what is known at the beginning counts as unknown.
+    pub(crate) closed_at_most: usize,
     /// Minus infinity where the rank is full and there is nothing to err about.
     pub log2_error: f64,
     /// At how many random points, each modulo a random prime.
@@ -85,14 +87,17 @@ const ATTEMPTS_FOR_ROOTS: usize = 4000;
 const MOST_ROOTS: usize = 5;
 
 /// A point at which the equations were run to the end.
-pub struct Evaluated {
+struct Evaluated {
+    /// Of the unknowns.
     echelon: Echelon,
+    /// The rank where what is known at the beginning counts as unknown.
+    closed: usize,
     order: usize,
 }
 
 impl Evaluated {
     /// The rank at this point.
-    pub fn rank(&self) -> usize {
+    fn rank(&self) -> usize {
         self.echelon.rank()
     }
 }
@@ -120,25 +125,25 @@ impl Probe {
     fn evaluate(&self, start: &[u64], draw: Draw, rests: bool) -> Result<Evaluated, Refusal> {
         let equations = &self.equations;
         let full = equations.columns.len();
+        let most = equations.closed.len().max(1);
         let outputs = equations.outputs.max(1);
-        let most = full.max(1);
-        let mut length = if rests { (full.div_ceil(outputs) + 2).min(most) } else { most };
+        let mut length = if rests { (most.div_ceil(outputs) + 2).min(most) } else { most };
         loop {
             let trajectory = equations.trajectory(draw.field, start, (draw.seed, draw.signs), length)?;
-            let integers: Vec<u64> = {
-                let one = draw.field.one();
-                std::iter::successors(Some(0), |k| Some(draw.field.sum(*k, one))).take(length + 1).collect()
-            };
+            let one = draw.field.one();
+            let integers: Vec<u64> =
+                std::iter::successors(Some(0), |k| Some(draw.field.sum(*k, one))).take(length + 1).collect();
             let mut echelon = Echelon::new(draw.field, full);
+            let mut closed = Echelon::new(draw.field, equations.closed.len());
             let mut open: Vec<Covector> = trajectory.covectors;
             let mut order = 0;
             for k in 0..length {
                 let mut further = Vec::new();
                 for covector in open {
                     let value = covector.value();
-                    let raised =
-                        echelon.insert(equations.columns.iter().map(|column| value[*column]).collect());
-                    if raised {
+                    let part = |places: &[usize]| places.iter().map(|place| value[*place]).collect();
+                    let raised = closed.insert(part(&equations.closed));
+                    if raised && echelon.insert(part(&equations.columns)) {
                         order = k;
                     }
                     if raised || !rests {
@@ -146,7 +151,7 @@ impl Probe {
                     }
                 }
                 open = further;
-                if echelon.rank() == full || open.is_empty() {
+                if closed.rank() == equations.closed.len() || open.is_empty() {
                     break;
                 }
                 if k + 1 < length {
@@ -155,8 +160,9 @@ impl Probe {
                     open = open.iter().map(next).collect();
                 }
             }
-            if open.is_empty() || echelon.rank() == full || length >= most {
-                return Ok(Evaluated { echelon, order });
+            let done = open.is_empty() || closed.rank() == equations.closed.len();
+            if done || length >= most {
+                return Ok(Evaluated { echelon, closed: closed.rank(), order });
             }
             length = (2 * length).min(most);
         }
@@ -250,8 +256,14 @@ pub struct Directions {
 pub enum Ceiling {
     /// The fields leave no state of the set: what has stopped growing has stopped for good.
     Rests,
-    /// They may, and the rank at almost all states around is this; a rank falls on a special set, and never rises.
-    Around(usize),
+    /// They may, and these are the ranks at almost all states around, with what is known at the beginning as unknown, and of the
+    /// unknowns; a rank falls on a special set, and never rises.
+    Around {
+        /// That of all that moves.
+        closed: usize,
+        /// That of the unknowns.
+        unknown: usize,
+    },
 }
 
 /// What is seen at almost all states that satisfy the conditions.
@@ -264,6 +276,7 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
         dimension,
         at_least: 0,
         at_most: dimension,
+        closed_at_most: probe.equations.closed.len(),
         log2_error: f64::NEG_INFINITY,
         rounds: 0,
         order: 0,
@@ -272,10 +285,11 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
     };
     // any fixed seed: what is true almost everywhere does not depend on the user's
     let mut rng = ChaCha8Rng::seed_from_u64(0x7365_7269_6573);
-    let bounds = bound::rounds(&probe.equations, dimension);
+    let bounds = bound::rounds(&probe.equations, probe.equations.closed.len());
     let rounds = bounds.as_ref().map_or(1, |bounds| bounds.rounds);
     // of each choice of signs the ranks of all columns, and of all but one
     let mut best: Vec<(usize, Vec<bool>)> = Vec::new();
+    let (mut closed, all) = (0, probe.equations.closed.len());
     let known_functions = functions_are_known(&probe.equations);
     for _ in 0..rounds {
         let found = match probe.round(&mut rng, rests) {
@@ -288,6 +302,7 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
         answer.rounds += 1;
         best.resize(found.len(), (0, vec![false; dimension]));
         answer.order = found.iter().map(|here| here.order).fold(answer.order, usize::max);
+        closed = found.iter().map(|here| here.closed).fold(closed, usize::max);
         // which choice of signs is which is another matter at every point
         let mut found: Vec<_> = found.iter().map(|here| (here.rank(), here.echelon.seen())).collect();
         found.sort_unstable();
@@ -303,6 +318,7 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
             break;
         }
     }
+    answer.closed_at_most = if bounds.is_ok() { closed } else { all };
     conclude(&mut answer, &best, &bounds, known_functions, ceiling);
     answer
 }
@@ -337,12 +353,14 @@ fn conclude(
                 answer.log2_error = bounds.log2_error;
             }
         }
-        (Ok(bounds), Ceiling::Around(around)) => {
-            answer.at_most = around;
-            if around < answer.dimension {
+        (Ok(bounds), Ceiling::Around { closed, unknown }) => {
+            // where all that moves is spanned as around, longer derivatives lie in the span
+            let spanned = answer.closed_at_most == closed;
+            answer.at_most = if spanned { most.min(unknown) } else { unknown };
+            if answer.at_most < answer.dimension {
                 answer.log2_error = bounds.log2_error;
             }
-            if answer.at_least < around && answer.open.is_none() {
+            if answer.at_least < answer.at_most && answer.open.is_none() {
                 answer.open =
                     Some("the fields leave the set: derivatives of higher orders may see more".to_owned());
             }

@@ -43,6 +43,11 @@ impl Checker<'_> {
     }
 
     fn named(&mut self, name: &str) -> Quantity {
+        // a definition measures the same in all experiments
+        let name = match name.split_once('@') {
+            Some((base, _)) if self.system.definition(base).is_some() => base,
+            _ => name,
+        };
         if self.system.definition(name).is_some() {
             return self.known.definitions.get(name).cloned().unwrap_or(Quantity::Open);
         }

@@ -7,6 +7,7 @@ use super::words::{Meaning, all, meaning};
 use crate::expression::parse::{Read, Text, blank, ends_a_line, name, sign, stop, sum, within, word};
 use crate::expression::syntax::{Expr, Name, Span};
 use crate::system::nearest;
+use crate::system::signals::{Knowledge, knowledge, spread_knowledge};
 use dashu::rational::RBig;
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};
 use winnow::prelude::*;
@@ -29,6 +30,8 @@ pub(crate) struct Declared {
     pub name: Name,
     pub value: Option<Expr>,
     pub dimension: Option<DeclaredDimension>,
+    /// Whether somebody knows the value; of a parameter, where it is said.
+    pub knowledge: Option<Knowledge>,
 }
 
 /// `: DIMENSION`, if there is one.
@@ -53,7 +56,8 @@ fn length_without_blanks(text: &str) -> usize {
     end
 }
 
-/// A list of names, each perhaps with a dimension, and where `with_values` with a value before or behind it.
+/// A list of names, each perhaps with a dimension, and where `with_values` with a value before or behind it and whether that
+/// is known.
 pub(crate) fn declared<'a>(with_values: bool) -> impl FnMut(&mut Text<'a>) -> Read<Vec<Declared>> {
     move |input: &mut Text<'a>| {
         let one = |input: &mut Text<'a>| -> Read<Declared> {
@@ -64,10 +68,12 @@ pub(crate) fn declared<'a>(with_values: bool) -> impl FnMut(&mut Text<'a>) -> Re
             if value.is_some() && dimension.is_none() {
                 dimension = annotation(input)?;
             }
-            Ok(Declared { name, value, dimension })
+            let knowledge = if with_values { knowledge(input)? } else { None };
+            Ok(Declared { name, value, dimension, knowledge })
         };
         let mut list: Vec<Declared> = separated(1.., one, sign(",")).parse_next(input)?;
         spread(&mut list);
+        spread_knowledge(&mut list);
         Ok(list)
     }
 }

@@ -81,12 +81,7 @@ impl Subject {
 
     /// The ladder for these rows, certified.
     pub(super) fn decider(&self) -> RankDecider<'_> {
-        let rows = DecidedRows {
-            quick: &self.expanded,
-            all: &self.expanded,
-            columns: self.columns,
-            most: self.columns,
-        };
+        let rows = DecidedRows { quick: &self.expanded, all: &self.expanded, columns: self.columns };
         let is_angle = |symbol| self.system.is_angle(symbol);
         let proof = ProofWanted { wanted: Certainty::Certified, field: self.field };
         RankDecider::new(&self.system.graph, Defined::default(), rows, is_angle, proof)
