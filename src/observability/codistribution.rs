@@ -4,6 +4,7 @@
 use super::conditions::{all_vanish, vanishes};
 use super::elimination::independent_rows;
 use super::generic::{Ceiling, GenericAnswer, generic_answer};
+use super::related_rank::related_rank;
 use super::series::lie_derivative_by_series;
 use crate::expression::{NodeId, Program, draw_residues, expand_angles, gradient};
 use crate::number::PrimeField;
@@ -451,7 +452,8 @@ pub(super) fn needed(
 ) -> Result<(Vec<usize>, bool), CodistributionError> {
     let is_angle = &system.angle_test();
     let as_written: Vec<NodeId> = rows.iter().flatten().copied().collect();
-    let entries = system.graph.substitute(&as_written, conditions);
+    let as_written_there = system.graph.substitute(&as_written, conditions);
+    let entries = as_written_there.clone();
     let entries = expand_angles(&mut system.graph, &entries, is_angle);
     let program = Program::with_unknown_functions(&system.graph, &entries, is_angle);
     if let Some(angle) = program.bare_angle() {
@@ -459,6 +461,15 @@ pub(super) fn needed(
         return Err(CodistributionError::AngleOutside(name.to_owned()));
     }
     let mut rng = ChaCha8Rng::seed_from_u64(0x0077_6f72_6473); // any fixed seed: the words do not depend on the user's
+    if program.unknown_function(&system.graph).is_some() {
+        // what functions satisfy may make a row zero, or a multiple of others
+        let guards = system.smooth_guards(&system.moving_fields());
+        let guards = system.substitute_guards(&guards, conditions);
+        let columns = system.unknown_count();
+        if let Ok(found) = related_rank(system, &as_written_there, columns, &guards, &mut rng) {
+            return Ok((found.needed, !found.exact));
+        }
+    }
     let (mut registers, mut divisor, mut best) = (Vec::new(), None, None::<Vec<usize>>);
     let mut successes = 0;
     for _ in 0..ATTEMPTS {

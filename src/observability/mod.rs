@@ -17,7 +17,9 @@ mod generic;
 mod locus;
 mod nested;
 mod reduction;
+mod related_rank;
 mod series;
+mod signs;
 mod singular;
 mod state;
 
@@ -49,8 +51,10 @@ pub use locus::{Locus, LocusError};
 pub use nested::{differential_by_duals, lie_derivative_by_duals};
 #[doc(hidden)]
 pub use reduction::Reduction;
+pub(crate) use related_rank::{RelatedRank, related_rank};
 #[doc(hidden)]
 pub use series::lie_derivative_by_series;
+pub(crate) use signs::{Edges, SignCell, in_sign_cell, sign_cells};
 pub(crate) use singular::SEPARATED;
 #[doc(hidden)]
 pub use singular::customary_singular_values;

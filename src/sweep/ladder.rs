@@ -186,6 +186,11 @@ impl<'g> RankDecider<'g> {
         (self.quick.reduction.rows.len(), self.quick.reduction.columns.len())
     }
 
+    /// How many entries a row has.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
     /// The rank at a state.
     pub fn decide(&self, state: &State) -> StateDecision {
         if let Some(undefined) = self.defined.failure(self.graph, state) {
@@ -240,8 +245,13 @@ impl<'g> RankDecider<'g> {
             Ok((rank, bits)) => {
                 report.rank = rank;
                 report.rung = Rung::Enclosures(bits);
-                if rank < full {
+                if rank < full && rank != self.most {
                     report.certainty = Certainty::Computed;
+                } else if rank < full {
+                    // no state's rank is higher: this one is known, and so is what takes part in what is not seen
+                    let kernel = self.enclosed_kernel(state, bits).unwrap_or_default();
+                    let parts = |vector: &Vec<Enclosure>| vector.iter().map(|v| !v.contains_zero()).collect();
+                    report.hidden = kernel.iter().map(parts).collect();
                 }
                 StateDecision::Report(report)
             }
@@ -309,6 +319,39 @@ impl<'g> RankDecider<'g> {
         self.exact(state).map(|found| found.unseen).unwrap_or_default()
     }
 
+    /// The same to many digits, where the rank there is no less than any: a number that is enclosed together with zero is taken for
+    /// zero, every other one for the simplest that is enclosed.
+    pub fn unseen_nearly(&self, state: &State) -> Vec<Vec<RBig>> {
+        let value = |value: &Enclosure| match (value.low(), value.high()) {
+            _ if value.contains_zero() => RBig::ZERO,
+            (low, high) if low == high => low,
+            (low, high) => RBig::simplest_in(low, high),
+        };
+        let kernel = self.enclosed_kernel(state, PRECISE[1]).unwrap_or_default();
+        kernel.iter().map(|vector| vector.iter().map(value).collect()).collect()
+    }
+
+    /// A basis of the directions that no row sees, enclosed; nothing where more than `most` says cannot be told from zero.
+    fn enclosed_kernel(&self, state: &State, bits: usize) -> Option<Vec<Vec<Enclosure>>> {
+        let arithmetic = Enclosures::new(bits);
+        let values = self.values(&self.all, state, arithmetic).ok()?;
+        let reduction = &self.all.reduction;
+        let found = kernel(&arithmetic, self.all.matrix(values), reduction.columns.len()).ok()?;
+        if found.len() + self.most != self.columns {
+            return None;
+        }
+        let zero = arithmetic.rational(&RBig::ZERO).ok()?;
+        let whole = |vector: Vec<Enclosure>| {
+            // what was eliminated is seen
+            let mut parts = vec![zero.clone(); self.columns];
+            for (column, part) in reduction.columns.iter().zip(vector) {
+                parts[*column] = part;
+            }
+            parts
+        };
+        Some(found.into_iter().map(whole).collect())
+    }
+
     /// The rank and the unseen directions by exact elimination.
     fn exact(&self, state: &State) -> Result<ExactRank, NoExactRank> {
         let exact = Rationals::default();
@@ -340,7 +383,7 @@ impl<'g> RankDecider<'g> {
                 }
                 Err(NoValues::NotInThese) => return found,
             };
-            if found == Ok((self.columns, bits)) {
+            if found.as_ref().is_ok_and(|(rank, _)| *rank == self.columns || *rank == self.most) {
                 break;
             }
         }

@@ -8,6 +8,7 @@
 //! This floor knows nothing of claims or palms.
 
 mod accessible;
+mod cells;
 mod certainty;
 mod deviation;
 mod digits;

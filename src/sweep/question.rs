@@ -1,12 +1,13 @@
 //! The whole question of a rank, from a system and some conditions to sweeps of every branch.
 
+use super::cells::by_signs;
 use super::deviation::{StandardDeviations, standard_deviations};
 use super::series::sweep_by_series;
 use super::states::{SweepOptions, SweepReport, UNINTERRUPTED, sweep};
-use crate::expression::{NodeId, Symbol};
+use crate::expression::{Guard, NodeId, Symbol};
 use crate::observability::{
-    Codistribution, CodistributionError, Frame, GenericAnswer, Length, Locus, LocusError, OWN_ROWS, Probe,
-    Stop, Unsolved, parse_condition, solve_conditions,
+    Branch, Codistribution, CodistributionError, Frame, GenericAnswer, Length, Locus, LocusError, OWN_ROWS,
+    Probe, Stop, Unsolved, in_sign_cell, parse_condition, solve_conditions,
 };
 use crate::sweep::certainty::Certainty;
 use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, UnknownKind, Value};
@@ -119,8 +120,11 @@ pub struct RankAnswer {
     pub known: Vec<String>,
     /// What is assumed of signals that are not known.
     pub assumed: Vec<String>,
-    /// An answer for each branch of the conditions; one where there are none.
+    /// An answer for each branch of the conditions, and for each part of one by the signs on which roots depend; one where there are
+    /// none.
     pub branches: Vec<BranchAnswer>,
+    /// Parts by signs of which no state was found in the sample box, in words.
+    pub left_out: Vec<String>,
 }
 
 impl RankAnswer {
@@ -268,102 +272,12 @@ fn answer(
     };
     let own_guards = system.definition_guards(OWN_ROWS);
     let mut answers = Vec::new();
-    for branch in branches {
-        branch.check_codistribution(system).map_err(RankError::Condition)?;
-        // values that are held fixed are conditions too, but for angles, whose values are no rational half turns
-        let mut conditions = branch.values.clone();
-        for (symbol, value) in &question.fixed {
-            if !system.is_angle(*symbol) || value.is_zero() {
-                conditions.insert(*symbol, system.graph.rational(value.clone()));
-            }
-        }
-        // so are parameters that the file gives one value to
-        for (symbol, value) in held_by_the_file(system, question) {
-            let value = system.graph.rational(value);
-            conditions.entry(symbol).or_insert(value);
-        }
-        for known in conditions.clone().keys() {
-            let value = conditions[known];
-            let value = system.graph.substitute(&[value], &conditions)[0];
-            conditions.insert(*known, value);
-        }
-        let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
-        let frame = Frame::new(system, &conditions)?;
-        let wanted = question.samples > 0 && (!only_if_short || frame.words_are_short(system));
-        let samples = if wanted { question.samples } else { 0 };
-        let codistribution = match wanted {
-            true => Codistribution::within(system, &conditions, length, frame)?,
-            false => Codistribution::without_words(frame),
+    let (parts, left_out) = by_signs(system, question, branches, own.as_deref().unwrap_or_default())?;
+    for (branch, cell) in parts {
+        let work = |system: &mut System| {
+            answer_branch(system, question, only_if_short, &branch, own.as_deref(), &own_guards)
         };
-        let all = codistribution.entries();
-        let mut mentioned: Vec<NodeId> = all.clone();
-        mentioned.extend(own.iter().flatten());
-        mentioned.extend(guarded(system));
-        let locus = Locus::new(system, &branch, &question.fixed, &mentioned)?;
-        let options = SweepOptions {
-            samples,
-            seed: question.seed,
-            most: None,
-            guards: &[],
-            wanted: question.wanted,
-            digits: question.digits,
-            recorded: question.recorded,
-            interrupt: question.interrupt,
-            progress: question.progress,
-        };
-        let full = if codistribution.is_cut_off() {
-            let probe = Probe::new(system, &conditions);
-            let options = SweepOptions { most: Some(codistribution.most()), ..options };
-            sweep_by_series(system, &locus, &probe, &options)?
-        } else {
-            codistribution.sweep(system, &locus, options)?
-        };
-        let deviations = match full.interrupted || codistribution.is_cut_off() || !wanted {
-            true => None,
-            false => standard_deviations(system, &locus, &codistribution, &full, question.seed, samples)?,
-        };
-        let rows = match &own {
-            Some(own) if wanted => {
-                let silent = SweepOptions { guards: &own_guards, progress: &|_| (), ..options };
-                Some(sweep(system, &locus, own, own, silent)?)
-            }
-            _ => None,
-        };
-        let known = codistribution.generic.is_final() && question.order.is_none();
-        let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
-            word: word.text(system),
-            entries: entries.clone(),
-        };
-        let numbered = |(index, entries): (usize, &[NodeId])| TakenRow {
-            word: format!("row {}", index + 1),
-            entries: entries.to_vec(),
-        };
-        let own_rows = own.as_deref().unwrap_or_default().chunks(system.unknown_count());
-        answers.push(BranchAnswer {
-            taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
-            own: own_rows.enumerate().map(numbered).collect(),
-            conditions: locus.conditions.clone(),
-            by_default: locus.by_default.clone(),
-            held: held_parameters(system, question, &branch.values, own.iter().flatten()),
-            words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
-            unknowns: named_unknowns(system),
-            order: codistribution.order,
-            stop: codistribution.stop,
-            generic_rank: codistribution
-                .generic
-                .rank()
-                .filter(|_| known)
-                .unwrap_or(codistribution.generic_rank()),
-            is_final: codistribution.is_final() || known,
-            cut_off: question.order.is_none()
-                && !known
-                && !codistribution.is_final()
-                && !codistribution.has_rested(),
-            generic: codistribution.generic,
-            full,
-            deviations,
-            rows,
-        });
+        answers.push(in_sign_cell(system, &cell, work)?);
     }
     Ok(RankAnswer {
         file: system.name.clone(),
@@ -375,5 +289,122 @@ fn answer(
         known: system.known_names(),
         assumed: system.assumed_of_signals(),
         branches: answers,
+        left_out,
+    })
+}
+
+/// The values that every state of a branch has.
+pub(super) fn held_conditions(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    branch: &Branch,
+) -> Assignment {
+    // values that are held fixed are conditions too, but for angles, whose values are no rational half turns
+    let mut conditions = branch.values.clone();
+    for (symbol, value) in &question.fixed {
+        if !system.is_angle(*symbol) || value.is_zero() {
+            conditions.insert(*symbol, system.graph.rational(value.clone()));
+        }
+    }
+    // so are parameters that the file gives one value to
+    for (symbol, value) in held_by_the_file(system, question) {
+        let value = system.graph.rational(value);
+        conditions.entry(symbol).or_insert(value);
+    }
+    for known in conditions.clone().keys() {
+        let value = conditions[known];
+        let value = system.graph.substitute(&[value], &conditions)[0];
+        conditions.insert(*known, value);
+    }
+    conditions
+}
+
+/// The answer on one branch.
+fn answer_branch(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    only_if_short: bool,
+    branch: &Branch,
+    own: Option<&[NodeId]>,
+    own_guards: &[Guard],
+) -> Result<BranchAnswer, RankError> {
+    branch.check_codistribution(system).map_err(RankError::Condition)?;
+    let conditions = held_conditions(system, question, branch);
+    let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
+    let frame = Frame::new(system, &conditions)?;
+    let wanted = question.samples > 0 && (!only_if_short || frame.words_are_short(system));
+    let samples = if wanted { question.samples } else { 0 };
+    let codistribution = match wanted {
+        true => Codistribution::within(system, &conditions, length, frame)?,
+        false => Codistribution::without_words(frame),
+    };
+    let all = codistribution.entries();
+    let mut mentioned: Vec<NodeId> = all.clone();
+    mentioned.extend(own.into_iter().flatten());
+    mentioned.extend(guarded(system));
+    let locus = Locus::new(system, branch, &question.fixed, &mentioned)?;
+    let options = SweepOptions {
+        samples,
+        seed: question.seed,
+        most: None,
+        guards: &[],
+        wanted: question.wanted,
+        digits: question.digits,
+        recorded: question.recorded,
+        interrupt: question.interrupt,
+        progress: question.progress,
+    };
+    let full = if codistribution.is_cut_off() {
+        let probe = Probe::new(system, &conditions);
+        let options = SweepOptions { most: Some(codistribution.most()), ..options };
+        sweep_by_series(system, &locus, &probe, &options)?
+    } else {
+        codistribution.sweep(system, &locus, options)?
+    };
+    let deviations = match full.interrupted || codistribution.is_cut_off() || !wanted {
+        true => None,
+        false => standard_deviations(system, &locus, &codistribution, &full, question.seed, samples)?,
+    };
+    let rows = match own {
+        Some(own) if wanted => {
+            let silent = SweepOptions { guards: own_guards, progress: &|_| (), ..options };
+            Some(sweep(system, &locus, own, own, silent)?)
+        }
+        _ => None,
+    };
+    let known = codistribution.generic.is_final() && question.order.is_none();
+    let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
+        word: word.text(system),
+        entries: entries.clone(),
+    };
+    let numbered = |(index, entries): (usize, &[NodeId])| TakenRow {
+        word: format!("row {}", index + 1),
+        entries: entries.to_vec(),
+    };
+    let own_rows = own.unwrap_or_default().chunks(system.unknown_count());
+    Ok(BranchAnswer {
+        taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
+        own: own_rows.enumerate().map(numbered).collect(),
+        conditions: locus.conditions.clone(),
+        by_default: locus.by_default.clone(),
+        held: held_parameters(system, question, &branch.values, own.into_iter().flatten()),
+        words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
+        unknowns: named_unknowns(system),
+        order: codistribution.order,
+        stop: codistribution.stop,
+        generic_rank: codistribution
+            .generic
+            .rank()
+            .filter(|_| known)
+            .unwrap_or(codistribution.generic_rank()),
+        is_final: codistribution.is_final() || known,
+        cut_off: question.order.is_none()
+            && !known
+            && !codistribution.is_final()
+            && !codistribution.has_rested(),
+        generic: codistribution.generic,
+        full,
+        deviations,
+        rows,
     })
 }

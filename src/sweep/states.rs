@@ -264,7 +264,8 @@ fn recorded(
             rank, unseen, hidden, certainty: Certainty::Certified, ..
         }) => {
             let unseen = if hidden.is_empty() { unseen } else { decider.unseen(&state) };
-            Some(RecordedState { state, rank, unseen })
+            // a short rank is checked by what is not seen, exactly
+            (rank + unseen.len() == decider.columns()).then_some(RecordedState { state, rank, unseen })
         }
         _ => None,
     });
@@ -329,16 +330,20 @@ impl SweepCounts {
         self.certified += u64::from(report.certainty == Certainty::Certified);
         *self.rungs.entry(report.rung).or_insert(0) += 1;
         for direction in &report.unseen {
-            self.unseen.add(system, direction, &state, index);
+            self.unseen.add(system, direction, true, &state, index);
         }
         // one exact example of each kind is enough
         let mut first = report.hidden;
         first.retain(|parts| !self.unseen.count(system, parts));
         if !first.is_empty() {
-            for direction in decider.unseen(&state) {
+            let (mut unseen, mut exact) = (decider.unseen(&state), true);
+            if unseen.is_empty() {
+                (unseen, exact) = (decider.unseen_nearly(&state), false);
+            }
+            for direction in unseen {
                 let parts: Vec<bool> = direction.iter().map(|part| !part.is_zero()).collect();
                 if first.contains(&parts) {
-                    self.unseen.add(system, &direction, &state, index);
+                    self.unseen.add(system, &direction, exact, &state, index);
                 }
             }
         }

@@ -16,7 +16,6 @@ mod bound;
 mod covectors;
 mod echelon;
 mod equations;
-mod independence;
 mod matrix;
 #[cfg(test)]
 mod tests;
@@ -277,7 +276,7 @@ pub enum Ceiling {
 /// What is seen at almost all states that satisfy the conditions.
 pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
     let rests = ceiling == Ceiling::Rests;
-    let mut probe = Probe::new(system, conditions);
+    let probe = Probe::new(system, conditions);
     let columns = probe.equations.columns.clone();
     let dimension = columns.len();
     let mut answer = GenericAnswer {
@@ -298,7 +297,7 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
     // of each choice of signs the ranks of all columns, and of all but one
     let mut best: Vec<(usize, Vec<bool>)> = Vec::new();
     let (mut closed, all) = (0, probe.equations.closed.len());
-    let known_functions = functions_are_known(&mut probe.equations, &mut rng);
+    let known_functions = functions_are_known(&probe.equations);
     for _ in 0..rounds {
         let found = match probe.round(&mut rng, rests) {
             Ok(found) => found,
@@ -332,18 +331,8 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
 }
 
 /// Whether values of functions are known by their relations, so that a random one shows what the true one does.
-fn functions_are_known(equations: &mut Equations, rng: &mut ChaCha8Rng) -> bool {
-    let functions = std::mem::take(&mut equations.functions);
-    let angles = equations.angles.clone();
-    let known = functions.is_empty()
-        || independence::independent(
-            &mut equations.graph,
-            &functions,
-            &|symbol| angles.contains(&symbol),
-            rng,
-        );
-    equations.functions = functions;
-    known && (equations.roots == 0 || equations.roots <= MOST_ROOTS)
+fn functions_are_known(equations: &Equations) -> bool {
+    equations.related && (equations.roots == 0 || equations.roots <= MOST_ROOTS)
 }
 
 /// What follows from the ranks of each choice of signs.

@@ -100,7 +100,8 @@ pub(super) fn sweep_json(report: &SweepReport) -> Value {
                 (name.clone(), json!({ "exact": exact, "value": value }))
             }).collect::<serde_json::Map<_, _>>(),
             "vector": direction.states.iter().zip(&direction.vector).map(|(name, part)| {
-                (name.clone(), json!({ "exact": part.to_string(), "value": rational_to_f64(part) }))
+                let exact = direction.exact.then(|| part.to_string());
+                (name.clone(), json!({ "exact": exact, "value": rational_to_f64(part) }))
             }).collect::<serde_json::Map<_, _>>(),
         })).collect::<Vec<_>>(),
         "poles": report.poles,
@@ -146,6 +147,9 @@ pub fn rank_json(answer: &RankAnswer) -> Value {
     let mut branches: Vec<Value> = answer.branches.iter().map(branch_json).collect();
     let mut object = if branches.len() == 1 { branches.remove(0) } else { total_json(answer, branches) };
     object["file"] = json!(answer.file);
+    if !answer.left_out.is_empty() {
+        object["no_state_was_drawn_where"] = json!(answer.left_out);
+    }
     object["fields"] = fields_json(&answer.fields);
     object["dimension"] = json!(answer.dimension);
     object["known"] = json!(answer.known);
@@ -304,6 +308,9 @@ pub fn rank_text(answer: &RankAnswer) -> String {
         if let Some(rows) = &branch.rows {
             sweep_text("the file's own choice of rows", rows, &mut out);
         }
+    }
+    for place in &answer.left_out {
+        let _ = writeln!(out, "no state of the sample box was found where {place}");
     }
     out.trim_end().to_owned()
 }
