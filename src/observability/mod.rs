@@ -19,6 +19,7 @@ mod reduction;
 mod series;
 mod singular;
 mod state;
+mod symmetry;
 
 #[doc(hidden)]
 pub use codistribution::OWN_ROWS;
@@ -54,3 +55,4 @@ pub use singular::{Spectrum, singular_values};
 #[doc(hidden)]
 pub use state::float_inputs;
 pub use state::{Coordinate, MissingInput, NamedCoordinate, State, StateInWords};
+pub use symmetry::{FieldComponent, SeenFunction, UnseenField, UnseenMotions, unseen_motions};

@@ -1,0 +1,314 @@
+//! What is not seen, as vector fields, and what is seen, as functions.
+//!
+//! At almost all states the directions that a codistribution does not see are as many as the dimension exceeds its rank. Along
+//! vector fields in these directions the state moves and every output stays what it is: turning everything about a beacon, counting
+//! in other units. A function whose differential lies in the codistribution is seen: such a motion does not change it.
+//!
+//! Fields and functions are found by linear equations at random points modulo a prime, in polynomials of low degree, and then
+//! [proved](proof). What is not found so is counted, and nothing is said of it.
+
+mod ansatz;
+mod functions;
+mod kernel;
+mod lattice;
+mod modular;
+mod monomial;
+mod proof;
+
+use self::ansatz::{FieldTerms, fields_of_block};
+use self::functions::{FunctionTerms, functions_of_block};
+use self::kernel::{Block, Kernel, KernelSource, blocks};
+use self::modular::rank;
+use self::monomial::polynomial_node;
+use self::proof::{Motion, annihilate, is_unchanged, is_unseen_for_good, together};
+use super::Codistribution;
+use crate::expression::{NodeId, Program, Symbol, draw_residues, expand_angles};
+use crate::number::PrimeField;
+use crate::system::{Assignment, System};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// A component of a vector field that is not zero.
+#[derive(Clone, Debug)]
+pub struct FieldComponent {
+    /// The state that it moves.
+    pub state: Symbol,
+    /// The state's name.
+    pub name: String,
+    /// How it moves it.
+    pub rate: NodeId,
+    /// The same in the notation of the language.
+    pub text: String,
+}
+
+/// A vector field along which no output changes, proved.
+#[derive(Clone, Debug)]
+pub struct UnseenField {
+    /// Its components that are not zero, in the order of the states.
+    pub components: Vec<FieldComponent>,
+    /// The proof errs with a probability below `2^log2_error`.
+    pub log2_error: f64,
+}
+
+/// A function of several unknowns whose differential lies in the codistribution, proved.
+#[derive(Clone, Debug)]
+pub struct SeenFunction {
+    /// The function.
+    pub value: NodeId,
+    /// The same in the notation of the language.
+    pub text: String,
+    /// The proof errs with a probability below `2^log2_error`.
+    pub log2_error: f64,
+}
+
+/// What is seen and what is not, at almost all states.
+#[derive(Clone, Debug, Default)]
+pub struct UnseenMotions {
+    /// Independent fields, at almost all states.
+    pub fields: Vec<UnseenField>,
+    /// How many further unseen directions there are, of which no field was found.
+    pub fields_missing: usize,
+    /// The states that are seen by themselves, in their order.
+    pub seen: Vec<Symbol>,
+    /// Their names.
+    pub seen_names: Vec<String>,
+    /// Functions of the other states that are seen, independent of one another.
+    pub functions: Vec<SeenFunction>,
+    /// How many further such functions there are.
+    pub functions_missing: usize,
+    /// Whether polynomials of a low degree were left untried, because they have too many coefficients.
+    pub cut_off: bool,
+    /// Whether all this holds for all values of the parameters that the file gives a value to; otherwise at these values.
+    pub for_all_parameters: bool,
+    /// Whether the fields show that the rank is no greater, whatever further Lie derivatives are taken.
+    pub settles_the_rank: bool,
+}
+
+/// How often a point is drawn anew because it is a pole.
+const ATTEMPTS: usize = 40;
+
+/// The fields and the functions of a codistribution that is short of the dimension, off any conditions on states. `held` are the
+/// values of parameters that it was made with; `given` those of them that the question gave.
+pub fn unseen_motions(
+    system: &mut System,
+    codistribution: &Codistribution,
+    held: &Assignment,
+    given: &Assignment,
+) -> UnseenMotions {
+    let mut rng = ChaCha8Rng::seed_from_u64(0x0066_6965_6c64); // any fixed seed: what is found is proved
+    let everywhere = Attempt::new(system, codistribution, given, given.len() == held.len(), &mut rng)
+        .filter(|attempt| attempt.is_complete() && attempt.holds_at(system, held, &mut rng));
+    let at_the_values =
+        |system: &mut System, rng: &mut ChaCha8Rng| Attempt::new(system, codistribution, held, true, rng);
+    let unseen = system.states.len() - codistribution.generic_rank();
+    let nothing = UnseenMotions { fields_missing: unseen, ..UnseenMotions::default() };
+    match everywhere {
+        Some(attempt) => UnseenMotions { for_all_parameters: true, ..attempt.found },
+        None => at_the_values(system, &mut rng).map_or(nothing, |attempt| attempt.found),
+    }
+}
+
+struct Attempt {
+    found: UnseenMotions,
+    /// The fields, with a component for each state.
+    vectors: Vec<Vec<NodeId>>,
+}
+
+impl Attempt {
+    fn new(
+        system: &mut System,
+        codistribution: &Codistribution,
+        values: &Assignment,
+        has_these_words: bool,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Attempt> {
+        let coordinates = system.states.clone();
+        let rows = system.graph.substitute(&codistribution.needed_entries(), values);
+        let source = KernelSource::new(system, &rows, &coordinates, rng)?;
+        let unseen = coordinates.len() - codistribution.generic_rank();
+        let (point, kernel) =
+            (0..ATTEMPTS).find_map(|_| source.sample(None, rng).filter(|(_, k)| k.basis.len() == unseen))?;
+        let blocks = blocks(&source, &point, &kernel, rng);
+        let words_are_final = has_these_words && codistribution.is_final();
+        let mut attempt = Attempt { found: UnseenMotions::default(), vectors: Vec::new() };
+        let mut of_blocks: Vec<Vec<FieldTerms>> = Vec::new();
+        for block in &blocks {
+            let found = fields_of_block(&source, block, &kernel.free, rng);
+            attempt.found.cut_off |= found.cut_off;
+            of_blocks.push(found.fields);
+        }
+        let motion = motion(system, values);
+        let words = words_are_final.then_some(rows.as_slice());
+        attempt.prove_fields(system, &source, &motion, words, &mut of_blocks, rng);
+        attempt.found.fields_missing = unseen - attempt.found.fields.len();
+        // full rank of these rows at a point modulo a prime bounds the rank from below, if no function was taken for another
+        attempt.found.settles_the_rank = attempt.is_complete() && !source.has_functions();
+        attempt.functions(system, (&source, &kernel), &blocks, &of_blocks, &motion, rng);
+        attempt.found.seen = (0..coordinates.len())
+            .filter(|column| blocks.iter().all(|block| !block.columns.contains(column)))
+            .map(|column| coordinates[column])
+            .collect();
+        attempt.found.seen_names =
+            attempt.found.seen.iter().map(|symbol| system.symbol_name(*symbol).to_owned()).collect();
+        Some(attempt)
+    }
+
+    fn is_complete(&self) -> bool {
+        self.found.fields_missing == 0
+    }
+
+    /// Takes the fields that can be proved: all at once, or each by the words, where these are final.
+    fn prove_fields(
+        &mut self,
+        system: &mut System,
+        source: &KernelSource,
+        motion: &Motion,
+        words: Option<&[NodeId]>,
+        of_blocks: &mut [Vec<FieldTerms>],
+        rng: &mut ChaCha8Rng,
+    ) {
+        let all: Vec<Vec<NodeId>> =
+            of_blocks.iter().flatten().map(|field| field_nodes(system, source, field)).collect();
+        if all.is_empty() {
+            return;
+        }
+        let values = (0..ATTEMPTS).find_map(|_| {
+            let point = source.draw(rng);
+            let at = |field: &FieldTerms| field.at(source, &point, system.states.len());
+            of_blocks.iter().flatten().map(at).collect::<Option<Vec<_>>>()
+        });
+        let together =
+            values.and_then(|values| is_unseen_for_good(system, motion, &all, values, source.residues, rng));
+        let mut vectors = all.into_iter();
+        for fields in of_blocks {
+            fields.retain(|_| {
+                let Some(vector) = vectors.next() else { return false };
+                let mut by_words = |system: &mut System| annihilate(system, words?, &vector, &motion.guards, rng);
+                let Some(log2_error) = together.or_else(|| by_words(system)) else { return false };
+                self.found.fields.push(unseen_field(system, &vector, log2_error));
+                self.vectors.push(vector);
+                true
+            });
+        }
+    }
+
+    /// Takes the functions of all blocks that can be proved.
+    fn functions(
+        &mut self,
+        system: &mut System,
+        (source, kernel): (&KernelSource, &Kernel),
+        blocks: &[Block],
+        of_blocks: &[Vec<FieldTerms>],
+        motion: &Motion,
+        rng: &mut ChaCha8Rng,
+    ) {
+        let fields_err = together(self.found.fields.iter().map(|field| field.log2_error));
+        for (block, fields) in blocks.iter().zip(of_blocks) {
+            let found = functions_of_block(source, block, fields, &kernel.free, rng);
+            self.found.cut_off |= found.cut_off;
+            self.found.functions_missing += found.missing;
+            for function in found.functions {
+                let value = function_node(system, source, &function);
+                // that all unseen directions leave it as it is puts its differential into the codistribution
+                let proof = match self.is_complete() && self.found.settles_the_rank {
+                    true => is_unchanged(system, motion, &self.vectors, value, rng),
+                    false => None,
+                };
+                match proof {
+                    Some(log2_error) => self.found.functions.push(SeenFunction {
+                        value,
+                        text: system.graph.text(value),
+                        log2_error: together([log2_error, fields_err]),
+                    }),
+                    None => self.found.functions_missing += 1,
+                }
+            }
+        }
+    }
+
+    /// Whether the fields, and the differentials of the functions, are independent at these values of parameters too.
+    fn holds_at(&self, system: &mut System, values: &Assignment, rng: &mut ChaCha8Rng) -> bool {
+        let fields: Vec<NodeId> = self.vectors.iter().flatten().copied().collect();
+        let functions: Vec<NodeId> =
+            self.found.functions.iter().flat_map(|function| system.differential(function.value)).collect();
+        [(fields, self.vectors.len()), (functions, self.found.functions.len())].into_iter().all(
+            |(entries, wanted)| {
+                let entries = system.graph.substitute(&entries, values);
+                rank_somewhere(system, &entries, rng) == Some(wanted)
+            },
+        )
+    }
+}
+
+/// The rank of rows with a column for each state at a random point modulo a prime, which it is at least at almost all states.
+fn rank_somewhere(system: &mut System, entries: &[NodeId], rng: &mut ChaCha8Rng) -> Option<usize> {
+    let is_angle = &system.angle_test();
+    let entries = expand_angles(&mut system.graph, entries, is_angle);
+    let program = Program::with_unknown_functions(&system.graph, &entries, is_angle);
+    (0..ATTEMPTS).find_map(|_| {
+        let field = PrimeField::random(rng);
+        let loaded = program.load(field).ok()?;
+        let inputs = draw_residues(&program, &field, rng);
+        let values = loaded.run(&inputs, &mut Vec::new()).ok()?;
+        let rows: Vec<Vec<u64>> = values.chunks(system.states.len().max(1)).map(<[u64]>::to_vec).collect();
+        Some(rank(modular::Residues(field), &rows))
+    })
+}
+
+/// What moves the states and what is seen of them, with values of parameters.
+fn motion(system: &mut System, values: &Assignment) -> Motion {
+    let states = system.states.clone();
+    let zero = system.graph.integer(0);
+    let mut fields = Vec::new();
+    for field in system.moving_fields() {
+        let components = &system.fields[field].components;
+        let rate =
+            |state: &Symbol| components.iter().find(|(moved, _)| moved == state).map_or(zero, |(_, r)| *r);
+        let rates: Vec<NodeId> = states.iter().map(rate).collect();
+        fields.push(system.graph.substitute(&rates, values));
+    }
+    let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, output)| *output).collect();
+    let outputs = system.graph.substitute(&outputs, values);
+    let guards = system.smooth_guards(&system.moving_fields());
+    Motion { states, fields, outputs, guards }
+}
+
+fn field_nodes(system: &mut System, source: &KernelSource, field: &FieldTerms) -> Vec<NodeId> {
+    let mut vector = vec![system.graph.integer(0); system.states.len()];
+    for part in &field.components {
+        let top = polynomial_node(&mut system.graph, &source.variables, &part.top);
+        vector[part.column] = match &part.bottom {
+            None => top,
+            Some(bottom) => {
+                let bottom = polynomial_node(&mut system.graph, &source.variables, bottom);
+                system.graph.div(top, bottom)
+            }
+        };
+    }
+    vector
+}
+
+fn unseen_field(system: &System, vector: &[NodeId], log2_error: f64) -> UnseenField {
+    let is_zero = |rate: NodeId| system.graph.constant_value(rate).is_some_and(|value| value.is_zero());
+    let component = |(state, rate): (&Symbol, &NodeId)| FieldComponent {
+        state: *state,
+        name: system.symbol_name(*state).to_owned(),
+        rate: *rate,
+        text: system.graph.text(*rate),
+    };
+    let parts = system.states.iter().zip(vector).filter(|(_, rate)| !is_zero(**rate));
+    UnseenField { components: parts.map(component).collect(), log2_error }
+}
+
+fn function_node(system: &mut System, source: &KernelSource, function: &FunctionTerms) -> NodeId {
+    let graph = &mut system.graph;
+    let (mut top, mut bottom) = (graph.integer(1), graph.integer(1));
+    for (polynomial, exponent) in &function.factors {
+        let factor = polynomial_node(graph, &source.variables, polynomial);
+        let power = i32::try_from(exponent.unsigned_abs()).unwrap_or(i32::MAX);
+        let factor = graph.power(factor, power);
+        let side = if *exponent > 0 { &mut top } else { &mut bottom };
+        *side = graph.mul(*side, factor);
+    }
+    graph.div(top, bottom)
+}
