@@ -4,8 +4,8 @@ use super::deviation::{StandardDeviations, standard_deviations};
 use super::states::{SweepOptions, SweepReport, UNINTERRUPTED, sweep};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
-    Codistribution, CodistributionError, Length, Locus, LocusError, OWN_ROWS, Stop, Unsolved,
-    parse_condition, solve_conditions,
+    Codistribution, CodistributionError, Length, Locus, LocusError, OWN_ROWS, Stop, UnseenMotions, Unsolved,
+    parse_condition, solve_conditions, unseen_motions,
 };
 use crate::sweep::certainty::Certainty;
 use crate::system::{Assignment, FieldRole, Kind, SymbolInfo, System, Value};
@@ -80,6 +80,9 @@ pub struct BranchAnswer {
     pub generic_rank: usize,
     /// Whether longer words cannot raise it there.
     pub is_final: bool,
+    /// What is not seen as fields, and what is seen of it as functions: where the rank is short of the dimension and no
+    /// condition is one on states.
+    pub motions: Option<UnseenMotions>,
     /// The rank of the full codistribution at the sampled states.
     pub full: SweepReport,
     /// How well each state is seen where what is measured has noise; none where the sweep was interrupted.
@@ -182,6 +185,25 @@ fn guarded(system: &System) -> Vec<NodeId> {
     open.map(|guard| guard.node).collect()
 }
 
+/// The unseen fields, where something is unseen and all conditions are on parameters; `given` are those of the question.
+fn motions(
+    system: &mut System,
+    codistribution: &Codistribution,
+    conditions: &Assignment,
+    given: &[Symbol],
+) -> Option<UnseenMotions> {
+    let unseen = codistribution.generic_rank() < system.states.len();
+    let of_states = |system: &System, symbol: &Symbol, value: NodeId| {
+        let mentioned = system.graph.symbols_of([value]);
+        [*symbol].iter().chain(&mentioned).any(|symbol| system.states.contains(symbol))
+    };
+    if !unseen || conditions.iter().any(|(symbol, value)| of_states(system, symbol, *value)) {
+        return None;
+    }
+    let given = given.iter().map(|symbol| (*symbol, conditions[symbol])).collect();
+    Some(unseen_motions(system, codistribution, conditions, &given))
+}
+
 /// Answers a question about the rank of a system's observability codistribution.
 ///
 /// # Errors
@@ -218,6 +240,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
                 conditions.insert(*symbol, system.graph.rational(value.clone()));
             }
         }
+        let given: Vec<Symbol> = conditions.keys().copied().collect();
         // so are parameters that the file gives one value to
         for (symbol, value) in held_by_the_file(system, question) {
             let value = system.graph.rational(value);
@@ -259,6 +282,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             }
             None => None,
         };
+        let motions = motions(system, &codistribution, &conditions, &given);
         let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
             word: word.text(system),
             entries: entries.clone(),
@@ -277,7 +301,9 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             order: codistribution.order,
             stop: codistribution.stop,
             generic_rank: codistribution.generic_rank(),
-            is_final: codistribution.is_final(),
+            is_final: codistribution.is_final()
+                || motions.as_ref().is_some_and(|found| found.settles_the_rank),
+            motions,
             full,
             deviations,
             rows,

@@ -3,8 +3,8 @@
 
 use super::kernel::{Block, Kernel, KernelSource, Point};
 use super::modular::{Echelon, in_integers, rank, simple_vectors};
-use super::monomial::{Monomial, Polynomial, count, monomials, value};
-use crate::expression::SymbolFunction;
+use super::monomial::{Monomial, Polynomial, count, in_brackets, monomials, polynomial_text, value};
+use crate::expression::{Graph, SymbolFunction, SymbolInput};
 use rand_chacha::ChaCha8Rng;
 
 /// A component of a field: the column that it belongs to, a numerator, and a denominator where there is one.
@@ -32,6 +32,23 @@ pub(super) struct BlockFields {
     pub fields: Vec<FieldTerms>,
     /// Whether something was left untried because it has too many unknown coefficients.
     pub cut_off: bool,
+}
+
+impl Component {
+    /// In the notation of the language.
+    pub fn text(&self, graph: &Graph, variables: &[SymbolInput]) -> String {
+        let top = polynomial_text(graph, variables, &self.top);
+        match &self.bottom {
+            None => top,
+            Some(bottom) => {
+                let bottom = polynomial_text(graph, variables, bottom);
+                match bottom.contains(['*', ' ']) {
+                    true => format!("{}/({bottom})", in_brackets(top)),
+                    false => format!("{}/{bottom}", in_brackets(top)),
+                }
+            }
+        }
+    }
 }
 
 impl FieldTerms {

@@ -5,8 +5,8 @@ use super::ansatz::FieldTerms;
 use super::kernel::{Block, KernelSource, Point};
 use super::lattice::integer_kernel;
 use super::modular::{Echelon, in_integers, simple_vectors};
-use super::monomial::{Monomial, Polynomial, monomials};
-use crate::expression::{Symbol, SymbolFunction};
+use super::monomial::{Monomial, Polynomial, in_brackets, monomials, polynomial_text};
+use crate::expression::{Graph, Symbol, SymbolFunction, SymbolInput};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 
@@ -126,9 +126,19 @@ impl Search<'_> {
         let weights: Vec<Vec<i64>> =
             (0..rows).map(|row| self.found.iter().map(|one| one.weights[row]).collect()).collect();
         let exponents = integer_kernel(&weights, self.found.len()).unwrap_or_default();
-        let product = |exponents: Vec<i64>| {
+        let product = |mut exponents: Vec<i64>| {
+            // of two reciprocals that with the shorter denominator
+            let terms = |sign: i64| -> usize {
+                let there = self.found.iter().zip(&exponents).filter(|(_, e)| e.signum() == sign);
+                there.map(|(one, _)| one.polynomial.len()).sum()
+            };
+            if exponents.iter().sum::<i64>() == 0 && terms(-1) > terms(1) {
+                exponents.iter_mut().for_each(|exponent| *exponent = -*exponent);
+            }
             let used = self.found.iter().zip(exponents).filter(|(_, exponent)| *exponent != 0);
-            FunctionTerms { factors: used.map(|(one, e)| (one.polynomial.clone(), e)).collect() }
+            let mut factors: Vec<(Polynomial, i64)> = used.map(|(one, e)| (one.polynomial.clone(), e)).collect();
+            factors.sort();
+            FunctionTerms { factors }
         };
         exponents.into_iter().map(product).collect()
     }
@@ -284,4 +294,33 @@ impl Search<'_> {
 
 fn symbol(source: &KernelSource, column: usize) -> Symbol {
     source.coordinate(column)
+}
+
+impl FunctionTerms {
+    /// In the notation of the language.
+    pub fn text(&self, graph: &Graph, variables: &[SymbolInput]) -> String {
+        let side = |sign: i64| -> Vec<String> {
+            let factors = self.factors.iter().filter(|(_, exponent)| exponent.signum() == sign);
+            let factor = |(polynomial, exponent): &(Polynomial, i64)| {
+                let text = polynomial_text(graph, variables, polynomial);
+                match exponent.unsigned_abs() {
+                    1 => text,
+                    power if text.contains(['+', '-', '*', ' ']) => format!("({text})^{power}"),
+                    power => format!("{text}^{power}"),
+                }
+            };
+            factors.map(factor).collect()
+        };
+        let product = |mut factors: Vec<String>| match factors.len() {
+            0 => "1".to_owned(),
+            1 => factors.remove(0),
+            _ => factors.into_iter().map(in_brackets).collect::<Vec<_>>().join("*"),
+        };
+        let (top, bottom) = (product(side(1)), side(-1));
+        match bottom.as_slice() {
+            [] => top,
+            [one] if !one.contains(['*', ' ']) => format!("{}/{one}", in_brackets(top)),
+            _ => format!("{}/({})", in_brackets(top), product(bottom)),
+        }
+    }
 }

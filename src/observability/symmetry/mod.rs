@@ -15,7 +15,7 @@ mod modular;
 mod monomial;
 mod proof;
 
-use self::ansatz::{FieldTerms, fields_of_block};
+use self::ansatz::{Component, FieldTerms, fields_of_block};
 use self::functions::{FunctionTerms, functions_of_block};
 use self::kernel::{Block, Kernel, KernelSource, blocks};
 use self::modular::rank;
@@ -181,11 +181,12 @@ impl Attempt {
             values.and_then(|values| is_unseen_for_good(system, motion, &all, values, source.residues, rng));
         let mut vectors = all.into_iter();
         for fields in of_blocks {
-            fields.retain(|_| {
+            fields.retain(|field| {
                 let Some(vector) = vectors.next() else { return false };
-                let mut by_words = |system: &mut System| annihilate(system, words?, &vector, &motion.guards, rng);
+                let mut by_words =
+                    |system: &mut System| annihilate(system, words?, &vector, &motion.guards, rng);
                 let Some(log2_error) = together.or_else(|| by_words(system)) else { return false };
-                self.found.fields.push(unseen_field(system, &vector, log2_error));
+                self.found.fields.push(unseen_field(system, source, field, &vector, log2_error));
                 self.vectors.push(vector);
                 true
             });
@@ -217,7 +218,7 @@ impl Attempt {
                 match proof {
                     Some(log2_error) => self.found.functions.push(SeenFunction {
                         value,
-                        text: system.graph.text(value),
+                        text: function.text(&system.graph, &source.variables),
                         log2_error: together([log2_error, fields_err]),
                     }),
                     None => self.found.functions_missing += 1,
@@ -288,16 +289,20 @@ fn field_nodes(system: &mut System, source: &KernelSource, field: &FieldTerms) -
     vector
 }
 
-fn unseen_field(system: &System, vector: &[NodeId], log2_error: f64) -> UnseenField {
-    let is_zero = |rate: NodeId| system.graph.constant_value(rate).is_some_and(|value| value.is_zero());
-    let component = |(state, rate): (&Symbol, &NodeId)| FieldComponent {
-        state: *state,
-        name: system.symbol_name(*state).to_owned(),
-        rate: *rate,
-        text: system.graph.text(*rate),
+fn unseen_field(
+    system: &System,
+    source: &KernelSource,
+    field: &FieldTerms,
+    vector: &[NodeId],
+    log2_error: f64,
+) -> UnseenField {
+    let component = |part: &Component| FieldComponent {
+        state: source.coordinate(part.column),
+        name: system.symbol_name(source.coordinate(part.column)).to_owned(),
+        rate: vector[part.column],
+        text: part.text(&system.graph, &source.variables),
     };
-    let parts = system.states.iter().zip(vector).filter(|(_, rate)| !is_zero(**rate));
-    UnseenField { components: parts.map(component).collect(), log2_error }
+    UnseenField { components: field.components.iter().map(component).collect(), log2_error }
 }
 
 fn function_node(system: &mut System, source: &KernelSource, function: &FunctionTerms) -> NodeId {

@@ -158,8 +158,15 @@ pub(super) fn simple_vectors(
                 vector
             })
             .collect();
-        for vector in &reduced {
-            found.push(with_fewer_terms(residues, vector.clone(), &reduced, weight));
+        for (place, vector) in reduced.iter().enumerate() {
+            // multiples of the others only: what makes this one independent of them stays
+            let others: Vec<&[u64]> = reduced
+                .iter()
+                .enumerate()
+                .filter(|(at, _)| *at != place)
+                .map(|(_, other)| &**other)
+                .collect();
+            found.push(with_fewer_terms(residues, vector.clone(), &others, weight));
         }
     }
     found.iter_mut().for_each(|vector| normalise(residues, vector));
@@ -185,7 +192,7 @@ fn normalise(residues: Residues, vector: &mut [u64]) {
 fn with_fewer_terms(
     residues: Residues,
     mut vector: Vec<u64>,
-    others: &[Vec<u64>],
+    others: &[&[u64]],
     weight: &dyn Fn(usize) -> u64,
 ) -> Vec<u64> {
     if others.len() > MOST_COMBINED {

@@ -146,3 +146,97 @@ pub(super) fn polynomial_node(
     }
     sum
 }
+
+/// In the notation of the language, a common factor outside brackets.
+pub(super) fn polynomial_text(graph: &Graph, variables: &[SymbolInput], polynomial: &Polynomial) -> String {
+    let common = common_factor(polynomial);
+    let negative = polynomial.iter().all(|(_, coefficient)| *coefficient < 0);
+    let rest: Vec<(Monomial, i64)> = polynomial
+        .iter()
+        .map(|(monomial, coefficient)| {
+            let powers = monomial.powers.iter().map(|(place, power)| {
+                let taken = common.powers.iter().find(|(of, _)| of == place).map_or(0, |(_, taken)| *taken);
+                (*place, power - taken)
+            });
+            let powers = powers.filter(|(_, power)| *power > 0).collect();
+            let sign = if negative { -1 } else { 1 };
+            (Monomial { powers, angle: monomial.angle }, sign * coefficient)
+        })
+        .collect();
+    let sum = sum_text(graph, variables, &rest);
+    let front = monomial_text(graph, variables, &common);
+    let sign = if negative { "-" } else { "" };
+    match (common.powers.is_empty(), rest.len()) {
+        (true, 1) => format!("{sign}{sum}"),
+        (true, _) if negative => format!("-({sum})"),
+        (true, _) => sum,
+        (false, 1) if sum == "1" => format!("{sign}{front}"),
+        (false, 1) => format!("{sign}{sum}*{front}"),
+        (false, _) => format!("{sign}{front}*({sum})"),
+    }
+}
+
+/// The product of powers that every term has.
+fn common_factor(polynomial: &Polynomial) -> Monomial {
+    let Some((first, _)) = polynomial.first() else { return Monomial::default() };
+    let shared = |(place, power): &(usize, u8)| {
+        let in_term = |(monomial, _): &(Monomial, i64)| {
+            monomial.powers.iter().find(|(of, _)| of == place).map_or(0, |(_, power)| *power)
+        };
+        let least = polynomial.iter().map(in_term).min().unwrap_or(*power);
+        (least > 0).then_some((*place, least))
+    };
+    Monomial { powers: first.powers.iter().filter_map(shared).collect(), angle: None }
+}
+
+/// Terms with a plus first.
+fn sum_text(graph: &Graph, variables: &[SymbolInput], polynomial: &[(Monomial, i64)]) -> String {
+    let (positive, negative): (Vec<_>, Vec<_>) = polynomial.iter().partition(|(_, c)| *c > 0);
+    let mut text = String::new();
+    for (monomial, coefficient) in positive.into_iter().chain(negative) {
+        text.push_str(match (text.is_empty(), *coefficient < 0) {
+            (true, true) => "-",
+            (true, false) => "",
+            (false, true) => " - ",
+            (false, false) => " + ",
+        });
+        let factor = monomial_text(graph, variables, monomial);
+        match (coefficient.unsigned_abs(), factor.as_str()) {
+            (number, "1") => text.push_str(&number.to_string()),
+            (1, factor) => text.push_str(factor),
+            (number, factor) => text.push_str(&format!("{number}*{factor}")),
+        }
+    }
+    text
+}
+
+/// Coordinates before sines and cosines.
+fn monomial_text(graph: &Graph, variables: &[SymbolInput], monomial: &Monomial) -> String {
+    let name = |variable: SymbolInput| {
+        let symbol = graph.symbol_name(variable.symbol);
+        match variable.function {
+            SymbolFunction::Itself => symbol.to_owned(),
+            SymbolFunction::Sine => format!("sin({symbol})"),
+            SymbolFunction::Cosine => format!("cos({symbol})"),
+        }
+    };
+    let mut powers = monomial.powers.clone();
+    powers.sort_by_key(|(place, _)| variables[*place].function != SymbolFunction::Itself);
+    let power = |(place, power): &(usize, u8)| match power {
+        1 => name(variables[*place]),
+        power => format!("{}^{power}", name(variables[*place])),
+    };
+    let factors = monomial.angle.map(|angle| graph.symbol_name(angle).to_owned());
+    let factors: Vec<String> = factors.into_iter().chain(powers.iter().map(power)).collect();
+    if factors.is_empty() { "1".to_owned() } else { factors.join("*") }
+}
+
+/// Whether a text is a sum, which needs brackets as a factor.
+pub(super) fn in_brackets(text: String) -> String {
+    let mut depth = 0;
+    let is_sum = text.char_indices().any(|(at, sign)| {
+        depth += i32::from(sign == '(') - i32::from(sign == ')');
+        depth == 0 && (sign == '+' || sign == '-') && at > 0 && text.as_bytes()[at - 1] == b' '
+    });
+    if is_sum { format!("({text})") } else { text }
+}
