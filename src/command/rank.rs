@@ -3,6 +3,7 @@
 use super::arguments::{Wanted, assignments};
 use super::interrupt::{INTERRUPTED, begin_to_tell};
 use super::output::{Files, Form, progress};
+use super::reparametrise::reparametrisation;
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
@@ -10,6 +11,7 @@ use palmistry::evidence::rank_records;
 use palmistry::report::{rank_json, rank_text};
 use palmistry::sweep::MOST_DIGITS;
 use palmistry::{RankQuestion, System, answer_rank};
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -60,6 +62,10 @@ pub(crate) struct Rank {
     /// How many states that file holds at most; they are spread over the sweep, the worst conditioned one is among them.
     #[arg(long, default_value_t = 1000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     verdict_states: u64,
+    /// Write a proof file of the system without what is not seen: its states are the functions that are seen, its claims, which are
+    /// proved, that they move as this file says and that the outputs are the same.
+    #[arg(long, value_name = "FILE")]
+    reparametrise: Option<PathBuf>,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -96,7 +102,20 @@ impl Rank {
             });
             files.text_or(path, text);
         }
+        let written = self.reparametrise.as_ref().map(|path| {
+            let written = reparametrisation(&system, &answer, &self.file, path);
+            files.text_or(path, written.as_ref().map(|found| found.text.clone()).map_err(String::clone));
+            written
+        });
+        let mut object = rank_json(&answer);
+        if let Some(Ok(found)) = &written {
+            object["reparametrised"] = json!({ "claims": found.claims, "proved": found.proved });
+        }
+        let text = || match &written {
+            Some(Ok(found)) => format!("{}\n{}", rank_text(&answer), found.in_words()),
+            _ => rank_text(&answer),
+        };
         let status = if answer.interrupted() { Status::CutOff } else { Status::AsExpected };
-        files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
+        files.print(Form::of(self.json), object, text, status)
     }
 }

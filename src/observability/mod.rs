@@ -55,4 +55,7 @@ pub use singular::{Spectrum, singular_values};
 #[doc(hidden)]
 pub use state::float_inputs;
 pub use state::{Coordinate, MissingInput, NamedCoordinate, State, StateInWords};
-pub use symmetry::{FieldComponent, SeenFunction, UnseenField, UnseenMotions, unseen_motions};
+pub use symmetry::{
+    FieldComponent, NotReparametrised, SeenFunction, UnseenField, UnseenMotions, reparametrise,
+    unseen_motions,
+};

@@ -136,7 +136,8 @@ impl Search<'_> {
                 exponents.iter_mut().for_each(|exponent| *exponent = -*exponent);
             }
             let used = self.found.iter().zip(exponents).filter(|(_, exponent)| *exponent != 0);
-            let mut factors: Vec<(Polynomial, i64)> = used.map(|(one, e)| (one.polynomial.clone(), e)).collect();
+            let mut factors: Vec<(Polynomial, i64)> =
+                used.map(|(one, e)| (one.polynomial.clone(), e)).collect();
             factors.sort();
             FunctionTerms { factors }
         };

@@ -8,18 +8,25 @@
 //! [proved](proof). What is not found so is counted, and nothing is said of it.
 
 mod ansatz;
+mod answer;
 mod functions;
 mod kernel;
 mod lattice;
 mod modular;
 mod monomial;
 mod proof;
+mod reparametrise;
+mod section;
+
+pub use self::answer::{FieldComponent, SeenFunction, UnseenField, UnseenMotions};
+pub use self::reparametrise::{NotReparametrised, reparametrise};
 
 use self::ansatz::{Component, FieldTerms, fields_of_block};
+use self::answer::UnseenBlock;
 use self::functions::{FunctionTerms, functions_of_block};
 use self::kernel::{Block, Kernel, KernelSource, blocks};
 use self::modular::rank;
-use self::monomial::polynomial_node;
+use self::monomial::{Polynomial, polynomial_node};
 use self::proof::{Motion, annihilate, is_unchanged, is_unseen_for_good, together};
 use super::Codistribution;
 use crate::expression::{NodeId, Program, Symbol, draw_residues, expand_angles};
@@ -27,62 +34,6 @@ use crate::number::PrimeField;
 use crate::system::{Assignment, System};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-
-/// A component of a vector field that is not zero.
-#[derive(Clone, Debug)]
-pub struct FieldComponent {
-    /// The state that it moves.
-    pub state: Symbol,
-    /// The state's name.
-    pub name: String,
-    /// How it moves it.
-    pub rate: NodeId,
-    /// The same in the notation of the language.
-    pub text: String,
-}
-
-/// A vector field along which no output changes, proved.
-#[derive(Clone, Debug)]
-pub struct UnseenField {
-    /// Its components that are not zero, in the order of the states.
-    pub components: Vec<FieldComponent>,
-    /// The proof errs with a probability below `2^log2_error`.
-    pub log2_error: f64,
-}
-
-/// A function of several unknowns whose differential lies in the codistribution, proved.
-#[derive(Clone, Debug)]
-pub struct SeenFunction {
-    /// The function.
-    pub value: NodeId,
-    /// The same in the notation of the language.
-    pub text: String,
-    /// The proof errs with a probability below `2^log2_error`.
-    pub log2_error: f64,
-}
-
-/// What is seen and what is not, at almost all states.
-#[derive(Clone, Debug, Default)]
-pub struct UnseenMotions {
-    /// Independent fields, at almost all states.
-    pub fields: Vec<UnseenField>,
-    /// How many further unseen directions there are, of which no field was found.
-    pub fields_missing: usize,
-    /// The states that are seen by themselves, in their order.
-    pub seen: Vec<Symbol>,
-    /// Their names.
-    pub seen_names: Vec<String>,
-    /// Functions of the other states that are seen, independent of one another.
-    pub functions: Vec<SeenFunction>,
-    /// How many further such functions there are.
-    pub functions_missing: usize,
-    /// Whether polynomials of a low degree were left untried, because they have too many coefficients.
-    pub cut_off: bool,
-    /// Whether all this holds for all values of the parameters that the file gives a value to; otherwise at these values.
-    pub for_all_parameters: bool,
-    /// Whether the fields show that the rank is no greater, whatever further Lie derivatives are taken.
-    pub settles_the_rank: bool,
-}
 
 /// How often a point is drawn anew because it is a pole.
 const ATTEMPTS: usize = 40;
@@ -130,7 +81,8 @@ impl Attempt {
             (0..ATTEMPTS).find_map(|_| source.sample(None, rng).filter(|(_, k)| k.basis.len() == unseen))?;
         let blocks = blocks(&source, &point, &kernel, rng);
         let words_are_final = has_these_words && codistribution.is_final();
-        let mut attempt = Attempt { found: UnseenMotions::default(), vectors: Vec::new() };
+        let found = UnseenMotions { values: values.clone(), ..UnseenMotions::default() };
+        let mut attempt = Attempt { found, vectors: Vec::new() };
         let mut of_blocks: Vec<Vec<FieldTerms>> = Vec::new();
         for block in &blocks {
             let found = fields_of_block(&source, block, &kernel.free, rng);
@@ -208,8 +160,10 @@ impl Attempt {
             let found = functions_of_block(source, block, fields, &kernel.free, rng);
             self.found.cut_off |= found.cut_off;
             self.found.functions_missing += found.missing;
+            let begin = self.found.functions.len();
             for function in found.functions {
-                let value = function_node(system, source, &function);
+                let factors = factor_nodes(system, source, &function);
+                let value = product(system, &factors);
                 // that all unseen directions leave it as it is puts its differential into the codistribution
                 let proof = match self.is_complete() && self.found.settles_the_rank {
                     true => is_unchanged(system, motion, &self.vectors, value, rng),
@@ -220,10 +174,16 @@ impl Attempt {
                         value,
                         text: function.text(&system.graph, &source.variables),
                         log2_error: together([log2_error, fields_err]),
+                        factors,
                     }),
                     None => self.found.functions_missing += 1,
                 }
             }
+            self.found.blocks.push(UnseenBlock {
+                states: block.columns.iter().map(|column| source.coordinate(*column)).collect(),
+                unseen: block.free.len(),
+                functions: begin..self.found.functions.len(),
+            });
         }
     }
 
@@ -305,15 +265,22 @@ fn unseen_field(
     UnseenField { components: field.components.iter().map(component).collect(), log2_error }
 }
 
-fn function_node(system: &mut System, source: &KernelSource, function: &FunctionTerms) -> NodeId {
+fn factor_nodes(system: &mut System, source: &KernelSource, function: &FunctionTerms) -> Vec<(NodeId, i32)> {
+    let factor = |(polynomial, exponent): &(Polynomial, i64)| {
+        let power = i32::try_from(*exponent).unwrap_or(i32::MAX);
+        (polynomial_node(&mut system.graph, &source.variables, polynomial), power)
+    };
+    function.factors.iter().map(factor).collect()
+}
+
+/// The product of powers, with a numerator and a denominator.
+fn product(system: &mut System, factors: &[(NodeId, i32)]) -> NodeId {
     let graph = &mut system.graph;
     let (mut top, mut bottom) = (graph.integer(1), graph.integer(1));
-    for (polynomial, exponent) in &function.factors {
-        let factor = polynomial_node(graph, &source.variables, polynomial);
-        let power = i32::try_from(exponent.unsigned_abs()).unwrap_or(i32::MAX);
-        let factor = graph.power(factor, power);
+    for (factor, exponent) in factors {
+        let power = graph.power(*factor, exponent.saturating_abs());
         let side = if *exponent > 0 { &mut top } else { &mut bottom };
-        *side = graph.mul(*side, factor);
+        *side = graph.mul(*side, power);
     }
     graph.div(top, bottom)
 }
