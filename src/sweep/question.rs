@@ -192,7 +192,7 @@ fn motions(
     conditions: &Assignment,
     given: &[Symbol],
 ) -> Option<UnseenMotions> {
-    let unseen = codistribution.generic_rank() < system.states.len();
+    let unseen = codistribution.generic_rank() < system.unknown_count();
     let of_states = |system: &System, symbol: &Symbol, value: NodeId| {
         let mentioned = system.graph.symbols_of([value]);
         [*symbol].iter().chain(&mentioned).any(|symbol| system.states.contains(symbol))
@@ -201,7 +201,8 @@ fn motions(
         return None;
     }
     let given = given.iter().map(|symbol| (*symbol, conditions[symbol])).collect();
-    Some(unseen_motions(system, codistribution, conditions, &given))
+    let found = unseen_motions(system, Some(codistribution), conditions, &given)?;
+    (found.directions() > 0).then_some(found)
 }
 
 /// Answers a question about the rank of a system's observability codistribution.

@@ -74,3 +74,10 @@ pub struct UnseenMotions {
     pub(super) values: Assignment,
     pub(super) blocks: Vec<UnseenBlock>,
 }
+
+impl UnseenMotions {
+    /// How many directions are not seen at almost all states: the dimension less the rank.
+    pub fn directions(&self) -> usize {
+        self.fields.len() + self.fields_missing
+    }
+}

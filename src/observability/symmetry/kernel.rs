@@ -3,16 +3,25 @@
 use super::modular::{Echelon, Residues};
 use crate::expression::{Input, NodeId, Program, Symbol, SymbolFunction, SymbolInput, expand_angles};
 use crate::number::PrimeField;
-use crate::system::System;
+use crate::observability::generic::Probe;
+use crate::system::{Assignment, System};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 
-/// Where kernels come from: rows of differentials that can be evaluated at any point modulo one prime.
+/// How what is not seen is computed at a point.
+pub(super) enum Evaluation {
+    /// From the differentials of words, row after row.
+    Words(Program),
+    /// From power series along a trajectory: no words are needed.
+    Series(Probe),
+}
+
+/// Where kernels come from: a codistribution that can be evaluated at any point modulo one prime.
 pub(super) struct KernelSource {
     pub residues: Residues,
     /// What the rows may depend on: symbols, and sine and cosine of those that are angles, each pair side by side.
     pub variables: Vec<SymbolInput>,
-    program: Program,
+    evaluation: Evaluation,
     /// For each input of the program the variable that it is; none for functions, which are taken for independent.
     feeds: Vec<Option<usize>>,
     /// For each input of the program that is no variable, the symbols that it mentions.
@@ -37,9 +46,24 @@ pub(super) struct Kernel {
 /// How often a point is drawn anew because it is a pole.
 const ATTEMPTS: usize = 40;
 
+/// Longer programs cost more than series.
+const LONGEST_PROGRAM: usize = 20_000;
+/// Of what series are drawn from beside the point; any does.
+const SEED: u64 = 0x006b_6572_6e65;
+
+impl Evaluation {
+    fn inputs(&self) -> &[Input] {
+        match self {
+            Evaluation::Words(program) => program.inputs(),
+            Evaluation::Series(probe) => probe.inputs(),
+        }
+    }
+}
+
 impl KernelSource {
-    /// The kernel of rows with a column for each of `coordinates`. None where a bare angle is met.
-    pub fn new(
+    /// The kernel of rows with a column for each of `coordinates`; none where they are long, or are of functions of whose values
+    /// nothing is known.
+    pub fn of_words(
         system: &mut System,
         rows: &[NodeId],
         coordinates: &[Symbol],
@@ -48,12 +72,34 @@ impl KernelSource {
         let is_angle = &system.angle_test();
         let entries = expand_angles(&mut system.graph, rows, is_angle);
         let program = Program::with_unknown_functions(&system.graph, &entries, is_angle);
-        if program.bare_angle().is_some() {
-            return None;
-        }
+        let fits = program.bare_angle().is_none()
+            && program.unknown_function(&system.graph).is_none()
+            && program.len() <= LONGEST_PROGRAM;
+        fits.then(|| KernelSource::new(system, Evaluation::Words(program), coordinates, rng))
+    }
+
+    /// The kernel of all words, at values of parameters.
+    pub fn of_series(
+        system: &System,
+        values: &Assignment,
+        coordinates: &[Symbol],
+        rng: &mut ChaCha8Rng,
+    ) -> KernelSource {
+        KernelSource::new(system, Evaluation::Series(Probe::new(system, values)), coordinates, rng)
+    }
+
+    fn new(
+        system: &System,
+        evaluation: Evaluation,
+        coordinates: &[Symbol],
+        rng: &mut ChaCha8Rng,
+    ) -> KernelSource {
+        let is_angle = &system.angle_test();
+        let inputs: Vec<Input> = evaluation.inputs().to_vec();
         let mut symbols: Vec<Symbol> = coordinates.to_vec();
-        for symbol in program.inputs().iter().filter_map(|input| input.symbol()) {
-            if !symbols.contains(&symbol) {
+        for symbol in inputs.iter().filter_map(|input| input.symbol()) {
+            // what drives an input is drawn, and nothing depends on it
+            if !symbols.contains(&symbol) && system.symbol_info(symbol).is_some() {
                 symbols.push(symbol);
             }
         }
@@ -71,15 +117,15 @@ impl KernelSource {
             let wanted = input.of_symbol()?;
             variables.iter().position(|variable| *variable == wanted)
         };
-        let feeds = program.inputs().iter().map(place).collect();
+        let feeds = inputs.iter().map(place).collect();
         let mentions = |input: &Input| match input {
             Input::Opaque(node) => system.graph.symbols_of([*node]),
             _ => Vec::new(),
         };
-        let mentioned = program.inputs().iter().map(mentions).collect();
+        let mentioned = inputs.iter().map(mentions).collect();
         let residues = Residues(PrimeField::random(rng));
         let coordinates = coordinates.to_vec();
-        Some(KernelSource { residues, feeds, mentioned, coordinates, program, variables })
+        KernelSource { residues, feeds, mentioned, coordinates, evaluation, variables }
     }
 
     /// The coordinate of a column.
@@ -89,7 +135,10 @@ impl KernelSource {
 
     /// Whether functions are met of whose values nothing is known.
     pub fn has_functions(&self) -> bool {
-        self.feeds.iter().any(Option::is_none)
+        match &self.evaluation {
+            Evaluation::Words(_) => false,
+            Evaluation::Series(probe) => probe.has_functions(),
+        }
     }
 
     /// A random point, whether or not it is a pole.
@@ -135,24 +184,42 @@ impl KernelSource {
 
     /// What the rows do not see at a point; none at a pole.
     pub fn kernel(&self, point: &Point) -> Option<Kernel> {
-        let loaded = self.program.load(self.residues.0).ok()?;
         let inputs: Vec<u64> = self
             .feeds
             .iter()
             .zip(&point.functions)
             .map(|(feed, function)| feed.map_or(*function, |place| point.values[place]))
             .collect();
-        let values = loaded.run(&inputs, &mut Vec::new()).ok()?;
         let columns = self.coordinates.len();
         let mut echelon = Echelon::new(self.residues, columns);
-        for row in values.chunks(columns.max(1)) {
-            if echelon.rank() == columns {
-                break;
+        match &self.evaluation {
+            Evaluation::Words(program) => {
+                let loaded = program.load(self.residues.0).ok()?;
+                let values = loaded.run(&inputs, &mut Vec::new()).ok()?;
+                for row in values.chunks(columns.max(1)) {
+                    if echelon.rank() == columns {
+                        break;
+                    }
+                    echelon.add(row.to_vec());
+                }
+                let (free, basis) = echelon.kernel();
+                Some(Kernel { free, basis })
             }
-            echelon.add(row.to_vec());
+            Evaluation::Series(probe) => {
+                let basis = probe.directions_at(self.residues.0, &inputs, SEED).ok()?;
+                // the last columns are the free ones, as if rows had been reduced from the first column on
+                for vector in basis {
+                    echelon.add(vector.into_iter().rev().collect());
+                }
+                let mut reduced = echelon.reduced();
+                reduced.reverse();
+                let back = |pivot: usize| columns - 1 - pivot;
+                Some(Kernel {
+                    free: reduced.iter().map(|(pivot, _)| back(*pivot)).collect(),
+                    basis: reduced.into_iter().map(|(_, row)| row.into_iter().rev().collect()).collect(),
+                })
+            }
         }
-        let (free, basis) = echelon.kernel();
-        Some(Kernel { free, basis })
     }
 
     /// A random point and the kernel there, as large as at almost all points: with these free columns, where they are given.

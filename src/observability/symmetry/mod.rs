@@ -29,6 +29,7 @@ use self::modular::rank;
 use self::monomial::{Polynomial, polynomial_node};
 use self::proof::{Motion, annihilate, is_unchanged, is_unseen_for_good, together};
 use super::Codistribution;
+use super::generic::generic_answer;
 use crate::expression::{NodeId, Program, Symbol, draw_residues, expand_angles};
 use crate::number::PrimeField;
 use crate::system::{Assignment, System};
@@ -38,26 +39,27 @@ use rand_chacha::ChaCha8Rng;
 /// How often a point is drawn anew because it is a pole.
 const ATTEMPTS: usize = 40;
 
-/// The fields and the functions of a codistribution that is short of the dimension, off any conditions on states. `held` are the
-/// values of parameters that it was made with; `given` those of them that the question gave.
+/// The fields and the functions of a system that is seen in part, off any conditions on states. `held` are the values of parameters
+/// that were put in, `given` those of them that the question gave. Final `words` that were taken with them are a short way to what
+/// is not seen at a point; without them power series tell. None where no point could be evaluated.
 pub fn unseen_motions(
     system: &mut System,
-    codistribution: &Codistribution,
+    words: Option<&Codistribution>,
     held: &Assignment,
     given: &Assignment,
-) -> UnseenMotions {
+) -> Option<UnseenMotions> {
     let mut rng = ChaCha8Rng::seed_from_u64(0x0066_6965_6c64); // any fixed seed: what is found is proved
-    let everywhere = Attempt::new(system, codistribution, given, given.len() == held.len(), &mut rng)
+    let words = words.filter(|words| words.is_final());
+    let everywhere = Attempt::new(system, words, (given, given.len() == held.len()), &mut rng)
         .filter(|attempt| attempt.is_complete() && attempt.holds_at(system, held, &mut rng));
-    let at_the_values =
-        |system: &mut System, rng: &mut ChaCha8Rng| Attempt::new(system, codistribution, held, true, rng);
-    let unseen = system.states.len() - codistribution.generic_rank();
-    let nothing = UnseenMotions { fields_missing: unseen, ..UnseenMotions::default() };
     match everywhere {
-        Some(attempt) => UnseenMotions { for_all_parameters: true, ..attempt.found },
-        None => at_the_values(system, &mut rng).map_or(nothing, |attempt| attempt.found),
+        Some(attempt) => Some(UnseenMotions { for_all_parameters: true, ..attempt.found }),
+        None => Some(Attempt::new(system, words, (held, true), &mut rng)?.found),
     }
 }
+
+/// How many points are looked at for the number of unseen directions.
+const POINTS: usize = 3;
 
 struct Attempt {
     found: UnseenMotions,
@@ -66,21 +68,24 @@ struct Attempt {
 }
 
 impl Attempt {
+    /// What is found at values of parameters, those that the words were taken with or others.
     fn new(
         system: &mut System,
-        codistribution: &Codistribution,
-        values: &Assignment,
-        has_these_words: bool,
+        words: Option<&Codistribution>,
+        (values, has_these_words): (&Assignment, bool),
         rng: &mut ChaCha8Rng,
     ) -> Option<Attempt> {
-        let coordinates = system.states.clone();
-        let rows = system.graph.substitute(&codistribution.needed_entries(), values);
-        let source = KernelSource::new(system, &rows, &coordinates, rng)?;
-        let unseen = coordinates.len() - codistribution.generic_rank();
-        let (point, kernel) =
-            (0..ATTEMPTS).find_map(|_| source.sample(None, rng).filter(|(_, k)| k.basis.len() == unseen))?;
+        let coordinates = system.unknowns();
+        let rows = words.map(|words| system.graph.substitute(&words.needed_entries(), values));
+        let of_words = rows.as_ref().and_then(|rows| KernelSource::of_words(system, rows, &coordinates, rng));
+        let source = of_words.unwrap_or_else(|| KernelSource::of_series(system, values, &coordinates, rng));
+        let points = (0..POINTS).filter_map(|_| source.sample(None, rng));
+        let (point, kernel) = points.min_by_key(|(_, kernel)| kernel.basis.len())?;
+        let unseen = kernel.basis.len();
+        if words.is_some_and(|words| coordinates.len() - words.generic_rank() != unseen) {
+            return None;
+        }
         let blocks = blocks(&source, &point, &kernel, rng);
-        let words_are_final = has_these_words && codistribution.is_final();
         let found = UnseenMotions { values: values.clone(), ..UnseenMotions::default() };
         let mut attempt = Attempt { found, vectors: Vec::new() };
         let mut of_blocks: Vec<Vec<FieldTerms>> = Vec::new();
@@ -90,11 +95,13 @@ impl Attempt {
             of_blocks.push(found.fields);
         }
         let motion = motion(system, values);
-        let words = words_are_final.then_some(rows.as_slice());
-        attempt.prove_fields(system, &source, &motion, words, &mut of_blocks, rng);
+        let rows = rows.as_deref().filter(|_| has_these_words);
+        attempt.prove_fields(system, &source, &motion, rows, &mut of_blocks, rng);
         attempt.found.fields_missing = unseen - attempt.found.fields.len();
-        // full rank of these rows at a point modulo a prime bounds the rank from below, if no function was taken for another
-        attempt.found.settles_the_rank = attempt.is_complete() && !source.has_functions();
+        // the rank at a point modulo a prime bounds the rank from below, if no function was taken for another
+        attempt.found.settles_the_rank = attempt.is_complete()
+            && (!source.has_functions()
+                || generic_answer(system, values, true).at_least >= coordinates.len() - unseen);
         attempt.functions(system, (&source, &kernel), &blocks, &of_blocks, &motion, rng);
         attempt.found.seen = (0..coordinates.len())
             .filter(|column| blocks.iter().all(|block| !block.columns.contains(column)))
@@ -126,7 +133,13 @@ impl Attempt {
         }
         let values = (0..ATTEMPTS).find_map(|_| {
             let point = source.draw(rng);
-            let at = |field: &FieldTerms| field.at(source, &point, system.states.len());
+            let places = places(system, source);
+            let at = |field: &FieldTerms| {
+                let values = field.at(source, &point, places.len())?;
+                let mut vector = vec![0; system.states.len()];
+                places.iter().zip(values).for_each(|(place, value)| vector[*place] = value);
+                Some(vector)
+            };
             of_blocks.iter().flatten().map(at).collect::<Option<Vec<_>>>()
         });
         let together =
@@ -135,8 +148,11 @@ impl Attempt {
         for fields in of_blocks {
             fields.retain(|field| {
                 let Some(vector) = vectors.next() else { return false };
-                let mut by_words =
-                    |system: &mut System| annihilate(system, words?, &vector, &motion.guards, rng);
+                let mut by_words = |system: &mut System| {
+                    let unknown: Vec<NodeId> =
+                        places(system, source).iter().map(|place| vector[*place]).collect();
+                    annihilate(system, words?, &unknown, &motion.guards, rng)
+                };
                 let Some(log2_error) = together.or_else(|| by_words(system)) else { return false };
                 self.found.fields.push(unseen_field(system, source, field, &vector, log2_error));
                 self.vectors.push(vector);
@@ -192,17 +208,23 @@ impl Attempt {
         let fields: Vec<NodeId> = self.vectors.iter().flatten().copied().collect();
         let functions: Vec<NodeId> =
             self.found.functions.iter().flat_map(|function| system.differential(function.value)).collect();
-        [(fields, self.vectors.len()), (functions, self.found.functions.len())].into_iter().all(
-            |(entries, wanted)| {
-                let entries = system.graph.substitute(&entries, values);
-                rank_somewhere(system, &entries, rng) == Some(wanted)
-            },
-        )
+        let states = system.states.len();
+        let of_fields = (fields, states, self.vectors.len());
+        let of_functions = (functions, system.unknown_count(), self.found.functions.len());
+        [of_fields, of_functions].into_iter().all(|(entries, columns, wanted)| {
+            let entries = system.graph.substitute(&entries, values);
+            rank_somewhere(system, &entries, columns, rng) == Some(wanted)
+        })
     }
 }
 
-/// The rank of rows with a column for each state at a random point modulo a prime, which it is at least at almost all states.
-fn rank_somewhere(system: &mut System, entries: &[NodeId], rng: &mut ChaCha8Rng) -> Option<usize> {
+/// The rank of rows of so many columns at a random point modulo a prime, which it is at least at almost all states.
+fn rank_somewhere(
+    system: &mut System,
+    entries: &[NodeId],
+    columns: usize,
+    rng: &mut ChaCha8Rng,
+) -> Option<usize> {
     let is_angle = &system.angle_test();
     let entries = expand_angles(&mut system.graph, entries, is_angle);
     let program = Program::with_unknown_functions(&system.graph, &entries, is_angle);
@@ -211,7 +233,7 @@ fn rank_somewhere(system: &mut System, entries: &[NodeId], rng: &mut ChaCha8Rng)
         let loaded = program.load(field).ok()?;
         let inputs = draw_residues(&program, &field, rng);
         let values = loaded.run(&inputs, &mut Vec::new()).ok()?;
-        let rows: Vec<Vec<u64>> = values.chunks(system.states.len().max(1)).map(<[u64]>::to_vec).collect();
+        let rows: Vec<Vec<u64>> = values.chunks(columns.max(1)).map(<[u64]>::to_vec).collect();
         Some(rank(modular::Residues(field), &rows))
     })
 }
@@ -234,11 +256,18 @@ fn motion(system: &mut System, values: &Assignment) -> Motion {
     Motion { states, fields, outputs, guards }
 }
 
+/// The place of each column's coordinate among the states.
+fn places(system: &System, source: &KernelSource) -> Vec<usize> {
+    let place = |column: usize| system.states.iter().position(|state| *state == source.coordinate(column));
+    (0..system.unknown_count()).filter_map(place).collect()
+}
+
 fn field_nodes(system: &mut System, source: &KernelSource, field: &FieldTerms) -> Vec<NodeId> {
+    let places = places(system, source);
     let mut vector = vec![system.graph.integer(0); system.states.len()];
     for part in &field.components {
         let top = polynomial_node(&mut system.graph, &source.variables, &part.top);
-        vector[part.column] = match &part.bottom {
+        vector[places[part.column]] = match &part.bottom {
             None => top,
             Some(bottom) => {
                 let bottom = polynomial_node(&mut system.graph, &source.variables, bottom);
@@ -256,10 +285,11 @@ fn unseen_field(
     vector: &[NodeId],
     log2_error: f64,
 ) -> UnseenField {
+    let places = places(system, source);
     let component = |part: &Component| FieldComponent {
         state: source.coordinate(part.column),
         name: system.symbol_name(source.coordinate(part.column)).to_owned(),
-        rate: vector[part.column],
+        rate: vector[places[part.column]],
         text: part.text(&system.graph, &source.variables),
     };
     UnseenField { components: field.components.iter().map(component).collect(), log2_error }

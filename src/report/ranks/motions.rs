@@ -59,7 +59,7 @@ fn certainty(log2_error: f64) -> String {
 
 /// Fields and functions as text.
 pub(super) fn motions_text(found: &UnseenMotions, out: &mut String) {
-    let directions = found.fields.len() + found.fields_missing;
+    let directions = found.directions();
     let directions =
         if directions == 1 { "one direction".to_owned() } else { format!("{directions} directions") };
     let scope = if found.for_all_parameters { ", whatever the parameters" } else { "" };
