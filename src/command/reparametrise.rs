@@ -43,8 +43,10 @@ pub(crate) fn reparametrisation(
     let folder = out.parent().unwrap_or(Path::new(""));
     let import = from(folder, file);
     let text = reparametrise(system, found, &import).map_err(|why| why.to_string())?;
-
-    let read = System::parse(&out.display().to_string(), &text, folder_or_here(folder));
+    // the folder that the import is named from may not be there yet
+    let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+    let there = text.replacen(&format!("\"{import}\""), &format!("\"{}\"", whole.display()), 1);
+    let read = System::parse(&out.display().to_string(), &there, Path::new(""));
     let reduced = read.map_err(|error| format!("it cannot be read back: {error}"))?;
     let outcomes = prove(&reduced);
     let proved = outcomes.iter().filter(|outcome| outcome.ok).count();

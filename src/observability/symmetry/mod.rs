@@ -58,6 +58,8 @@ pub fn unseen_motions(
     }
 }
 
+/// Lie derivatives with longer texts are no functions that anybody reads.
+const LONGEST_TEXT: usize = 160;
 /// How many points are looked at for the number of unseen directions.
 const POINTS: usize = 3;
 
@@ -103,6 +105,7 @@ impl Attempt {
             && (!source.has_functions()
                 || generic_answer(system, values, true).at_least >= coordinates.len() - unseen);
         attempt.functions(system, (&source, &kernel), &blocks, &of_blocks, &motion, rng);
+        attempt.measured(system, words, &motion, &blocks, rng);
         attempt.found.seen = (0..coordinates.len())
             .filter(|column| blocks.iter().all(|block| !block.columns.contains(column)))
             .map(|column| coordinates[column])
@@ -200,6 +203,57 @@ impl Attempt {
                 unseen: block.free.len(),
                 functions: begin..self.found.functions.len(),
             });
+        }
+    }
+
+    /// Where functions are missing, takes outputs and their Lie derivatives: these are seen, and say less than their parts would.
+    fn measured(
+        &mut self,
+        system: &mut System,
+        words: Option<&Codistribution>,
+        motion: &Motion,
+        blocks: &[Block],
+        rng: &mut ChaCha8Rng,
+    ) {
+        if self.found.functions_missing == 0 {
+            return;
+        }
+        let mut candidates = motion.outputs.clone();
+        if let Some(words) = words {
+            let values: Vec<NodeId> = words.needed.iter().map(|word| words.values[*word]).collect();
+            candidates.extend(system.graph.substitute(&values, &self.found.values));
+        }
+        let unknowns = system.unknowns();
+        let coupled = |column: &usize| blocks.iter().any(|block| block.columns.contains(column));
+        let columns: Vec<usize> = (0..unknowns.len()).filter(coupled).collect();
+        // what is seen by itself is left out of the differentials
+        let row = |system: &mut System, value: NodeId| -> Vec<NodeId> {
+            let row = system.differential(value);
+            columns.iter().map(|column| row[*column]).collect()
+        };
+        let mut rows: Vec<NodeId> = Vec::new();
+        for function in &self.found.functions {
+            rows.extend(row(system, function.value));
+        }
+        for value in candidates {
+            let text = system.graph.text(value);
+            if self.found.functions_missing == 0 || text.len() > LONGEST_TEXT {
+                continue;
+            }
+            let longer = [rows.as_slice(), &row(system, value)].concat();
+            let rank = self.found.functions.len();
+            if rank_somewhere(system, &longer, columns.len(), rng) == Some(rank + 1) {
+                rows = longer;
+                let (log2_error, factors) = (f64::NEG_INFINITY, vec![(value, 1)]);
+                self.found.functions.push(SeenFunction { value, text, log2_error, factors });
+                self.found.functions_missing -= 1;
+                // it may be one of several blocks
+                self.found.blocks = vec![UnseenBlock {
+                    states: columns.iter().map(|column| unknowns[*column]).collect(),
+                    unseen: self.found.directions(),
+                    functions: 0..self.found.functions.len(),
+                }];
+            }
         }
     }
 

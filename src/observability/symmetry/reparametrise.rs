@@ -49,7 +49,8 @@ struct Coordinate {
     is_angle: bool,
 }
 
-/// The text of a proof file that imports the original as `import` and reduces it to what is seen.
+/// The text of a proof file that imports the original as `import` and reduces it to what is seen. `found` was found of this very
+/// system.
 ///
 /// # Errors
 /// Where something is missing for that.

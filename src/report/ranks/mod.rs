@@ -5,3 +5,4 @@ mod motions;
 mod seen;
 
 pub use answer::{rank_json, rank_text};
+pub use motions::unseen_field_text;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// A field as a differential operator: `x d/dx - y d/dy + (a + b) d/dz`.
-pub(crate) fn field_text(field: &UnseenField) -> String {
+pub fn unseen_field_text(field: &UnseenField) -> String {
     let mut text = String::new();
     for part in &field.components {
         let (negative, size) = match part.text.strip_prefix('-') {
@@ -65,7 +65,8 @@ pub(super) fn motions_text(found: &UnseenMotions, out: &mut String) {
     let scope = if found.for_all_parameters { ", whatever the parameters" } else { "" };
     let _ = writeln!(out, "not seen at almost all states: {directions}{scope}");
     for field in &found.fields {
-        let _ = writeln!(out, "  along  {}  (proved, {})", field_text(field), certainty(field.log2_error));
+        let _ =
+            writeln!(out, "  along  {}  (proved, {})", unseen_field_text(field), certainty(field.log2_error));
     }
     let degree = if found.cut_off { "; higher degrees have too many coefficients to be tried" } else { "" };
     if found.fields_missing > 0 {
@@ -95,7 +96,7 @@ pub(super) fn motions_text(found: &UnseenMotions, out: &mut String) {
 pub(super) fn motions_json(found: &UnseenMotions) -> Value {
     json!({
         "fields": found.fields.iter().map(|field| json!({
-            "text": field_text(field),
+            "text": unseen_field_text(field),
             "components": field.components.iter().map(|part| (part.name.clone(), json!(part.text)))
                 .collect::<serde_json::Map<_, _>>(),
             "error_bound": error_bound(field.log2_error),
