@@ -1,7 +1,7 @@
 //! The rank at many states.
 
 pub(super) mod answer;
-mod motions;
+pub(super) mod motions;
 mod seen;
 
 pub use answer::{rank_json, rank_text};

@@ -1,37 +1,39 @@
 //! What is not seen as vector fields, and what is seen as functions.
 
-use crate::observability::{UnseenField, UnseenMotions};
+use crate::observability::{FieldComponent, UnseenField, UnseenMotions};
 use crate::report::claims::outcomes::error_bound;
+use crate::report::formula::SignedPart;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// A field as a differential operator: `x d/dx - y d/dy + (a + b) d/dz`.
 pub fn unseen_field_text(field: &UnseenField) -> String {
     let mut text = String::new();
-    for part in &field.components {
-        let (negative, size) = match part.text.strip_prefix('-') {
-            // a sign in front of a sum or a difference is that of its first term alone
-            Some(rest) if !is_sum(rest) => (true, rest),
-            _ => (false, part.text.as_str()),
-        };
+    for SignedPart { negative, rate, state } in signed_parts(field) {
         text.push_str(match (text.is_empty(), negative) {
             (true, true) => "-",
             (true, false) => "",
             (false, true) => " - ",
             (false, false) => " + ",
         });
-        match size {
-            "1" => {}
-            size if is_sum(size) => {
-                let _ = write!(text, "({size}) ");
-            }
-            size => {
-                let _ = write!(text, "{size} ");
-            }
-        }
-        let _ = write!(text, "d/d{}", part.name);
+        let _ = match rate {
+            "1" => write!(text, "d/d{state}"),
+            rate if is_sum(rate) => write!(text, "({rate}) d/d{state}"),
+            rate => write!(text, "{rate} d/d{state}"),
+        };
     }
     text
+}
+
+/// The components of a field, each with its sign: that of a sum or a difference is that of its first term alone.
+pub(crate) fn signed_parts(field: &UnseenField) -> Vec<SignedPart<'_>> {
+    fn part(FieldComponent { text, name: state, .. }: &FieldComponent) -> SignedPart<'_> {
+        match text.strip_prefix('-').filter(|rest| !is_sum(rest)) {
+            Some(rate) => SignedPart { negative: true, rate, state },
+            None => SignedPart { negative: false, rate: text, state },
+        }
+    }
+    field.components.iter().map(part).collect()
 }
 
 /// Whether a term is added or subtracted outside brackets.
