@@ -3,6 +3,7 @@
 use super::arguments::{Wanted, assignments};
 use super::interrupt::{INTERRUPTED, begin_to_tell};
 use super::output::{Files, Form, progress};
+use super::reparametrise::reparametrisation;
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
@@ -10,6 +11,7 @@ use palmistry::evidence::rank_records;
 use palmistry::report::{accessibility_json, accessibility_text, rank_json, rank_text};
 use palmistry::sweep::{MOST_DIGITS, answer_rank_at_once};
 use palmistry::{RankQuestion, System, answer_accessibility, answer_rank};
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -68,6 +70,10 @@ pub(crate) struct Rank {
     /// accessibility), at almost all states and at the sampled ones. Outputs play no part.
     #[arg(long, conflicts_with_all = ["digits", "verdicts"])]
     accessible: bool,
+    /// Write a proof file of the system without what is not seen: its states are the functions that are seen, its claims, which are
+    /// proved, that they move as this file says and that the outputs are the same.
+    #[arg(long, value_name = "FILE")]
+    reparametrise: Option<PathBuf>,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -108,9 +114,22 @@ impl Rank {
             });
             files.text_or(path, text);
         }
+        let written = self.reparametrise.as_ref().map(|path| {
+            let written = reparametrisation(&system, &answer, &self.file, path);
+            files.text_or(path, written.as_ref().map(|found| found.text.clone()).map_err(String::clone));
+            written
+        });
+        let mut object = rank_json(&answer);
+        if let Some(Ok(found)) = &written {
+            object["reparametrised"] = json!({ "claims": found.claims, "proved": found.proved });
+        }
+        let text = || match &written {
+            Some(Ok(found)) => format!("{}\n{}", rank_text(&answer), found.in_words()),
+            _ => rank_text(&answer),
+        };
         let status =
             if answer.interrupted() || answer.cut_off() { Status::CutOff } else { Status::AsExpected };
-        files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
+        files.print(Form::of(self.json), object, text, status)
     }
 }
 

@@ -22,6 +22,7 @@ mod series;
 mod signs;
 mod singular;
 mod state;
+mod symmetry;
 
 pub use accessibility::{Accessibility, Minor, RankBounds};
 #[doc(hidden)]
@@ -62,3 +63,7 @@ pub use singular::{Spectrum, singular_values};
 #[doc(hidden)]
 pub use state::float_inputs;
 pub use state::{Coordinate, MissingInput, NamedCoordinate, State, StateInWords};
+pub use symmetry::{
+    FieldComponent, NotReparametrised, SeenFunction, UnseenField, UnseenMotions, reparametrise,
+    unseen_motions,
+};

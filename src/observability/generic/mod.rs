@@ -232,6 +232,30 @@ impl Probe {
         Err(format!("{ATTEMPTS} random points were poles: {refused}"))
     }
 
+    /// What the equations are given at a point, in the order of [`Probe::directions_at`].
+    pub fn inputs(&self) -> &[crate::expression::Input] {
+        self.equations.inputs()
+    }
+
+    /// Whether functions other than sines and cosines of angles are met.
+    pub fn has_functions(&self) -> bool {
+        !self.equations.functions.is_empty()
+    }
+
+    /// A basis of the vectors that nothing sees at one point, by unknowns in the order of the file; all else is drawn from the seed.
+    ///
+    /// # Errors
+    /// Where the point is a pole.
+    pub fn directions_at(
+        &self,
+        field: PrimeField,
+        point: &[u64],
+        seed: u64,
+    ) -> Result<Vec<Vec<u64>>, Refusal> {
+        let evaluated = self.evaluate(point, Draw { field, seed, signs: None }, true)?;
+        Ok(evaluated.echelon.kernel())
+    }
+
     /// The same modulo a prime of one's own choice.
     ///
     /// # Errors
