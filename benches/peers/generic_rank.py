@@ -1,0 +1,334 @@
+"""The modular power-series test of observability and identifiability in plain Python: an oracle that shares nothing with ours.
+
+A. Sedoglavic, A probabilistic algorithm to test local algebraic observability in polynomial time, J. Symbolic Computation 33
+(2002): the outputs are power series in time at a random state modulo a prime, inputs are random series, and the rank of what
+their coefficients depend on is the rank of the observability codistribution, unless chance made it smaller. Orders are added
+until one adds nothing (the span of the differentials is then closed under d/dt) or the rank is full.
+
+Functions are adjoined by their differential equations, with values at the state as if independent; what they hide is seen at true
+states only (`Reals`), where the same series are computed in a hundred digits.
+"""
+
+import json
+import random
+import sys
+import time
+from fractions import Fraction
+
+import numpy as np
+
+from proof_file import ProofFile
+
+
+class NoSuchState(Exception):
+    """A division by zero, or a root of what is no square: another state has to be drawn."""
+
+
+class Prime:
+    """Integers modulo a prime. Below 2^27, 512 products are summed in 64 bits; larger ones are Python's own integers."""
+
+    def __init__(self, seed, prime=134217487):
+        self.prime, self.random, self.memory = prime, random.Random(seed), {}
+        self.dtype = np.int64 if prime < 2**27 else object
+
+    def reduce(self, value):
+        return value % self.prime
+
+    def invert(self, value):
+        if value % self.prime == 0:
+            raise NoSuchState
+        return pow(int(value), -1, self.prime)
+
+    def number(self, fraction):
+        return fraction.numerator % self.prime * self.invert(fraction.denominator) % self.prime
+
+    def draw(self, name=None, span=None):
+        return self.random.randrange(1, self.prime)
+
+    def function(self, name, argument):
+        """A value at a state: some number, the same for the same argument; sines and cosines on the circle."""
+        argument, prime = int(argument), self.prime
+        if name == "sqrt":
+            root = pow(argument, (prime + 1) // 4, prime)  # the prime is 3 modulo 4
+            if argument == 0 or root * root % prime != argument:
+                raise NoSuchState
+            return root
+        kind = "sin" if name == "cos" else "sinh" if name == "cosh" else name
+        if (kind, argument) not in self.memory:
+            tangent = self.draw()
+            square = tangent * tangent % prime * (-1 if kind == "sinh" else 1)
+            scale = self.invert(1 + square)
+            self.memory[kind, argument] = (2 * tangent * scale % prime, (1 - square) * scale % prime)
+        return self.memory[kind, argument][name in ("cos", "cosh")] if kind in ("sin", "sinh") else self.memory[kind, argument][0]
+
+    def pivot(self, row):
+        places = np.flatnonzero(row)
+        return places[0] if len(places) else None
+
+
+class Reals:
+    """True states, in a hundred digits: slower, and nothing is taken for independent."""
+
+    dtype = object
+
+    def __init__(self, seed, digits=100):
+        import mpmath
+        self.mp, self.random = mpmath.mp.clone(), random.Random(seed)
+        self.mp.dps, self.small = digits, self.mp.mpf(10) ** (-digits // 2)
+
+    def reduce(self, value):
+        return value
+
+    def invert(self, value):
+        if abs(value) < self.small:
+            raise NoSuchState
+        return 1 / self.mp.mpf(value)
+
+    def number(self, fraction):
+        return self.mp.mpf(fraction.numerator) / fraction.denominator
+
+    def draw(self, name=None, span=None):
+        if name == "pi":
+            return +self.mp.pi
+        low, high = span or (self.mp.mpf(1) / 2, self.mp.mpf(2))
+        return low + (high - low) * self.mp.mpf(self.random.randrange(1, 10**9)) / 10**9
+
+    def function(self, name, argument):
+        value = getattr(self.mp, name)(argument)
+        if not self.mp.isfinite(value) or isinstance(value, self.mp.mpc) or name == "sqrt" and value < self.small:
+            raise NoSuchState
+        return value
+
+    def pivot(self, row):
+        place = max(range(len(row)), key=lambda column: abs(row[column]))
+        return place if abs(row[place]) > self.small else None
+
+
+def derivative(model, name, node, argument):
+    """The node of F'(a), where `node` is F(a): what the function's differential equation needs."""
+    number = lambda value: model.node("number", Fraction(value))
+    square = lambda value: model.node("*", value, value)
+    one_less = lambda value: model.node("-", number(1), square(value))
+    return {
+        "exp": lambda: node,
+        "log": lambda: model.node("/", number(1), argument),
+        "sqrt": lambda: model.node("/", number(Fraction(1, 2)), node),
+        "sin": lambda: model.node("cos", argument),
+        "cos": lambda: model.node("-", number(0), model.node("sin", argument)),
+        "tan": lambda: model.node("+", number(1), square(node)),
+        "sinh": lambda: model.node("cosh", argument),
+        "cosh": lambda: model.node("sinh", argument),
+        "tanh": lambda: one_less(node),
+        "atan": lambda: model.node("/", number(1), model.node("+", number(1), square(argument))),
+        "asin": lambda: model.node("/", number(1), model.node("sqrt", one_less(argument))),
+        "acos": lambda: model.node("/", number(-1), model.node("sqrt", one_less(argument))),
+        "abs": lambda: model.node("/", argument, node),
+    }[name]()
+
+
+class Program:
+    """Rates and outputs as nodes, functions with what their differential equations need."""
+
+    def __init__(self, model):
+        self.model = model
+        for index, (name, *operands) in enumerate(model.nodes):  # x^r = exp(r log x)
+            if name == "^":
+                logarithm = model.node("*", operands[1], model.node("log", operands[0]))
+                model.nodes[index] = ("exp", logarithm)
+        self.rates = [model.node("number", Fraction(0)) for _ in model.states]
+        for index, (role, rates) in enumerate(model.fields):
+            for name, rate in rates.items():
+                rate = rate if role == "drift" else model.node("*", model.node("input", index), rate)
+                place = model.states.index(name)
+                self.rates[place] = model.node("+", self.rates[place], rate)
+        self.derivatives, done = {}, 0
+        while done < len(model.nodes):  # the list grows
+            name, *operands = model.nodes[done]
+            if name not in ("number", "constant", "state", "input", "+", "-", "*", "/"):
+                self.derivatives[done] = derivative(model, name, done, operands[0])
+            done += 1
+        still = [rate == model.node("number", Fraction(0)) or model.nodes[rate][0] == "number" and not model.nodes[rate][1]
+                 for rate in self.rates]
+        self.order, self.constant = self.sorted(), {}
+        for node in self.order:
+            name, *operands = model.nodes[node]
+            self.constant[node] = (name in ("number", "constant") or name == "state" and still[operands[0]]
+                                   or name not in ("input", "state") and all(self.constant[o] for o in operands))
+
+    def sorted(self):
+        """What values need, operands first."""
+        found, seen = [], set()
+        for root in [*self.model.outputs, *self.rates]:
+            stack = [(root, False)]
+            while stack:
+                node, ready = stack.pop()
+                if ready:
+                    found.append(node)
+                elif node not in seen:
+                    seen.add(node)
+                    name, *operands = self.model.nodes[node]
+                    if node in self.derivatives:  # it comes behind: its lower orders are needed, and it may need this one
+                        stack.append((self.derivatives[node], False))
+                    stack.append((node, True))
+                    if name not in ("number", "constant", "state", "input"):
+                        stack += [(operand, False) for operand in operands]
+        return found
+
+
+def generic_rank(text, numbers, limit=None):
+    """Rank, dimension, the unknowns that are seen, and the order up to which series were needed."""
+    model = ProofFile(text)
+    program = Program(model)
+    nodes, unknowns = model.nodes, [index for index, unknown in enumerate(model.unknown) if unknown]
+    columns, size = len(unknowns), (limit or len(unknowns)) + 1
+    zeros = lambda *shape: np.full(shape, numbers.number(Fraction(0)), dtype=numbers.dtype)
+    value = {node: zeros(size) for node in program.order}
+    slope = {node: zeros(size, columns) for node in program.order}  # by the unknowns, at the beginning
+    inverse = [None] + [numbers.invert(order) for order in range(1, size)]
+    state_nodes = {operands[0]: node for node in program.order for name, *operands in [nodes[node]] if name == "state"}
+    reduce, basis = numbers.reduce, []
+    spans = {name: [constant(model, node, numbers) for node in span] for name, span in model.ranges.items()}
+
+    for order in range(size):
+        for node in program.order:  # values of this order
+            name, *operands = nodes[node]
+            here = value[node]
+            if name == "number":
+                here[0] = numbers.number(operands[0])
+            elif name == "constant":
+                here[0] = numbers.draw(operands[0], spans.get(operands[0])) if order == 0 else here[0]
+            elif name == "input":
+                here[order] = numbers.draw("input")
+            elif name == "state":
+                if order == 0:
+                    here[0] = numbers.draw(None, spans.get(model.states[operands[0]]))
+                    if operands[0] in unknowns:
+                        slope[node][0, unknowns.index(operands[0])] = numbers.number(Fraction(1))
+                else:
+                    rate = program.rates[operands[0]]
+                    here[order] = reduce(value[rate][order - 1] * inverse[order])
+                    slope[node][order] = reduce(slope[rate][order - 1] * inverse[order])
+            elif order and program.constant[node]:
+                continue
+            else:
+                here[order] = coefficient(name, [value[operand] for operand in operands], here, order, numbers, inverse,
+                                          value.get(program.derivatives.get(node)))
+        for node in program.order:  # and what they depend on
+            name, *operands = nodes[node]
+            if name in ("number", "constant", "input", "state") or order and program.constant[node]:
+                continue
+            slope[node][order] = dependence(name, operands, node, order, value, slope, program, numbers)
+        before = len(basis)
+        for output in model.outputs:
+            insert(basis, slope[output][order].copy(), numbers)
+        if len(basis) == columns or len(basis) == before:
+            break
+    hidden = set()
+    for pivot, row in basis:
+        small = getattr(numbers, "small", 0)
+        if any(abs(entry) > small for column, entry in enumerate(row) if column != pivot):
+            hidden.add(pivot)
+    hidden |= set(range(columns)) - {pivot for pivot, _ in basis}
+    return {
+        "rank": len(basis), "dimension": columns, "order": order,
+        "seen": [model.states[state] for column, state in enumerate(unknowns) if column not in hidden],
+        "not_seen": [model.states[state] for column, state in enumerate(unknowns) if column in hidden],
+    }
+
+
+def constant(model, node, numbers):
+    """A number that is written in a range, in reals; of no use modulo a prime."""
+    if isinstance(numbers, Prime):
+        return None
+    name, *operands = model.nodes[node]
+    if name == "number":
+        return numbers.number(operands[0])
+    if name == "constant":
+        return numbers.draw(operands[0])
+    left, right = ([constant(model, operand, numbers) for operand in operands] + [None])[:2]
+    return {"+": lambda: left + right, "-": lambda: left - right, "*": lambda: left * right, "/": lambda: left / right}.get(
+        name, lambda: numbers.function(name, left))()
+
+
+def coefficient(name, operands, here, order, numbers, inverse, derived):
+    """One coefficient of the power series of a node, from lower ones of its own and those of its operands."""
+    reduce, (left, right) = numbers.reduce, (operands + [None])[:2]
+    if name == "+":
+        return reduce(left[order] + right[order])
+    if name == "-":
+        return reduce(left[order] - right[order])
+    if name == "*":
+        return reduce(np.dot(left[:order + 1], right[order::-1]))
+    if name == "/":
+        rest = reduce(np.dot(here[:order], right[order:0:-1])) if order else 0
+        return reduce((left[order] - rest) * numbers.invert(right[0]))
+    if order == 0:
+        return numbers.function(name, left[0])
+    weighted = reduce(left[1:order + 1] * np.arange(1, order + 1))  # F(a)' = F'(a) a'
+    return reduce(reduce(np.dot(weighted, derived[order - 1::-1])) * inverse[order])
+
+
+def product(factor, factor_is_constant, slope, slope_is_constant, order, numbers):
+    """One coefficient of a series times a series of slopes."""
+    if factor_is_constant:
+        return numbers.reduce(factor[0] * slope[order])
+    if slope_is_constant:
+        return numbers.reduce(factor[order] * slope[0])
+    return numbers.reduce(np.dot(factor[:order + 1], slope[order::-1]))
+
+
+def dependence(name, operands, node, order, value, slope, program, numbers):
+    reduce, still = numbers.reduce, program.constant
+    left, right = (operands + [None])[:2]
+    if name == "+":
+        return reduce(slope[left][order] + slope[right][order])
+    if name == "-":
+        return reduce(slope[left][order] - slope[right][order])
+    times = lambda factor, of: product(value[factor], still[factor], slope[of], still[of], order, numbers)
+    if name == "*":
+        return reduce(times(left, right) + times(right, left))
+    if name == "/":  # d(a/b) b = da - (a/b) db
+        rest = times(node, right)
+        if order and not still[right]:
+            rest = rest + reduce(np.dot(value[right][1:order + 1], slope[node][order - 1::-1]))
+        return reduce(reduce(slope[left][order] - rest) * numbers.invert(value[right][0]))
+    return times(program.derivatives[node], left)
+
+
+def insert(basis, row, numbers):
+    """Adds a row to a basis in reduced echelon form, if it is not in its span."""
+    reduce = numbers.reduce
+    if isinstance(numbers, Reals):
+        largest = max(abs(entry) for entry in row)
+        if largest < numbers.small:
+            return
+        row = row / largest
+    for pivot, other in basis:
+        row = reduce(row - row[pivot] * other)
+    pivot = numbers.pivot(row)
+    if pivot is None:
+        return
+    row = reduce(row * numbers.invert(row[pivot]))
+    for place, (old, other) in enumerate(basis):
+        basis[place] = (old, reduce(other - other[pivot] * row))
+    basis.append((pivot, row))
+
+
+def decide(text, seed=1, tries=2, numbers=Prime):
+    """The best of several random states."""
+    answers, attempt = [], 0
+    while len(answers) < tries:
+        attempt += 1
+        try:
+            answers.append(generic_rank(text, numbers(1000 * seed + attempt)))
+        except NoSuchState:
+            if attempt > 200:
+                raise
+    return max(answers, key=lambda answer: (answer["rank"], len(answer["seen"])))
+
+
+if __name__ == "__main__":
+    for path in [argument for argument in sys.argv[1:] if argument != "--reals"]:
+        began = time.perf_counter()
+        answer = decide(open(path, encoding="utf-8").read(), numbers=Reals if "--reals" in sys.argv else Prime)
+        print(json.dumps({"file": path, **answer, "seconds": round(time.perf_counter() - began, 4)}))
