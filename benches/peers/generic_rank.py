@@ -20,6 +20,9 @@ import numpy as np
 from proof_file import ProofFile
 
 
+PRIMES = (134217487, 134217467, 134217439, 134217403)  # the largest below 2^27 that are 3 modulo 4: roots are powers there
+
+
 class NoSuchState(Exception):
     """A division by zero, or a root of what is no square: another state has to be drawn."""
 
@@ -27,7 +30,8 @@ class NoSuchState(Exception):
 class Prime:
     """Integers modulo a prime. Below 2^27, 512 products are summed in 64 bits; larger ones are Python's own integers."""
 
-    def __init__(self, seed, prime=134217487):
+    def __init__(self, seed, prime=None):
+        prime = prime or PRIMES[seed % len(PRIMES)]
         self.prime, self.random, self.memory = prime, random.Random(seed), {}
         self.dtype = np.int64 if prime < 2**27 else object
 

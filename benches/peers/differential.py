@@ -1,0 +1,121 @@
+"""`palmistry rank` against the plain test on random systems: differential.py BINARY [--from SEED] [--count N] [--edges] [--out FOLDER]
+
+Each system is decided by both. Rational ones modulo a prime, twice; those with functions at true states in a hundred digits.
+What differs is written to FOLDER with its seed, one line each to its FINDINGS.txt. Exit status 1 where a final answer differs.
+"""
+
+import argparse
+import collections
+import json
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from generic_rank import NoSuchState, Prime, Reals, decide
+from random_systems import edge_systems, random_system
+
+FUNCTION = re.compile(r"\b(exp|log|sqrt|sin|cos|tan|atan|asin|acos|sinh|cosh|tanh|abs)\(|\bpi\b")
+
+
+def truth(text):
+    """Rank and unknowns that are seen. A short rank modulo 2^27 is looked at once more modulo 2^127 - 1."""
+    if FUNCTION.search(text):
+        return decide(text, numbers=Reals, tries=2)
+    answer = decide(text)
+    if answer["rank"] < answer["dimension"]:
+        answer = decide(text, tries=1, numbers=lambda seed: Prime(seed, 2**127 - 1))
+    return answer
+
+
+def theirs(report):
+    """Rank, whether it is said to be final, and the unknowns that are said (not) to be seen, from the JSON of `rank`."""
+    if "unknowns" in report or "generic" in report:
+        return generic(report)
+    hidden = {name for entry in report.get("unseen") or [] for name in entry["states"]}
+    return report.get("generic_rank"), report.get("longer_words_cannot_raise_it"), None, hidden
+
+
+def generic(report):
+    answer = report.get("generic") or report
+    words = {entry.get("name", entry.get("unknown")): entry["verdict"] for entry in answer.get("unknowns") or report.get("unknowns") or []}
+    return answer.get("rank", report.get("generic_rank")), answer.get("final", True), words, None
+
+
+def compare(binary, text, folder, limit=20, samples=3):
+    """What they say beside what is so: a word, and a line."""
+    path = Path(folder) / "system.proof"
+    path.write_text(text)
+    try:
+        expected = truth(text)
+    except NoSuchState:
+        return "no state", ""
+    began = time.perf_counter()
+    try:
+        run = subprocess.run([binary, "rank", str(path), "--json", "--samples", str(samples)], capture_output=True, text=True, timeout=limit)
+    except subprocess.TimeoutExpired:
+        return "time", f"nothing within {limit} s; rank {expected['rank']} of {expected['dimension']}"
+    took = time.perf_counter() - began
+    try:
+        report = json.loads(run.stdout)
+    except json.JSONDecodeError:
+        word = "panic" if "panicked" in run.stderr or run.returncode not in (0, 1, 2, 3) else "refused"
+        return word, f"status {run.returncode}: {' '.join(run.stderr.split())[:300]}"
+    rank, final, words, hidden = theirs(report)
+    of = f"{expected['rank']} of {expected['dimension']}"
+    ranks = {int(rank) for rank in (report.get("rank_histogram") or {})}
+    if ranks and max(ranks) > expected["rank"]:
+        return "HIGH", f"certified rank {max(ranks)} at a state, and it is {of}"
+    if rank is not None and rank != expected["rank"] and final:
+        return "RANK", f"rank {rank} is said to be final, and it is {of}"
+    if final and words:
+        wrong = [f"{name} {word}" for name, word in words.items()
+                 if (is_seen(word), name in expected["seen"]) in ((True, False), (False, True))]
+        if wrong:
+            return "SEEN", f"{', '.join(wrong)}; rank {of}; not seen are {expected['not_seen']}"
+        if any(is_seen(word) is None for word in words.values()):
+            return "an unknown undecided", f"rank {of}"
+    if final and words is None and hidden is not None and ranks == {expected["rank"]} and hidden != set(expected["not_seen"]):
+        return "SEEN", f"unseen {sorted(hidden)}, and not seen are {expected['not_seen']}; rank {of}"
+    if ranks and max(ranks) < expected["rank"] and final:
+        return "low", f"sampled {sorted(ranks)}, generic {rank}, and it is {of}"
+    if not final:
+        return "undecided", f"says {rank}, and it is {of}; {report.get('stopped_because')}"
+    return ("slow" if took > 2 else "agrees"), f"{took:.1f} s"
+
+
+def is_seen(word):
+    word = word.lower().replace("_", " ")
+    return None if "undecided" in word else not word.startswith("not") and "not " not in word
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("binary")
+    parser.add_argument("--from", dest="first", type=int, default=1)
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--edges", action="store_true")
+    parser.add_argument("--out", type=Path, default=Path("mismatches"))
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    systems = edge_systems().items() if options.edges else (
+        (seed, random_system(seed)) for seed in range(options.first, options.first + options.count))
+    counts, findings = collections.Counter(), options.out.parent / "FINDINGS.txt"
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in systems:
+            word, line = compare(options.binary, text, folder)
+            counts[word] += 1
+            if word not in ("agrees", "no state"):
+                name = re.sub(r"\W+", "_", str(name))
+                (options.out / f"{word.replace(' ', '_')}_{name}.proof").write_text(f"# {word}: {line}\n{text}")
+                with findings.open("a") as out:
+                    out.write(f"{word:<10} {name}: {line}\n")
+                print(f"{word:<10} {name}: {line}", flush=True)
+    print(dict(counts))
+    return 1 if any(word.isupper() for word in counts) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
