@@ -179,9 +179,9 @@ class Program:
         return found
 
 
-def generic_rank(text, numbers, limit=None):
+def generic_rank(model, numbers, limit=None):
     """Rank, dimension, the unknowns that are seen, and the order up to which series were needed."""
-    model = ProofFile(text)
+    model = ProofFile(model) if isinstance(model, str) else model
     program = Program(model)
     nodes, unknowns = model.nodes, [index for index, unknown in enumerate(model.unknown) if unknown]
     columns, size = len(unknowns), (limit or len(unknowns)) + 1
@@ -319,7 +319,7 @@ def insert(basis, row, numbers):
 
 
 def decide(text, seed=1, tries=2, numbers=Prime):
-    """The best of several random states."""
+    """The best of several random states, for the text of a file or what was read of it."""
     answers, attempt = [], 0
     while len(answers) < tries:
         attempt += 1
