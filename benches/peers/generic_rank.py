@@ -10,6 +10,7 @@ states only (`Reals`), where the same series are computed in a hundred digits.
 """
 
 import json
+import math
 import random
 import sys
 import time
@@ -21,6 +22,9 @@ from proof_file import ProofFile
 
 
 PRIMES = (134217487, 134217467, 134217439, 134217403)  # the largest below 2^27 that are 3 modulo 4: roots are powers there
+
+
+LEAVES = ("number", "constant", "state", "input", "signal")
 
 
 class NoSuchState(Exception):
@@ -104,7 +108,9 @@ class Reals:
         return value
 
     def pivot(self, row):
-        place = max(range(len(row)), key=lambda column: abs(row[column]))
+        place = max(range(len(row)), key=lambda column: abs(row[column]), default=None)
+        if place is None:
+            return None
         return place if abs(row[place]) > self.small else None
 
 
@@ -148,7 +154,7 @@ class Program:
         self.derivatives, done = {}, 0
         while done < len(model.nodes):  # the list grows
             name, *operands = model.nodes[done]
-            if name not in ("number", "constant", "state", "input", "+", "-", "*", "/"):
+            if name not in (*LEAVES, "+", "-", "*", "/"):
                 self.derivatives[done] = derivative(model, name, done, operands[0])
             done += 1
         still = [rate == model.node("number", Fraction(0)) or model.nodes[rate][0] == "number" and not model.nodes[rate][1]
@@ -157,7 +163,7 @@ class Program:
         for node in self.order:
             name, *operands = model.nodes[node]
             self.constant[node] = (name in ("number", "constant") or name == "state" and still[operands[0]]
-                                   or name not in ("input", "state") and all(self.constant[o] for o in operands))
+                                   or name not in ("input", "signal", "state") and all(self.constant[o] for o in operands))
 
     def sorted(self):
         """What values need, operands first."""
@@ -174,7 +180,9 @@ class Program:
                     if node in self.derivatives:  # it comes behind: its lower orders are needed, and it may need this one
                         stack.append((self.derivatives[node], False))
                     stack.append((node, True))
-                    if name not in ("number", "constant", "state", "input"):
+                    if name == "state" and self.model.initial.get(operands[0]) is not None:
+                        stack.append((self.model.initial[operands[0]], False))
+                    if name not in LEAVES:
                         stack += [(operand, False) for operand in operands]
         return found
 
@@ -183,14 +191,16 @@ def generic_rank(model, numbers, limit=None):
     """Rank, dimension, the unknowns that are seen, and the order up to which series were needed."""
     model = ProofFile(model) if isinstance(model, str) else model
     program = Program(model)
-    nodes, unknowns = model.nodes, [index for index, unknown in enumerate(model.unknown) if unknown]
-    columns, size = len(unknowns), (limit or len(unknowns)) + 1
+    nodes, columns = model.nodes, len(model.states)
+    unknowns = [index for index, unknown in enumerate(model.unknown) if unknown and index not in model.initial]
+    # where something is known at the beginning, what is seen is not closed under d/dt: a few orders more than ever were needed
+    size = (limit or (2 * columns + 5 if model.initial else columns)) + 1
     zeros = lambda *shape: np.full(shape, numbers.number(Fraction(0)), dtype=numbers.dtype)
     value = {node: zeros(size) for node in program.order}
-    slope = {node: zeros(size, columns) for node in program.order}  # by the unknowns, at the beginning
+    slope = {node: zeros(size, columns) for node in program.order}  # by the states at the beginning
     inverse = [None] + [numbers.invert(order) for order in range(1, size)]
-    state_nodes = {operands[0]: node for node in program.order for name, *operands in [nodes[node]] if name == "state"}
-    reduce, basis = numbers.reduce, []
+    signals = {name: [numbers.draw("input") for _ in range(size + most)] for name, most in model.signals.items()}
+    reduce, basis, everything = numbers.reduce, [], []
     spans = {name: [constant(model, node, numbers) for node in span] for name, span in model.ranges.items()}
 
     for order in range(size):
@@ -203,11 +213,13 @@ def generic_rank(model, numbers, limit=None):
                 here[0] = numbers.draw(operands[0], spans.get(operands[0])) if order == 0 else here[0]
             elif name == "input":
                 here[order] = numbers.draw("input")
+            elif name == "signal":
+                here[order] = reduce(signals[operands[0]][order + operands[1]] * math.perm(order + operands[1], operands[1]))
             elif name == "state":
                 if order == 0:
-                    here[0] = numbers.draw(None, spans.get(model.states[operands[0]]))
-                    if operands[0] in unknowns:
-                        slope[node][0, unknowns.index(operands[0])] = numbers.number(Fraction(1))
+                    begin = model.initial.get(operands[0])
+                    here[0] = value[begin][0] if begin is not None else numbers.draw(None, spans.get(model.states[operands[0]]))
+                    slope[node][0, operands[0]] = numbers.number(Fraction(1))
                 else:
                     rate = program.rates[operands[0]]
                     here[order] = reduce(value[rate][order - 1] * inverse[order])
@@ -219,22 +231,21 @@ def generic_rank(model, numbers, limit=None):
                                           value.get(program.derivatives.get(node)))
         for node in program.order:  # and what they depend on
             name, *operands = nodes[node]
-            if name in ("number", "constant", "input", "state") or order and program.constant[node]:
+            if name in LEAVES or order and program.constant[node]:
                 continue
             slope[node][order] = dependence(name, operands, node, order, value, slope, program, numbers)
-        before = len(basis)
+        before = len(everything)
         for output in model.outputs:
-            insert(basis, slope[output][order].copy(), numbers)
-        if len(basis) == columns or len(basis) == before:
+            insert(everything, slope[output][order].copy(), numbers)
+            insert(basis, slope[output][order][unknowns], numbers)
+        if len(basis) == len(unknowns) or len(everything) == before and not model.initial:
             break
-    hidden = set()
+    small, hidden = getattr(numbers, "small", 0), set(range(len(unknowns))) - {pivot for pivot, _ in basis}
     for pivot, row in basis:
-        small = getattr(numbers, "small", 0)
         if any(abs(entry) > small for column, entry in enumerate(row) if column != pivot):
             hidden.add(pivot)
-    hidden |= set(range(columns)) - {pivot for pivot, _ in basis}
     return {
-        "rank": len(basis), "dimension": columns, "order": order,
+        "rank": len(basis), "dimension": len(unknowns), "order": order,
         "seen": [model.states[state] for column, state in enumerate(unknowns) if column not in hidden],
         "not_seen": [model.states[state] for column, state in enumerate(unknowns) if column in hidden],
     }
@@ -303,7 +314,7 @@ def insert(basis, row, numbers):
     """Adds a row to a basis in reduced echelon form, if it is not in its span."""
     reduce = numbers.reduce
     if isinstance(numbers, Reals):
-        largest = max(abs(entry) for entry in row)
+        largest = max((abs(entry) for entry in row), default=0)
         if largest < numbers.small:
             return
         row = row / largest

@@ -53,7 +53,8 @@ def module(text):
     made = types.ModuleType("StrikePy.models.made")
     made.x = [[sympy.Symbol(state)] for state in moving]
     made.p = [[sympy.Symbol(state)] for state in model.states if state not in moving]
-    made.u, made.w = inputs, []
+    made.u = inputs if len(inputs) == 1 else [[symbol] for symbol in inputs]
+    made.w = []
     made.f = [[rates[state]] for state in moving]
     made.h = [[values[output]] for output in model.outputs]
     made.variables_locales = {}

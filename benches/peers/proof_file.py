@@ -1,7 +1,8 @@
 """A proof file as a straight-line program: what a second program has to know of the language, and no more.
 
-Read are `state`, `param`, `angle`, `let`, `drift`, `input`, `output` and `sample`; claims and the like end the reading of an entry
-and are skipped. A node is (operation, operands); operands come before what is made of them, and equal nodes are one.
+Read are `state`, `param`, `known`, `unknown`, `initial`, `experiments`, `let`, `drift`, `input`, `output` and `sample`; claims and the like
+end the reading of an entry and are skipped. A node is (operation, operands); operands come before what is made of them, and equal nodes
+are one. A known signal is a node of its own, and its derivatives are; an unknown one is a polynomial of time.
 """
 
 import re
@@ -9,7 +10,7 @@ from fractions import Fraction
 
 TOKEN = re.compile(r'\s+|#[^\n]*|"[^"]*"|(\d+\.\d+|\d+|[A-Za-z_]\w*|<=|>=|!=|.)')
 ENTRIES = set("system cite use state param angle let drift input field output sample claim set pole map line "
-              "definition undecided erratum reduction".split())
+              "definition undecided erratum reduction known unknown initial experiments".split())
 FUNCTIONS = set("sqrt exp log sin cos tan asin acos atan sinh cosh tanh abs".split())
 
 
@@ -19,14 +20,18 @@ class ProofFile:
         self.at, self.nodes, self.index = 0, [], {}
         self.states, self.unknown, self.names, self.params = [], [], {}, {}
         self.fields, self.outputs, self.ranges = [], [], {}
+        self.signals, self.initial, self.constants, self.count = {}, {}, set(), 1
         while self.peek() is not None:
             entry = self.next()
             if entry in ("drift", "input", "field"):
                 self.field(entry)
-            elif entry in ("state", "param", "let", "output", "sample"):
-                getattr(self, entry)()
+            elif entry in ("state", "param", "let", "output", "sample", "initial", "experiments"):
+                getattr(self, {"initial": "initial_of_states"}.get(entry, entry))()
+            elif entry in ("known", "unknown"):
+                self.signal(entry)
             else:
                 self.skip()
+        self.repeat()
 
     # the program
     def node(self, *key):
@@ -84,19 +89,101 @@ class ProofFile:
                 return
 
     def param(self):
+        declared = []
         while True:
-            name, value = self.next(), None
+            name, value, word = self.next(), None, None
             if self.taken(":"):
                 self.dimension()
             if self.taken("="):
                 value = self.sum()
-            if self.taken("unknown"):
+                if self.taken(":"):
+                    self.dimension()
+            if self.peek() in ("known", "unknown") and self.peek(2) != "(":
+                word = self.next()
+            declared.append([name, value, word])
+            if not self.taken(","):
+                break
+        last = None
+        for one in reversed(declared):  # the word holds for the names before it that have neither one nor a value
+            last = one[2] or (None if one[1] is not None else last)
+            one[2] = last
+        for name, value, word in declared:
+            if word == "unknown":
                 self.coordinate(name, True)
+                self.constants.add(len(self.states) - 1)
             else:
-                self.taken("known")
                 self.names[name] = self.node("constant", name) if value is None else value
+
+    def signal(self, word):
+        while True:
+            name = self.next()
+            self.at += 3  # (t)
+            if self.taken(":"):
+                self.dimension()
+            used = self.highest(name)
+            if word == "known":
+                for order in range(used + 1):
+                    self.names[name + "'" * order] = self.node("signal", name, order)
+                self.signals[name] = used
+            else:
+                order = int(self.next()) if self.taken("order") else max(1, used)
+                for place in range(order + 1):
+                    self.coordinate(name + "'" * place, True)
+                chain = [name + "'" * place for place in range(order + 1)]
+                self.fields.append(("drift", {link: self.names[above] for link, above in zip(chain, chain[1:])}))
             if not self.taken(","):
                 return
+
+    def highest(self, name):
+        """The highest derivative of a signal that the file mentions."""
+        found = 0
+        for place, token in enumerate(self.tokens):
+            primes = 0
+            while token == name and self.tokens[place + 1 + primes] == "'":
+                primes += 1
+            found = max(found, primes)
+        return found
+
+    def initial_one(self):
+        name = self.next()
+        value = self.sum() if self.taken("=") else None
+        self.initial[self.states.index(name)] = value
+
+    def initial_of_states(self):
+        self.initial_one()
+        while self.taken(","):
+            self.initial_one()
+        self.taken("known")
+
+    def experiments(self):
+        self.count = int(self.next())
+
+    def repeat(self):
+        """Further experiments: each state, signal, input and output once more, constants only once."""
+        states, fields, outputs, signals, initial = (kind.copy() for kind in (
+            self.states, self.fields, self.outputs, self.signals, self.initial))
+        for experiment in range(2, self.count + 1):
+            places = {}
+            for place, name in enumerate(states):
+                if place not in self.constants:
+                    self.coordinate(f"{name}@{experiment}", self.unknown[place])
+                    places[place] = len(self.states) - 1
+            copies = {}
+            for index, (name, *operands) in enumerate(self.nodes[:]):
+                if name == "state":
+                    copies[index] = self.node("state", places.get(operands[0], operands[0]))
+                elif name == "signal":
+                    copies[index] = self.node("signal", f"{operands[0]}@{experiment}", operands[1])
+                elif name in ("number", "constant"):
+                    copies[index] = index
+                else:
+                    copies[index] = self.node(name, *(copies[operand] for operand in operands))
+            for role, rates in fields:
+                self.fields.append((role, {f"{name}@{experiment}": copies[rate] for name, rate in rates.items()
+                                           if f"{name}@{experiment}" in self.states}))
+            self.outputs += [copies[output] for output in outputs]
+            self.signals |= {f"{name}@{experiment}": order for name, order in signals.items()}
+            self.initial |= {places[place]: None if value is None else copies[value] for place, value in initial.items()}
 
     def let(self):
         name = self.next()
@@ -191,4 +278,6 @@ class ProofFile:
             return self.node(token, argument)
         if token == "pi" and token not in self.names:
             return self.node("constant", "pi")
+        while self.peek() == "'" and token + "'" in self.names:
+            token += self.next()
         return self.names[token]
