@@ -6,7 +6,7 @@ their coefficients depend on is the rank of the observability codistribution, un
 until one adds nothing (the span of the differentials is then closed under d/dt) or the rank is full.
 
 Functions are adjoined by their differential equations, with values at the state as if independent; what they hide is seen at true
-states only (`Reals`), where the same series are computed in a hundred digits.
+states only (`Reals`), where the same series are computed in three hundred digits.
 """
 
 import json
@@ -75,14 +75,14 @@ class Prime:
 
 
 class Reals:
-    """True states, in a hundred digits: slower, and nothing is taken for independent."""
+    """True states, in three hundred digits: slower, and nothing is taken for independent. What is below 10^-250 of its row is noise."""
 
     dtype = object
 
-    def __init__(self, seed, digits=100):
+    def __init__(self, seed, digits=300):
         import mpmath
         self.mp, self.random = mpmath.mp.clone(), random.Random(seed)
-        self.mp.dps, self.small = digits, self.mp.mpf(10) ** (-digits // 2)
+        self.mp.dps, self.small = digits, self.mp.mpf(10) ** (50 - digits)
 
     def reduce(self, value):
         return value

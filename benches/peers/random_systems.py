@@ -47,14 +47,14 @@ class Maker:
             if name in ("log", "sqrt"):
                 return f"{name}(1 + {self.positive(names, depth - 1)})"
             if name == "exp":
-                return f"exp(-{self.positive(names, min(depth - 1, 1))})"
+                return f"exp(-{self.positive(names, 0)})"  # not too small for three hundred digits
             return f"{name}({self.expression(names, min(depth - 1, 1))})"
         return f"({inner()} - 2*{inner()})"
 
     def positive(self, names, depth):
         name = self.random.choice(names) if names else self.number()
         return self.random.choice([name, f"{name}^2", f"{name}*{self.random.choice(names) if names else 2}",
-                                   f"({self.expression(names, min(depth, 1))})^2"])
+                                   f"({self.expression(names, min(depth, 1))})^2" if depth else f"{name}^2"])
 
     def system(self):
         """A system in itself: rates, outputs, inputs."""
@@ -103,11 +103,6 @@ class Maker:
         return states, params + [extra], rates, outputs, inputs
 
 
-def positive_everywhere(text):
-    """Whether functions and denominators stay where they are real after a translation; scalings keep signs."""
-    return "log" not in text and "sqrt" not in text
-
-
 def random_system(seed):
     maker = Maker(seed)
     parts = maker.system()
@@ -120,6 +115,46 @@ def random_system(seed):
     maker.random.shuffle(order)
     title = f"random system {seed}"
     return proof(title, order, rates, outputs, params, inputs)
+
+
+def declared_system(seed):
+    """A system whose constants, signals, values at the beginning and experiments are declared: what the language has words for."""
+    maker = Maker(seed)
+    maker.functions = maker.functions and maker.chance(0.3)
+    states, params, _, _, _ = maker.system()
+    params = params or ["k0"]
+    known = ["u"] if maker.chance(0.7) else []
+    unknown = ["w"] if maker.chance(0.4) else []
+    names = states + params + known + unknown + (["u'"] if known and maker.chance(0.3) else [])
+    near = lambda: maker.random.sample(names, min(len(names), maker.random.choice([2, 3, 4])))
+    lines = [f'system "declared system {seed}"']
+    experiments = maker.random.choice([1, 1, 1, 2, 2, 3])
+    if experiments > 1:
+        lines.append(f"experiments {experiments}")
+    lines.append("state " + ", ".join(states))
+    hint = lambda: " = 3/2" if maker.chance(0.2) else ""
+    fixed = maker.chance(0.3)
+    lines.append("param " + ", ".join(f"{param}{hint()} unknown" for param in params) + (", c = 3/2 known" if fixed else ""))
+    names += ["c"] if fixed else []
+    if known:
+        lines.append("known u(t)")
+    order = maker.random.choice([0, 1, 1, 2])
+    if unknown:
+        lines.append(f"unknown w(t) order {order}")
+    begins = [state for state in states if maker.chance(0.25)]
+    for state in begins:
+        lines.append(f"initial {state} known" if maker.chance(0.5) else f"initial {state} = {maker.random.choice(['0', '1', '3/2', '0'])}")
+    valued = {line.split()[1] for line in lines if line.startswith("initial") and "=" in line}
+    depth = maker.random.choice([1, 2, 2])
+    lines += ["", "drift f", *(f"  {state}' = {maker.expression(near(), depth)}" for state in states), ""]
+    if maker.chance(0.2):
+        lines += ["input g", f"  {states[0]}' = {maker.expression(near(), 1)}", *(["  others' = 0"] if len(states) > 1 or unknown else []), ""]
+    lines.append("output " + ", ".join(maker.expression(near(), maker.random.choice([0, 0, 1])) for _ in range(maker.random.choice([1, 1, 2]))))
+    lines.append("sample")
+    drawn = [name for name in states if name not in valued] + params + known + unknown
+    drawn += ["u'"] if any("u'" in line for line in lines) else []
+    drawn += ["w" + "'" * place for place in range(1, order + 1)] if unknown else []
+    return "\n".join([*lines, *(f"  {name} in {POSITIVE}" for name in drawn)]) + "\n"
 
 
 EDGES = {
@@ -179,4 +214,4 @@ def edge_systems():
 
 
 if __name__ == "__main__":
-    print(random_system(int(sys.argv[1])), end="")
+    print((declared_system if "--declared" in sys.argv else random_system)(int(sys.argv[1])), end="")
