@@ -11,7 +11,7 @@ import sys
 import tomllib
 from pathlib import Path
 
-from differential import FUNCTION, theirs
+from differential import FUNCTION, is_seen, theirs
 from generic_rank import Prime, Reals, decide
 from proof_file import ProofFile
 
@@ -49,12 +49,12 @@ def mistakes(text, expected):
 def binary_mistakes(binary, path, expected, limit=60):
     try:
         run = subprocess.run([binary, "rank", str(path), "--json", "--samples", "2"], capture_output=True, text=True, timeout=limit)
-        rank, final, words, hidden = theirs(json.loads(run.stdout))
+        rank, final, words = theirs(json.loads(run.stdout))
     except (subprocess.TimeoutExpired, json.JSONDecodeError) as error:
         return [f"{binary}: {type(error).__name__}"]
     found = [] if final and rank == expected["rank"] else [f"{binary}: rank {rank}{'' if final else ', not final'}"]
     if final and words:
-        found += [f"{binary}: {name} {word}" for name, word in words.items() if (word == "not seen") != (name in expected["not_seen"])]
+        found += [f"{binary}: {name} {word}" for name, word in words.items() if is_seen(word) != (name not in expected["not_seen"])]
     return found
 
 

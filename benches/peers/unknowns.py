@@ -46,7 +46,7 @@ def commands(binary):
     """How each is started on a file, and how its rank, and its own time where it tells one, are read from what it prints."""
 
     def ours(report):
-        rank, final, _, _ = theirs(report)
+        rank, final, _ = theirs(report)
         return (rank if final else None), None
 
     itself = lambda report: (report["rank"], report["seconds"])
