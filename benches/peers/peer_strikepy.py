@@ -57,6 +57,8 @@ def module(text):
     made.w = []
     made.f = [[rates[state]] for state in moving]
     made.h = [[values[output]] for output in model.outputs]
+    if len(moving) == 1:  # it wants these flat
+        made.x, made.f, made.h = [made.x[0][0]], [made.f[0][0]], [output[0] for output in made.h]
     made.variables_locales = {}
     return made
 
@@ -71,11 +73,11 @@ def main(path):
     package.options = options
     analysis, out = importlib.import_module("StrikePy.strike_goldd"), io.StringIO()
     importlib.import_module("symbtools")
-    began = time.perf_counter()
+    began = time.process_time()
     with contextlib.redirect_stdout(out):
         analysis.strike_goldd()
     ranks = re.findall(r"Rank = (\d+)", out.getvalue())
-    print(json.dumps({"rank": int(ranks[-1]) if ranks else None, "seconds": time.perf_counter() - began}))
+    print(json.dumps({"rank": int(ranks[-1]) if ranks else None, "seconds": time.process_time() - began}))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """How long the rank takes as the unknowns grow: ours, the plain Python test and StrikePy on families of systems and on published models.
 
-Each runs in a process of its own on one core. Ours is timed as a whole process; of the two in Python the start of the interpreter and of its
-libraries is not counted: they say themselves how long they took from the text of the file to the rank. Ranks are compared.
+Each runs in a process of its own on one core, and its processor time is taken, so that what else runs there does not matter much. Ours is
+that of the whole process; of the two in Python the start of the interpreter and of its libraries is not counted: they say themselves how
+long they took from the text of the file to the rank. Ranks are compared.
 """
 
 import argparse
@@ -10,10 +11,10 @@ import math
 import os
 import platform
 import re
+import resource
 import subprocess
 import sys
 import tempfile
-import time
 import tomllib
 from importlib.metadata import version
 from pathlib import Path
@@ -34,7 +35,7 @@ CURVES = {  # what the families are called in the book
     "masses": "masses between springs, one input, one output",
     "goodwin": "feedback loop, one output",
 }
-MODELS = """c2m bolie two_compartments two_compartments_fed three_compartments_first mammillary3 michaelis_menten lotka_volterra_fed
+MODELS = """c2m cr bolie two_compartments two_compartments_fed mammillary3 michaelis_menten lotka_volterra_fed
 predator_logistic sir_scaled seir_known_n seir2 hiv_load hiv_eta integral_feedback dynamical_compensation goodwin sirs_forced siwr siwr_two
 pk1 pharm crauste chemical_network phosphorylation hiv_latent raia bachmann""".split()
 QUICK = ["c2m", "two_compartments", "sirs_forced"]
@@ -51,7 +52,7 @@ def commands(binary):
 
     itself = lambda report: (report["rank"], report["seconds"])
     return {
-        OURS: ([binary, "rank", "--json", "--samples", "1"], ours),
+        OURS: ([binary, "rank", "--json"], ours),
         PLAIN: ([sys.executable, str(HERE / "generic_rank.py"), "--once"], itself),
         STRIKEPY: ([sys.executable, str(HERE / "peer_strikepy.py")], itself),
     }
@@ -62,11 +63,12 @@ def run(command, read, path, limit, rounds):
     best = {"seconds": math.inf, "rank": None, "megabytes": 0.0}
     for _ in range(rounds):
         with tempfile.TemporaryFile("w+") as out:
-            began = time.perf_counter()
-            process = subprocess.Popen([*command, str(path)], stdout=out, stderr=subprocess.DEVNULL, cwd=HERE)
-            timer_ended = wait(process, limit)
-            seconds = time.perf_counter() - began
-            if timer_ended is None:
+            within = lambda: resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(limit), math.ceil(limit) + 1))
+            process = subprocess.Popen([*command, str(path)], stdout=out, stderr=subprocess.DEVNULL, cwd=HERE, preexec_fn=within)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = status
+            seconds = usage.ru_utime + usage.ru_stime
+            if seconds >= limit:
                 return {"seconds": None, "rank": None, "megabytes": None, "why": f"over {limit:g} s"}
             out.seek(0)
             text = out.read()
@@ -76,24 +78,10 @@ def run(command, read, path, limit, rounds):
             rank, own = None, None
         if rank is None:
             return {"seconds": None, "rank": None, "megabytes": None, "why": "no final rank" if text else "fails"}
-        best = {"seconds": min(best["seconds"], own or seconds), "rank": rank, "megabytes": timer_ended[1] / 1024}
+        best = {"seconds": min(best["seconds"], own or seconds), "rank": rank, "megabytes": usage.ru_maxrss / 1024}
         if seconds > 5:
             break
     return best
-
-
-def wait(process, limit):
-    """The status and the largest resident set in kB of a process, or nothing where it is ended for its time."""
-    end = time.perf_counter() + limit
-    while time.perf_counter() < end:
-        pid, status, usage = os.wait4(process.pid, os.WNOHANG)
-        if pid:
-            process.returncode = status
-            return status, usage.ru_maxrss
-        time.sleep(0.0005)
-    process.kill()
-    process.wait()
-    return None
 
 
 def arguments():
@@ -102,6 +90,9 @@ def arguments():
     parser.add_argument("--quick", action="store_true", help="up to 60 unknowns, three models, 10 s: whether all works")
     parser.add_argument("--limit", type=float, default=60, help="seconds for each (default %(default)g)")
     parser.add_argument("--rounds", type=int, default=3, help="how often each is timed (default %(default)s)")
+    parser.add_argument("--results", type=Path, help="a file in which results are kept: what stands there is not measured again")
+    parser.add_argument("--again", action="append", default=[], metavar="PROGRAM", help="measure this one again (palmistry, plain Python, StrikePy)")
+    parser.add_argument("--only", action="append", default=[], metavar="PROGRAM", help="measure this one alone, with what was kept of the others")
     parser.add_argument("--book", action="store_true", help="write the tables and the picture into the book")
     parser.add_argument("--json", action="store_true", help="everything, for programs")
     options = parser.parse_args()
@@ -118,10 +109,10 @@ def main():
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     os.environ |= dict.fromkeys(["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "RAYON_NUM_THREADS"], "1")
-    programs = commands(options.binary)
     with tempfile.TemporaryDirectory() as folder:
-        curves = [measure_family(name, options, programs, folder) for name in CURVES]
-        models = measure_models(options, programs)
+        measure = Measure(options, folder)
+        models = measure_models(options, measure)
+        curves = [measure_family(name, options, measure, folder) for name in CURVES]
     report = {"machine": machine(options.binary), "limit": options.limit, "families": curves, "models": models}
     wrong = disagreements(report)
     if options.json:
@@ -135,7 +126,27 @@ def main():
     return 1 if wrong else 0
 
 
-def measure_family(name, options, programs, folder):
+class Measure:
+    """Runs a program on a file, unless its result is kept."""
+
+    def __init__(self, options, folder):
+        self.options, self.programs = options, commands(options.binary)
+        self.kept = json.loads(options.results.read_text()) if options.results and options.results.exists() else {}
+        self.kept = {key: result for key, result in self.kept.items() if key.split(": ")[0] not in options.again}
+
+    def __call__(self, program, name, path):
+        key = f"{program}: {name}"
+        if key not in self.kept:
+            if self.options.only and program not in self.options.only:
+                return None
+            note(key)
+            self.kept[key] = run(*self.programs[program], path, self.options.limit, self.options.rounds)
+            if self.options.results:
+                self.options.results.write_text(json.dumps(self.kept, indent=1))
+        return self.kept[key]
+
+
+def measure_family(name, options, measure, folder):
     points, tired = [], set()
     for size in options.sizes:
         text = family(name, size)
@@ -143,26 +154,21 @@ def measure_family(name, options, programs, folder):
         path.write_text(text)
         states = text.split("state ", 1)[1].split("\n", 1)[0].count(",") + 1
         point = {"unknowns": states}
-        for program, (command, read) in programs.items():
-            if program in tired:
-                continue
-            note(f"{name}, {states} unknowns: {program}")
-            point[program] = run(command, read, path, options.limit, options.rounds)
-            if point[program]["seconds"] is None:
+        for program in measure.programs:
+            point[program] = None if program in tired else measure(program, f"{name} {states}", path)
+            if point[program] and point[program]["seconds"] is None:
                 tired.add(program)
         points.append(point)
     return {"family": name, "title": CURVES[name], "points": points}
 
 
-def measure_models(options, programs):
+def measure_models(options, measure):
     expected = tomllib.loads((ROOT / "tests/models/expected.toml").read_text())
     found = []
     for name in options.models:
         point = {"model": name, "unknowns": expected[name]["dimension"], "rank": expected[name]["rank"]}
-        for program, (command, read) in programs.items():
-            note(f"{name}: {program}")
-            path = ROOT / f"tests/models/{name}.proof"
-            point[program] = run(command, read, path, options.limit, options.rounds)
+        for program in measure.programs:
+            point[program] = measure(program, name, ROOT / f"tests/models/{name}.proof")
         found.append(point)
     return found
 
@@ -172,7 +178,7 @@ def disagreements(report):
     points += [(point["model"], point) for point in report["models"]]
     wrong = []
     for name, point in points:
-        ranks = {program: point[program]["rank"] for program in (OURS, PLAIN, STRIKEPY) if point.get(program, {}).get("rank") is not None}
+        ranks = {program: point[program]["rank"] for program in (OURS, PLAIN, STRIKEPY) if point[program] and point[program]["rank"] is not None}
         if len({*ranks.values(), *([point["rank"]] if "rank" in point else [])}) > 1:
             wrong.append(f"{name}: {ranks}" + (f", expected {point['rank']}" if "rank" in point else ""))
     return wrong
@@ -202,14 +208,14 @@ def figures(value):
 
 
 def tables(report):
-    lines = ["| seconds (ratio to ours) | unknowns | palmistry | its memory, MB | plain Python | StrikePy |", "|---|---:|---:|---:|---:|---:|"]
+    lines = ["| seconds of the processor (ratio to ours) | unknowns | palmistry | its memory, MB | plain Python | StrikePy |", "|---|---:|---:|---:|---:|---:|"]
     for curve in report["families"]:
         for point in curve["points"]:
             ours = point.get(OURS)
             memory = "" if not ours or ours["megabytes"] is None else f"{ours['megabytes']:.0f}"
             lines.append(f"| {curve['title']} | {point['unknowns']} | {seconds(ours)} | {memory} | {seconds(point.get(PLAIN), ours)} | "
                          f"{seconds(point.get(STRIKEPY), ours)} |")
-    done = [point for point in report["models"] if point[STRIKEPY]["seconds"] is not None]
+    done = [point for point in report["models"] if point[STRIKEPY] and point[STRIKEPY]["seconds"] is not None]
     lines += ["", f"Of {len(report['models'])} published models (`tests/models`) with {min(p['unknowns'] for p in report['models'])} to "
               f"{max(p['unknowns'] for p in report['models'])} unknowns StrikePy decides {len(done)} within {report['limit']:g} s; "
               f"{summary(report, OURS)}, {summary(report, PLAIN)}.", "",
@@ -222,7 +228,7 @@ def tables(report):
 
 
 def summary(report, program):
-    times = [point[program]["seconds"] for point in report["models"] if point[program]["seconds"] is not None]
+    times = [point[program]["seconds"] for point in report["models"] if point[program] and point[program]["seconds"] is not None]
     return f"{program} {len(times)} in {figures(sum(times))} s altogether"
 
 
@@ -276,7 +282,8 @@ def write_book(report):
     text = BOOK.read_text()
     begin, end = "<!-- benches/unknowns -->", "<!-- end -->"
     before, rest = text.split(begin)
-    BOOK.write_text(before + begin + "\n\n" + tables(report) + "\n\n" + end + rest.split(end, 1)[1])
+    shown = f"![Seconds over unknowns: ours, the plain test, StrikePy](pictures/{PICTURE.name})"
+    BOOK.write_text(before + begin + "\n\n" + shown + "\n\n" + tables(report) + "\n\n" + end + rest.split(end, 1)[1])
 
 
 def note(words):
