@@ -1,4 +1,4 @@
-"""`palmistry rank` against the plain test on random systems: differential.py BINARY [--from SEED] [--count N] [--edges] [--declared] [--out FOLDER]
+"""`palmistry rank` against the plain test on random systems: differential.py BINARY [--from SEED] [--count N] [--edges] [--declared] [--related] [--out FOLDER]
 
 Each system is decided by both. Rational ones modulo a prime, twice; those with functions at true states in three hundred digits.
 What differs is written to FOLDER with its seed, one line each to its FINDINGS.txt. Exit status 1 where a final answer differs.
@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 
 from generic_rank import NoSuchState, Prime, Reals, decide
-from random_systems import declared_system, edge_systems, random_system
+from random_systems import declared_system, edge_systems, random_system, related_system
 
 FUNCTION = re.compile(r"\b(exp|log|sqrt|sin|cos|tan|atan|asin|acos|sinh|cosh|tanh|abs)\(|\bpi\b")
 
@@ -92,11 +92,13 @@ def main():
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--edges", action="store_true")
     parser.add_argument("--declared", action="store_true", help="constants, signals and experiments as the language declares them")
+    parser.add_argument("--related", action="store_true", help="functions that satisfy relations, or nearly do")
     parser.add_argument("--out", type=Path, default=Path("mismatches"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
+    make = declared_system if options.declared else related_system if options.related else random_system
     systems = edge_systems().items() if options.edges else (
-        (seed, (declared_system if options.declared else random_system)(seed)) for seed in range(options.first, options.first + options.count))
+        (seed, make(seed)) for seed in range(options.first, options.first + options.count))
     counts, findings = collections.Counter(), options.out.parent / "FINDINGS.txt"
     with tempfile.TemporaryDirectory() as folder:
         for name, text in systems:

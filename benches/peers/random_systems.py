@@ -157,6 +157,43 @@ def declared_system(seed):
     return "\n".join([*lines, *(f"  {name} in {POSITIVE}" for name in drawn)]) + "\n"
 
 
+def related_system(seed):
+    """Functions that satisfy relations, or nearly do: products of exponentials, logarithms of products, multiples of angles, roots."""
+    dice = random.Random(seed)
+    names = ["x", "k", "z"][: dice.choice([2, 2, 3])]
+    a, b = dice.choice(names), dice.choice(names)
+    near = lambda number: number if dice.random() < 0.7 else number + 1  # a relation, or nearly one
+    n, m = dice.choice([2, 3]), dice.choice([1, 2])
+    arguments = [f"{a} + {b}", f"{a}*{b}", f"{m}*{a} - {b}", f"{a}^2", f"{a}/{b}", f"{a} + 1", f"{b}/2", f"{m}/{n}*{a}"]
+    p, q = dice.choice(arguments), dice.choice(arguments)
+    relations = [
+        f"exp({p})*exp({q}) - exp({p} + {near(1)}*({q}))",
+        f"exp({n}*({p})) - exp({p})^{near(n)}",
+        f"exp(({p})/{n})^{near(n)}*exp(-({p})) + {dice.choice(names)}*0",
+        f"log(({a})^{n}*{b}) - {near(n)}*log({a}) - log({b})",
+        f"log({a}*{b}) - log({a})*{near(0)} - log({b})",
+        f"sin(2*({p})) - {near(2)}*sin({p})*cos({p})",
+        f"cos({p} + {q}) - cos({p})*cos({q}) + sin({p})*sin({q})*{near(1)}",
+        f"sin({p})^2 + {near(1)}*cos({p})^2",
+        f"sqrt({a})*sqrt({b}) - sqrt({a}*{b}*{near(1)})",
+        f"sqrt(({a})^2*{b}) - {near(1)}*({a})*sqrt({b})",
+        f"sqrt({a} + {b})^2 - {near(1)}*{a} - {b}",
+        f"exp(log({a}) + log({b})) - {near(1)}*{a}*{b}",
+        f"exp(log({a})/2) - {near(1)}*sqrt({a})",
+        f"exp({n}*log({a})) - ({a})^{near(n)}",
+        f"log(exp({p})) - ({p})*{near(1)}",
+        f"tan({a}/4)*cos({a}/4) - sin({a}/4)*{near(1)}",
+        f"atan({a}) + atan(1/{a})*{near(1)}",
+        f"log(sqrt({a})) - log({a})/{near(2)}",
+        f"exp({p})/(1 + exp({p})) + 1/({near(1)} + exp({p}))",
+    ]
+    chosen = dice.sample(relations, dice.choice([1, 1, 2]))
+    outputs = [f"{relation} + {dice.choice(names + ['0', '0', '0'])}*{dice.choice(['0', '1'])}" for relation in chosen]
+    rates = {name: dice.choice(["0", "1", name, dice.choice(names), f"-{name}*{dice.choice(names)}", f"exp(-{dice.choice(names)})",
+                                f"sqrt({dice.choice(names)})", dice.choice(relations)]) for name in names}
+    return proof(f"related system {seed}", names, rates, outputs)
+
+
 EDGES = {
     "one unknown": "state x\ndrift f  x' = x^2\noutput x\nsample x in [1, 2]\n",
     "one unknown, seen by its square": "state x\ndrift f  x' = 0\noutput x^2\nsample x in [1, 2]\n",
@@ -214,4 +251,5 @@ def edge_systems():
 
 
 if __name__ == "__main__":
-    print((declared_system if "--declared" in sys.argv else random_system)(int(sys.argv[1])), end="")
+    kinds = {"--declared": declared_system, "--related": related_system}
+    print(kinds.get(sys.argv[-1], random_system)(int(sys.argv[1])), end="")
