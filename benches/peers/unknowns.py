@@ -12,6 +12,7 @@ import os
 import platform
 import re
 import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -68,7 +69,7 @@ def run(command, read, path, limit, rounds):
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = status
             seconds = usage.ru_utime + usage.ru_stime
-            if seconds >= limit:
+            if os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGXCPU, signal.SIGKILL) or seconds >= limit:
                 return {"seconds": None, "rank": None, "megabytes": None, "why": f"over {limit:g} s"}
             out.seek(0)
             text = out.read()
