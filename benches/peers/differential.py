@@ -1,4 +1,4 @@
-"""`palmistry rank` against the plain test on random systems: differential.py BINARY [--from SEED] [--count N] [--edges] [--declared] [--related] [--out FOLDER]
+"""`palmistry rank` against the plain test on random systems: differential.py BINARY [--from SEED] [--count N] [--edges] [--declared] [--related] [--accessible] [--out FOLDER]
 
 Each system is decided by both. Rational ones modulo a prime, twice; those with functions at true states in three hundred digits.
 What differs is written to FOLDER with its seed, one line each to its FINDINGS.txt. Exit status 1 where a final answer differs.
@@ -14,7 +14,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from generic_rank import NoSuchState, Prime, Reals, decide
+from generic_rank import NoSuchState, Prime, Reals, accessible_rank, decide
 from random_systems import declared_system, edge_systems, random_system, related_system
 
 FUNCTION = re.compile(r"\b(exp|log|sqrt|sin|cos|tan|atan|asin|acos|sinh|cosh|tanh|abs)\(|\bpi\b")
@@ -81,6 +81,31 @@ def compare(binary, text, folder, limit=20, samples=3):
     return ("slow" if took > 2 else "agrees"), f"{took:.1f} s"
 
 
+def compare_accessible(binary, text, folder, limit=60):
+    """The same for `rank --accessible`."""
+    path = Path(folder) / "system.proof"
+    path.write_text(text)
+    try:
+        expected = decide(text, numbers=Reals if FUNCTION.search(text) else Prime, question=accessible_rank)
+    except NoSuchState:
+        return "no state", ""
+    command = [binary, "rank", str(path), "--accessible", "--json", "--samples", "2"]
+    try:
+        run = subprocess.run(command, capture_output=True, text=True, timeout=limit)
+        branch = json.loads(run.stdout)["branches"][0]
+    except subprocess.TimeoutExpired:
+        return "time", f"nothing within {limit} s; {expected}"
+    except json.JSONDecodeError:
+        return "refused", f"status {run.returncode}: {' '.join(run.stderr.split())[:300]}"
+    told = {"rank": branch["accessibility"], "strong": branch["strong_accessibility"]}
+    if any(not answer["at_least"] <= expected[key] <= answer["at_most"] for key, answer in told.items()):
+        return "RANK", f"{told}, and it is {expected}"
+    ranks = [int(rank) for rank in branch["sampled"]["rank_histogram"]]
+    if ranks and max(ranks) > expected["rank"]:
+        return "HIGH", f"certified rank {max(ranks)} at a state, and it is {expected}"
+    return ("undecided" if any(answer["rank"] is None for answer in told.values()) else "agrees"), str(expected)
+
+
 def is_seen(word):
     return None if word == "undecided" else not word.startswith("not ")
 
@@ -93,6 +118,7 @@ def main():
     parser.add_argument("--edges", action="store_true")
     parser.add_argument("--declared", action="store_true", help="constants, signals and experiments as the language declares them")
     parser.add_argument("--related", action="store_true", help="functions that satisfy relations, or nearly do")
+    parser.add_argument("--accessible", action="store_true", help="the dual question, on the same systems")
     parser.add_argument("--out", type=Path, default=Path("mismatches"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
@@ -102,7 +128,7 @@ def main():
     counts, findings = collections.Counter(), options.out.parent / "FINDINGS.txt"
     with tempfile.TemporaryDirectory() as folder:
         for name, text in systems:
-            word, line = compare(options.binary, text, folder)
+            word, line = (compare_accessible if options.accessible else compare)(options.binary, text, folder)
             counts[word] += 1
             if word not in ("agrees", "no state"):
                 name = re.sub(r"\W+", "_", str(name))

@@ -168,7 +168,7 @@ class Program:
     def sorted(self):
         """What values need, operands first."""
         found, seen = [], set()
-        for root in [*self.model.outputs, *self.rates]:
+        for root in [*self.model.outputs, *self.rates, *(self.model.node("state", place) for place in range(len(self.rates)))]:
             stack = [(root, False)]
             while stack:
                 node, ready = stack.pop()
@@ -187,57 +187,65 @@ class Program:
         return found
 
 
+class Series:
+    """The power series of all nodes at a random state with random inputs, and what they depend on at the beginning."""
+
+    def __init__(self, model, numbers, size):
+        self.model, self.numbers, self.program = model, numbers, Program(model)
+        zeros = lambda *shape: np.full(shape, numbers.number(Fraction(0)), dtype=numbers.dtype)
+        self.value = {node: zeros(size) for node in self.program.order}
+        self.slope = {node: zeros(size, len(model.states)) for node in self.program.order}  # by the states at the beginning
+        self.inverse = [None] + [numbers.invert(order) for order in range(1, size)]
+        self.signals = {name: [numbers.draw("input") for _ in range(size + most)] for name, most in model.signals.items()}
+        self.spans = {name: [constant(model, node, numbers) for node in span] for name, span in model.ranges.items()}
+
+    def step(self, order):
+        """All coefficients of this order, where those of lower ones are there."""
+        program, numbers, value, slope = self.program, self.numbers, self.value, self.slope
+        for node in program.order:
+            name, *operands = self.model.nodes[node]
+            if name in LEAVES:
+                self.leaf(node, name, operands, order)
+            elif not (order and program.constant[node]):
+                value[node][order] = coefficient(name, [value[operand] for operand in operands], value[node], order, numbers, self.inverse,
+                                                 value.get(program.derivatives.get(node)))
+        for node in program.order:
+            name, *operands = self.model.nodes[node]
+            if not (name in LEAVES or order and program.constant[node]):
+                slope[node][order] = dependence(name, operands, node, order, value, slope, program, numbers)
+
+    def leaf(self, node, name, operands, order):
+        numbers, model, here, slope = self.numbers, self.model, self.value[node], self.slope[node]
+        reduce = numbers.reduce
+        if name == "input":
+            here[order] = numbers.draw("input")
+        elif name == "signal":
+            here[order] = reduce(self.signals[operands[0]][order + operands[1]] * math.perm(order + operands[1], operands[1]))
+        elif name == "state" and order:
+            rate = self.program.rates[operands[0]]
+            here[order] = reduce(self.value[rate][order - 1] * self.inverse[order])
+            slope[order] = reduce(self.slope[rate][order - 1] * self.inverse[order])
+        elif name == "state":
+            begin = model.initial.get(operands[0])
+            here[0] = self.value[begin][0] if begin is not None else numbers.draw(None, self.spans.get(model.states[operands[0]]))
+            slope[0, operands[0]] = numbers.number(Fraction(1))
+        elif order == 0:
+            here[0] = numbers.number(operands[0]) if name == "number" else numbers.draw(operands[0], self.spans.get(operands[0]))
+
+
 def generic_rank(model, numbers, limit=None):
     """Rank, dimension, the unknowns that are seen, and the order up to which series were needed."""
     model = ProofFile(model) if isinstance(model, str) else model
-    program = Program(model)
-    nodes, columns = model.nodes, len(model.states)
     unknowns = [index for index, unknown in enumerate(model.unknown) if unknown and index not in model.initial]
     # where something is known at the beginning, what is seen is not closed under d/dt: a few orders more than ever were needed
-    size = (limit or (2 * columns + 5 if model.initial else columns)) + 1
-    zeros = lambda *shape: np.full(shape, numbers.number(Fraction(0)), dtype=numbers.dtype)
-    value = {node: zeros(size) for node in program.order}
-    slope = {node: zeros(size, columns) for node in program.order}  # by the states at the beginning
-    inverse = [None] + [numbers.invert(order) for order in range(1, size)]
-    signals = {name: [numbers.draw("input") for _ in range(size + most)] for name, most in model.signals.items()}
-    reduce, basis, everything = numbers.reduce, [], []
-    spans = {name: [constant(model, node, numbers) for node in span] for name, span in model.ranges.items()}
-
+    size = (limit or (2 * len(model.states) + 5 if model.initial else len(model.states))) + 1
+    series, basis, everything = Series(model, numbers, size), [], []
     for order in range(size):
-        for node in program.order:  # values of this order
-            name, *operands = nodes[node]
-            here = value[node]
-            if name == "number":
-                here[0] = numbers.number(operands[0])
-            elif name == "constant":
-                here[0] = numbers.draw(operands[0], spans.get(operands[0])) if order == 0 else here[0]
-            elif name == "input":
-                here[order] = numbers.draw("input")
-            elif name == "signal":
-                here[order] = reduce(signals[operands[0]][order + operands[1]] * math.perm(order + operands[1], operands[1]))
-            elif name == "state":
-                if order == 0:
-                    begin = model.initial.get(operands[0])
-                    here[0] = value[begin][0] if begin is not None else numbers.draw(None, spans.get(model.states[operands[0]]))
-                    slope[node][0, operands[0]] = numbers.number(Fraction(1))
-                else:
-                    rate = program.rates[operands[0]]
-                    here[order] = reduce(value[rate][order - 1] * inverse[order])
-                    slope[node][order] = reduce(slope[rate][order - 1] * inverse[order])
-            elif order and program.constant[node]:
-                continue
-            else:
-                here[order] = coefficient(name, [value[operand] for operand in operands], here, order, numbers, inverse,
-                                          value.get(program.derivatives.get(node)))
-        for node in program.order:  # and what they depend on
-            name, *operands = nodes[node]
-            if name in LEAVES or order and program.constant[node]:
-                continue
-            slope[node][order] = dependence(name, operands, node, order, value, slope, program, numbers)
+        series.step(order)
         before = len(everything)
         for output in model.outputs:
-            insert(everything, slope[output][order].copy(), numbers)
-            insert(basis, slope[output][order][unknowns], numbers)
+            insert(everything, series.slope[output][order].copy(), numbers)
+            insert(basis, series.slope[output][order][unknowns], numbers)
         if len(basis) == len(unknowns) or len(everything) == before and not model.initial:
             break
     small, hidden = getattr(numbers, "small", 0), set(range(len(unknowns))) - {pivot for pivot, _ in basis}
@@ -249,6 +257,33 @@ def generic_rank(model, numbers, limit=None):
         "seen": [model.states[state] for column, state in enumerate(unknowns) if column not in hidden],
         "not_seen": [model.states[state] for column, state in enumerate(unknowns) if column in hidden],
     }
+
+
+def accessible_rank(model, numbers):
+    """The rank of the strong accessibility distribution and that of the distribution with the drift: what inputs reach to first order
+    from a random trajectory, P(t)^-1 g(x(t)) with P the derivative of the flow, whose coefficients span it."""
+    model = ProofFile(model) if isinstance(model, str) else model
+    states, reduce = len(model.states), numbers.reduce
+    size = states + 2
+    series, basis = Series(model, numbers, size), []
+    nodes = [model.node("state", place) for place in range(states)]
+    inputs = [[rates.get(name) for name in model.states] for role, rates in model.fields if role == "input"]
+    moved = [np.full((size, states), numbers.number(Fraction(0)), dtype=numbers.dtype) for _ in inputs]
+    for order in range(size):
+        series.step(order)
+        flow = np.array([[series.slope[node][k] for node in nodes] for k in range(order + 1)])
+        before = len(basis)
+        for field, back in zip(inputs, moved):
+            here = np.array([0 if rate is None else series.value[rate][order] for rate in field], dtype=numbers.dtype)
+            for k in range(1, order + 1):
+                here = reduce(here - reduce(flow[k] @ back[order - k]))
+            back[order] = here
+            insert(basis, here.copy(), numbers)
+        if len(basis) == before:
+            break
+    strong = len(basis)
+    insert(basis, np.array([series.value[rate][0] for rate in series.program.rates], dtype=numbers.dtype), numbers)
+    return {"rank": len(basis), "strong": strong, "dimension": states}
 
 
 def constant(model, node, numbers):
@@ -329,17 +364,17 @@ def insert(basis, row, numbers):
     basis.append((pivot, row))
 
 
-def decide(text, seed=1, tries=2, numbers=Prime):
+def decide(text, seed=1, tries=2, numbers=Prime, question=generic_rank):
     """The best of several random states, for the text of a file or what was read of it."""
     answers, attempt = [], 0
     while len(answers) < tries:
         attempt += 1
         try:
-            answers.append(generic_rank(text, numbers(1000 * seed + attempt)))
+            answers.append(question(text, numbers(1000 * seed + attempt)))
         except NoSuchState:
             if attempt > 200:
                 raise
-    return max(answers, key=lambda answer: (answer["rank"], len(answer["seen"])))
+    return max(answers, key=lambda answer: (answer["rank"], answer.get("strong", 0), len(answer.get("seen", ""))))
 
 
 if __name__ == "__main__":
