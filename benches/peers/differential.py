@@ -1,7 +1,9 @@
-"""`palmistry rank` against the plain test on random systems: differential.py BINARY [--from SEED] [--count N] [--edges] [--declared] [--related] [--accessible] [--fields] [--models] [--out FOLDER]
+"""`palmistry rank` against the plain test on random systems: differential.py BINARY [--from SEED] [--count N] [--edges]
+[--declared] [--related] [--accessible] [--fields] [--models] [--out FOLDER]
 
-Each system is decided by both. Rational ones modulo a prime, twice; those with functions at true states in three hundred digits.
-What differs is written to FOLDER with its seed, one line each to its FINDINGS.txt. Exit status 1 where a final answer differs.
+Each system is decided by both. Rational ones modulo a prime, twice; those with functions at true states in three hundred
+digits. What differs is written to FOLDER with its seed, one line each to its FINDINGS.txt. Exit status 1 where a final
+answer differs.
 """
 
 import argparse
@@ -48,7 +50,9 @@ def compare(binary, text, folder, limit=20, samples=3):
         return "no state", ""
     began = time.perf_counter()
     try:
-        run = subprocess.run([binary, "rank", str(path), "--json", "--samples", str(samples)], capture_output=True, text=True, timeout=limit)
+        run = subprocess.run(
+            [binary, "rank", str(path), "--json", "--samples", str(samples)], capture_output=True, text=True, timeout=limit
+        )
     except subprocess.TimeoutExpired:
         return "time", f"nothing within {limit} s; rank {expected['rank']} of {expected['dimension']}"
     took = time.perf_counter() - began
@@ -67,8 +71,11 @@ def compare(binary, text, folder, limit=20, samples=3):
     if not final and not report["generic"]["at_least"] <= expected["rank"] <= report["generic"]["at_most"]:
         return "BOUNDS", f"at least {report['generic']['at_least']}, at most {report['generic']['at_most']}, and it is {of}"
     if words:
-        wrong = [f"{name} {word}" for name, word in words.items()
-                 if (is_seen(word), name in expected["seen"]) in ((True, False), (False, True))]
+        wrong = [
+            f"{name} {word}"
+            for name, word in words.items()
+            if (is_seen(word), name in expected["seen"]) in ((True, False), (False, True))
+        ]
         if wrong:
             return "SEEN", f"{', '.join(wrong)}; rank {of}; not seen are {expected['not_seen']}"
         if set(words) != {*expected["seen"], *expected["not_seen"]}:
@@ -114,7 +121,9 @@ def compare_fields(binary, text, folder, limit=60):
     numbers = Reals if FUNCTION.search(text) else Prime
     try:
         expected = decide(text, numbers=numbers, tries=1)
-        run = subprocess.run([binary, "rank", str(path), "--json", "--samples", "2"], capture_output=True, text=True, timeout=limit)
+        run = subprocess.run(
+            [binary, "rank", str(path), "--json", "--samples", "2"], capture_output=True, text=True, timeout=limit
+        )
         found = json.loads(run.stdout).get("unseen_fields")
     except NoSuchState:
         return "no state", ""
@@ -123,8 +132,13 @@ def compare_fields(binary, text, folder, limit=60):
     except json.JSONDecodeError:
         return "refused", f"status {run.returncode}: {' '.join(run.stderr.split())[:300]}"
     if not found:
-        return ("agrees" if expected["rank"] == expected["dimension"] else "nothing told"), f"rank {expected['rank']} of {expected['dimension']}"
-    fields, functions = [field["components"] for field in found["fields"]], [function["text"] for function in found["functions"]]
+        return (
+            "agrees" if expected["rank"] == expected["dimension"] else "nothing told"
+        ), f"rank {expected['rank']} of {expected['dimension']}"
+    fields, functions = (
+        [field["components"] for field in found["fields"]],
+        [function["text"] for function in found["functions"]],
+    )
     try:
         moved, seen = directions(text, fields, numbers)
         told = decide(text + "".join(f"\noutput {function}" for function in functions), numbers=numbers, tries=1)
@@ -135,13 +149,17 @@ def compare_fields(binary, text, folder, limit=60):
     if seen != len(fields):
         return "FIELD", f"{len(fields)} fields, of which {seen} are independent"
     if len(fields) + found["fields_missing"] != expected["dimension"] - expected["rank"]:
-        return "FIELD", f"{len(fields)} fields and {found['fields_missing']} missing, and it is {expected['rank']} of {expected['dimension']}"
+        return (
+            "FIELD",
+            f"{len(fields)} fields and {found['fields_missing']} missing, and it is {expected['rank']} of {expected['dimension']}",
+        )
     if told["rank"] != expected["rank"]:
         return "FUNCTION", f"one of {functions} is not seen"
     if set(found["seen"]) != set(expected["seen"]):
         return "SEEN", f"{found['seen']}, and it is {expected['seen']}"
     return ("missing" if found["fields_missing"] or found["functions_missing"] else "agrees"), (
-        f"{found['fields_missing']} fields and {found['functions_missing']} functions missing of rank {expected['rank']} of {expected['dimension']}")
+        f"{found['fields_missing']} fields and {found['functions_missing']} functions missing of rank {expected['rank']} of {expected['dimension']}"
+    )
 
 
 def directions(text, fields, numbers):
@@ -169,7 +187,9 @@ def directions(text, fields, numbers):
         for output in outputs:
             row = series.slope[output][order]
             for index, vector in enumerate(vectors):
-                change = field_of_numbers.reduce(sum(int(a) * int(b) if numbers is Prime else a * b for a, b in zip(row, vector)))
+                change = field_of_numbers.reduce(
+                    sum(int(a) * int(b) if numbers is Prime else a * b for a, b in zip(row, vector))
+                )
                 scale = 1 if numbers is Prime else 1 + sum(abs(a * b) for a, b in zip(row, vector))
                 if abs(change) > getattr(field_of_numbers, "small", 0) * scale:
                     moved.add(index)
@@ -188,17 +208,24 @@ def main():
     parser.add_argument("--from", dest="first", type=int, default=1)
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--edges", action="store_true")
-    parser.add_argument("--declared", action="store_true", help="constants, signals and experiments as the language declares them")
+    parser.add_argument(
+        "--declared", action="store_true", help="constants, signals and experiments as the language declares them"
+    )
     parser.add_argument("--related", action="store_true", help="functions that satisfy relations, or nearly do")
     parser.add_argument("--accessible", action="store_true", help="the dual question, on the same systems")
-    parser.add_argument("--fields", action="store_true", help="the unseen fields and the seen functions that are named, on the same systems")
+    parser.add_argument(
+        "--fields", action="store_true", help="the unseen fields and the seen functions that are named, on the same systems"
+    )
     parser.add_argument("--models", action="store_true", help="the published models in the place of random systems")
     parser.add_argument("--out", type=Path, default=Path("mismatches"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     make = declared_system if options.declared else related_system if options.related else random_system
-    systems = edge_systems().items() if options.edges else (
-        (seed, make(seed)) for seed in range(options.first, options.first + options.count))
+    systems = (
+        edge_systems().items()
+        if options.edges
+        else ((seed, make(seed)) for seed in range(options.first, options.first + options.count))
+    )
     if options.models:
         folder = Path(__file__).resolve().parents[2] / "tests/models"
         systems = ((path.stem, path.read_text()) for path in sorted(folder.glob("*.proof")))

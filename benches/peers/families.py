@@ -1,6 +1,5 @@
 """Families of systems that grow, as proof files: what stops whom, and where. `families.py NAME SIZE` prints one."""
 
-import random
 import sys
 
 
@@ -21,7 +20,7 @@ def proof(title, states, rates, outputs, params=(), inputs=(), cite="", ranges=N
 
 
 def ring(size):
-    """Oscillators in a ring, each with its own stiffness, coupled to both neighbours by a known spring; one is seen. 3 unknowns each."""
+    """Oscillators in a ring with unknown stiffnesses, known springs between them; one is seen. 3 unknowns each."""
     states = [name for i in range(size) for name in (f"x{i}", f"v{i}")]
     rates = {}
     for i in range(size):
@@ -31,21 +30,37 @@ def ring(size):
 
 
 def chain(size):
-    """Compartments in a chain, each emptied into the next at an unknown rate; the first is filled, the last is seen. 2 unknowns each."""
+    """Compartments, each emptied into the next at an unknown rate; the first filled, the last seen. 2 unknowns each."""
     rates = {"x0": "-k0*x0"} | {f"x{i}": f"k{i - 1}*x{i - 1} - k{i}*x{i}" for i in range(1, size)}
-    return proof(f"A chain of {size} compartments, the first filled, the last seen", list(rates), rates, [f"x{size - 1}"],
-                 [f"k{i}" for i in range(size)], [{"x0": "1"}])
+    return proof(
+        f"A chain of {size} compartments, the first filled, the last seen",
+        list(rates),
+        rates,
+        [f"x{size - 1}"],
+        [f"k{i}" for i in range(size)],
+        [{"x0": "1"}],
+    )
 
 
 def loss_chain(size):
     """The same with flow both ways and the first compartment seen: all rates are identifiable."""
     rates = {}
     for i in range(size):
-        terms = [f"-k{i}*x{i}"] + ([f"k{i - 1}*x{i - 1}", f"-b{i - 1}*x{i}"] if i else []) + ([f"b{i}*x{i + 1}"] if i + 1 < size else [])
+        terms = (
+            [f"-k{i}*x{i}"]
+            + ([f"k{i - 1}*x{i - 1}", f"-b{i - 1}*x{i}"] if i else [])
+            + ([f"b{i}*x{i + 1}"] if i + 1 < size else [])
+        )
         rates[f"x{i}"] = " + ".join(terms).replace("+ -", "- ")
     params = [f"k{i}" for i in range(size)] + [f"b{i}" for i in range(size - 1)]
-    return proof(f"A chain of {size} compartments with flow both ways, the first filled and seen", list(rates), rates, ["x0"], params,
-                 [{"x0": "1"}])
+    return proof(
+        f"A chain of {size} compartments with flow both ways, the first filled and seen",
+        list(rates),
+        rates,
+        ["x0"],
+        params,
+        [{"x0": "1"}],
+    )
 
 
 def two_inputs(size):
@@ -66,12 +81,15 @@ def lotka_volterra(size):
 
 def lotka_volterra_one(size):
     """The same with one species seen: every other species has a scale that is not."""
-    return lotka_volterra(size).replace("output " + ", ".join(f"x{i}" for i in range(size)), "output x0").replace(
-        "all seen", "one seen")
+    return (
+        lotka_volterra(size)
+        .replace("output " + ", ".join(f"x{i}" for i in range(size)), "output x0")
+        .replace("all seen", "one seen")
+    )
 
 
 def masses(size):
-    """Masses on a line between springs, masses and stiffnesses unknown, pushed and seen at one end: a scale is not seen but for the push."""
+    """Masses on a line between springs, all unknown, pushed and seen at one end: the push gives the scale. 4 unknowns each."""
     rates, states = {}, []
     for i in range(size):
         states += [f"x{i}", f"v{i}"]
@@ -80,15 +98,24 @@ def masses(size):
         left = f"-k{i}*(x{i} - x{i - 1})" if i else "-k0*x0"
         rates[f"v{i}"] = f"({left}{right})/m{i}"
     params = [f"k{i}" for i in range(size)] + [f"m{i}" for i in range(size)]
-    return proof(f"{size} masses between springs, pushed and seen at one end", states, rates, ["x0"], params, [{"v0": "1/m0"}])
+    return proof(
+        f"{size} masses between springs, pushed and seen at one end", states, rates, ["x0"], params, [{"v0": "1/m0"}]
+    )
 
 
 def goodwin(size):
-    """A feedback loop of a gene and its products (Goodwin 1965) with saturation, the last product seen: scales are not."""
+    """A feedback loop of a gene and its products with saturation (Goodwin 1965), the first seen: scales are not. 3 unknowns each."""
     states = [f"x{i}" for i in range(size)]
     rates = {"x0": f"a0/(c + x{size - 1}^2) - b0*x0"} | {f"x{i}": f"a{i}*x{i - 1} - b{i}*x{i}" for i in range(1, size)}
     params = [f"a{i}" for i in range(size)] + [f"b{i}" for i in range(size)] + ["c"]
-    return proof(f"A feedback loop of {size} products, the first seen", states, rates, ["x0"], params, cite="after Goodwin, Adv. Enzyme Regul. 3 (1965)")
+    return proof(
+        f"A feedback loop of {size} products, the first seen",
+        states,
+        rates,
+        ["x0"],
+        params,
+        cite="after Goodwin, Adv. Enzyme Regul. 3 (1965)",
+    )
 
 
 # the family, and how its size follows from a number of unknowns

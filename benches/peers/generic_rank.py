@@ -1,117 +1,28 @@
-"""The modular power-series test of observability and identifiability in plain Python: an oracle that shares nothing with ours.
+"""The modular power-series test of observability and identifiability in plain Python: an oracle that shares nothing with
+ours.
 
-A. Sedoglavic, A probabilistic algorithm to test local algebraic observability in polynomial time, J. Symbolic Computation 33
-(2002): the outputs are power series in time at a random state modulo a prime, inputs are random series, and the rank of what
-their coefficients depend on is the rank of the observability codistribution, unless chance made it smaller. Orders are added
-until one adds nothing (the span of the differentials is then closed under d/dt) or the rank is full.
+A. Sedoglavic, A probabilistic algorithm to test local algebraic observability in polynomial time, J. Symbolic Computation
+33 (2002): the outputs are power series in time at a random state modulo a prime, inputs are random series, and the rank of
+what their coefficients depend on is the rank of the observability codistribution, unless chance made it smaller. Orders are
+added until one adds nothing (the span of the differentials is then closed under d/dt) or the rank is full.
 
-Functions are adjoined by their differential equations, with values at the state as if independent; what they hide is seen at true
-states only (`Reals`), where the same series are computed in three hundred digits.
+Functions are adjoined by their differential equations, with values at the state as if independent; what they hide is seen
+at true states only (`Reals`), where the same series are computed in three hundred digits.
 """
 
 import json
 import math
-import random
 import sys
 import time
 from fractions import Fraction
 
 import numpy as np
 
+from number_kinds import NoSuchState, Prime, Reals
 from proof_file import ProofFile
 
 
-PRIMES = (134217487, 134217467, 134217439, 134217403)  # the largest below 2^27 that are 3 modulo 4: roots are powers there
-
-
 LEAVES = ("number", "constant", "state", "input", "signal")
-
-
-class NoSuchState(Exception):
-    """A division by zero, or a root of what is no square: another state has to be drawn."""
-
-
-class Prime:
-    """Integers modulo a prime. Below 2^27, 512 products are summed in 64 bits; larger ones are Python's own integers."""
-
-    def __init__(self, seed, prime=None):
-        prime = prime or PRIMES[seed % len(PRIMES)]
-        self.prime, self.random, self.memory = prime, random.Random(seed), {}
-        self.dtype = np.int64 if prime < 2**27 else object
-
-    def reduce(self, value):
-        return value % self.prime
-
-    def invert(self, value):
-        if value % self.prime == 0:
-            raise NoSuchState
-        return pow(int(value), -1, self.prime)
-
-    def number(self, fraction):
-        return fraction.numerator % self.prime * self.invert(fraction.denominator) % self.prime
-
-    def draw(self, name=None, span=None):
-        return self.random.randrange(1, self.prime)
-
-    def function(self, name, argument):
-        """A value at a state: some number, the same for the same argument; sines and cosines on the circle."""
-        argument, prime = int(argument), self.prime
-        if name == "sqrt":
-            root = pow(argument, (prime + 1) // 4, prime)  # the prime is 3 modulo 4
-            if argument == 0 or root * root % prime != argument:
-                raise NoSuchState
-            return root
-        kind = "sin" if name == "cos" else "sinh" if name == "cosh" else name
-        if (kind, argument) not in self.memory:
-            tangent = self.draw()
-            square = tangent * tangent % prime * (-1 if kind == "sinh" else 1)
-            scale = self.invert(1 + square)
-            self.memory[kind, argument] = (2 * tangent * scale % prime, (1 - square) * scale % prime)
-        return self.memory[kind, argument][name in ("cos", "cosh")] if kind in ("sin", "sinh") else self.memory[kind, argument][0]
-
-    def pivot(self, row):
-        places = np.flatnonzero(row)
-        return places[0] if len(places) else None
-
-
-class Reals:
-    """True states, in three hundred digits: slower, and nothing is taken for independent. What is below 10^-250 of its row is noise."""
-
-    dtype = object
-
-    def __init__(self, seed, digits=300):
-        import mpmath
-        self.mp, self.random = mpmath.mp.clone(), random.Random(seed)
-        self.mp.dps, self.small = digits, self.mp.mpf(10) ** (50 - digits)
-
-    def reduce(self, value):
-        return value
-
-    def invert(self, value):
-        if abs(value) < self.small:
-            raise NoSuchState
-        return 1 / self.mp.mpf(value)
-
-    def number(self, fraction):
-        return self.mp.mpf(fraction.numerator) / fraction.denominator
-
-    def draw(self, name=None, span=None):
-        if name == "pi":
-            return +self.mp.pi
-        low, high = span or (self.mp.mpf(1) / 2, self.mp.mpf(2))
-        return low + (high - low) * self.mp.mpf(self.random.randrange(1, 10**9)) / 10**9
-
-    def function(self, name, argument):
-        value = getattr(self.mp, name)(argument)
-        if not self.mp.isfinite(value) or isinstance(value, self.mp.mpc) or name == "sqrt" and value < self.small:
-            raise NoSuchState
-        return value
-
-    def pivot(self, row):
-        place = max(range(len(row)), key=lambda column: abs(row[column]), default=None)
-        if place is None:
-            return None
-        return place if abs(row[place]) > self.small else None
 
 
 def derivative(model, name, node, argument):
@@ -157,18 +68,29 @@ class Program:
             if name not in (*LEAVES, "+", "-", "*", "/"):
                 self.derivatives[done] = derivative(model, name, done, operands[0])
             done += 1
-        still = [rate == model.node("number", Fraction(0)) or model.nodes[rate][0] == "number" and not model.nodes[rate][1]
-                 for rate in self.rates]
+        still = [
+            rate == model.node("number", Fraction(0)) or model.nodes[rate][0] == "number" and not model.nodes[rate][1]
+            for rate in self.rates
+        ]
         self.order, self.constant = self.sorted(), {}
         for node in self.order:
             name, *operands = model.nodes[node]
-            self.constant[node] = (name in ("number", "constant") or name == "state" and still[operands[0]]
-                                   or name not in ("input", "signal", "state") and all(self.constant[o] for o in operands))
+            self.constant[node] = (
+                name in ("number", "constant")
+                or name == "state"
+                and still[operands[0]]
+                or name not in ("input", "signal", "state")
+                and all(self.constant[o] for o in operands)
+            )
 
     def sorted(self):
         """What values need, operands first."""
         found, seen = [], set()
-        for root in [*self.model.outputs, *self.rates, *(self.model.node("state", place) for place in range(len(self.rates)))]:
+        for root in [
+            *self.model.outputs,
+            *self.rates,
+            *(self.model.node("state", place) for place in range(len(self.rates))),
+        ]:
             stack = [(root, False)]
             while stack:
                 node, ready = stack.pop()
@@ -207,8 +129,15 @@ class Series:
             if name in LEAVES:
                 self.leaf(node, name, operands, order)
             elif not (order and program.constant[node]):
-                value[node][order] = coefficient(name, [value[operand] for operand in operands], value[node], order, numbers, self.inverse,
-                                                 value.get(program.derivatives.get(node)))
+                value[node][order] = coefficient(
+                    name,
+                    [value[operand] for operand in operands],
+                    value[node],
+                    order,
+                    numbers,
+                    self.inverse,
+                    value.get(program.derivatives.get(node)),
+                )
         for node in program.order:
             name, *operands = self.model.nodes[node]
             if not (name in LEAVES or order and program.constant[node]):
@@ -220,17 +149,23 @@ class Series:
         if name == "input":
             here[order] = numbers.draw("input")
         elif name == "signal":
-            here[order] = reduce(self.signals[operands[0]][order + operands[1]] * math.perm(order + operands[1], operands[1]))
+            here[order] = reduce(
+                self.signals[operands[0]][order + operands[1]] * math.perm(order + operands[1], operands[1])
+            )
         elif name == "state" and order:
             rate = self.program.rates[operands[0]]
             here[order] = reduce(self.value[rate][order - 1] * self.inverse[order])
             slope[order] = reduce(self.slope[rate][order - 1] * self.inverse[order])
         elif name == "state":
             begin = model.initial.get(operands[0])
-            here[0] = self.value[begin][0] if begin is not None else numbers.draw(None, self.spans.get(model.states[operands[0]]))
+            here[0] = (
+                self.value[begin][0] if begin is not None else numbers.draw(None, self.spans.get(model.states[operands[0]]))
+            )
             slope[0, operands[0]] = numbers.number(Fraction(1))
         elif order == 0:
-            here[0] = numbers.number(operands[0]) if name == "number" else numbers.draw(operands[0], self.spans.get(operands[0]))
+            here[0] = (
+                numbers.number(operands[0]) if name == "number" else numbers.draw(operands[0], self.spans.get(operands[0]))
+            )
 
 
 def generic_rank(model, numbers, limit=None):
@@ -253,7 +188,9 @@ def generic_rank(model, numbers, limit=None):
         if any(abs(entry) > small for column, entry in enumerate(row) if column != pivot):
             hidden.add(pivot)
     return {
-        "rank": len(basis), "dimension": len(unknowns), "order": order,
+        "rank": len(basis),
+        "dimension": len(unknowns),
+        "order": order,
         "seen": [model.states[state] for column, state in enumerate(unknowns) if column not in hidden],
         "not_seen": [model.states[state] for column, state in enumerate(unknowns) if column in hidden],
     }
@@ -297,7 +234,8 @@ def constant(model, node, numbers):
         return numbers.draw(operands[0])
     left, right = ([constant(model, operand, numbers) for operand in operands] + [None])[:2]
     return {"+": lambda: left + right, "-": lambda: left - right, "*": lambda: left * right, "/": lambda: left / right}.get(
-        name, lambda: numbers.function(name, left))()
+        name, lambda: numbers.function(name, left)
+    )()
 
 
 def coefficient(name, operands, here, order, numbers, inverse, derived):
@@ -308,14 +246,14 @@ def coefficient(name, operands, here, order, numbers, inverse, derived):
     if name == "-":
         return reduce(left[order] - right[order])
     if name == "*":
-        return reduce(np.dot(left[:order + 1], right[order::-1]))
+        return reduce(np.dot(left[: order + 1], right[order::-1]))
     if name == "/":
         rest = reduce(np.dot(here[:order], right[order:0:-1])) if order else 0
         return reduce((left[order] - rest) * numbers.invert(right[0]))
     if order == 0:
         return numbers.function(name, left[0])
-    weighted = reduce(left[1:order + 1] * np.arange(1, order + 1))  # F(a)' = F'(a) a'
-    return reduce(reduce(np.dot(weighted, derived[order - 1::-1])) * inverse[order])
+    weighted = reduce(left[1 : order + 1] * np.arange(1, order + 1))  # F(a)' = F'(a) a'
+    return reduce(reduce(np.dot(weighted, derived[order - 1 :: -1])) * inverse[order])
 
 
 def product(factor, factor_is_constant, slope, slope_is_constant, order, numbers):
@@ -324,7 +262,7 @@ def product(factor, factor_is_constant, slope, slope_is_constant, order, numbers
         return numbers.reduce(factor[0] * slope[order])
     if slope_is_constant:
         return numbers.reduce(factor[order] * slope[0])
-    return numbers.reduce(np.dot(factor[:order + 1], slope[order::-1]))
+    return numbers.reduce(np.dot(factor[: order + 1], slope[order::-1]))
 
 
 def dependence(name, operands, node, order, value, slope, program, numbers):
@@ -340,7 +278,7 @@ def dependence(name, operands, node, order, value, slope, program, numbers):
     if name == "/":  # d(a/b) b = da - (a/b) db
         rest = times(node, right)
         if order and not still[right]:
-            rest = rest + reduce(np.dot(value[right][1:order + 1], slope[node][order - 1::-1]))
+            rest = rest + reduce(np.dot(value[right][1 : order + 1], slope[node][order - 1 :: -1]))
         return reduce(reduce(slope[left][order] - rest) * numbers.invert(value[right][0]))
     return times(program.derivatives[node], left)
 
@@ -380,6 +318,9 @@ def decide(text, seed=1, tries=2, numbers=Prime, question=generic_rank):
 if __name__ == "__main__":
     for path in [argument for argument in sys.argv[1:] if not argument.startswith("--")]:
         began = time.process_time()
-        answer = decide(open(path, encoding="utf-8").read(), numbers=Reals if "--reals" in sys.argv else Prime,
-                        tries=1 if "--once" in sys.argv else 2)
+        answer = decide(
+            open(path, encoding="utf-8").read(),
+            numbers=Reals if "--reals" in sys.argv else Prime,
+            tries=1 if "--once" in sys.argv else 2,
+        )
         print(json.dumps({"file": path, **answer, "seconds": round(time.process_time() - began, 4)}))

@@ -1,8 +1,8 @@
 """The published models of tests/models: models.py [BINARY]
 
-Holds `expected.toml` to the plain test at two primes, at true states where there are functions that are not rational, and to the functions
-that were published as identifiable: each of them is seen, and there are as many as there can be. With a BINARY, its answers too.
-Exit status 1 where anything differs.
+Holds `expected.toml` to the plain test at two primes, at true states where there are functions that are not rational, and
+to the functions that were published as identifiable: each of them is seen, and there are as many as there can be. With a
+BINARY, its answers too. Exit status 1 where anything differs.
 """
 
 import json
@@ -12,7 +12,7 @@ import tomllib
 from pathlib import Path
 
 from differential import FUNCTION, is_seen, theirs
-from generic_rank import Prime, Reals, decide
+from generic_rank import Reals, decide
 from proof_file import ProofFile
 
 MODELS = Path(__file__).resolve().parents[2] / "tests" / "models"
@@ -22,7 +22,7 @@ def told(text, functions, alone=False, known_constants=False):
     """The rank with more outputs, or with these alone and nothing in motion, or with all constants known."""
     model = ProofFile(text + "".join(f"\noutput {function}" for function in functions))
     if alone:
-        model.outputs, model.fields = model.outputs[len(model.outputs) - len(functions):], []
+        model.outputs, model.fields = model.outputs[len(model.outputs) - len(functions) :], []
     if known_constants:
         moving = {name for _, rates in model.fields for name in rates}
         model.unknown = [name in moving for name in model.states]
@@ -34,7 +34,9 @@ def mistakes(text, expected):
     found = []
     answers = [decide(text)] + ([decide(text, numbers=Reals, tries=1)] if FUNCTION.search(text) else [])
     for answer in answers:
-        if any(answer[key] != expected[key] for key in ("rank", "dimension")) or set(answer["not_seen"]) != set(expected["not_seen"]):
+        if any(answer[key] != expected[key] for key in ("rank", "dimension")) or set(answer["not_seen"]) != set(
+            expected["not_seen"]
+        ):
             found.append(f"rank {answer['rank']} of {answer['dimension']}, not seen {answer['not_seen']}")
     functions, of_constants = expected.get("functions", []), expected.get("functions_of_constants", [])
     if told(text, functions + of_constants) != expected["rank"]:
@@ -48,13 +50,17 @@ def mistakes(text, expected):
 
 def binary_mistakes(binary, path, expected, limit=60):
     try:
-        run = subprocess.run([binary, "rank", str(path), "--json", "--samples", "2"], capture_output=True, text=True, timeout=limit)
+        run = subprocess.run(
+            [binary, "rank", str(path), "--json", "--samples", "2"], capture_output=True, text=True, timeout=limit
+        )
         rank, final, words = theirs(json.loads(run.stdout))
     except (subprocess.TimeoutExpired, json.JSONDecodeError) as error:
         return [f"{binary}: {type(error).__name__}"]
     found = [] if final and rank == expected["rank"] else [f"{binary}: rank {rank}{'' if final else ', not final'}"]
     if final and words:
-        found += [f"{binary}: {name} {word}" for name, word in words.items() if is_seen(word) != (name not in expected["not_seen"])]
+        found += [
+            f"{binary}: {name} {word}" for name, word in words.items() if is_seen(word) != (name not in expected["not_seen"])
+        ]
     return found
 
 
@@ -66,7 +72,9 @@ def main(binary=None):
         wrong += 1
     for name in sorted(names & table.keys()):
         text = (MODELS / f"{name}.proof").read_text()
-        found = mistakes(text, table[name]) + (binary_mistakes(binary, MODELS / f"{name}.proof", table[name]) if binary else [])
+        found = mistakes(text, table[name]) + (
+            binary_mistakes(binary, MODELS / f"{name}.proof", table[name]) if binary else []
+        )
         wrong += bool(found)
         for line in found:
             print(f"{name}: {line}; the table says {table[name]['rank']} of {table[name]['dimension']}")

@@ -1,7 +1,9 @@
-"""A proof file handed to StrikePy, in a process of its own: `peer_strikepy.py FILE` prints the rank that it finds and how long it took.
+"""A proof file handed to StrikePy, in a process of its own: `peer_strikepy.py FILE` prints the rank that it finds and how
+long it took.
 
-StrikePy (D. Rey Rostro and A. F. Villaverde, Bioinformatics 2023; on PyPI) derives outputs symbolically and takes the rank of the
-observability-identifiability matrix, all input derivatives being symbols. Models are modules there; this one is made from the file.
+StrikePy (D. Rey Rostro and A. F. Villaverde, Bioinformatics 2023; on PyPI) derives outputs symbolically and takes the rank
+of the observability-identifiability matrix, all input derivatives being symbols. Models are modules there; this one is made
+from the file.
 """
 
 import contextlib
@@ -31,8 +33,13 @@ def symbolic(model):
         elif name == "state":
             values.append(sympy.Symbol(model.states[inner[0]]))
         else:
-            apply = {"+": lambda a, b: a + b, "-": lambda a, b: a - b, "*": lambda a, b: a * b, "/": lambda a, b: a / b,
-                     "^": lambda a, b: a**b}.get(name) or getattr(sympy, name)
+            apply = {
+                "+": lambda a, b: a + b,
+                "-": lambda a, b: a - b,
+                "*": lambda a, b: a * b,
+                "/": lambda a, b: a / b,
+                "^": lambda a, b: a**b,
+            }.get(name) or getattr(sympy, name)
             values.append(apply(*inner))
     return values
 
@@ -41,7 +48,11 @@ def module(text):
     """The file as StrikePy has its models: states x, constants p, inputs u, rates f, outputs h."""
     model = ProofFile(text)
     values = symbolic(model)
-    moving = [state for state in model.states if any(values[rates.get(state, 0)] != 0 for _, rates in model.fields if state in rates)]
+    moving = [
+        state
+        for state in model.states
+        if any(values[rates.get(state, 0)] != 0 for _, rates in model.fields if state in rates)
+    ]
     moving = moving or model.states[:1]
     inputs = [sympy.Symbol(f"input_{index}") for index, (role, _) in enumerate(model.fields) if role == "input"]
     rates, known = dict.fromkeys(moving, sympy.Integer(0)), iter(inputs)

@@ -1,16 +1,19 @@
 """A proof file as a straight-line program: what a second program has to know of the language, and no more.
 
-Read are `state`, `param`, `known`, `unknown`, `initial`, `experiments`, `let`, `drift`, `input`, `output` and `sample`; claims and the like
-end the reading of an entry and are skipped. A node is (operation, operands); operands come before what is made of them, and equal nodes
-are one. A known signal is a node of its own, and its derivatives are; an unknown one is a polynomial of time.
+Read are `state`, `param`, `known`, `unknown`, `initial`, `experiments`, `let`, `drift`, `input`, `output` and `sample`;
+claims and the like end the reading of an entry and are skipped. A node is (operation, operands); operands come before what
+is made of them, and equal nodes are one. A known signal is a node of its own, and its derivatives are; an unknown one is a
+polynomial of time.
 """
 
 import re
 from fractions import Fraction
 
 TOKEN = re.compile(r'\s+|#[^\n]*|"[^"]*"|(\d+\.\d+|\d+|[A-Za-z_]\w*|<=|>=|!=|.)')
-ENTRIES = set("system cite use state param angle let drift input field output sample claim set pole map line "
-              "definition undecided erratum reduction known unknown initial experiments".split())
+ENTRIES = set(
+    "system cite use state param angle let drift input field output sample claim set pole map line "
+    "definition undecided erratum reduction known unknown initial experiments".split()
+)
 FUNCTIONS = set("sqrt exp log sin cos tan asin acos atan sinh cosh tanh abs".split())
 
 
@@ -160,8 +163,9 @@ class ProofFile:
 
     def repeat(self):
         """Further experiments: each state, signal, input and output once more, constants only once."""
-        states, fields, outputs, signals, initial = (kind.copy() for kind in (
-            self.states, self.fields, self.outputs, self.signals, self.initial))
+        states, fields, outputs, signals, initial = (
+            kind.copy() for kind in (self.states, self.fields, self.outputs, self.signals, self.initial)
+        )
         for experiment in range(2, self.count + 1):
             places = {}
             for place, name in enumerate(states):
@@ -179,8 +183,16 @@ class ProofFile:
                 else:
                     copies[index] = self.node(name, *(copies[operand] for operand in operands))
             for role, rates in fields:
-                self.fields.append((role, {f"{name}@{experiment}": copies[rate] for name, rate in rates.items()
-                                           if f"{name}@{experiment}" in self.states}))
+                self.fields.append(
+                    (
+                        role,
+                        {
+                            f"{name}@{experiment}": copies[rate]
+                            for name, rate in rates.items()
+                            if f"{name}@{experiment}" in self.states
+                        },
+                    )
+                )
             self.outputs += [copies[output] for output in outputs]
             self.signals |= {f"{name}@{experiment}": order for name, order in signals.items()}
             self.initial |= {places[place]: None if value is None else copies[value] for place, value in initial.items()}

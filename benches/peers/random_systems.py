@@ -22,7 +22,9 @@ class Maker:
 
     def number(self):
         if self.extreme and self.chance(0.3):
-            return self.random.choice(["1000000007", "1/1000000000", "123456789/1000", "0.000000001", "99999999999999999999", "7/1000003"])
+            return self.random.choice(
+                ["1000000007", "1/1000000000", "123456789/1000", "0.000000001", "99999999999999999999", "7/1000003"]
+            )
         return self.random.choice(["1", "2", "3", "5", "1/2", "2/3", "7", "0.25", "10"])
 
     def expression(self, names, depth=3):
@@ -53,8 +55,14 @@ class Maker:
 
     def positive(self, names, depth):
         name = self.random.choice(names) if names else self.number()
-        return self.random.choice([name, f"{name}^2", f"{name}*{self.random.choice(names) if names else 2}",
-                                   f"({self.expression(names, min(depth, 1))})^2" if depth else f"{name}^2"])
+        return self.random.choice(
+            [
+                name,
+                f"{name}^2",
+                f"{name}*{self.random.choice(names) if names else 2}",
+                f"({self.expression(names, min(depth, 1))})^2" if depth else f"{name}^2",
+            ]
+        )
 
     def system(self):
         """A system in itself: rates, outputs, inputs."""
@@ -64,7 +72,9 @@ class Maker:
         depth = self.random.choice([1, 2, 2, 3])
         near = lambda: self.random.sample(names, min(len(names), self.random.choice([1, 2, 3])))
         rates = {state: self.expression(near(), depth) for state in states}
-        outputs = [self.expression(near(), self.random.choice([0, 0, 1, 2])) for _ in range(self.random.choice([1, 1, 1, 2]))]
+        outputs = [
+            self.expression(near(), self.random.choice([0, 0, 1, 2])) for _ in range(self.random.choice([1, 1, 1, 2]))
+        ]
         inputs = []
         for _ in range(self.random.choice([0, 0, 1, 1, 2])):
             moved = self.random.sample(states, self.random.randint(1, len(states)))
@@ -74,11 +84,14 @@ class Maker:
     def hide(self, states, params, rates, outputs, inputs):
         """The same system in more coordinates, so that a motion is not seen: what is known of the rank is that of the old ones."""
         import re
+
         chosen = [state for state in states if self.chance(0.6)] or states[:1]
         how = self.random.choice(["scaling", "translation", "translation", "power", "unseen", "lost parameter"])
         extra = "e"
+
         def put(text, old, new):
             return re.sub(rf"\b{old}\b", new, text)
+
         if how == "unseen":
             moving = self.expression(states + [extra], 1)
             return states + [extra], params, rates | {extra: moving}, outputs, inputs
@@ -86,15 +99,18 @@ class Maker:
             return states, params + [extra], rates, outputs, inputs
         new = {"scaling": "({0}*e)", "translation": "({0} - e)", "power": "({0}*e^2)"}[how]
         moving = self.expression([*chosen, extra], 1) if how == "translation" else "0"
+
         def through(text):
             for state in chosen:
                 text = put(text, state, new.format(state))
             return text
+
         def back(state, text, own):
             text = through(text)
             if state not in chosen:
                 return text
             return f"{text} + ({own})" if how == "translation" else f"({text})/e" if how == "scaling" else f"({text})/e^2"
+
         rates = {state: back(state, rate, moving) for state, rate in rates.items()}
         inputs = [{state: back(state, rate, "0") for state, rate in field.items()} for field in inputs]
         outputs = [through(output) for output in outputs]
@@ -143,13 +159,25 @@ def declared_system(seed):
         lines.append(f"unknown w(t) order {order}")
     begins = [state for state in states if maker.chance(0.25)]
     for state in begins:
-        lines.append(f"initial {state} known" if maker.chance(0.5) else f"initial {state} = {maker.random.choice(['0', '1', '3/2', '0'])}")
+        lines.append(
+            f"initial {state} known"
+            if maker.chance(0.5)
+            else f"initial {state} = {maker.random.choice(['0', '1', '3/2', '0'])}"
+        )
     valued = {line.split()[1] for line in lines if line.startswith("initial") and "=" in line}
     depth = maker.random.choice([1, 2, 2])
     lines += ["", "drift f", *(f"  {state}' = {maker.expression(near(), depth)}" for state in states), ""]
     if maker.chance(0.2):
-        lines += ["input g", f"  {states[0]}' = {maker.expression(near(), 1)}", *(["  others' = 0"] if len(states) > 1 or unknown else []), ""]
-    lines.append("output " + ", ".join(maker.expression(near(), maker.random.choice([0, 0, 1])) for _ in range(maker.random.choice([1, 1, 2]))))
+        lines += [
+            "input g",
+            f"  {states[0]}' = {maker.expression(near(), 1)}",
+            *(["  others' = 0"] if len(states) > 1 or unknown else []),
+            "",
+        ]
+    lines.append(
+        "output "
+        + ", ".join(maker.expression(near(), maker.random.choice([0, 0, 1])) for _ in range(maker.random.choice([1, 1, 2])))
+    )
     lines.append("sample")
     drawn = [name for name in states if name not in valued] + params + known + unknown
     drawn += ["u'"] if any("u'" in line for line in lines) else []
@@ -189,8 +217,21 @@ def related_system(seed):
     ]
     chosen = dice.sample(relations, dice.choice([1, 1, 2]))
     outputs = [f"{relation} + {dice.choice(names + ['0', '0', '0'])}*{dice.choice(['0', '1'])}" for relation in chosen]
-    rates = {name: dice.choice(["0", "1", name, dice.choice(names), f"-{name}*{dice.choice(names)}", f"exp(-{dice.choice(names)})",
-                                f"sqrt({dice.choice(names)})", dice.choice(relations)]) for name in names}
+    rates = {
+        name: dice.choice(
+            [
+                "0",
+                "1",
+                name,
+                dice.choice(names),
+                f"-{name}*{dice.choice(names)}",
+                f"exp(-{dice.choice(names)})",
+                f"sqrt({dice.choice(names)})",
+                dice.choice(relations),
+            ]
+        )
+        for name in names
+    }
     return proof(f"related system {seed}", names, rates, outputs)
 
 
@@ -212,8 +253,16 @@ EDGES = {
     "degree 200": "state x, y\ndrift f  x' = y^200  y' = x\noutput x^200\nsample x in [1, 2] y in [1, 2]\n",
     "pole within": "state x, y\ndrift f  x' = y/(x - 1)  y' = 1/y\noutput 1/(x - y)\nsample x in [0, 2] y in [0, 2]\n",
     "a denominator that is a square less its expansion plus one": "state x, y\ndrift f  x' = y  y' = 1/((x + y)^2 - x^2 - 2*x*y - y^2 + 1)\noutput x\nsample x in [1, 2] y in [1, 2]\n",
-    "deep nesting": "state x, y\ndrift f  x' = " + "1/(1 + " * 25 + "y" + ")" * 25 + "  y' = x\noutput x\nsample x in [1, 2] y in [1, 2]\n",
-    "deep polynomial nesting": "state x, y\ndrift f  x' = " + "(1 + y*" * 25 + "x" + ")" * 25 + "  y' = x\noutput y\nsample x in [1, 2] y in [1, 2]\n",
+    "deep nesting": "state x, y\ndrift f  x' = "
+    + "1/(1 + " * 25
+    + "y"
+    + ")" * 25
+    + "  y' = x\noutput x\nsample x in [1, 2] y in [1, 2]\n",
+    "deep polynomial nesting": "state x, y\ndrift f  x' = "
+    + "(1 + y*" * 25
+    + "x"
+    + ")" * 25
+    + "  y' = x\noutput y\nsample x in [1, 2] y in [1, 2]\n",
     "x^5 z": "state x, z\ndrift f  x' = 1  z' = 0\noutput x^5*z\nsample x in [1, 2] z in [1, 2]\n",
     "x^5 z about zero": "state x, z\ndrift f  x' = 1  z' = 0\noutput x^5*z\nsample x in [-1, 1] z in [-1, 1]\n",
     "hidden exponential identity": "state x, k\ndrift f  x' = 1  k' = 0\noutput exp(x)*exp(k) - exp(x + k)\nsample x in [0, 1] k in [0, 1]\n",
@@ -235,7 +284,9 @@ EDGES = {
     "an input that does nothing": "state x, y\ndrift f  x' = y  y' = 0\ninput g  others' = 0\noutput x\nsample x in [1, 2] y in [1, 2]\n",
     "only an input tells": "state x, y\ndrift f  x' = -x  y' = 0\ninput g  x' = y  y' = 0\noutput x\nsample x in [1, 2] y in [1, 2]\n",
     "a bilinear input": "state x, y, z\ndrift f  x' = 0  y' = 0  z' = 0\ninput g  x' = y*z  y' = -x*z  z' = 0\noutput x\nsample x in [1, 2] y in [1, 2] z in [1, 2]\n",
-    "sixteen outputs": "state x, y\ndrift f  x' = y  y' = x\noutput " + ", ".join(f"(x + y)^{n}" for n in range(1, 17)) + "\nsample x in [1, 2] y in [1, 2]\n",
+    "sixteen outputs": "state x, y\ndrift f  x' = y  y' = x\noutput "
+    + ", ".join(f"(x + y)^{n}" for n in range(1, 17))
+    + "\nsample x in [1, 2] y in [1, 2]\n",
     "a constant that is a parameter without a value": "state x, y\nparam a\ndrift f  x' = a*y  y' = 0\noutput x\nsample x in [1, 2] y in [1, 2] a in [1, 2]\n",
     "a parameter whose value is zero": "state x, y\nparam a = 0\ndrift f  x' = a*y  y' = 0\noutput x\nsample x in [1, 2] y in [1, 2]\n",
     "a parameter whose value hides": "state x, y\nparam a = 1\ndrift f  x' = (a - 1)*y  y' = 0\noutput x\nsample x in [1, 2] y in [1, 2]\n",
