@@ -2,7 +2,7 @@
 
 mod accessible;
 pub(super) mod answer;
-mod generic;
+pub(super) mod generic;
 pub(super) mod motions;
 mod seen;
 
