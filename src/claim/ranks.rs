@@ -5,7 +5,7 @@ use super::identity::{OnOneBranch, RANDOM_PRIMES};
 use super::rank_bounds::by_bounds;
 use super::rank_witness::{Ranks, rank_witness};
 use super::terms::{OnBranch, Terms};
-use super::verdict::Verdict;
+use super::verdict::{Verdict, Witness};
 use crate::expression::NodeId;
 use crate::observability::{Branch, Codistribution, Frame, GenericRank, Length, Stop, generic_rank};
 use crate::system::System;
