@@ -38,6 +38,9 @@ pub(super) fn add_generic_json(branch: &BranchAnswer, object: &mut Value) {
 
 /// How the answer is known, in brackets.
 fn certainty(generic: &GenericAnswer) -> String {
+    if let Some(open) = &generic.open {
+        return open.clone();
+    }
     match generic.log2_error.is_finite() {
         false => "proved by a minor".to_owned(),
         true => format!("but for an error of probability below 2^{:.0}", generic.log2_error.ceil()),
