@@ -321,6 +321,9 @@ fn turns() {
     );
     assert_eq!(functions(&space), ["x*u + y*v + z*w", "x^2 + y^2 + z^2", "u^2 + v^2 + w^2"]);
     no_word_changes(&system, &space);
+    // no section would do: a length is no linear function of any coordinate
+    let reduced = is_reparametrised(&system, text, &space);
+    assert!(reduced.contains("z1' = z3\n  z2' = 2*z1\n"), "{reduced}");
 }
 
 /// The cross ratio of four numbers is that of their images under every fractional linear map: the third field is quadratic.

@@ -9,6 +9,7 @@
 
 mod ansatz;
 mod answer;
+mod express;
 mod functions;
 mod kernel;
 mod lattice;
