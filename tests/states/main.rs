@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/picture.rs"]
 mod picture;
 
+mod accessible;
 mod certify;
 mod certify_domains;
 mod certify_verdicts;

@@ -30,7 +30,7 @@ use self::modular::rank;
 use self::monomial::{Polynomial, polynomial_node};
 use self::proof::{Motion, annihilate, is_unchanged, is_unseen_for_good, together};
 use super::Codistribution;
-use super::generic::generic_answer;
+use super::generic::{Ceiling, generic_answer};
 use crate::expression::{NodeId, Program, Symbol, draw_residues, expand_angles};
 use crate::number::PrimeField;
 use crate::system::{Assignment, System};
@@ -104,7 +104,7 @@ impl Attempt {
         // the rank at a point modulo a prime bounds the rank from below, if no function was taken for another
         attempt.found.settles_the_rank = attempt.is_complete()
             && (!source.has_functions()
-                || generic_answer(system, values, true).at_least >= coordinates.len() - unseen);
+                || generic_answer(system, values, Ceiling::Rests).at_least >= coordinates.len() - unseen);
         attempt.functions(system, (&source, &kernel), &blocks, &of_blocks, &motion, rng);
         attempt.measured(system, words, &motion, &blocks, rng);
         attempt.found.seen = (0..coordinates.len())
