@@ -36,6 +36,7 @@ pub use block::BlockProgram;
 pub(crate) use block::Machine;
 pub(crate) use common_factor::share_a_factor;
 pub use derivative::Derivation;
+pub(crate) use derivative::signal_of;
 pub use domain::{Guard, Need};
 pub(crate) use domain::{add_guard, substitute_guards};
 pub(crate) use expansion::Expansion;

@@ -8,7 +8,7 @@ use crate::observability::{
     parse_condition, solve_conditions,
 };
 use crate::sweep::certainty::Certainty;
-use crate::system::{Assignment, FieldRole, Kind, SymbolInfo, System, Value};
+use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, Value};
 use dashu::rational::RBig;
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -70,6 +70,8 @@ pub struct BranchAnswer {
     /// The parameters that the rank depends on and the file gives a value to: they were held at it. A claim about the rank is
     /// about all values.
     pub held: Vec<(String, RBig)>,
+    /// What is drawn from a range that the file does not give, and this range.
+    pub by_default: Vec<(String, Range)>,
     /// The words that were needed, as a paper writes them.
     pub words: Vec<String>,
     /// The length of the longest word taken, and why no longer ones were.
@@ -106,6 +108,10 @@ pub struct RankAnswer {
     pub seed: u64,
     /// The number of states of the system: the rank of one that is seen.
     pub dimension: usize,
+    /// The coordinates that are known and have no column, by name.
+    pub known: Vec<String>,
+    /// What is assumed of signals that are not known.
+    pub assumed: Vec<String>,
     /// An answer for each branch of the conditions; one where there are none.
     pub branches: Vec<BranchAnswer>,
 }
@@ -275,6 +281,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
             own: own_rows.enumerate().map(numbered).collect(),
             conditions: locus.conditions.clone(),
+            by_default: locus.by_default.clone(),
             held: held_parameters(system, question, &branch.values, own.iter().flatten()),
             words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
             order: codistribution.order,
@@ -293,6 +300,8 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         fields: system.roles(),
         seed: question.seed,
         dimension: system.unknown_count(),
+        known: system.known_names(),
+        assumed: system.assumed_of_signals(),
         branches: answers,
     })
 }

@@ -97,6 +97,12 @@ impl System {
         self.unknowns().into_iter().map(|symbol| self.symbol_name(symbol).to_owned()).collect()
     }
 
+    /// The names of the known coordinates, in their order.
+    pub(crate) fn known_names(&self) -> Vec<String> {
+        let known = self.states.iter().filter(|state| self.known.contains(state));
+        known.map(|symbol| self.symbol_name(*symbol).to_owned()).collect()
+    }
+
     /// What a symbol stands for, in words, where it is no plain state and no plain parameter.
     pub(crate) fn stands_for(&self, symbol: Symbol) -> Option<String> {
         let kind = self.coordinates.kinds.get(&symbol);

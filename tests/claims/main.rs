@@ -12,6 +12,7 @@ mod edges;
 mod formulas;
 mod functions;
 mod inequalities;
+mod inputs;
 mod language;
 mod lie_derivatives;
 mod misprints;

@@ -20,6 +20,9 @@ pub(super) struct Equations {
     /// The states, and among them the unknowns, by their places.
     pub states: usize,
     pub columns: Vec<usize>,
+    /// The unknowns, and beside them the states that are known at the beginning: what rates lead to may have been known then,
+    /// and derivatives end where those by all of these do.
+    pub closed: Vec<usize>,
     pub outputs: usize,
     /// What the bound of degrees is taken from: rates, outputs, and how functions move.
     pub measured: Vec<NodeId>,
@@ -126,6 +129,10 @@ impl Equations {
             columns: (0..system.states.len())
                 .filter(|place| !system.known.contains(&system.states[*place]))
                 .collect(),
+            closed: {
+                let closed = system.closed_coordinates();
+                (0..system.states.len()).filter(|place| closed.contains(&system.states[*place])).collect()
+            },
             outputs: outputs.len(),
             measured,
             starts,

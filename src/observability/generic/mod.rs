@@ -122,7 +122,7 @@ impl Probe {
         let equations = &self.equations;
         let full = equations.columns.len();
         let outputs = equations.outputs.max(1);
-        let most = full.max(1);
+        let most = equations.closed.len().max(1);
         let mut length = if rests { (full.div_ceil(outputs) + 2).min(most) } else { most };
         loop {
             let trajectory = equations.trajectory(draw.field, start, (draw.seed, draw.signs), length)?;
@@ -131,6 +131,8 @@ impl Probe {
                 std::iter::successors(Some(0), |k| Some(draw.field.sum(*k, one))).take(length + 1).collect()
             };
             let mut echelon = Echelon::new(draw.field, full);
+            let some_are_known = equations.closed.len() > full;
+            let mut closed = Echelon::new(draw.field, equations.closed.len());
             let mut open: Vec<Covector> = trajectory.covectors;
             let mut order = 0;
             for k in 0..length {
@@ -142,7 +144,11 @@ impl Probe {
                     if raised {
                         order = k;
                     }
-                    if raised || !rests {
+                    let goes_on = match some_are_known {
+                        true => closed.insert(equations.closed.iter().map(|column| value[*column]).collect()),
+                        false => raised,
+                    };
+                    if goes_on || !rests {
                         further.push(covector);
                     }
                 }
@@ -235,6 +241,9 @@ pub struct Directions {
 /// What is seen at almost all states that satisfy the conditions. `rests` says that the fields leave no state of that set: there what
 /// has stopped growing has stopped for good.
 pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> GenericAnswer {
+    if let Err(why) = system.require_continuous("power series are those of flows") {
+        return nothing_known(system, why);
+    }
     let mut probe = Probe::new(system, conditions);
     let columns = probe.equations.columns.clone();
     let dimension = columns.len();
@@ -250,7 +259,7 @@ pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> 
     };
     // any fixed seed: what is true almost everywhere does not depend on the user's
     let mut rng = ChaCha8Rng::seed_from_u64(0x7365_7269_6573);
-    let bounds = bound::rounds(&probe.equations, dimension);
+    let bounds = bound::rounds(&probe.equations, probe.equations.closed.len());
     let rounds = bounds.as_ref().map_or(1, |bounds| bounds.rounds);
     // of each choice of signs the ranks of all columns, and of all but one
     let mut best: Vec<(usize, Vec<bool>)> = Vec::new();
@@ -283,6 +292,21 @@ pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> 
     }
     conclude(&mut answer, &best, &bounds, known_functions, rests);
     answer
+}
+
+/// An answer that says why it says nothing.
+fn nothing_known(system: &System, why: String) -> GenericAnswer {
+    let unknowns: Vec<_> = system.unknowns().into_iter().map(|symbol| (symbol, Seen::Undecided)).collect();
+    GenericAnswer {
+        dimension: unknowns.len(),
+        at_least: 0,
+        at_most: unknowns.len(),
+        log2_error: f64::NEG_INFINITY,
+        rounds: 0,
+        order: 0,
+        unknowns,
+        open: Some(why),
+    }
 }
 
 /// Whether values of functions are known by their relations, so that a random one shows what the true one does.

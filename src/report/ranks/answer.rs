@@ -3,8 +3,11 @@
 use super::seen::{deviations_json, deviations_text, direction_text, place_text};
 use crate::number::rational_to_f64;
 use crate::observability::{NamedCoordinate, Spectrum, Stop};
-use crate::report::names::{fields_json, fields_text, values_json, values_text};
+use crate::report::names::{
+    by_default_text, fields_json, fields_text, ranges_json, values_json, values_text,
+};
 use crate::sweep::{BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, SweepReport};
+use crate::system::Range;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -124,6 +127,7 @@ fn branch_json(branch: &BranchAnswer) -> Value {
     let mut object = sweep_json(&branch.full);
     object["conditions"] = json!(branch.conditions);
     object["held_at_the_files_values"] = values_json(&branch.held);
+    object["drawn_by_default"] = ranges_json(&branch.by_default);
     object["words"] = json!(branch.words);
     object["order"] = json!(branch.order);
     object["stopped_because"] = json!(stop_text(branch.stop));
@@ -141,6 +145,8 @@ pub fn rank_json(answer: &RankAnswer) -> Value {
     object["file"] = json!(answer.file);
     object["fields"] = fields_json(&answer.fields);
     object["dimension"] = json!(answer.dimension);
+    object["known"] = json!(answer.known);
+    object["assumed"] = json!(answer.assumed);
     object["seed"] = json!(answer.seed);
     object
 }
@@ -238,10 +244,35 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
     let _ = writeln!(out, "  {:.2} s", report.seconds);
 }
 
+/// What an answer takes for granted beside its file's equations: what is known and so not counted, what is assumed of signals,
+/// and ranges that the file does not give.
+pub(crate) fn taken_for_granted(answer: &RankAnswer) -> Vec<String> {
+    let mut lines = Vec::new();
+    if !answer.known.is_empty() {
+        lines.push(format!("known, and not counted: {}", answer.known.join(", ")));
+    }
+    if !answer.assumed.is_empty() {
+        lines.push(format!("assumed of unknown signals: {}", answer.assumed.join(", ")));
+    }
+    let mut by_default: Vec<(String, Range)> = Vec::new();
+    for one in answer.branches.iter().flat_map(|branch| &branch.by_default) {
+        if !by_default.contains(one) {
+            by_default.push(one.clone());
+        }
+    }
+    if !by_default.is_empty() {
+        lines.push(by_default_text(&by_default));
+    }
+    lines
+}
+
 /// An answer as text.
 pub fn rank_text(answer: &RankAnswer) -> String {
     let mut out = format!("{}: {} states, {} outputs\n", answer.title, answer.dimension, answer.outputs);
     let _ = writeln!(out, "fields: {}", fields_text(&answer.fields));
+    for line in taken_for_granted(answer) {
+        let _ = writeln!(out, "{line}");
+    }
     for branch in &answer.branches {
         if !branch.conditions.is_empty() {
             let _ = writeln!(out, "where {}", branch.conditions.join(", "));

@@ -5,4 +5,5 @@ pub(super) mod answer;
 mod seen;
 
 pub use accessible::{accessibility_json, accessibility_text};
+pub(super) use answer::taken_for_granted;
 pub use answer::{rank_json, rank_text};
