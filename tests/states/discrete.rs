@@ -233,7 +233,11 @@ fn claims_are_about_compositions() {
     let text = "system \"s\"\nstate x\ndrift f\n  x+ = x - 1\nclaim 1: L(f, x/x) = 1\n";
     let system: System = text.parse().unwrap();
     let outcome = &prove(&system)[0];
-    assert!(outcome.ok && outcome.domain.iter().any(|need| need.contains("x + (-1) != 0")), "{:?}", outcome.domain);
+    assert!(
+        outcome.ok && outcome.domain.iter().any(|need| need.contains("x + (-1) != 0")),
+        "{:?}",
+        outcome.domain
+    );
 }
 
 #[test]

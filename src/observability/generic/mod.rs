@@ -18,6 +18,7 @@ mod echelon;
 mod equations;
 mod independence;
 mod matrix;
+mod steps;
 #[cfg(test)]
 mod tests;
 
@@ -26,7 +27,7 @@ pub use matrix::{GenericRank, generic_rank};
 
 use crate::expression::Symbol;
 use crate::number::{PrimeField, Refusal};
-use crate::system::{Assignment, System};
+use crate::system::{Assignment, System, Time};
 use bound::Rounds;
 use covectors::Covector;
 use echelon::Echelon;
@@ -241,8 +242,8 @@ pub struct Directions {
 /// What is seen at almost all states that satisfy the conditions. `rests` says that the fields leave no state of that set: there what
 /// has stopped growing has stopped for good.
 pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> GenericAnswer {
-    if let Err(why) = system.require_continuous("power series are those of flows") {
-        return nothing_known(system, why);
+    if system.time == Time::Discrete {
+        return answer_in_steps(system, conditions, rests);
     }
     let mut probe = Probe::new(system, conditions);
     let columns = probe.equations.columns.clone();
@@ -291,6 +292,54 @@ pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> 
         }
     }
     conclude(&mut answer, &best, &bounds, known_functions, rests);
+    answer
+}
+
+/// The same in discrete time.
+fn answer_in_steps(system: &System, conditions: &Assignment, rests: bool) -> GenericAnswer {
+    let mut answer = nothing_known(system, String::new());
+    let steps = match steps::Steps::new(system, conditions, rests) {
+        Ok(steps) => steps,
+        Err(why) => return nothing_known(system, why),
+    };
+    // any fixed seed: what is true almost everywhere does not depend on the user's
+    let mut rng = ChaCha8Rng::seed_from_u64(0x0073_7465_7073);
+    let bounds = steps.rounds();
+    let mut best: Option<(usize, Vec<bool>)> = None;
+    let mut refused = String::new();
+    for _ in 0..bounds.as_ref().map_or(1, |bounds| bounds.rounds) + ATTEMPTS {
+        let field = PrimeField::random(&mut rng);
+        let (echelon, order) = match steps.follow(field, &mut rng) {
+            Ok(found) => found,
+            Err(refusal) => {
+                refused = refusal.to_string();
+                continue;
+            }
+        };
+        answer.rounds += 1;
+        answer.order = answer.order.max(order);
+        let (rank, seen) = (echelon.rank(), echelon.seen());
+        best = Some(match best.take() {
+            Some(known) if known.0 > rank => known,
+            // seen is what the others do without at no point
+            Some(known) if known.0 == rank => {
+                (rank, known.1.iter().zip(&seen).map(|(known, here)| *known && *here).collect())
+            }
+            _ => (rank, seen),
+        });
+        let is_full = rank == answer.dimension;
+        if is_full || answer.rounds == bounds.as_ref().map_or(1, |bounds| bounds.rounds) {
+            break;
+        }
+    }
+    let Some(best) = best else {
+        return nothing_known(system, format!("{ATTEMPTS} random sequences met poles: {refused}"));
+    };
+    if bounds.as_ref().is_ok_and(|bounds| answer.rounds < bounds.rounds) && best.0 < answer.dimension {
+        return nothing_known(system, format!("too many of the random sequences met poles: {refused}"));
+    }
+    answer.open = None;
+    conclude(&mut answer, &[best], &bounds, true, rests);
     answer
 }
 
