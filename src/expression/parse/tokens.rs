@@ -221,6 +221,8 @@ pub(crate) fn moved(input: &mut Text<'_>) -> Read<Name> {
     };
     match base.strip_suffix('\'') {
         Some(base) => {
+            // the prime is no part of the name
+            name.span.end -= usize::from(experiment.is_none());
             name.text = experiment.map_or(base.to_owned(), |experiment| format!("{base}@{experiment}"));
             blank(input)?;
         }
