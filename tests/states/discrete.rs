@@ -51,10 +51,11 @@ fn rank(mut rows: Vec<Vec<i128>>) -> usize {
         let Some(pivot) = (found..rows.len()).find(|row| rows[*row][column] != 0) else { continue };
         rows.swap(found, pivot);
         let scale = inverse(rows[found][column]);
-        for row in found + 1..rows.len() {
-            let factor = rows[row][column] * scale % P;
-            for place in column..columns {
-                rows[row][place] = (rows[row][place] - factor * rows[found][place] % P).rem_euclid(P);
+        let (above, below) = rows.split_at_mut(found + 1);
+        for row in below {
+            let factor = row[column] * scale % P;
+            for (entry, other) in row.iter_mut().zip(&above[found]) {
+                *entry = (*entry - factor * other % P).rem_euclid(P);
             }
         }
         found += 1;
