@@ -218,6 +218,36 @@ fn special_sets() {
     assert_eq!((left.generic_rank, left.is_final), (2, false));
 }
 
+/// The later values of a known signal are drawn where the signal is, given or by default, and boxes have a side for each.
+#[test]
+fn later_values_lie_where_the_signal_does() {
+    let text = "system \"s\" state x, y, z known u(t) drift f x+ = x + y y+ = y + u*z output x sample x in [1, 2] y in [1, 2] z in [1, 2]";
+    for range in ["", " u in [3, 4]"] {
+        let text = format!("{text}{range}");
+        let found = only(&text, &[]);
+        assert_eq!((found.generic_rank, found.full.certified), (3, 20), "{text}");
+        let worst = &found.full.worst.as_ref().unwrap().0;
+        let (low, high) = if range.is_empty() { (-1.0, 1.0) } else { (3.0, 4.0) };
+        assert!(
+            worst.iter().filter(|at| at.name.starts_with('u')).all(|at| (low..=high).contains(&at.value)),
+            "{worst:?}"
+        );
+        let mut system: System = text.parse().unwrap();
+        let region = palmistry::certify(&mut system, 200);
+        assert!(region.is_ok(), "{:?}", region.err());
+    }
+}
+
+/// Angles may be added up in a step; on a set that fixes one up to whole turns these do not matter.
+#[test]
+fn angles_are_turned() {
+    let text = "system \"s\" state a, b, x angle a, b drift f a+ = a + b x+ = x + sin(a) output x sample a in [-3, 3] b in [-3, 3] x in [0, 1]";
+    let found = only(text, &[]);
+    assert_eq!((found.generic_rank, found.is_final, found.full.certified), (3, true, 20));
+    let on = only(text, &["sin(b) = 0"]);
+    assert_eq!(on.full.rank_histogram.len(), 1);
+}
+
 /// `L(f, e)` is `e` after a step, wherever that exists.
 #[test]
 fn claims_are_about_compositions() {
