@@ -44,6 +44,8 @@ pub(crate) enum Item {
         name: Name,
         components: Vec<(Name, Expr)>,
         others_are_zero: bool,
+        /// Whether it takes states to their successors, `x+ = e`, and is no field.
+        is_map: bool,
     },
     Output(Vec<OutputSyntax>),
     /// Signals that somebody knows, or nobody.
@@ -266,8 +268,17 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     ))
     .parse_next(input)?;
     let title = cut_err(name).context("the field's name").parse_next(input)?;
-    let component = |input: &mut Text<'_>| -> Read<Vec<(Name, Expr)>> {
-        let state = moved(input)?;
+    let mut time = None;
+    let mut component = |input: &mut Text<'_>| -> Read<Vec<(Name, Expr)>> {
+        let begin = input.current_token_start();
+        let (state, steps) = moved(input)?;
+        if *time.get_or_insert(steps) != steps {
+            let help = "x' is a rate of change, x+ the value after a step: a system has one of the two";
+            return stop(begin, "one kind of time in a field", Some(help.to_owned()));
+        }
+        if steps && state.name == "others" {
+            return stop(begin, "the name of a state: one that is not named stays as it is", None);
+        }
         cut_err(sign("=")).context("'=' and the rate of change").parse_next(input)?;
         let rate = cut_err(sum).parse_next(input)?;
         let loops = loops(input)?;
@@ -278,7 +289,7 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     };
     let mut components: Vec<(Name, Expr)> = Vec::new();
     while !begins(input)
-        && let Some(found) = opt(component).parse_next(input)?
+        && let Some(found) = opt(component.by_ref()).parse_next(input)?
     {
         components.extend(found);
     }
@@ -289,7 +300,8 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
         return stop(value.span.start, "0: the components that are not named can only be zero", None);
     }
     let others_are_zero = !others.is_empty();
-    Ok(Item::Field { role, name: title, components, others_are_zero })
+    let is_map = time == Some(true);
+    Ok(Item::Field { role, name: title, components, others_are_zero, is_map })
 }
 
 fn sample(input: &mut Text<'_>) -> Read<Item> {

@@ -97,6 +97,26 @@ fn words_that_may_be_names_are_told_by_what_follows() {
     }
 }
 
+/// Components, ranges and steps.
+#[test]
+fn vectors_and_steps_are_coloured() {
+    let grammar = grammar();
+    for (text, part, kind) in [
+        ("  x[i]' = 1", "'", "keyword.operator.derivative"),
+        ("  x[i + 1]+ = 1", "+ =", "keyword.operator"),
+        ("  x+ = 1", "x", "variable.other.state"),
+        ("state x[1..20]", "..", "keyword.operator.range"),
+        ("state x[1..20]", "20", "constant.numeric"),
+        ("  x[i]' = 1 for i in 2..3", "for", "keyword.other"),
+        ("let a = sum(i in 1..3, x[i])", "sum", "support.function"),
+        ("let a = 1.5", "1.5", "constant.numeric"),
+    ] {
+        let at = text.rfind(part).expect("it is a part");
+        let scope = &grammar.scopes(text)[at];
+        assert!(scope.contains(kind), "{part} in {text}: {scope}");
+    }
+}
+
 /// Of every shipped file: each word that begins an entry is a keyword, and each byte is part of a comment or of a text in quotation marks
 /// where the reader has it so.
 #[test]
