@@ -4,7 +4,7 @@
 use super::conditions::{all_vanish, vanishes};
 use super::elimination::independent_rows;
 use super::series::lie_derivative_by_series;
-use crate::expression::{NodeId, Program, draw_residues, expand_angles, gradient};
+use crate::expression::{NodeId, Program, Symbol, draw_residues, expand_angles, gradient};
 use crate::number::PrimeField;
 use crate::system::{Assignment, System};
 use rand::SeedableRng;
@@ -141,6 +141,7 @@ impl Codistribution {
             Length::UntilItStops => (closed.len(), closed.len(), PATIENCE),
             Length::Exactly(order) => (order, order, MOST_WORDS),
         };
+        let longest = system.longest_word().map_or(longest, |limit| longest.min(limit));
         let mut result = Codistribution {
             words: Vec::new(),
             values: Vec::new(),
@@ -257,7 +258,10 @@ fn rank_around(
 
 /// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
 fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
-    let mut solved: Vec<_> = conditions.iter().map(|(symbol, value)| (*symbol, *value)).collect();
+    // of the last derivative of a signal that outputs tie, the rate is not that of the field
+    let counts = |(symbol, _): &(&Symbol, &NodeId)| !system.is_cut_off(**symbol);
+    let mut solved: Vec<_> =
+        conditions.iter().filter(counts).map(|(symbol, value)| (*symbol, *value)).collect();
     solved.sort_unstable();
     solved.into_iter().all(|(symbol, value)| {
         let left = system.graph.symbol(symbol);

@@ -12,7 +12,7 @@ use crate::expression::parse::{
     stop, sum,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
-use winnow::combinator::{alt, cut_err, opt, preceded, separated};
+use winnow::combinator::{alt, cut_err, opt, peek, preceded, separated};
 use winnow::error::{ErrMode, ParserError};
 use winnow::prelude::*;
 use winnow::stream::{Location, Stream};
@@ -46,6 +46,8 @@ pub(crate) enum Item {
         others_are_zero: bool,
     },
     Output(Vec<(Expr, Option<DeclaredDimension>)>),
+    /// Outputs that are zero: `output 0 = y`.
+    Zero(Vec<(Expr, Option<DeclaredDimension>)>),
     /// Signals that somebody knows, or nobody.
     Signals {
         knowledge: Knowledge,
@@ -199,6 +201,20 @@ fn outputs(input: &mut Text<'_>) -> Read<Item> {
     let one = |input: &mut Text<'_>| Ok((sum(input)?, annotation(input)?));
     keyword("output").parse_next(input)?;
     cut_err(separated(1.., one, sign(","))).map(Item::Output).parse_next(input)
+}
+
+fn zero_outputs(input: &mut Text<'_>) -> Read<Item> {
+    let zero = |input: &mut Text<'_>| -> Read<()> {
+        (literal("0"), blank, literal("=")).void().parse_next(input)?;
+        blank(input)
+    };
+    keyword("output").parse_next(input)?;
+    peek(zero).parse_next(input)?;
+    let one = |input: &mut Text<'_>| {
+        zero.context("'0 =': of outputs that are zero all in the list are").parse_next(input)?;
+        Ok((cut_err(sum).parse_next(input)?, annotation(input)?))
+    };
+    cut_err(separated(1.., one, sign(","))).map(Item::Zero).parse_next(input)
 }
 
 fn params(input: &mut Text<'_>) -> Read<Item> {
@@ -396,7 +412,7 @@ fn item(input: &mut Text<'_>) -> Read<Item> {
         preceded(keyword("angle"), names).map(Item::Angle),
         definition,
         field,
-        outputs,
+        alt((zero_outputs, outputs)),
         alt((sample, claim, faulty, remark_only, view, entry)),
     ))
     .parse_next(input)

@@ -132,7 +132,7 @@ impl Outline {
             }
             Item::Let { name, .. } => add(DeclarationKind::Definition, &name.text, &name.span),
             Item::Field { role, name, .. } => add(DeclarationKind::Field(*role), &name.text, &name.span),
-            Item::Output(list) => {
+            Item::Output(list) | Item::Zero(list) => {
                 for (expr, _) in list {
                     add(DeclarationKind::Output, &super::in_one_line(text, &expr.span), &expr.span);
                 }

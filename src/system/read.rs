@@ -186,7 +186,9 @@ impl System {
                 self.entry_failed(problem, remnant, problems)?;
             }
         }
-        self.finish_signals();
+        if let Err(problem) = self.finish_signals() {
+            problems.add(problem)?;
+        }
         for claim in self.claims.clone() {
             for statement in claim.body.statements() {
                 if let Err(problem) = self.check(&claim, statement) {
@@ -288,7 +290,8 @@ impl System {
             Item::Field { role, name, components, others_are_zero } => {
                 self.enter_field(*role, name.clone(), components, *others_are_zero)?
             }
-            Item::Output(list) => {
+            Item::Output(list) | Item::Zero(list) => {
+                let is_zero = matches!(item, Item::Zero(_));
                 let mut further = Vec::new();
                 for (expr, _) in list {
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
@@ -299,9 +302,15 @@ impl System {
                         let guards = self.substitute_guards(&guards, &copies);
                         further.push((in_words(&text, experiment), there, guards));
                     }
+                    if is_zero {
+                        self.coordinates.zero_outputs.push(value);
+                    }
                     self.see(text, value, guards);
                 }
                 for (text, value, guards) in further {
+                    if is_zero {
+                        self.coordinates.zero_outputs.push(value);
+                    }
                     self.see(text, value, guards);
                 }
             }

@@ -62,7 +62,7 @@ pub(crate) fn check(system: &System, items: &[Item], imports: &[Import]) -> (Dim
         Item::State(list) | Item::Param(list) => list.iter().any(|one| one.dimension.is_some()),
         Item::Signals { list, .. } => list.iter().any(|one| one.dimension.is_some()),
         Item::Let { dimension, .. } => dimension.is_some(),
-        Item::Output(list) => list.iter().any(|(_, dimension)| dimension.is_some()),
+        Item::Output(list) | Item::Zero(list) => list.iter().any(|(_, dimension)| dimension.is_some()),
         _ => false,
     };
     let is_declared = items.iter().any(declares) || imports.iter().any(|(_, _, other)| other.is_declared);
@@ -235,7 +235,7 @@ impl Checker<'_> {
                 Arc::make_mut(&mut self.known.definitions).insert(name.text.clone(), found);
             }
             Item::Field { role, name, components, .. } => self.field(*role, name, components),
-            Item::Output(list) => {
+            Item::Output(list) | Item::Zero(list) => {
                 for (expr, dimension) in list {
                     let found = self.quantity(expr);
                     self.note_units(&found);
