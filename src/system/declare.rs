@@ -23,8 +23,8 @@ const HIGHEST_DERIVATIVE: usize = 30;
 /// Of an unknown signal of which nothing else is said so many derivatives are taken not to vanish.
 pub(crate) const DEFAULT_ORDER: usize = 1;
 
-/// No more derivatives are taken of signals that outputs tie.
-const HIGHEST_TIED: usize = 12;
+/// No more unknowns are told by outputs that are zero: the derivatives of these are as many.
+const MOST_TIED: usize = 20;
 
 /// How many unknowns the entries of a file declare.
 fn unknowns_of(items: &[Item], derivatives: &Derivatives) -> usize {
@@ -61,7 +61,7 @@ impl System {
         if items.iter().any(|item| matches!(item, Item::Zero(_))) {
             // as many derivatives as there are unknowns: a rank has stopped growing by then
             let unknowns = unknowns_of(items, &derivatives) * count.unwrap_or(1);
-            self.coordinates.longest_word = Some(unknowns.min(HIGHEST_TIED));
+            self.coordinates.longest_word = Some(unknowns);
         }
         derivatives
     }
@@ -336,6 +336,12 @@ impl System {
                 name.push('_');
             }
             self.add_field(name, Role::Drift, NOWHERE, chains);
+        }
+        if self.longest_word().is_some_and(|longest| longest > MOST_TIED) {
+            let message = format!("an output is zero, and there are more than {MOST_TIED} unknowns");
+            return Err(
+                Problem::new(&(0..0), message, "").help("write what it says as an output that is measured")
+            );
         }
         if self.longest_word().is_some() {
             return match self.fields.iter().find(|field| field.role == Role::Input) {

@@ -6,6 +6,7 @@
 //!
 //! This floor knows nothing of ranks, verdicts or palms.
 
+mod components;
 mod declare;
 mod determinant;
 mod dimension;
@@ -15,6 +16,7 @@ mod elaborate;
 mod error;
 mod extent;
 mod format;
+mod functions;
 mod grammar;
 mod imports;
 mod lie;

@@ -87,6 +87,13 @@ pub struct Field {
     pub(crate) derivation: Derivation,
 }
 
+impl Field {
+    /// Forgets what was differentiated along it, since its components are others.
+    pub(crate) fn derive_anew(&mut self) {
+        self.derivation = Derivation::new(self.components.iter().copied().collect());
+    }
+}
+
 /// What names stand for, as it is written: name and text of each.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Explanations {
@@ -250,6 +257,8 @@ pub struct System {
     pub(crate) calculated: HashSet<String>,
     /// What is known of dimensions.
     pub(crate) dimensions: Arc<Dimensions>,
+    /// The vectors, by their names: those whose components are symbols or definitions.
+    pub(crate) vectors: BTreeSet<String>,
     /// The dimensions of the files that this one imports, while it is read.
     pub(crate) imported_dimensions: Vec<Import>,
 }

@@ -21,4 +21,5 @@ mod published;
 mod recheck;
 mod series;
 mod units;
+mod vectors;
 mod words;

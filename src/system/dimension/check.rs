@@ -10,7 +10,7 @@ use crate::expression::Symbol;
 use crate::expression::syntax::{Equation, Expr, Name, Span};
 use crate::system::Problem;
 use crate::system::declare::in_words;
-use crate::system::grammar::{ClaimBody, Expectation, Item, Statement};
+use crate::system::grammar::{ClaimBody, Expectation, Item, OutputSyntax, Statement};
 use crate::system::model::{Role, System};
 use crate::system::signals::DeclaredInitial;
 use crate::system::views::{End, View};
@@ -27,6 +27,8 @@ pub(crate) struct Dimensions {
     /// Whether the file, or one that it imports, declares a dimension.
     pub(super) is_declared: bool,
     pub(super) solution: Solution,
+    /// The dimensions of powers whose exponents are no numbers, as `length^(n)`, by what they are called.
+    pub(super) symbolic: HashMap<String, Form>,
     pub(super) symbols: Arc<BTreeMap<Symbol, Form>>,
     pub(super) definitions: Arc<HashMap<String, Quantity>>,
     /// The dimension by which a derivative along the field differs from what is differentiated.
@@ -62,7 +64,7 @@ pub(crate) fn check(system: &System, items: &[Item], imports: &[Import]) -> (Dim
         Item::State(list) | Item::Param(list) => list.iter().any(|one| one.dimension.is_some()),
         Item::Signals { list, .. } => list.iter().any(|one| one.dimension.is_some()),
         Item::Let { dimension, .. } => dimension.is_some(),
-        Item::Output(list) | Item::Zero(list) => list.iter().any(|(_, dimension)| dimension.is_some()),
+        Item::Output(list) | Item::Zero(list) => list.iter().any(|one| one.dimension.is_some()),
         _ => false,
     };
     let is_declared = items.iter().any(declares) || imports.iter().any(|(_, _, other)| other.is_declared);
@@ -117,9 +119,12 @@ impl Checker<'_> {
             let form = theirs.resolve(form, &mut Default::default());
             let mut found = Form::known(form.known);
             for (unknown, power) in &form.unknown {
-                let place = places
-                    .entry(*unknown)
-                    .or_insert_with(|| mine.unknown(theirs.origin(*unknown).0.to_owned()));
+                let place = places.entry(*unknown).or_insert_with(|| {
+                    match (theirs.origin(*unknown).0.to_owned(), theirs.is_rigid(*unknown)) {
+                        (of, true) => mine.rigid(of),
+                        (of, false) => mine.unknown(of),
+                    }
+                });
                 found = found.times_power(place, power);
             }
             found
@@ -236,7 +241,7 @@ impl Checker<'_> {
             }
             Item::Field { role, name, components, .. } => self.field(*role, name, components),
             Item::Output(list) | Item::Zero(list) => {
-                for (expr, dimension) in list {
+                for OutputSyntax { value: expr, dimension, .. } in list {
                     let found = self.quantity(expr);
                     self.note_units(&found);
                     if let Some(dimension) = dimension {
