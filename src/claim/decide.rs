@@ -308,6 +308,14 @@ fn attempt(
         }
         Err(why) => return Err(why.to_string()),
     };
+    let mut solution = solution;
+    if of_rank {
+        for branch in solution.parts.iter_mut().chain(&mut solution.smaller) {
+            let tied = std::mem::take(branch).tied_by_outputs(system);
+            *branch = tied.map_err(|why| why.to_string())?;
+        }
+        conditions.extend(system.zero_outputs());
+    }
     let one_thing_twice = system.says_one_thing_twice(statement);
     let mut found = Vec::new();
     let lists = [

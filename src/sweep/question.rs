@@ -280,7 +280,10 @@ fn answer(
         equations.extend(parse_condition(text).map_err(RankError::Condition)?);
     }
     equations.extend(system.initial_conditions().iter().cloned());
-    let mut branches = solve_conditions(system, &equations)?;
+    let mut branches = Vec::new();
+    for branch in solve_conditions(system, &equations)? {
+        branches.push(branch.tied_by_outputs(system)?);
+    }
     for branch in &mut branches {
         for symbol in question.fixed.keys() {
             if branch.values.contains_key(symbol) {

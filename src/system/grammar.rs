@@ -12,7 +12,7 @@ use crate::expression::parse::{
     read_all, repeat, sign, stop, sum, target, written_out,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
-use winnow::combinator::{alt, cut_err, opt, preceded, separated};
+use winnow::combinator::{alt, cut_err, opt, peek, preceded, separated};
 use winnow::error::{ErrMode, ParserError};
 use winnow::prelude::*;
 use winnow::stream::{Location, Stream};
@@ -48,6 +48,8 @@ pub(crate) enum Item {
         is_map: bool,
     },
     Output(Vec<OutputSyntax>),
+    /// Outputs that are zero: `output 0 = y`.
+    Zero(Vec<OutputSyntax>),
     /// Signals that somebody knows, or nobody.
     Signals {
         knowledge: Knowledge,
@@ -223,8 +225,10 @@ fn states(input: &mut Text<'_>) -> Read<Item> {
     cut_err(declared(false)).context("a list of names").map(Item::State).parse_next(input)
 }
 
-fn outputs(input: &mut Text<'_>) -> Read<Item> {
+/// The values of a list of outputs, each behind what is read before it.
+fn seen(input: &mut Text<'_>, before: impl Fn(&mut Text<'_>) -> Read<()>) -> Read<Vec<OutputSyntax>> {
     let one = |input: &mut Text<'_>| -> Read<Vec<OutputSyntax>> {
+        before(input)?;
         let (expr, dimension) = (sum(input)?, annotation(input)?);
         let loops = loops(input)?;
         repeat(input, &loops, |indices| {
@@ -234,9 +238,27 @@ fn outputs(input: &mut Text<'_>) -> Read<Item> {
             Ok(entries.into_iter().map(one).collect())
         })
     };
-    keyword("output").parse_next(input)?;
     let list: Vec<Vec<_>> = cut_err(separated(1.., one, sign(","))).parse_next(input)?;
-    Ok(Item::Output(list.concat()))
+    Ok(list.concat())
+}
+
+fn outputs(input: &mut Text<'_>) -> Read<Item> {
+    keyword("output").parse_next(input)?;
+    seen(input, |_| Ok(())).map(Item::Output)
+}
+
+fn zero_outputs(input: &mut Text<'_>) -> Read<Item> {
+    let zero = |input: &mut Text<'_>| -> Read<()> {
+        (literal("0"), blank, literal("=")).void().parse_next(input)?;
+        blank(input)
+    };
+    keyword("output").parse_next(input)?;
+    peek(zero).parse_next(input)?;
+    let before = |input: &mut Text<'_>| {
+        let what = "'0 =': where one output of a list is zero all of them are";
+        cut_err(zero).context(what).parse_next(input)
+    };
+    seen(input, before).map(Item::Zero)
 }
 
 fn params(input: &mut Text<'_>) -> Read<Item> {
@@ -452,7 +474,7 @@ fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
         params,
         preceded(keyword("angle"), names).map(Item::Angle),
         field,
-        outputs,
+        alt((zero_outputs, outputs)),
         alt((sample, claim, faulty, remark_only, view, entry)),
     ));
     alt((definitions, one.map(|item| vec![item]))).parse_next(input)

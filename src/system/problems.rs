@@ -227,7 +227,7 @@ impl Item {
         match self {
             Item::Let { value, .. } => vec![value.clone()],
             Item::Field { components, .. } => components.iter().map(|(_, expr)| expr.clone()).collect(),
-            Item::Output(list) => list.iter().map(|one| one.value.clone()).collect(),
+            Item::Output(list) | Item::Zero(list) => list.iter().map(|one| one.value.clone()).collect(),
             Item::View(view) => {
                 view.equations().into_iter().flat_map(|e| [e.left.clone(), e.right.clone()]).collect()
             }

@@ -189,13 +189,12 @@ impl System {
                 self.entry_failed(problem, remnant, problems)?;
             }
         }
-        match self.time {
+        let finished = match self.time {
             Time::Continuous => self.finish_signals(),
-            Time::Discrete => {
-                if let Err(problem) = self.finish_discrete_signals() {
-                    problems.add(problem)?;
-                }
-            }
+            Time::Discrete => self.finish_discrete_signals(),
+        };
+        if let Err(problem) = finished {
+            problems.add(problem)?;
         }
         for claim in self.claims.clone() {
             for statement in claim.body.statements() {
@@ -312,7 +311,8 @@ impl System {
             Item::Field { role, name, components, others_are_zero, .. } => {
                 self.enter_field(*role, name.clone(), components, *others_are_zero)?
             }
-            Item::Output(list) => {
+            Item::Output(list) | Item::Zero(list) => {
+                let is_zero = matches!(item, Item::Zero(_));
                 let mut further = Vec::new();
                 for OutputSyntax { value: expr, is_repeated, .. } in list {
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
@@ -327,9 +327,15 @@ impl System {
                         let guards = self.substitute_guards(&guards, &copies);
                         further.push((in_words(&text, experiment), there, guards));
                     }
+                    if is_zero {
+                        self.coordinates.zero_outputs.push(value);
+                    }
                     self.see(text, value, guards);
                 }
                 for (text, value, guards) in further {
+                    if is_zero {
+                        self.coordinates.zero_outputs.push(value);
+                    }
                     self.see(text, value, guards);
                 }
             }
