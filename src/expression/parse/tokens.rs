@@ -128,7 +128,7 @@ pub(crate) const RESERVED: [&str; 30] = [
 ];
 
 /// Words with a meaning at some places; elsewhere they are names.
-pub(crate) const SPECIAL: [&str; 23] = [
+pub(crate) const SPECIAL: [&str; 25] = [
     "proved",
     "refuted",
     "restates",
@@ -140,6 +140,8 @@ pub(crate) const SPECIAL: [&str; 23] = [
     "as",
     "on",
     "carrying",
+    "except",
+    "or",
     "digits",
     "others",
     "set",
