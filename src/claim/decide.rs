@@ -12,9 +12,10 @@ use super::ranks::{decide_codistribution, decide_rank};
 use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict, Witness};
 use crate::checker::{Evidence, VerdictRecord};
-use crate::expression::syntax::{Equation, Relation};
-use crate::expression::{Symbol, add_guard};
-use crate::observability::{Branch, solve};
+use crate::drops::ClaimedEverywhere;
+use crate::expression::syntax::{Equation, Expr, Relation};
+use crate::expression::{Guard, NodeId, Symbol, add_guard};
+use crate::observability::{Branch, assumed, solve};
 use crate::sweep::UNINTERRUPTED;
 use crate::system::{
     Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line, line_and_column,
@@ -207,7 +208,12 @@ fn decide_statement(system: &mut System, statement: &Statement, kept: Kept, rng:
     let verdict = attempt(system, statement, rng, &mut notes).unwrap_or_else(Verdict::undecided);
     let Notes { domain, mut evidence, .. } = notes;
     let word = verdict.word();
-    evidence.retain(|evidence| [word, "unchecked"].contains(&evidence.word()));
+    // at a state where a rank is lower than claimed it is certified
+    let is_of_it = |evidence: &Evidence| {
+        [word, "unchecked"].contains(&evidence.word())
+            || word == "refuted" && matches!(evidence, Evidence::Rank(_))
+    };
+    evidence.retain(is_of_it);
     match &verdict {
         _ if kept == Kept::Verdicts => evidence.clear(),
         Verdict::Refuted { witness: Witness { refutation: Some(refutation), .. }, .. } => {
@@ -285,6 +291,9 @@ fn attempt(
     if let Question::Relations { .. } = question {
         notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
     }
+    if let Some(except) = &statement.except {
+        return everywhere(system, statement, &question, except, (guards, conditions), rng, notes);
+    }
     let sampled =
         if statement.on_sample { sample_box(system, question.sides(), &conditions) } else { Vec::new() };
     let (solution, unsolved) = match solve(system, &statement.conditions) {
@@ -336,6 +345,53 @@ fn attempt(
         }
     }
     Ok(together(&question, found, &solution.unsolved))
+}
+
+/// A rank at all states but those of some sets.
+fn everywhere(
+    system: &mut System,
+    statement: &Statement,
+    question: &Question,
+    except: &[Vec<Equation>],
+    (mut guards, conditions): (Vec<Guard>, Vec<NodeId>),
+    rng: &mut ChaCha8Rng,
+    notes: &mut Notes,
+) -> Result<Verdict, String> {
+    let (matrix, rank) = match question {
+        Question::Rank { entries, columns, claimed } => (Some((entries.clone(), *columns)), *claimed),
+        Question::Codistribution { claimed } => (None, *claimed),
+        _ => return Err("'except where' is said of a rank".to_owned()),
+    };
+    for guard in guards_of_conditions(system, statement)? {
+        add_guard(&system.graph, &mut guards, guard);
+    }
+    for condition in statement.conditions.iter().filter(|one| one.relation != Relation::Equal) {
+        let left = system.scalar(&condition.left).map_err(|problem| problem.message)?;
+        let right = system.scalar(&condition.right).map_err(|problem| problem.message)?;
+        if let Some(guard) = assumed(&mut system.graph, condition.relation, left, right) {
+            add_guard(&system.graph, &mut guards, guard);
+        }
+    }
+    let mut sets = Vec::new();
+    for set in except {
+        let mut vanishing = Vec::new();
+        for equation in set {
+            let mut side = |expr: &Expr| -> Result<NodeId, String> {
+                let (value, needed) = system.elaborate_guarded(expr).map_err(|problem| problem.message)?;
+                needed.into_iter().for_each(|guard| add_guard(&system.graph, &mut guards, guard));
+                value.as_number().ok_or_else(|| "what is left out is said by numbers".to_owned())
+            };
+            let (left, right) = (side(&equation.left)?, side(&equation.right)?);
+            vanishing.push(system.graph.sub(left, right));
+        }
+        sets.push(vanishing);
+    }
+    guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
+    notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
+    let claim = ClaimedEverywhere { matrix, rank, guards, conditions, except: sets };
+    let (verdict, evidence) = super::everywhere::decide(system, &claim, rng)?;
+    notes.evidence = evidence;
+    Ok(verdict)
 }
 
 /// How a branch stands to the set of all states that meet the conditions.

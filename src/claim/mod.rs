@@ -9,6 +9,7 @@
 mod decide;
 mod defaults;
 mod evidence;
+mod everywhere;
 mod existence;
 mod identity;
 mod inequality;

@@ -13,6 +13,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Of a minor whose doubtful factors have no more monomials than this no better one is looked for.
+const SHORT: usize = 40;
 /// No more cases are looked at.
 const MOST_CASES: usize = 3_000;
 
@@ -194,6 +196,9 @@ impl Search<'_> {
         let mut trouble = None;
         let rank = self.rank;
         for chosen in chosen.iter().filter(|chosen| chosen.columns.len() == rank) {
+            if best.as_ref().is_some_and(|((length, _), ..)| *length <= SHORT) {
+                break;
+            }
             let (minor, entries) = match self.minor(algebra, case, chosen) {
                 Ok(found) => found,
                 Err(why) => {

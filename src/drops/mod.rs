@@ -11,6 +11,7 @@
 
 mod algebra;
 mod case;
+mod claim;
 mod coordinates;
 mod explore;
 mod factors;
@@ -21,4 +22,6 @@ mod real;
 mod rows;
 mod sets;
 
+pub(crate) use rows::rows_up_to;
+pub(crate) use claim::{ClaimedEverywhere, Everywhere, MinorIdentity, decide_everywhere};
 pub use sets::{DropAnswer, DropSet, UsedMinor, where_it_drops};

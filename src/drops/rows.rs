@@ -5,7 +5,7 @@ use super::algebra::{Algebra, Chart};
 use super::point::{Point, run};
 use crate::expression::{Graph, NodeId, Program};
 use crate::number::PrimeField;
-use crate::observability::{Word, independent_rows};
+use crate::observability::{Codistribution, Length, Word, independent_rows};
 use crate::system::System;
 use rand::Rng;
 use std::collections::HashMap;
@@ -83,9 +83,14 @@ impl Rows {
 
     fn catch_up(&mut self, algebra: &mut Algebra<'_>) {
         let coordinates = algebra.coordinates.clone();
-        for row in &self.written[self.rows.len()..] {
+        for row in self.written.get(self.rows.len()..).unwrap_or_default() {
             self.rows.push(coordinates.row(algebra, row));
         }
+    }
+
+    /// The rows as the file has them.
+    pub fn as_written(&self) -> &[Vec<NodeId>] {
+        if self.grows { &self.written } else { &self.rows }
     }
 
     /// Whether longer words can be taken.
@@ -109,7 +114,12 @@ impl Rows {
 
     /// Takes words of one field more; whether there were any.
     pub fn extend(&mut self, algebra: &mut Algebra<'_>) -> bool {
-        let system = &mut *algebra.system;
+        let longer = self.longer(algebra.system);
+        self.catch_up(algebra);
+        longer
+    }
+
+    fn longer(&mut self, system: &mut System) -> bool {
         let fields = system.moving_fields();
         let next = self.rows.len() + self.last.len() * fields.len();
         if !self.grows || self.order >= LONGEST_WORD.max(self.columns) || next > MOST_WORDS {
@@ -131,7 +141,6 @@ impl Rows {
         }
         self.order += 1;
         self.add(system, longer);
-        self.catch_up(algebra);
         true
     }
 
@@ -190,6 +199,16 @@ impl Rows {
         let values = run(&self.programs.get(chart)?.1, point, rng)?;
         Some(values.chunks(self.columns.max(1)).map(<[u64]>::to_vec).collect())
     }
+}
+
+/// The rows of words, by name and one after the other, until some of them have a rank at almost all states, and of one field
+/// more.
+pub(crate) fn rows_up_to(system: &mut System, rank: usize) -> (Vec<String>, Vec<NodeId>) {
+    let fields = Codistribution::new(system, &Default::default(), Length::UntilItStops);
+    let order = fields.map_or(0, |words| if words.generic_rank() >= rank { words.order } else { 0 });
+    let mut rows = Rows::of_words(system);
+    while rows.order <= order && rows.longer(system) {}
+    (rows.names, rows.written.into_iter().flatten().collect())
 }
 
 fn cost(graph: &Graph, row: &[NodeId]) -> usize {

@@ -3,7 +3,7 @@
 use super::algebra::{Algebra, Reach};
 use super::case::Case;
 use super::coordinates;
-use super::explore::{Explored, FullCase, Search, ShortCase};
+use super::explore::{FullCase, Search, ShortCase};
 use super::merge::{Shown, merged};
 use super::minor::Product;
 use super::real::state_on;
@@ -115,7 +115,8 @@ pub fn where_it_drops(
     };
     let rows = Rows::of_words(system);
     let asked = Asked { rank, guards, ..Asked::default() };
-    let found = explore(system, rows, &asked, seed, interrupt, |algebra, search, explored| {
+    let found = prepared(system, rows, &asked, seed, interrupt, |algebra, search| {
+        let explored = &search.run(algebra)?;
         answer.cases = (explored.cases, explored.empty);
         answer.minors = explored.full.iter().map(|full| used(algebra, &search.rows, full)).collect();
         let (sets, open): (Vec<_>, Vec<_>) =
@@ -125,6 +126,7 @@ pub fn where_it_drops(
         };
         answer.sets = described(sets);
         answer.open = described(open);
+        Ok(())
     });
     answer.out_of_reach = found.err();
     answer.seconds = begin.elapsed().as_secs_f64();
@@ -145,14 +147,14 @@ pub(super) struct Asked {
     pub mentioned: Vec<NodeId>,
 }
 
-/// Follows all states, and tells what was found while the algebra lasts.
-pub(super) fn explore<T>(
+/// Gets ready to follow all states, and has that done while the algebra lasts.
+pub(super) fn prepared<T>(
     system: &mut System,
     rows: Rows,
     asked: &Asked,
     seed: u64,
     interrupt: &AtomicBool,
-    tell: impl FnOnce(&mut Algebra<'_>, &mut Search<'_>, &Explored) -> T,
+    work: impl FnOnce(&mut Algebra<'_>, &mut Search<'_>) -> Reach<T>,
 ) -> Reach<T> {
     let mut mentioned: Vec<NodeId> = rows.rows.iter().flatten().copied().collect();
     if rows.is_of_words() {
@@ -178,8 +180,7 @@ pub(super) fn explore<T>(
         search.rows.extend(&mut algebra);
         coordinates::choose(&mut algebra, &mut search)?;
     }
-    let explored = search.run(&mut algebra)?;
-    Ok(tell(&mut algebra, &mut search, &explored))
+    work(&mut algebra, &mut search)
 }
 
 /// The equations of a case, one after the other, as texts.

@@ -24,7 +24,10 @@ fn statement_formula(text: &str) -> Option<Formula> {
         row.push(Formula::Text("where"));
         row.extend(relations(statement.conditions.iter().collect()));
     }
-    for (place, set) in statement.except.iter().enumerate() {
+    if statement.except.as_ref().is_some_and(Vec::is_empty) {
+        row.push(Formula::Text("everywhere"));
+    }
+    for (place, set) in statement.except.iter().flatten().enumerate() {
         row.push(Formula::Text(if place == 0 { "except where" } else { "or" }));
         row.extend(relations(set.iter().collect()));
     }

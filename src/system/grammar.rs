@@ -45,8 +45,9 @@ pub struct Statement {
     pub on_sample: bool,
     /// `where a = b, c > d, ...`
     pub conditions: Vec<Equation>,
-    /// `except where a = b, c = d or e = f`: the sets that are left out, each by its equations.
-    pub except: Vec<Vec<Equation>>,
+    /// `except where a = b, c = d or e = f`: of a rank at all states, the sets that are left out, each by its equations; none
+    /// of them where it says `everywhere`, and nothing where the rank is that at almost all states.
+    pub except: Option<Vec<Vec<Equation>>>,
     /// The whole, in the text.
     pub span: Span,
 }
@@ -85,7 +86,7 @@ impl Statement {
 
     /// The same, and all that stands behind `where` and `except where`.
     pub fn all_equations(&self) -> impl Iterator<Item = &Equation> {
-        self.relations().chain(&self.conditions).chain(self.except.iter().flatten())
+        self.relations().chain(&self.conditions).chain(self.except.iter().flatten().flatten())
     }
 }
 
@@ -298,8 +299,10 @@ pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
         opt(preceded(keyword("where"), cut_err(separated(1.., equations, sign(","))))).parse_next(input)?;
     let conditions: Vec<Equation> = conditions.unwrap_or_default().into_iter().flatten().collect();
     end = conditions.last().map_or(end, |last| last.span.end);
+    let everywhere = opt(keyword("everywhere")).parse_next(input)?;
+    end = everywhere.as_ref().map_or(end, |word| word.end);
     let except = match opt(keyword("except")).parse_next(input)? {
-        None => Vec::new(),
+        None => everywhere.map(|_| Vec::new()),
         Some(_) => {
             cut_err(keyword("where")).context("'where', as in 'except where x = 0'").parse_next(input)?;
             let one = |input: &mut Text<'_>| -> Read<Vec<Equation>> {
@@ -308,10 +311,10 @@ pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
                 Ok(found.into_iter().flatten().collect())
             };
             let sets: Vec<Vec<Equation>> = cut_err(separated(1.., one, keyword("or"))).parse_next(input)?;
-            sets
+            Some(sets)
         }
     };
-    end = except.last().and_then(|set| set.last()).map_or(end, |last| last.span.end);
+    end = except.iter().flatten().flatten().last().map_or(end, |last| last.span.end);
     Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, except, span: begin..end }))
 }
 

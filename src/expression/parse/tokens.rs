@@ -128,7 +128,7 @@ pub(crate) const RESERVED: [&str; 30] = [
 ];
 
 /// Words with a meaning at some places; elsewhere they are names.
-pub(crate) const SPECIAL: [&str; 25] = [
+pub(crate) const SPECIAL: [&str; 26] = [
     "proved",
     "refuted",
     "restates",
@@ -140,6 +140,7 @@ pub(crate) const SPECIAL: [&str; 25] = [
     "as",
     "on",
     "carrying",
+    "everywhere",
     "except",
     "or",
     "digits",

@@ -298,7 +298,7 @@ impl Checker<'_> {
 
     fn statement(&mut self, statement: &Statement) {
         let at_numbers = self.conditions(&statement.conditions) || statement.on_sample;
-        statement.except.iter().for_each(|set| {
+        statement.except.iter().flatten().for_each(|set| {
             self.conditions(set);
         });
         let mut left = self.quantity(&statement.equation.left);
