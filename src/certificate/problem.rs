@@ -56,12 +56,12 @@ impl Problem {
         rows: RegionRows,
         given: &BTreeMap<Symbol, (RBig, RBig)>,
     ) -> Result<Problem, String> {
-        if system.states.is_empty() || system.outputs.is_empty() {
+        if system.unknown_count() == 0 || system.outputs.is_empty() {
             return Err(format!("{} declares no states or no outputs", system.name));
         }
         let RangesAndValues { ranges, values, exactly } = ranges_of(system, given)?;
         let is_angle = &system.angle_test();
-        let dimension = system.states.len();
+        let dimension = system.unknown_count();
         let NamedRows { names, entries: flat, order } = NamedRows::of(system, rows, &values)?;
         let as_written = rows_by_name(&names, &flat, dimension);
         let flat = system.graph.substitute(&flat, &values);

@@ -76,7 +76,7 @@ impl NamedRows {
         let order = match rows {
             RegionRows::Own => {
                 return match system.definition(OWN_ROWS) {
-                    Some(Value::Matrix(matrix)) if matrix.columns == system.states.len() => {
+                    Some(Value::Matrix(matrix)) if matrix.columns == system.unknown_count() => {
                         let names = (1..=matrix.rows).map(|row| format!("row {row}")).collect();
                         Ok(NamedRows { names, entries: matrix.entries.clone(), order: None })
                     }

@@ -213,7 +213,7 @@ impl RankedMatrix {
         let words = Codistribution::new(system, &branch.values, Length::UntilItStops).ok()?;
         Some(RankedMatrix {
             entries: words.entries(),
-            columns: system.states.iter().map(|state| system.symbol_name(*state).to_owned()).collect(),
+            columns: system.unknowns().iter().map(|state| system.symbol_name(*state).to_owned()).collect(),
             words: words.words.iter().map(|word| word.text(system)).collect(),
             claimed,
         })

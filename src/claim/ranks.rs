@@ -38,7 +38,7 @@ pub(crate) fn decide_codistribution(
     claimed: usize,
     rng: &mut impl Rng,
 ) -> Result<OnOneBranch, String> {
-    if system.outputs.is_empty() || system.states.is_empty() {
+    if system.outputs.is_empty() || system.unknown_count() == 0 {
         return Err("there is no codistribution: the file declares no states or no outputs".to_owned());
     }
     branch.check_codistribution(system)?;
@@ -49,7 +49,7 @@ pub(crate) fn decide_codistribution(
     let words = Codistribution::new(system, &branch.values, Length::UntilItStops)?;
     let entries = system.graph.substitute(&words.entries(), &branch.values);
     let found = words.generic_rank();
-    if !words.is_final() && found <= claimed && found < system.states.len() {
+    if !words.is_final() && found <= claimed && found < system.unknown_count() {
         return Err(format!(
             "words of up to {} fields give the rank {found}; the fields leave these states, so that longer words may add \
              to it (to claim a rank for some words, write rank([d(...); ...]))",
@@ -60,7 +60,7 @@ pub(crate) fn decide_codistribution(
         Stop::Full => "",
         _ => ", and longer words do not raise it",
     };
-    let columns = system.states.len();
+    let columns = system.unknown_count();
     // the rows that give the rank at almost all states: no other row adds to it anywhere
     let terms = Terms { sides: words.needed_entries(), guards: on.terms.guards.clone(), ..Terms::default() };
     let needed = OnBranch::new(system, branch, &terms)?;

@@ -93,7 +93,7 @@ fn certified_boxes(
         rows: found.rows.iter().filter_map(|row| kept.binary_search(row).ok()).collect(),
     });
     Ok(CertifiedBoxes {
-        columns: system.states.iter().map(|state| name(*state)).collect(),
+        columns: system.unknowns().iter().map(|state| name(*state)).collect(),
         words: kept.iter().map(|row| region.rows()[*row].name.clone()).collect(),
         rows,
         requirements,

@@ -80,7 +80,7 @@ fn certified_rank(
     seed: u64,
 ) -> Result<CertifiedRank, Missing> {
     let is_angle = &system.angle_test();
-    let width = system.states.len();
+    let width = system.unknown_count();
     let entries: Vec<NodeId> = rows.iter().flat_map(|row| row.entries.iter().copied()).collect();
     let expanded = expand_angles(&mut system.graph, &entries, is_angle);
     let program = Program::new(&system.graph, &expanded, is_angle);
@@ -115,7 +115,7 @@ fn certified_rank(
     let requirements =
         conditions.guards.iter().map(|guard| lowering.requirement(*guard)).collect::<Result<_, _>>()?;
     Ok(CertifiedRank {
-        columns: system.states.iter().map(|state| graph.symbol_name(*state).to_owned()).collect(),
+        columns: system.unknowns().iter().map(|state| graph.symbol_name(*state).to_owned()).collect(),
         words: kept.iter().map(|row| rows[*row].word.clone()).collect(),
         rows: places,
         conditions: met,

@@ -73,12 +73,119 @@ impl PrimeField {
 
     /// Montgomery's product `a * b / 2^64 mod p`.
     #[inline]
-    fn product(&self, a: u64, b: u64) -> u64 {
-        let t = u128::from(a) * u128::from(b);
+    pub(crate) fn product(&self, a: u64, b: u64) -> u64 {
+        self.reduced(u128::from(a) * u128::from(b))
+    }
+
+    /// `t / 2^64 mod p`, for `t` below `p * 2^64`.
+    #[inline]
+    fn reduced(&self, t: u128) -> u64 {
         let m = (t as u64).wrapping_mul(self.negative_inverse);
         let sum = t + u128::from(m) * u128::from(self.p); // below 2^124 + 2^126
         let high = (sum >> 64) as u64;
         if high >= self.p { high - self.p } else { high }
+    }
+
+    /// One.
+    pub(crate) fn one(&self) -> u64 {
+        self.one
+    }
+
+    /// `a + b`
+    #[inline]
+    pub(crate) fn sum(&self, a: u64, b: u64) -> u64 {
+        let sum = a + b;
+        if sum >= self.p { sum - self.p } else { sum }
+    }
+
+    /// The sum of `a_i b_(n-1-i)` of two rows of the same length: a coefficient of a product of series. Products are summed before they are
+    /// reduced, and a multiple of `p` is taken away whenever the sum has outgrown it.
+    pub(crate) fn dot_reversed(&self, a: &[u64], b: &[u64]) -> u64 {
+        let bound = u128::from(self.p) << 64; // each product is below p^2, a quarter of it
+        let mut sum = 0u128;
+        for (a, b) in a.iter().zip(b.iter().rev()) {
+            sum += u128::from(*a) * u128::from(*b);
+            if sum >= bound {
+                sum -= bound;
+            }
+        }
+        self.reduced(sum)
+    }
+
+    /// `row -= factor * other`, from one entry to the next.
+    pub(crate) fn subtract_multiple(&self, row: &mut [u64], factor: u64, other: &[u64]) {
+        if factor == 0 {
+            return;
+        }
+        let factor = self.p - factor;
+        for (entry, other) in row.iter_mut().zip(other) {
+            if *other != 0 {
+                *entry = self.sum(*entry, self.product(factor, *other));
+            }
+        }
+    }
+
+    /// A random point of the unit circle, by the tangent of its half angle.
+    pub(crate) fn draw_unit(&self, rng: &mut impl Rng) -> (u64, u64) {
+        loop {
+            let tangent = self.draw(rng);
+            let square = self.product(tangent, tangent);
+            let twice = self.sum(tangent, tangent);
+            if let Some(inverse) = self.inverse(self.sum(self.one, square)) {
+                let cosine = self.product(self.sum(self.one, self.p - square), inverse);
+                return (self.product(twice, inverse), cosine);
+            }
+        }
+    }
+
+    /// A number whose square this is, if there is one (A. Tonelli, 1891; D. Shanks, 1973).
+    pub(crate) fn square_root(&self, a: u64) -> Option<u64> {
+        if a == 0 {
+            return Some(0);
+        }
+        let minus_one = self.p - self.one;
+        let (twos, odd) = ((self.p - 1).trailing_zeros(), (self.p - 1) >> (self.p - 1).trailing_zeros());
+        let euler = (self.p - 1) / 2;
+        if self.raised(a, euler) != self.one {
+            return None;
+        }
+        // any number that is no square; every second one is none
+        let mut candidate = self.sum(self.one, self.one);
+        while self.raised(candidate, euler) != minus_one {
+            candidate = self.sum(candidate, self.one);
+        }
+        let (mut generator, mut order) = (self.raised(candidate, odd), twos);
+        let mut root = self.raised(a, odd.div_ceil(2));
+        let mut rest = self.raised(a, odd);
+        while rest != self.one {
+            // the rest has order 2^k, k below the generator's
+            let (mut k, mut power) = (0, rest);
+            while power != self.one {
+                power = self.product(power, power);
+                k += 1;
+            }
+            for _ in 0..order - k - 1 {
+                generator = self.product(generator, generator);
+            }
+            root = self.product(root, generator);
+            generator = self.product(generator, generator);
+            rest = self.product(rest, generator);
+            order = k;
+        }
+        Some(root)
+    }
+
+    /// `a^exponent`
+    fn raised(&self, a: u64, mut exponent: u64) -> u64 {
+        let (mut result, mut square) = (self.one, a);
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                result = self.product(result, square);
+            }
+            square = self.product(square, square);
+            exponent >>= 1;
+        }
+        result
     }
 
     /// `1/a` by Fermat's theorem; `None` for zero.
@@ -86,15 +193,7 @@ impl PrimeField {
         if a == 0 {
             return None;
         }
-        let (mut result, mut square, mut rest) = (self.one, a, self.p - 2);
-        while rest > 0 {
-            if rest & 1 == 1 {
-                result = self.product(result, square);
-            }
-            square = self.product(square, square);
-            rest >>= 1;
-        }
-        Some(result)
+        Some(self.raised(a, self.p - 2))
     }
 }
 
@@ -114,8 +213,7 @@ impl Arithmetic for PrimeField {
     }
     #[inline]
     fn add(&self, a: &u64, b: &u64) -> Result<u64, Refusal> {
-        let sum = a + b;
-        Ok(if sum >= self.p { sum - self.p } else { sum })
+        Ok(self.sum(*a, *b))
     }
     #[inline]
     fn sub(&self, a: &u64, b: &u64) -> Result<u64, Refusal> {

@@ -131,7 +131,7 @@ impl Codistribution {
     ) -> Result<Codistribution, CodistributionError> {
         system.require_motion().map_err(CodistributionError::NoMotion)?;
         let fields = system.moving_fields();
-        let dimension = system.states.len();
+        let dimension = system.unknown_count();
         let invariant = is_invariant(system, conditions);
         let ceiling = if invariant { dimension } else { rank_around(system, conditions, length)? };
         let (at_least, longest, most) = match length {
@@ -231,7 +231,7 @@ fn rank_around(
         .map(|(symbol, value)| (*symbol, *value))
         .collect();
     let around = Codistribution::new(system, &kept, length)?;
-    Ok(if around.is_final() { around.generic_rank() } else { states.len() })
+    Ok(if around.is_final() { around.generic_rank() } else { system.unknown_count() })
 }
 
 /// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
@@ -307,7 +307,7 @@ fn needed(
         match loaded.run(&inputs, &mut registers) {
             Ok(values) => {
                 let matrix: Vec<Vec<u64>> =
-                    values.chunks(system.states.len().max(1)).map(<[u64]>::to_vec).collect();
+                    values.chunks(system.unknown_count().max(1)).map(<[u64]>::to_vec).collect();
                 let kept = independent_rows(&field, &matrix)
                     .map_err(|refusal| CodistributionError::NotEvaluated(refusal.to_string()))?;
                 if best.as_ref().is_none_or(|b| kept.len() > b.len()) {

@@ -37,7 +37,9 @@ pub(crate) use equilibrate::WEIGHT_OF_ERRORS;
 pub(crate) use equilibrate::equilibrate;
 #[doc(hidden)]
 pub use flow::Flow;
-pub use generic::{GenericRank, generic_rank};
+#[doc(hidden)]
+pub use generic::{Directions, Probe};
+pub use generic::{GenericAnswer, GenericRank, Seen, generic_answer, generic_rank};
 pub(crate) use locus::AVOIDED;
 pub(crate) use locus::{ATTEMPTS, Source};
 pub use locus::{Locus, LocusError};

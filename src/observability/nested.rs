@@ -72,7 +72,7 @@ fn values<T: Differentiable>(
     loaded.run(&inputs, &mut Vec::new()).map_err(NestedError::Failure)
 }
 
-/// The differential of `L_{X1} L_{X2} ... h` by the states, in their order, over any plain number: `f32`, `f64`,
+/// The differential of `L_{X1} L_{X2} ... h` by the unknown states, in their order, over any plain number: `f32`, `f64`,
 /// double-doubles, or intervals, which then enclose it.
 ///
 /// # Errors
@@ -83,14 +83,15 @@ pub fn differential_by_duals<T: RealNumber + DualNum>(
     h: NodeId,
     point: &HashMap<Symbol, T>,
 ) -> Result<Vec<T>, NestedError> {
+    let unknowns = system.unknowns();
     let states = DVector::from_iterator(
-        system.states.len(),
-        system.states.iter().map(|symbol| point.get(symbol).copied().unwrap_or_else(T::zero)),
+        unknowns.len(),
+        unknowns.iter().map(|symbol| point.get(symbol).copied().unwrap_or_else(T::zero)),
     );
     let function = |x: DVector<DualVec<T, Dyn>>| {
         let mut full: HashMap<Symbol, DualVec<T, Dyn>> =
             point.iter().map(|(symbol, value)| (*symbol, DualVec::from_re(*value))).collect();
-        for (symbol, value) in system.states.iter().zip(x.iter()) {
+        for (symbol, value) in unknowns.iter().zip(x.iter()) {
             full.insert(*symbol, value.clone());
         }
         lie_derivative_by_duals(system, word, h, &full)

@@ -18,6 +18,7 @@ use crate::expression::{Failure, Input, NodeId, Nodes};
 use crate::number::{Arithmetic, Coefficients, Function, Recurrences, Refusal};
 use crate::system::System;
 use dashu::rational::RBig;
+use std::collections::HashMap;
 
 impl Flow {
     /// The Lie derivatives `L_f^k` of each root for `k` from zero to `order`, in the numbers of an arithmetic; `inputs`
@@ -31,33 +32,11 @@ impl Flow {
         inputs: &[A::Number],
         order: usize,
     ) -> Result<Vec<Vec<A::Number>>, Failure> {
-        let blame = |place: usize| {
-            move |refusal| Failure { refusal, node: self.origins[place], divisor: self.divisor(place) }
-        };
         let Some(first) = self.roots.first() else { return Ok(Vec::new()) };
-        let general = blame(*first);
-        let constants: Vec<A::Number> = self
-            .constants
-            .iter()
-            .map(|c| arithmetic.rational(c))
-            .collect::<Result<_, _>>()
-            .map_err(general)?;
-        let mut run = Run {
-            flow: self,
-            recurrences: Recurrences::new(arithmetic, order).map_err(general)?,
-            inputs,
-            constants,
-            series: vec![Vec::with_capacity(order + 1); self.operations.len()],
-            inverses: vec![None; self.operations.len()],
-        };
-        for k in 0..=order {
-            for place in 0..self.operations.len() {
-                if k < order || self.needed_last[place] {
-                    let term = run.term(place, k).map_err(blame(place))?;
-                    run.series[place].push(term);
-                }
-            }
-        }
+        let blame = |place: usize| self.blame(place);
+        let general = &blame(*first);
+        let signals: Vec<Vec<A::Number>> = inputs.iter().map(|value| vec![value.clone()]).collect();
+        let run = self.run(arithmetic, &signals, order)?;
         let zero = arithmetic.rational(&RBig::ZERO).map_err(general)?;
         let mut factorial = RBig::ONE;
         let mut factorials = Vec::new();
@@ -78,6 +57,67 @@ impl Flow {
         self.roots.iter().map(|root| scaled(*root)).collect()
     }
 
+    /// The coefficients of each root along the flow, up to that of `t^order`; `None`, and all beyond the end, are zero. An
+    /// input is given by its value, or by the coefficients of a signal that the field does not move.
+    ///
+    /// # Errors
+    /// The first operation that was refused.
+    pub(super) fn coefficients<A: Arithmetic>(
+        &self,
+        arithmetic: &A,
+        inputs: &[Vec<A::Number>],
+        order: usize,
+    ) -> Result<Vec<Coefficients<A::Number>>, Failure> {
+        let mut run = self.run(arithmetic, inputs, order)?;
+        let mut last: HashMap<usize, usize> = HashMap::new();
+        for (index, root) in self.roots.iter().enumerate() {
+            last.insert(*root, index);
+        }
+        let series = |(index, root): (usize, &usize)| match last[root] == index {
+            true => std::mem::take(&mut run.series[*root]),
+            false => run.series[*root].clone(),
+        };
+        Ok(self.roots.iter().enumerate().map(series).collect())
+    }
+
+    /// All operations, up to that order.
+    fn run<'f, A: Arithmetic>(
+        &'f self,
+        arithmetic: &'f A,
+        inputs: &'f [Vec<A::Number>],
+        order: usize,
+    ) -> Result<Run<'f, A>, Failure> {
+        let general = |refusal| Failure {
+            refusal,
+            node: self.origins[self.roots.first().copied().unwrap_or(0)],
+            divisor: None,
+        };
+        let constants = self.constants.iter().map(|c| arithmetic.rational(c));
+        let constants: Vec<A::Number> = constants.collect::<Result<_, _>>().map_err(general)?;
+        let mut run = Run {
+            flow: self,
+            recurrences: Recurrences::new(arithmetic, order).map_err(general)?,
+            inputs,
+            constants,
+            series: vec![Vec::with_capacity(order + 1); self.operations.len()],
+            inverses: vec![None; self.operations.len()],
+        };
+        for k in 0..=order {
+            for place in 0..self.operations.len() {
+                if k < order || self.needed_last[place] {
+                    let term = run.term(place, k).map_err(self.blame(place))?;
+                    run.series[place].push(term);
+                }
+            }
+        }
+        Ok(run)
+    }
+
+    fn blame(&self, place: usize) -> impl Fn(Refusal) -> Failure {
+        let (node, divisor) = (self.origins[place], self.divisor(place));
+        move |refusal| Failure { refusal, node, divisor }
+    }
+
     fn divisor(&self, place: usize) -> Option<NodeId> {
         match self.operations[place] {
             Operation::Div(_, b) => Some(self.origins[b]),
@@ -90,7 +130,7 @@ impl Flow {
 struct Run<'f, A: Arithmetic> {
     flow: &'f Flow,
     recurrences: Recurrences<&'f A>,
-    inputs: &'f [A::Number],
+    inputs: &'f [Vec<A::Number>],
     constants: Vec<A::Number>,
     series: Vec<Coefficients<A::Number>>,
     /// The reciprocals of leading coefficients that are divided by.
@@ -129,7 +169,10 @@ impl<A: Arithmetic> Run<'_, A> {
             Operation::Constant(_) | Operation::Pi => Ok(None),
             Operation::Input(_) | Operation::Angle => match self.flow.rates.get(&place) {
                 Some(rate) => recurrences.over(k, self.series[*rate][k - 1].clone()),
-                None => Ok(None),
+                None => match operation {
+                    Operation::Input(input) => Ok(self.inputs[input].get(k).cloned()),
+                    _ => Ok(None),
+                },
             },
             Operation::Add(a, b) => recurrences.sum(at(a), at(b)),
             Operation::Sub(a, b) => recurrences.difference(at(a), at(b)),
@@ -163,7 +206,7 @@ impl<A: Arithmetic> Run<'_, A> {
                 Ok((!self.flow.constants[index].is_zero()).then(|| self.constants[index].clone()))
             }
             Operation::Pi => base.pi().map(Some),
-            Operation::Input(input) => Ok(Some(self.inputs[input].clone())),
+            Operation::Input(input) => Ok(Some(self.inputs[input][0].clone())),
             Operation::Angle => Ok(None),
             Operation::Add(a, b) => self.recurrences.sum(at(a), at(b)),
             Operation::Sub(a, b) => self.recurrences.difference(at(a), at(b)),
@@ -178,7 +221,7 @@ impl<A: Arithmetic> Run<'_, A> {
                 Ok(value)
             }
             Operation::Sine(_, Some(input)) | Operation::Cosine(_, Some(input)) => {
-                Ok(Some(self.inputs[input].clone()))
+                Ok(Some(self.inputs[input][0].clone()))
             }
             Operation::Sine(a, None) => apply(Function::Sin, a).map(Some),
             Operation::Cosine(a, None) => apply(Function::Cos, a).map(Some),

@@ -89,7 +89,7 @@ pub struct LineFound {
 
 /// Whether there is a rank to ask for.
 pub(super) fn has_a_rank(system: &System) -> bool {
-    !system.states.is_empty() && !system.outputs.is_empty() && system.require_motion().is_ok()
+    !system.unknown_count() == 0 && !system.outputs.is_empty() && system.require_motion().is_ok()
 }
 
 /// The rank on the sample box, or on one set.
@@ -158,7 +158,9 @@ fn line(system: &System, own: Option<&[NodeId]>, view: &LineView) -> Result<Slop
 /// The file's own choice of rows.
 pub(super) fn own_rows(system: &System) -> Option<Vec<NodeId>> {
     match system.definition(OWN_ROWS) {
-        Some(Value::Matrix(matrix)) if matrix.columns == system.states.len() => Some(matrix.entries.clone()),
+        Some(Value::Matrix(matrix)) if matrix.columns == system.unknown_count() => {
+            Some(matrix.entries.clone())
+        }
         _ => None,
     }
 }

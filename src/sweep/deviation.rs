@@ -79,7 +79,7 @@ fn spread(values: &[f64]) -> Option<f64> {
 /// Whether a sweep says of a state of the system that it is seen at every state that was drawn.
 fn is_seen(system: &System, state: Symbol, swept: &SweepReport) -> bool {
     let name = system.symbol_name(state);
-    let is_full = swept.rank_histogram.keys().all(|rank| *rank == system.states.len());
+    let is_full = swept.rank_histogram.keys().all(|rank| *rank == system.unknown_count());
     let is_told = swept.certified == swept.samples;
     is_full
         || is_told && !swept.unseen.iter().any(|direction| direction.states.iter().any(|part| part == name))
@@ -106,7 +106,7 @@ pub(crate) fn standard_deviations(
     let rows = expand_angles(&mut system.graph, &codistribution.needed_entries(), is_angle);
     let values = Program::new(&system.graph, &values, is_angle);
     let rows = Program::new(&system.graph, &rows, is_angle);
-    let columns = system.states.len();
+    let columns = system.unknown_count();
     let (mut states, mut found, mut measured) = (Vec::new(), Vec::new(), Vec::new());
     for index in 0..STATES.min(samples) {
         let state = locus.draw(seed, index)?;
@@ -119,20 +119,21 @@ pub(crate) fn standard_deviations(
         return Ok(None);
     }
     let spreads: Vec<f64> =
-        system.states.iter().map(|symbol| spread_of_state(system, *symbol, &states)).collect();
+        system.unknowns().iter().map(|symbol| spread_of_state(system, *symbol, &states)).collect();
     let units: Vec<f64> =
         (0..codistribution.needed.len()).map(|word| unit(word, &measured, &found, &spreads)).collect();
     let all: Vec<Vec<f64>> = found.iter().map(|matrix| deviations_of(matrix, &units, &spreads)).collect();
+    let unknowns = system.unknowns();
     let list = (0..columns).map(|column| {
         let mut each: Vec<f64> = all.iter().map(|deviations| deviations[column]).collect();
         each.sort_by(f64::total_cmp);
         StandardDeviation {
-            state: system.symbol_name(system.states[column]).to_owned(),
+            state: system.symbol_name(unknowns[column]).to_owned(),
             spread: spreads[column],
             median: each[each.len() / 2],
             worst: each[each.len() - 1],
             infinite: each.iter().filter(|deviation| deviation.is_infinite()).count(),
-            is_seen: is_seen(system, system.states[column], swept),
+            is_seen: is_seen(system, unknowns[column], swept),
         }
     });
     let list = list.collect();

@@ -187,7 +187,7 @@ fn guarded(system: &System) -> Vec<NodeId> {
 /// # Errors
 /// No states or outputs, no drift or input, conditions that cannot be solved, a pole everywhere, an empty sample box.
 pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<RankAnswer, RankError> {
-    if system.states.is_empty() || system.outputs.is_empty() {
+    if system.unknown_count() == 0 || system.outputs.is_empty() {
         return Err(RankError::NothingToSee(system.name.clone()));
     }
     system.require_motion().map_err(CodistributionError::NoMotion)?;
@@ -204,7 +204,9 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         }
     }
     let own = match system.definition(OWN_ROWS) {
-        Some(Value::Matrix(matrix)) if matrix.columns == system.states.len() => Some(matrix.entries.clone()),
+        Some(Value::Matrix(matrix)) if matrix.columns == system.unknown_count() => {
+            Some(matrix.entries.clone())
+        }
         _ => None,
     };
     let own_guards = system.definition_guards(OWN_ROWS);
@@ -267,7 +269,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
             word: format!("row {}", index + 1),
             entries: entries.to_vec(),
         };
-        let own_rows = own.as_deref().unwrap_or_default().chunks(system.states.len());
+        let own_rows = own.as_deref().unwrap_or_default().chunks(system.unknown_count());
         answers.push(BranchAnswer {
             taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
             own: own_rows.enumerate().map(numbered).collect(),
@@ -289,7 +291,7 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         outputs: system.outputs.len(),
         fields: system.roles(),
         seed: question.seed,
-        dimension: system.states.len(),
+        dimension: system.unknown_count(),
         branches: answers,
     })
 }

@@ -145,13 +145,13 @@ pub fn sweep(
     let field = PrimeField::random(&mut rng);
     // the decider looks at the graph while the counts asks the system for names
     let graph = system.graph.clone();
-    let rows = DecidedRows { quick: &quick, all: &all, columns: system.states.len() };
+    let rows = DecidedRows { quick: &quick, all: &all, columns: system.unknown_count() };
     let decider =
         RankDecider::new(&graph, defined, rows, is_angle, ProofWanted { wanted: options.wanted, field });
     // a stream decides full ranks only; where the quick rows cannot have it, there is nothing to stream
     let stream = Stream::new(system, locus, &quick)
         .filter(|_| watched)
-        .filter(|stream| stream.full_rank() == system.states.len() && stream.remaining() != (0, 0));
+        .filter(|stream| stream.full_rank() == system.unknown_count() && stream.remaining() != (0, 0));
     let mut report = match stream {
         Some(stream) => streamed(system, &stream, &decider, options)?,
         None => one_by_one(system, locus, &decider, options)?,
@@ -208,7 +208,7 @@ fn streamed(
     if let Some(error) = trouble {
         return Err(error);
     }
-    let full = system.states.len();
+    let full = system.unknown_count();
     let decided = found.states - found.left;
     if decided > 0 {
         counts.samples += decided;
@@ -322,7 +322,7 @@ impl SweepCounts {
         let gap = self.smallest_gap.get_or_insert(f64::INFINITY);
         *gap = gap.min(spectrum.gap);
         let worse = self.worst.as_ref().is_none_or(|(_, worst)| spectrum.condition() > worst.condition());
-        if report.rank == system.states.len() && worse {
+        if report.rank == system.unknown_count() && worse {
             self.worst = Some((state, spectrum));
         }
     }

@@ -38,9 +38,9 @@ impl UnseenDirections {
     pub fn add(&mut self, system: &System, direction: &[RBig], state: &State, index: u64) {
         let parts: Vec<(&RBig, String)> = direction
             .iter()
-            .zip(&system.states)
+            .zip(system.unknowns())
             .filter(|(part, _)| !part.is_zero())
-            .map(|(part, symbol)| (part, system.symbol_name(*symbol).to_owned()))
+            .map(|(part, symbol)| (part, system.symbol_name(symbol).to_owned()))
             .collect();
         let (parts, names): (Vec<&RBig>, Vec<String>) = parts.into_iter().unzip();
         let entry = self.0.entry(names.clone()).or_insert_with(|| UnseenDirection {

@@ -314,7 +314,7 @@ impl System {
             states.push(symbol);
         }
         if names.is_empty() {
-            states = self.states.clone();
+            states = self.unknowns();
             self.states_are_final = true;
         }
         if states.is_empty() {

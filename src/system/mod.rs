@@ -26,6 +26,7 @@ mod references;
 mod restates;
 mod source_text;
 mod standing;
+mod unknowns;
 mod views;
 #[doc(hidden)]
 pub mod vocabulary;
@@ -53,6 +54,7 @@ pub(crate) use source_text::load;
 #[cfg(feature = "cli")]
 pub(crate) use source_text::with_plain_line_ends;
 pub use standing::{Basis, Flaw, Reference};
+pub use unknowns::UnknownKind;
 #[doc(hidden)]
 pub use views::{CoordinateRange, LineEnd};
 pub(crate) use views::{LineView, MapView, NamedSet, Point, ReductionTo};

@@ -4,12 +4,13 @@ use super::dimension::{Dimensions, Import};
 use super::domain::Domain;
 use super::error::Problem;
 use super::grammar::{ClaimBody, ClaimSyntax};
+use super::unknowns::UnknownKind;
 use super::views::{LineView, MapView, NamedSet, ReductionTo};
 use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};
 use crate::expression::syntax::Span;
 use crate::expression::{Derivation, Graph, Guard, NodeId, Symbol, gradient};
 use dashu::rational::RBig;
-use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -203,6 +204,9 @@ pub struct System {
     pub graph: Graph,
     /// The states, in the order in which the file names them.
     pub states: Vec<Symbol>,
+    /// Those of them that are known: they have no column in a codistribution, and no dimension counts them
+    /// ([`System::unknowns`]).
+    pub known: BTreeSet<Symbol>,
     /// The vector fields of this file, of any role, in order. Words of Lie derivatives name fields by their places here.
     pub fields: Vec<Field>,
     /// The outputs: how they are written, and what they are.
@@ -222,6 +226,8 @@ pub struct System {
     /// The systems that this one is under conditions.
     pub reductions: Vec<ReductionTo>,
     pub(crate) symbols: BTreeMap<Symbol, SymbolInfo>,
+    /// What unknown coordinates are, where they are no states.
+    pub(crate) unknown_kinds: BTreeMap<Symbol, UnknownKind>,
     pub(crate) definitions: BTreeMap<String, Value>,
     /// Where each definition exists, imported ones included.
     pub(crate) definition_domains: HashMap<String, Domain>,
@@ -381,7 +387,7 @@ impl System {
     /// What the names in the statements of a claim stand for: definitions and fields, and those that they mention in turn,
     /// in the order in which they are met; imported ones under the names that they have here.
     pub fn explanations(&self, body: &ClaimBody) -> Explanations {
-        let states = self.state_names();
+        let states = self.column_names();
         let is_definition = |name: &str| self.definitions.contains_key(name);
         let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
         let mut places = Vec::new();
@@ -422,9 +428,10 @@ impl System {
         self.fields[field].derivation.apply(&mut self.graph, expression)
     }
 
-    /// The differential of an expression: its derivatives by the states, in their order.
+    /// The differential of an expression: its derivatives by the unknown states, in their order.
     pub fn differential(&mut self, expression: NodeId) -> Vec<NodeId> {
-        gradient(&mut self.graph, expression, &self.states)
+        let unknowns = self.unknowns();
+        gradient(&mut self.graph, expression, &unknowns)
     }
 
     /// The partial derivative of an expression by a symbol.

@@ -124,6 +124,7 @@ impl System {
             source: text.to_owned(),
             graph,
             states: Vec::new(),
+            known: BTreeSet::new(),
             fields: Vec::new(),
             outputs: Vec::new(),
             output_guards: Vec::new(),
@@ -134,6 +135,7 @@ impl System {
             lines: Vec::new(),
             reductions: Vec::new(),
             symbols: BTreeMap::new(),
+            unknown_kinds: BTreeMap::new(),
             definitions: BTreeMap::new(),
             definition_domains: HashMap::new(),
             domain: Default::default(),
@@ -478,7 +480,7 @@ impl System {
 
     /// Some expressions as they are written, within a span that holds them all.
     fn written_as<'a>(&self, span: &Span, expressions: impl IntoIterator<Item = &'a Expr>) -> Written {
-        let states = self.state_names();
+        let states = self.column_names();
         let is_definition = |name: &str| self.definitions.contains_key(name);
         let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
         let mut places = Vec::new();

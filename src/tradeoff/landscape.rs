@@ -66,7 +66,7 @@ impl<'s> Landscape<'s> {
             values.insert(known(system, name)?, value.to_f64().value());
         }
         // angles stay plain numbers here: a line into phi = 0 has to be exact in phi, not in its sine
-        let reduced = Reduction::new(&system.graph, rows, system.states.len());
+        let reduced = Reduction::new(&system.graph, rows, system.unknown_count());
         let program = Program::plain(&system.graph, &reduced.entries);
         Ok(Landscape { system, program, values, columns: reduced.columns.len() })
     }

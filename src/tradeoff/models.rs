@@ -81,8 +81,8 @@ fn compare_models(
         large_times.push(time(large_work.0, &large_work.1)?);
     }
     Ok(ModelComparison {
-        small_states: small.system.states.len(),
-        large_states: large.system.states.len(),
+        small_states: small.system.unknown_count(),
+        large_states: large.system.unknown_count(),
         small_operations: small_reduced.program.len(),
         large_operations: large_reduced.program.len(),
         small_seconds: median(&mut small_times),
@@ -152,7 +152,7 @@ struct Reduced {
 fn compiled(system: &mut System, rows: &[NodeId]) -> (Program, Reduced) {
     let is_angle = &system.angle_test();
     let rows = expand_angles(&mut system.graph, rows, is_angle);
-    let rest = Reduction::new(&system.graph, &rows, system.states.len());
+    let rest = Reduction::new(&system.graph, &rows, system.unknown_count());
     let reduced = Reduced {
         program: Program::new(&system.graph, &rest.entries, is_angle),
         columns: rest.columns.len(),
@@ -194,10 +194,13 @@ fn difference(small: &Prepared<'_>, large: &Prepared<'_>) -> Result<f64, String>
         .enumerate()
         .filter_map(|(i, symbol)| {
             let name = small.system.symbol_name(*symbol);
-            Some((i, large.system.states.iter().position(|other| large.system.symbol_name(*other) == name)?))
+            Some((
+                i,
+                large.system.unknowns().iter().position(|other| large.system.symbol_name(*other) == name)?,
+            ))
         })
         .collect();
-    let (ns, nl) = (small.system.states.len(), large.system.states.len());
+    let (ns, nl) = (small.system.unknown_count(), large.system.unknown_count());
     let mut worst = 0.0f64;
     for (small_input, large_input) in small.inputs.iter().zip(large.inputs) {
         let (a, b) = (run(small.program, small_input)?, run(large.program, large_input)?);

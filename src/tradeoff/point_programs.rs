@@ -49,7 +49,7 @@ impl PointPrograms {
             (moved, function(&components(field).map(|(_, node)| *node).collect::<Vec<_>>()))
         };
         PointPrograms {
-            states: system.states.iter().map(place).collect(),
+            states: system.unknowns().iter().map(place).collect(),
             fields: (0..system.fields.len()).map(field).collect(),
             functions: functions.iter().map(|node| function(&[*node])).collect(),
             symbols,
@@ -61,7 +61,7 @@ impl PointPrograms {
         &self.symbols
     }
 
-    /// The places of the states in a point, in their order.
+    /// The places of the unknown states in a point, in their order: what is differentiated by.
     pub fn states(&self) -> &[usize] {
         &self.states
     }

@@ -139,8 +139,8 @@ impl Given<'_> {
                 let LaneFound { found: decided, finite } =
                     decide_lane(&stream.matrix.program, &machine, lane, &mut decider, certify);
                 let here = L::COUNT.min(count - first);
-                for i in 0..here {
-                    found.verdicts[first + i] = verdict(&report, &decided, i, finite[i]);
+                for (i, finite) in finite.into_iter().enumerate().take(here) {
+                    found.verdicts[first + i] = verdict(&report, &decided, i, finite);
                 }
                 let range = first..first + here;
                 write(decider.singular_values(), &mut found.singular_values, range.clone());

@@ -102,7 +102,7 @@ impl Stream {
         let nodes = put_in(system, &nodes);
         let there = guards.iter().zip(nodes).map(|(guard, node)| Guard { node, need: guard.need });
         watched.extend(watches(&mut system.graph, there, &[&watched[..], &entries].concat()));
-        let reduction = Reduction::new(&system.graph, &entries, system.states.len());
+        let reduction = Reduction::new(&system.graph, &entries, system.unknown_count());
         watched.extend(&entries);
         let known = |input: Input| match (input, locus.sources.get(&input.symbol()?)?) {
             (Input::Sine(_), Source::Fixed(Coordinate::Angle { sine, .. })) => Some(sine.clone()),
@@ -298,9 +298,10 @@ impl Vectorised for Chunk<'_, '_> {
                 }
                 let LaneFound { found, finite } =
                     decide_lane(&stream.matrix.program, &machine, lane, &mut decider, true);
-                for i in 0..L::COUNT.min((count - here) as usize) {
+                for (i, finite) in finite.into_iter().enumerate().take(L::COUNT.min((count - here) as usize))
+                {
                     let index = first + here + i as u64;
-                    if report.add(index, &found, i, finite[i], options.wanted) {
+                    if report.add(index, &found, i, finite, options.wanted) {
                         left.push(index);
                     }
                 }

@@ -264,7 +264,7 @@ impl Checker<'_> {
     fn states_or(&mut self, names: &[Expr]) -> Vec<Entry> {
         if names.is_empty() {
             let form = |state| self.known.symbols.get(state).cloned().map_or(Entry::Open, Entry::Of);
-            return self.system.states.iter().map(form).collect();
+            return self.system.unknowns().iter().map(form).collect();
         }
         let mut found = Vec::with_capacity(names.len());
         for name in names {

@@ -91,12 +91,12 @@ pub struct NamedRows {
 /// # Errors
 /// In words: no states or outputs, a pole everywhere.
 pub fn rows_of(system: &mut System, wanted: LandscapeRows) -> Result<NamedRows, String> {
-    if system.states.is_empty() || system.outputs.is_empty() {
+    if system.unknown_count() == 0 || system.outputs.is_empty() {
         return Err(format!("{} declares no states or no outputs", system.name));
     }
     match system.definition(OWN_ROWS) {
         Some(Value::Matrix(matrix))
-            if wanted == LandscapeRows::Own && matrix.columns == system.states.len() =>
+            if wanted == LandscapeRows::Own && matrix.columns == system.unknown_count() =>
         {
             Ok(NamedRows { name: format!("the file's own '{OWN_ROWS}'"), entries: matrix.entries.clone() })
         }
@@ -126,7 +126,8 @@ impl Stress {
                 let name = format!("{} in units 2^{power} times smaller", system.symbol_name(*state));
                 (name, Rescaling::Column { place, power })
             };
-            let states = |power| system.states.iter().enumerate().map(move |state| (power, state));
+            let unknowns = system.unknowns();
+            let states = |power| unknowns.iter().enumerate().map(move |state| (power, state));
             [20, 40].into_iter().flat_map(states).map(column).collect()
         });
         Stress::prepare(system, rows, &approaches, quantities, others, options)
@@ -244,7 +245,7 @@ impl Stress {
             file: subject.system.name.clone(),
             title: subject.system.title.clone(),
             rows: self.rows.clone(),
-            dimension: subject.system.states.len(),
+            dimension: subject.system.unknown_count(),
             remaining: subject.remaining(),
             lines,
             skipped: self.skipped.clone(),

@@ -57,7 +57,7 @@ impl Subject {
     /// # Errors
     /// In words: an angle outside sines and cosines, no states.
     pub fn new(system: &mut System, rows: &[NodeId]) -> Result<Subject, String> {
-        let columns = system.states.len();
+        let columns = system.unknown_count();
         if columns == 0 || rows.is_empty() {
             return Err(format!("{} has no states, or no outputs whose differentials are rows", system.name));
         }

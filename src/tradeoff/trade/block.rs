@@ -25,7 +25,7 @@ pub(super) struct Block {
 
 impl Block {
     pub fn new(system: &System, entries: &[NodeId], varying: &[usize]) -> Block {
-        let columns = system.states.len();
+        let columns = system.unknown_count();
         let found = Reduction::new(&system.graph, entries, columns);
         let places = found.rows.iter().flat_map(|r| found.columns.iter().map(move |c| r * columns + c));
         Block {
@@ -38,7 +38,7 @@ impl Block {
 
     /// The whole matrix, nothing eliminated.
     pub fn whole(system: &System, entries: &[NodeId], varying: &[usize]) -> Block {
-        let columns = system.states.len();
+        let columns = system.unknown_count();
         let slots = Self::slots(system, entries, varying, 0..entries.len());
         Block { eliminated: 0, rows: entries.len() / columns, columns, slots }
     }

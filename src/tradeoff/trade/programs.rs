@@ -44,7 +44,7 @@ impl Programs {
         let by_series = words.as_ref().map_err(Clone::clone).and_then(|words| series(system, words, varying));
         let expanded = term_by_term(&mut system.graph, &roots, is_angle, MOST_MONOMIALS);
         let compile = |roots: &[NodeId]| Program::new(&system.graph, roots, is_angle);
-        let columns = system.states.len();
+        let columns = system.unknown_count();
         let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
         Programs {
             graph: compile(&roots),
@@ -58,9 +58,9 @@ impl Programs {
 }
 
 fn series(system: &mut System, words: &[Word], varying: &[usize]) -> Result<Vec<NodeId>, String> {
-    let columns = system.states.len();
+    let columns = system.unknown_count();
     let plan = plan(words, varying, columns);
-    let states = system.states.clone();
+    let states = system.unknowns();
     let mut rows = Vec::new();
     for (fields, output) in &plan.rows {
         let h = system.outputs[*output].1;

@@ -26,7 +26,7 @@ impl Rows {
     /// # Errors
     /// In words, where no row can be evaluated anywhere.
     pub fn of(system: &mut System) -> Result<Rows, String> {
-        let columns = system.states.len();
+        let columns = system.unknown_count();
         if let Some(Value::Matrix(matrix)) = system.definition(OWN_ROWS)
             && matrix.columns == columns
         {
@@ -51,7 +51,7 @@ impl Rows {
 
 /// The words whose differentials some rows are, if they are.
 fn words_of(system: &mut System, entries: &[NodeId]) -> Result<Vec<Word>, String> {
-    let rows: Vec<&[NodeId]> = entries.chunks(system.states.len()).collect();
+    let rows: Vec<&[NodeId]> = entries.chunks(system.unknown_count()).collect();
     let mut found: Vec<Option<Word>> = vec![None; rows.len()];
     let mut words: Vec<(Word, NodeId)> = (0..system.outputs.len())
         .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))

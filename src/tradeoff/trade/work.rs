@@ -38,11 +38,11 @@ pub(super) struct Work {
 
 impl Work {
     pub fn new(mut system: System, question: &TradeQuestion<'_>) -> Result<Work, String> {
-        if system.states.is_empty() || system.outputs.is_empty() {
+        if system.unknown_count() == 0 || system.outputs.is_empty() {
             return Err(format!("{} declares no states or no outputs", system.name));
         }
         system.require_motion()?;
-        let columns = system.states.len();
+        let columns = system.unknown_count();
         let rows = Rows::of(&mut system)?;
         let is_angle = &system.angle_test();
         if rows.entries.is_empty() {

@@ -1,9 +1,9 @@
 //! The rank of a matrix of expressions at almost all points.
 
-use super::elimination::rank;
 use crate::expression::{Graph, NodeId, Program, Symbol, draw_residues, expand_angles, failure_bound, sizes};
 use crate::number::PrimeField;
 use crate::number::polynomial::Size;
+use crate::observability::elimination::rank;
 use rand::Rng;
 
 /// The rank of a matrix outside a thin set, and how it is known.

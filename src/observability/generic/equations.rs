@@ -1,0 +1,262 @@
+//! A system as one flow: drift and inputs together, with its outputs' differentials and the Jacobian of its rates.
+
+use super::adjoined::Adjoined;
+use super::covectors::{Covector, Entry};
+use crate::expression::{
+    Derivation, Graph, Input, Node, NodeId, Program, Symbol, draw_residues, expand_angles, gradient,
+};
+use crate::number::{Coefficients, Function, PrimeField, Refusal};
+use crate::observability::flow::Flow;
+use crate::system::{Assignment, System};
+use dashu::rational::RBig;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::collections::{HashMap, HashSet};
+
+/// The equations, ready to be run modulo primes.
+pub(super) struct Equations {
+    /// The graph of the system, and what was derived.
+    pub graph: Graph,
+    /// The states, and among them the unknowns, by their places.
+    pub states: usize,
+    pub columns: Vec<usize>,
+    pub outputs: usize,
+    /// What the bound of degrees is taken from: rates, outputs, and how functions move.
+    pub measured: Vec<NodeId>,
+    /// What the flow is given, from what is free on the set of the conditions.
+    pub starts: Program,
+    /// How many square roots are met.
+    pub roots: usize,
+    /// All functions that are met, but sines and cosines of angles.
+    pub functions: Vec<NodeId>,
+    flow: Flow,
+    pub angles: HashSet<Symbol>,
+    /// The signals that drive the inputs, by their places among what the flow is given.
+    driven: Vec<usize>,
+    /// Output and column of each differential, then row and column of each entry of the Jacobian, in the order of the flow's roots.
+    differentials: Vec<(usize, usize)>,
+    entries: Vec<(usize, usize)>,
+}
+
+/// What a trajectory gives.
+pub(super) struct Trajectory {
+    /// `dh` of each output.
+    pub covectors: Vec<Covector>,
+    /// The Jacobian of the rates.
+    pub entries: Vec<Entry>,
+}
+
+/// A name that no file can give.
+const DRIVE: &str = "\u{1}drive";
+
+impl Equations {
+    pub fn new(system: &System, conditions: &Assignment) -> Equations {
+        let mut graph = system.graph.clone();
+        let angles = system.angles();
+        // constants that are given are put in; everything else that a condition says is where the flow begins
+        let fixed: Assignment = conditions
+            .iter()
+            .filter(|(symbol, value)| {
+                !system.states.contains(symbol) && graph.symbols_of([**value]).is_empty()
+            })
+            .map(|(symbol, value)| (*symbol, *value))
+            .collect();
+        let mut rates: HashMap<Symbol, NodeId> = HashMap::new();
+        let mut drives = Vec::new();
+        for (number, place) in system.moving_fields().into_iter().enumerate() {
+            let field = &system.fields[place];
+            let drive = (Some(place) != system.drift()).then(|| graph.intern(&format!("{DRIVE}{number}")));
+            drives.extend(drive);
+            for (symbol, component) in &field.components {
+                let term = match drive {
+                    Some(drive) => {
+                        let signal = graph.symbol(drive);
+                        graph.mul(signal, *component)
+                    }
+                    None => *component,
+                };
+                let sum = match rates.get(symbol) {
+                    Some(sum) => graph.add(*sum, term),
+                    None => term,
+                };
+                rates.insert(*symbol, sum);
+            }
+        }
+        let moved: Vec<Symbol> =
+            system.states.iter().copied().filter(|state| rates.contains_key(state)).collect();
+        let mut written: Vec<NodeId> = moved.iter().map(|state| rates[state]).collect();
+        written.extend(system.outputs.iter().map(|(_, node)| *node));
+        let written = graph.substitute(&written, &fixed);
+        let written = expand_angles(&mut graph, &written, |symbol| angles.contains(&symbol));
+        let (rates, outputs) = written.split_at(moved.len());
+        let components: Vec<(Symbol, NodeId)> = moved.iter().copied().zip(rates.iter().copied()).collect();
+
+        let mut roots = Vec::new();
+        let mut table = |graph: &mut Graph, nodes: &[(usize, NodeId)]| {
+            let mut places = Vec::new();
+            for (row, node) in nodes {
+                for (column, entry) in gradient(graph, *node, &system.states).into_iter().enumerate() {
+                    if !graph.constant_value(entry).is_some_and(RBig::is_zero) {
+                        places.push((*row, column));
+                        roots.push(entry);
+                    }
+                }
+            }
+            places
+        };
+        let of_outputs: Vec<(usize, NodeId)> = outputs.iter().copied().enumerate().collect();
+        let differentials = table(&mut graph, &of_outputs);
+        let place_of = |state: &Symbol| system.states.iter().position(|other| other == state);
+        let of_rates: Vec<(usize, NodeId)> =
+            components.iter().filter_map(|(state, rate)| Some((place_of(state)?, *rate))).collect();
+        let entries = table(&mut graph, &of_rates);
+
+        let flow = Flow::new(&graph, &components, &roots, |symbol| angles.contains(&symbol));
+        let drives: HashSet<Symbol> = drives.into_iter().collect();
+        let given = flow.inputs().to_vec();
+        let driven = given.iter().enumerate().filter_map(|(place, input)| {
+            input.symbol().is_some_and(|symbol| drives.contains(&symbol)).then_some(place)
+        });
+        let driven: Vec<usize> = driven.collect();
+        let starts = starts(&mut graph, &given, conditions, &angles);
+        let (functions, measured) = measured(&mut graph, &components, &written, &angles);
+        let square_root = |node: &NodeId| matches!(graph.node(*node), Node::Apply(Function::Sqrt, _));
+        Equations {
+            states: system.states.len(),
+            columns: (0..system.states.len())
+                .filter(|place| !system.known.contains(&system.states[*place]))
+                .collect(),
+            outputs: outputs.len(),
+            measured,
+            starts,
+            roots: functions.iter().filter(|node| square_root(node)).count(),
+            functions,
+            flow,
+            angles,
+            driven,
+            differentials,
+            entries,
+            graph,
+        }
+    }
+
+    /// Whether a symbol is an angle.
+    pub fn is_angle(&self) -> impl Fn(Symbol) -> bool + '_ {
+        |symbol| self.angles.contains(&symbol)
+    }
+
+    /// What the flow is given, in the order of a start.
+    pub fn inputs(&self) -> &[Input] {
+        self.flow.inputs()
+    }
+
+    /// A random start: the value of each input at `t = 0`, and the seed of all that is drawn along the way.
+    ///
+    /// # Errors
+    /// Where the random point is a pole, or the prime divides a denominator.
+    pub fn draw(&self, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<Vec<u64>, Refusal> {
+        let inputs = draw_residues(&self.starts, &field, rng);
+        self.start(field, &inputs, rng.random())
+    }
+
+    /// The value of each input of the flow, from those of [`Equations::starts`].
+    pub fn start(&self, field: PrimeField, inputs: &[u64], seed: u64) -> Result<Vec<u64>, Refusal> {
+        let loaded = self.starts.load(Adjoined::new(field, seed, None))?;
+        loaded.run(inputs, &mut Vec::new()).map_err(|failure| failure.refusal)
+    }
+
+    /// The differentials of the outputs and the Jacobian along the trajectory from there, to so many coefficients.
+    ///
+    /// # Errors
+    /// A division by zero, or a root that does not exist.
+    pub fn trajectory(
+        &self,
+        field: PrimeField,
+        start: &[u64],
+        (seed, signs): (u64, Option<u64>),
+        length: usize,
+    ) -> Result<Trajectory, Refusal> {
+        let order = length.saturating_sub(1);
+        let mut signals: Vec<Vec<u64>> = start.iter().map(|value| vec![*value]).collect();
+        for (number, place) in self.driven.iter().enumerate() {
+            // the same signal, however long it is asked for
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            rng.set_stream(number as u64 + 1);
+            signals[*place] = (0..length.max(1)).map(|_| field.draw(&mut rng)).collect();
+        }
+        let arithmetic = Adjoined::new(field, seed, signs);
+        let series =
+            self.flow.coefficients(&arithmetic, &signals, order).map_err(|failure| failure.refusal)?;
+        let mut series = series.into_iter().map(residues);
+        let blank = || Covector { series: vec![Vec::new(); self.states], length };
+        let mut covectors: Vec<Covector> = (0..self.outputs).map(|_| blank()).collect();
+        for (output, column) in &self.differentials {
+            covectors[*output].series[*column] = series.next().unwrap_or_default();
+        }
+        let entry = |((row, column), series): (&(usize, usize), Vec<u64>)| Entry {
+            row: *row,
+            column: *column,
+            series,
+        };
+        let entries = self.entries.iter().zip(series).map(entry).collect();
+        Ok(Trajectory { covectors, entries })
+    }
+}
+
+/// Coefficients up to the last that is not zero.
+fn residues(series: Coefficients<u64>) -> Vec<u64> {
+    let mut values: Vec<u64> = series.into_iter().map(|term| term.unwrap_or(0)).collect();
+    let end = values.iter().rposition(|value| *value != 0).map_or(0, |last| last + 1);
+    values.truncate(end);
+    values
+}
+
+/// The values of what a flow is given, on the set of the conditions.
+fn starts(graph: &mut Graph, given: &[Input], conditions: &Assignment, angles: &HashSet<Symbol>) -> Program {
+    let mut node = |input: &Input| match *input {
+        Input::Plain(symbol) => graph.symbol(symbol),
+        Input::Sine(symbol) => {
+            let angle = graph.symbol(symbol);
+            graph.apply(Function::Sin, angle)
+        }
+        Input::Cosine(symbol) => {
+            let angle = graph.symbol(symbol);
+            graph.apply(Function::Cos, angle)
+        }
+        Input::Opaque(node) => node,
+    };
+    let nodes: Vec<NodeId> = given.iter().map(&mut node).collect();
+    let on_the_set = graph.substitute(&nodes, conditions);
+    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let expanded = expand_angles(graph, &on_the_set, is_angle);
+    Program::with_unknown_functions(graph, &expanded, is_angle)
+}
+
+/// The functions that are met, and all that a minor's degree depends on: rates, outputs, slopes of functions along the flow and
+/// along each state.
+fn measured(
+    graph: &mut Graph,
+    components: &[(Symbol, NodeId)],
+    written: &[NodeId],
+    angles: &HashSet<Symbol>,
+) -> (Vec<NodeId>, Vec<NodeId>) {
+    let is_function = |graph: &Graph, id: NodeId| match graph.node(id) {
+        Node::Apply(Function::Sin | Function::Cos, a) => {
+            !graph.as_symbol(a).is_some_and(|symbol| angles.contains(&symbol))
+        }
+        Node::Apply(..) => true,
+        _ => false,
+    };
+    let met = graph.reachable(written.iter().copied());
+    let functions: Vec<NodeId> = met.into_iter().filter(|id| is_function(graph, *id)).collect();
+    let mut measured = written.to_vec();
+    if !functions.is_empty() {
+        let mut flow = Derivation::new(components.iter().copied().collect());
+        let states: Vec<Symbol> = graph.symbols_of(functions.iter().copied());
+        for function in &functions {
+            measured.push(flow.apply(graph, *function));
+            measured.extend(gradient(graph, *function, &states));
+        }
+    }
+    (functions, measured)
+}
