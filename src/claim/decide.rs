@@ -97,10 +97,11 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
     let mut at_files_values = None;
     let mut printed_at_files_values = None;
     let mut printed = None;
-    let mut domain = Vec::new();
+    let (mut domain, mut beside) = (Vec::new(), Vec::new());
     let mut evidence = Vec::new();
     let mut known = |decided: Decided, text: &str, suffix: &str| {
         domain = decided.domain;
+        beside = decided.beside;
         let records = decided.evidence.into_iter().map(|evidence| VerdictRecord {
             file: system_name.clone(),
             id: format!("{}{suffix}", claim.id),
@@ -172,6 +173,7 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
         pole_of: claim.body.pole_of().map(|expr| in_one_line(&system.source, &expr.span)),
         verdict,
         domain,
+        beside,
         evidence,
         expected,
         remark: claim.remark.clone(),
@@ -191,6 +193,7 @@ fn fingerprint(text: &str) -> u64 {
 /// A verdict, what has to hold for the statement's terms to exist, in words, and what it rests on.
 struct Decided {
     verdict: Verdict,
+    beside: Vec<String>,
     domain: Vec<String>,
     evidence: Vec<Evidence>,
 }
@@ -198,15 +201,16 @@ struct Decided {
 /// What is noted beside a verdict.
 struct Notes {
     domain: Vec<String>,
+    beside: Vec<String>,
     /// Of all branches, whatever the verdict on them.
     evidence: Vec<Evidence>,
     kept: Kept,
 }
 
 fn decide_statement(system: &mut System, statement: &Statement, kept: Kept, rng: &mut ChaCha8Rng) -> Decided {
-    let mut notes = Notes { domain: Vec::new(), evidence: Vec::new(), kept };
+    let mut notes = Notes { domain: Vec::new(), beside: Vec::new(), evidence: Vec::new(), kept };
     let verdict = attempt(system, statement, rng, &mut notes).unwrap_or_else(Verdict::undecided);
-    let Notes { domain, mut evidence, .. } = notes;
+    let Notes { domain, beside, mut evidence, .. } = notes;
     let word = verdict.word();
     // at a state where a rank is lower than claimed it is certified
     let is_of_it = |evidence: &Evidence| {
@@ -225,7 +229,7 @@ fn decide_statement(system: &mut System, statement: &Statement, kept: Kept, rng:
         Verdict::Proved { .. } | Verdict::Refuted { .. } => {}
         Verdict::Definition { .. } | Verdict::Undecided { .. } => evidence.clear(),
     }
-    Decided { verdict, domain, evidence }
+    Decided { verdict, domain, beside, evidence }
 }
 
 fn attempt(
@@ -372,8 +376,10 @@ fn everywhere(
             add_guard(&system.graph, &mut guards, guard);
         }
     }
-    let mut sets = Vec::new();
+    let (mut sets, mut written) = (Vec::new(), Vec::new());
     for set in except {
+        let ends = set.first().zip(set.last()).map(|(first, last)| first.span.start..last.span.end);
+        written.push(in_one_line(&system.source, &ends.unwrap_or_default()));
         let mut vanishing = Vec::new();
         for equation in set {
             let mut side = |expr: &Expr| -> Result<NodeId, String> {
@@ -388,10 +394,11 @@ fn everywhere(
     }
     guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
     notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
-    let claim = ClaimedEverywhere { matrix, rank, guards, conditions, except: sets };
-    let (verdict, evidence) = super::everywhere::decide(system, &claim, rng)?;
-    notes.evidence = evidence;
-    Ok(verdict)
+    let claim = ClaimedEverywhere { matrix, rank, guards, conditions, except: sets, written };
+    let decided = super::everywhere::decide(system, &claim, rng)?;
+    notes.evidence = decided.evidence;
+    notes.beside = decided.beside;
+    Ok(decided.verdict)
 }
 
 /// How a branch stands to the set of all states that meet the conditions.

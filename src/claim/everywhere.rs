@@ -21,6 +21,15 @@ const BITS: usize = 1 << 14;
 /// At so many states the two sides of a minor's identity are looked for.
 const STATES: usize = 20;
 
+/// What became of a claim about a rank at all states.
+pub(super) struct DecidedEverywhere {
+    pub verdict: Verdict,
+    /// What it rests on.
+    pub evidence: Vec<Evidence>,
+    /// What the rank is on the sets that are left out, in words.
+    pub beside: Vec<String>,
+}
+
 /// Decides a claim about a rank at all states, and notes what the verdict rests on.
 ///
 /// # Errors
@@ -29,17 +38,13 @@ pub(super) fn decide(
     system: &mut System,
     claim: &ClaimedEverywhere,
     rng: &mut impl Rng,
-) -> Result<(Verdict, Vec<Evidence>), String> {
+) -> Result<DecidedEverywhere, String> {
     let seed = rng.random::<u64>();
     Ok(match decide_everywhere(system, claim, seed, &UNINTERRUPTED)? {
         Everywhere::Proved { cases: (cases, empty), minors, beside, log2_error } => {
-            let mut engine = format!("{ENGINE}, in {cases} cases, {empty} of them empty");
-            for told in beside {
-                engine.push_str("; ");
-                engine.push_str(&told);
-            }
+            let engine = format!("{ENGINE}, in {cases} cases, {empty} of them empty");
             let evidence = minors.iter().map(|minor| identity(system, minor, log2_error, rng)).collect();
-            (Verdict::Proved { engine, log2_error }, evidence)
+            DecidedEverywhere { verdict: Verdict::Proved { engine, log2_error }, evidence, beside }
         }
         Everywhere::Refuted { state, found, set, log2_error } => {
             let certified = rank_at(system, claim, &state, rng).map_err(|why| why.to_string())?;
@@ -65,9 +70,13 @@ pub(super) fn decide(
                 true => format!("{engine}, which no field leaves, so that longer words do not raise it"),
                 false => engine,
             };
-            (Verdict::Refuted { engine, witness }, vec![Evidence::Rank(certified)])
+            let evidence = vec![Evidence::Rank(certified)];
+            DecidedEverywhere { verdict: Verdict::Refuted { engine, witness }, evidence, beside: Vec::new() }
         }
-        Everywhere::Open(why) => (Verdict::undecided(why), Vec::new()),
+        Everywhere::Open(why) => {
+            let verdict = Verdict::undecided(why);
+            DecidedEverywhere { verdict, evidence: Vec::new(), beside: Vec::new() }
+        }
     })
 }
 

@@ -26,6 +26,8 @@ pub(crate) struct ClaimedEverywhere {
     pub conditions: Vec<NodeId>,
     /// The sets that are left out, each by what vanishes on it.
     pub except: Vec<Vec<NodeId>>,
+    /// The same as they are written.
+    pub written: Vec<String>,
 }
 
 /// A minor as a product, both in symbols of their own.
@@ -122,15 +124,12 @@ pub(crate) fn decide_everywhere(
     })?;
     if let Everywhere::Proved { beside, log2_error: error, .. } = &mut first {
         *error = error.max(log2_error);
-        for set in &claim.except {
+        for (set, place) in claim.except.iter().zip(&claim.written) {
             let asked = Asked {
                 nonzero: Vec::new(),
                 conditions: [claim.conditions.as_slice(), set.as_slice()].concat(),
                 ..asked.clone()
             };
-            let place: Vec<String> =
-                set.iter().map(|node| format!("{} = 0", system.graph.text(*node))).collect();
-            let place = place.join(", ");
             let all_rows = rows(system);
             let told = prepared(system, all_rows, &asked, seed, interrupt, |algebra, search| {
                 let explored = search.run(algebra)?;
@@ -178,7 +177,7 @@ fn off_the_sets(
     claim: &ClaimedEverywhere,
 ) -> Reach<Everywhere> {
     let mut open: Vec<String> = Vec::new();
-    for shown in merged(algebra, &explored.short) {
+    for shown in merged(algebra, search, &explored.short) {
         if claim.except.iter().any(|set| lies_in(algebra, &shown, set)) {
             continue;
         }
@@ -238,7 +237,7 @@ fn rank_at(algebra: &mut Algebra<'_>, search: &Search<'_>, state: &State) -> Opt
 
 /// What the rank is on a set that is left out, in words.
 fn on_a_set(algebra: &mut Algebra<'_>, search: &mut Search<'_>, explored: &Explored) -> String {
-    let shown = merged(algebra, &explored.short);
+    let shown = merged(algebra, search, &explored.short);
     let open: Vec<&Shown> = shown.iter().filter(|shown| shown.lower.is_err()).collect();
     let lower: Vec<&Shown> = shown.iter().filter(|shown| shown.lower.is_ok()).collect();
     let text = |algebra: &mut Algebra<'_>, shown: &Shown| {

@@ -158,6 +158,12 @@ impl Search<'_> {
                 return Err("the minor that was tried is zero".to_owned());
             }
             let mut lower = self.lower_on(algebra, case, &point);
+            if lower.is_err() && self.rows.order == 0 && self.rows.extend(algebra) {
+                continue;
+            }
+            if lower.is_err() {
+                lower = self.lower_on(algebra, case, &point);
+            }
             if lower.is_err()
                 && let Some(log2_error) = self.lower_around(algebra, case)
             {
@@ -367,7 +373,7 @@ impl Search<'_> {
             if let Some(field) = field {
                 return Err(format!("the field {field} leaves it, so that longer words may add to the rank"));
             }
-            if self.rows.order == 0 || shorter < seen {
+            if !self.rows.complete && (self.rows.order == 0 || shorter < seen) {
                 return Err("longer words may add to the rank".to_owned());
             }
         }

@@ -2,8 +2,8 @@
 //! the two factors of a sine or a cosine is cut out by that.
 
 use super::algebra::{Algebra, Chart, normal};
-use super::case::Case;
-use super::explore::ShortCase;
+use super::case::{Case, Step};
+use super::explore::{Search, ShortCase};
 use super::factors::coefficient;
 use crate::expression::{NodeId, Symbol};
 use crate::number::Function;
@@ -108,8 +108,19 @@ impl Shown {
 }
 
 /// Few sets that together are the same.
-pub(super) fn merged(algebra: &mut Algebra<'_>, short: &[ShortCase]) -> Vec<Shown> {
-    let all: Vec<Shown> = short.iter().map(Shown::of).collect();
+pub(super) fn merged(
+    algebra: &mut Algebra<'_>,
+    search: &Search<'_>,
+    short: &[ShortCase],
+) -> Vec<Shown> {
+    let mut all: Vec<Shown> = short.iter().map(Shown::of).collect();
+    for index in 0..all.len() {
+        for divisor in all[index].divisors.clone() {
+            if all[index].lower.is_ok() && rest_is_known(algebra, search, &all, index, &divisor) {
+                all[index].divisors.retain(|other| *other != divisor);
+            }
+        }
+    }
     let mut kept: Vec<Shown> = Vec::new();
     for (index, shown) in all.iter().enumerate() {
         let inside = all.iter().enumerate().any(|(at, other)| {
@@ -168,6 +179,45 @@ pub(super) fn merged(algebra: &mut Algebra<'_>, short: &[ShortCase]) -> Vec<Show
     }
     kept
 }
+
+/// Whether the states at which the equations of a set hold and something that does not vanish on it does lie in the other
+/// sets on which the rank is lower.
+fn rest_is_known(
+    algebra: &mut Algebra<'_>,
+    search: &Search<'_>,
+    all: &[Shown],
+    index: usize,
+    divisor: &Polynomial,
+) -> bool {
+    let shown = &all[index];
+    let Ok(Some(mut case)) = search.domain(algebra, &shown.chart) else { return false };
+    for line in &shown.lines {
+        match line {
+            Line::Zero(polynomial) => case = case.with_zero(polynomial),
+            Line::Named(_) => return false,
+        }
+    }
+    let mut open = vec![case.with_zero(divisor)];
+    for _ in 0..MOST_CASES {
+        let Some(case) = open.pop() else { return true };
+        match case.step(algebra) {
+            Ok(Step::Empty) => {}
+            Ok(Step::Split(cases)) => open.extend(cases),
+            Ok(Step::Ready(case)) => {
+                let others = all.iter().enumerate().filter(|(at, other)| *at != index && other.lower.is_ok());
+                let mut others = others.map(|(_, other)| other);
+                if !others.any(|other| other.contains(algebra, &case)) {
+                    return false;
+                }
+            }
+            Err(_) => return false,
+        }
+    }
+    false
+}
+
+/// So many cases are followed to find out whether something has to be said beside the equations of a set.
+const MOST_CASES: usize = 60;
 
 /// Two sets as one, where that is cut out by a sine or a cosine.
 fn both(algebra: &mut Algebra<'_>, one: &Shown, other: &Shown) -> Option<Shown> {

@@ -26,6 +26,8 @@ pub(super) struct Rows {
     last: Vec<(Word, NodeId)>,
     pub order: usize,
     grows: bool,
+    /// Whether no longer word has a differential that is not zero.
+    pub complete: bool,
     programs: HashMap<Chart, (usize, Program)>,
 }
 
@@ -48,7 +50,7 @@ impl Rows {
         let names = (1..=rows.len()).map(|n| format!("row {n}")).collect();
         let orders = vec![0; rows.len()];
         let (last, programs, written) = (Vec::new(), HashMap::new(), Vec::new());
-        Rows { columns, names, rows, written, orders, costs, last, order: 0, grows: false, programs }
+        Rows { columns, names, rows, written, orders, costs, last, order: 0, grows: false, complete: true, programs }
     }
 
     /// The differentials of the outputs, and what comes of them.
@@ -66,6 +68,7 @@ impl Rows {
             last: Vec::new(),
             order: 0,
             grows: true,
+            complete: false,
             programs: HashMap::new(),
         };
         rows.add(system, last);
@@ -137,6 +140,7 @@ impl Rows {
             }
         }
         if longer.is_empty() {
+            self.complete = true;
             return false;
         }
         self.order += 1;

@@ -120,7 +120,7 @@ pub fn where_it_drops(
         answer.cases = (explored.cases, explored.empty);
         answer.minors = explored.full.iter().map(|full| used(algebra, &search.rows, full)).collect();
         let (sets, open): (Vec<_>, Vec<_>) =
-            merged(algebra, &explored.short).into_iter().partition(|shown| shown.lower.is_ok());
+            merged(algebra, search, &explored.short).into_iter().partition(|shown| shown.lower.is_ok());
         let mut described = |shown: Vec<Shown>| -> Vec<DropSet> {
             shown.into_iter().map(|shown| described(algebra, search, shown)).collect()
         };

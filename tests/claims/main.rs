@@ -8,6 +8,7 @@ mod blocks;
 mod brackets;
 mod derivation;
 mod dimensions;
+mod drops;
 mod edges;
 mod formulas;
 mod functions;

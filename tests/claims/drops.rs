@@ -1,0 +1,148 @@
+//! Where ranks drop: systems whose sets are known by hand, and random ones beside exact elimination state by state.
+
+use palmistry::drops::{DropAnswer, where_it_drops};
+use palmistry::{System, prove};
+use std::sync::atomic::AtomicBool;
+
+static NO: AtomicBool = AtomicBool::new(false);
+
+fn drops(text: &str) -> DropAnswer {
+    let mut system: System = text.parse().expect("a system");
+    where_it_drops(&mut system, 1, &NO).expect("there is a codistribution")
+}
+
+/// The sets with their ranks, sorted.
+fn sets(answer: &DropAnswer) -> Vec<String> {
+    assert!(answer.is_exact(), "{answer:#?}");
+    let mut found: Vec<String> = answer
+        .sets
+        .iter()
+        .map(|set| format!("{}: {}", set.rank, [set.equations.clone(), set.unless.clone()].concat().join(", ")))
+        .collect();
+    found.sort();
+    found
+}
+
+/// A unicycle with unit speed that sees the square of its distance to a beacon in the origin: `h = (x^2 + y^2)/2`,
+/// `Lf h = x cos + y sin`, `Lf Lf h = 1`, and along the turning input `Lg Lf h = y cos - x sin`. Turning about the beacon is
+/// not seen: rank 2, and at the beacon 2 as well (`d Lf h`, `d Lg Lf h`); the rank drops nowhere.
+#[test]
+fn a_unicycle_and_a_beacon() {
+    let answer = drops(
+        "system \"unicycle\" state x, y, theta angle theta\ndrift f x' = cos(theta) y' = sin(theta) others' = 0\n\
+         input g theta' = 1 others' = 0\noutput (x^2 + y^2)/2",
+    );
+    assert_eq!((answer.rank, answer.dimension), (2, 3));
+    assert_eq!(sets(&answer), [""; 0]);
+    // without the input, on straight lines: h and Lf h, whose differentials are parallel where the motion is radial and the
+    // beacon is left or reached: `x dx + y dy` against `cos dx + sin dy + (y cos - x sin) dtheta`
+    let straight = drops(
+        "system \"straight\" state x, y, theta angle theta\ndrift f x' = cos(theta) y' = sin(theta) others' = 0\n\
+         output (x^2 + y^2)/2",
+    );
+    assert_eq!(straight.rank, 2);
+    for set in &straight.sets {
+        assert!(set.rank < 2 && set.open.is_none());
+    }
+}
+
+/// Lorenz's system seen through `x`: `d x`, `d Lf x`, `d Lf Lf x` have the determinant `-sigma^2 x` (up to sign), and on
+/// `x = 0` the next word gives `sigma^3 y`. What is left is the z axis, which the drift does not leave.
+#[test]
+fn lorenz_by_its_first_coordinate() {
+    let answer = drops(
+        "system \"Lorenz\" state x, y, z param sigma, rho, beta\n\
+         drift f x' = sigma*(y - x) y' = x*(rho - z) - y z' = x*y - beta*z\noutput x",
+    );
+    assert_eq!(answer.rank, 3);
+    assert_eq!(sets(&answer), ["1: sigma = 0", "2: x = 0, y = 0"]);
+    assert!(answer.sets.iter().all(|set| set.state.is_some()));
+}
+
+/// At rest the rows are the outputs' differentials, and the set can be read off: the determinant is `x (x^2 + 1) (x^2 + y)`, of
+/// which the middle factor has no real zero.
+#[test]
+fn a_factor_without_real_zeros_cuts_out_nothing() {
+    let answer = drops(
+        "system \"rest\" state x, y, z drift f others' = 0\noutput x, x*y*(x^2 + 1), x^2*z + y*z",
+    );
+    assert_eq!(sets(&answer), ["2: x = 0", "2: y + x^2 = 0"]);
+}
+
+/// The minors of `x^2 - y^2`, `x y (x - 2 y)` and `x^3` are `2(x^4 + ...)`; each vanishes on lines, all of them at the origin
+/// alone, a set of codimension two.
+#[test]
+fn common_zeros_may_be_fewer_than_those_of_each_minor() {
+    let answer =
+        drops("system \"rest\" state x, y drift f others' = 0\noutput x^2 - y^2, x*y*(x - 2*y), x^3");
+    assert_eq!(sets(&answer), ["0: x = 0, y = 0"]);
+}
+
+/// `x^2 - y^2` is two lines; `x^4 + x + 1` has no real zero, which only Sturm's chain shows; `x^3 - 2` has one that is no
+/// rational number, so that the set is named and not decided.
+#[test]
+fn factors_are_irreducible_where_it_matters() {
+    let rest = |output: &str| {
+        drops(&format!("system \"rest\" state x, y drift f others' = 0\noutput {output}"))
+    };
+    assert_eq!(sets(&rest("x*y^2 - x^3/3, y")), ["1: x + y = 0", "1: y - x = 0"]);
+    assert_eq!(sets(&rest("x^5/5 + x^2/2 + x, y")), [""; 0]);
+    let cubic = rest("x^4/4 - 2*x, y");
+    assert!(!cubic.is_exact() && cubic.sets.is_empty());
+    assert_eq!(cubic.open.len(), 1);
+    assert_eq!(cubic.open[0].equations, ["x^3 - 2 = 0"]);
+}
+
+/// `cos(phi)` and `sin(phi)` as outputs of a circle see the angle everywhere; `cos(phi)` alone not where `sin(phi) = 0`, half
+/// turns included; the difference of two angles is seen by its sine but for right angles.
+#[test]
+fn angles_include_half_turns() {
+    let rest = |state: &str, output: &str| {
+        drops(&format!("system \"rest\" state {state} angle {state} drift f others' = 0\noutput {output}"))
+    };
+    assert_eq!(sets(&rest("phi", "cos(phi), sin(phi)")), [""; 0]);
+    assert_eq!(sets(&rest("phi", "cos(phi)")), ["0: sin(phi) = 0"]);
+    assert_eq!(sets(&rest("phi", "sin(phi)")), ["0: cos(phi) = 0"]);
+    assert_eq!(sets(&rest("a, b", "a, sin(a - b)")), ["1: cos(a - b) = 0"]);
+    assert_eq!(sets(&rest("a, b", "a, sin(a + b)")), ["1: cos(a + b) = 0"]);
+    // where a file does not say that it is an angle
+    let plain = drops("system \"rest\" state x, phi drift f others' = 0\noutput x, x*cos(phi)");
+    assert_eq!(sets(&plain), ["1: sin(phi) = 0", "1: x = 0"]);
+}
+
+/// A pendulum whose angle is seen has rank 2 everywhere; where its cosine is seen alone, not at rest where it hangs or stands.
+#[test]
+fn a_pendulum() {
+    let pendulum = |output: &str| {
+        drops(&format!(
+            "system \"pendulum\" state phi, omega param k angle phi\n\
+             drift f phi' = omega omega' = -k*sin(phi)\noutput {output}"
+        ))
+    };
+    assert_eq!(sets(&pendulum("phi")), [""; 0]);
+    assert_eq!(sets(&pendulum("cos(phi)")), ["0: omega = 0, sin(phi) = 0"]);
+}
+
+/// The words of claims: proved, refuted with a state off the sets, and what the rank is on them.
+#[test]
+fn claims_about_all_states() {
+    let system: System = "system \"s\" state x, y, z param k\ndrift f x' = y y' = z z' = 0\noutput k*x, y^2 + z^2\n\
+         sample x in [1, 2] y in [1, 2] z in [1, 2]\n\
+         claim product: rank = 3 except where k*y = 0\nclaim least: rank = 3 except where k = 0\n\
+         claim sets: rank = 3 except where k = 0 or y = 0, z = 0\nclaim given: rank = 3 where k = 2 everywhere\n\
+         claim all expect refuted: rank = 3 everywhere\nclaim other expect refuted: rank = 3 except where y = 0\n\
+         claim low expect refuted: rank = 2 everywhere\n\
+         claim rows: rank([k, 0; y, x]) = 2 except where k*x = 0\n\
+         claim one expect refuted: rank([k, 0; y, x]) = 2 except where k = 0\n"
+        .parse()
+        .expect("a system");
+    let outcomes = prove(&system);
+    for outcome in &outcomes {
+        assert!(outcome.ok, "{}: {:?}", outcome.id, outcome.verdict);
+    }
+    let beside = |id: &str| &outcomes.iter().find(|outcome| outcome.id == id).expect("it is there").beside;
+    assert_eq!(beside("least"), &["where k = 0 it is lower at all states: 2 where k = 0"]);
+    assert_eq!(beside("sets").len(), 2);
+    assert_eq!(beside("sets")[1], "where y = 0, z = 0 it is not lower everywhere, or that is not decided; it is 2 where k = 0, y = 0, z = 0");
+    assert!(beside("given").is_empty());
+}
