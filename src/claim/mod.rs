@@ -8,8 +8,8 @@
 
 mod decide;
 mod defaults;
-mod evidence;
 mod everywhere;
+mod evidence;
 mod existence;
 mod identity;
 mod inequality;

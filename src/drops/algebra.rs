@@ -39,16 +39,7 @@ impl<'s> Algebra<'s> {
     /// For some expressions of a system. Symbols that are met inside sines and cosines alone are angles, whether or not the
     /// file says so.
     pub fn new(system: &'s mut System, mentioned: &[NodeId]) -> Self {
-        let mut angles: BTreeSet<Symbol> = system.angles().into_iter().collect();
-        angles.extend(inside_sines(&system.graph, mentioned));
-        loop {
-            let is_angle = |symbol: Symbol| angles.contains(&symbol);
-            let expanded = expand_angles(&mut system.graph, mentioned, is_angle);
-            match Program::with_unknown_functions(&system.graph, &expanded, is_angle).bare_angle() {
-                Some(number) if angles.remove(&number) => {}
-                _ => break,
-            }
-        }
+        let angles = angles_of(system, mentioned);
         let met = system.graph.symbols_of(mentioned.iter().copied());
         let tangents = angles
             .into_iter()
@@ -216,6 +207,44 @@ impl<'s> Algebra<'s> {
     }
 }
 
+/// The angles of a file, and symbols that are met inside sines and cosines alone.
+fn angles_of(system: &mut System, mentioned: &[NodeId]) -> BTreeSet<Symbol> {
+    let mut angles: BTreeSet<Symbol> = system.angles().into_iter().collect();
+    angles.extend(inside_sines(&system.graph, mentioned));
+    loop {
+        let is_angle = |symbol: Symbol| angles.contains(&symbol);
+        let expanded = expand_angles(&mut system.graph, mentioned, is_angle);
+        match Program::with_unknown_functions(&system.graph, &expanded, is_angle).bare_angle() {
+            Some(number) if angles.remove(&number) => {}
+            _ => break,
+        }
+    }
+    angles
+}
+
+/// Does something while the symbols that are met inside sines and cosines alone are angles.
+pub(super) fn with_angles<T>(
+    system: &mut System,
+    mentioned: &[NodeId],
+    work: impl FnOnce(&mut System) -> T,
+) -> T {
+    let angles = angles_of(system, mentioned);
+    let mut turned = Vec::new();
+    for (symbol, info) in &mut system.symbols {
+        if !info.is_angle && angles.contains(symbol) {
+            info.is_angle = true;
+            turned.push(*symbol);
+        }
+    }
+    let found = work(system);
+    for symbol in turned {
+        if let Some(info) = system.symbols.get_mut(&symbol) {
+            info.is_angle = false;
+        }
+    }
+    found
+}
+
 /// A symbol that was solved for: `bottom x + top = 0`.
 pub(super) struct Solved {
     pub symbol: Symbol,
@@ -254,10 +283,11 @@ pub(super) fn normal(polynomial: &Polynomial) -> Polynomial {
 
 /// The symbols that stand inside sines and cosines.
 fn inside_sines(graph: &Graph, roots: &[NodeId]) -> Vec<Symbol> {
-    let arguments = graph.reachable(roots.iter().copied()).into_iter().filter_map(|id| match graph.node(id) {
-        Node::Apply(Function::Sin | Function::Cos, argument) => Some(argument),
-        _ => None,
-    });
+    let arguments =
+        graph.reachable(roots.iter().copied()).into_iter().filter_map(|id| match graph.node(id) {
+            Node::Apply(Function::Sin | Function::Cos, argument) => Some(argument),
+            _ => None,
+        });
     graph.symbols_of(arguments.collect::<Vec<_>>())
 }
 
@@ -272,9 +302,9 @@ fn with_tangents(
     for id in graph.reachable(roots.iter().copied()) {
         let node = graph.node(id);
         let angle = match node {
-            Node::Apply(function @ (Function::Sin | Function::Cos), argument) => graph
-                .as_symbol(argument)
-                .and_then(|angle| Some((function, angle, *tangents.get(&angle)?))),
+            Node::Apply(function @ (Function::Sin | Function::Cos), argument) => {
+                graph.as_symbol(argument).and_then(|angle| Some((function, angle, *tangents.get(&angle)?)))
+            }
             _ => None,
         };
         let new = match angle {

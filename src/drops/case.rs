@@ -121,8 +121,7 @@ impl Case {
             let mut changed = false;
             for relation in &self.relations {
                 if rest.degree_in(relation.place) >= relation.polynomial.degree_in(relation.place) {
-                    rest =
-                        pseudo_remainder(&rest, &relation.polynomial, relation.place).ok_or(TOO_LONG)?;
+                    rest = pseudo_remainder(&rest, &relation.polynomial, relation.place).ok_or(TOO_LONG)?;
                     changed = true;
                 }
             }

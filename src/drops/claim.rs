@@ -1,12 +1,12 @@
 //! That a rank is what is claimed at all states, but for some sets that are named.
 
-use super::algebra::{Algebra, Chart, Reach};
+use super::algebra::{Algebra, Chart, Reach, with_angles};
 use super::case::Case;
 use super::explore::{Explored, FullCase, Search};
 use super::merge::{Shown, merged};
 use super::real::{exact_values, state_on};
 use super::rows::Rows;
-use super::sets::{Asked, prepared};
+use super::sets::{Asked, mentioned_in_words, prepared};
 use crate::expression::{Guard, Need, NodeId};
 use crate::number::Rationals;
 use crate::observability::{Codistribution, Length, State, rank};
@@ -58,14 +58,33 @@ pub(crate) enum Everywhere {
 }
 
 /// Decides a claim about a rank at all states.
+///
+/// # Errors
+/// In words, where it is out of reach.
 pub(crate) fn decide_everywhere(
     system: &mut System,
     claim: &ClaimedEverywhere,
     seed: u64,
     interrupt: &AtomicBool,
 ) -> Result<Everywhere, String> {
+    let mut mentioned = match &claim.matrix {
+        Some((entries, _)) => entries.clone(),
+        None => mentioned_in_words(system),
+    };
+    mentioned.extend(claim.guards.iter().map(|guard| guard.node));
+    mentioned.extend(claim.conditions.iter().chain(claim.except.iter().flatten()));
+    with_angles(system, &mentioned, |system| decided(system, claim, seed, interrupt))
+}
+
+fn decided(
+    system: &mut System,
+    claim: &ClaimedEverywhere,
+    seed: u64,
+    interrupt: &AtomicBool,
+) -> Result<Everywhere, String> {
     let columns = claim.matrix.as_ref().map_or(system.states.len(), |(_, columns)| *columns);
-    let height = claim.matrix.as_ref().map_or(usize::MAX, |(entries, columns)| entries.len() / (*columns).max(1));
+    let height =
+        claim.matrix.as_ref().map_or(usize::MAX, |(entries, columns)| entries.len() / (*columns).max(1));
     let mut log2_error = f64::NEG_INFINITY;
     let mut greatest = columns.min(height);
     if claim.rank > greatest {
@@ -182,7 +201,8 @@ fn off_the_sets(
             continue;
         }
         let texts = shown.texts(algebra);
-        let place = if texts.is_empty() { "everywhere".to_owned() } else { format!("where {}", texts.join(", ")) };
+        let place =
+            if texts.is_empty() { "everywhere".to_owned() } else { format!("where {}", texts.join(", ")) };
         match &shown.lower {
             Err(why) => open.push(format!("{place} no minor was found that is not zero: {why}")),
             Ok(log2_error) => match state_on(algebra, search, &shown.case, &claim.except) {
@@ -196,7 +216,9 @@ fn off_the_sets(
                         None => open.push(format!("{place} the rank is {}", shown.rank)),
                     }
                 }
-                None => open.push(format!("{place} the rank is {}, and no state of it was found", shown.rank)),
+                None => {
+                    open.push(format!("{place} the rank is {}, and no state of it was found", shown.rank))
+                }
             },
         }
     }
@@ -251,7 +273,9 @@ fn on_a_set(algebra: &mut Algebra<'_>, search: &mut Search<'_>, explored: &Explo
     let full = explored.full.iter().any(|full| state_on(algebra, search, &full.case, &[]).is_some());
     match (lowered.is_empty(), full, open.is_empty()) {
         (false, false, true) => format!("it is lower at all states: {}", lowered.join("; ")),
-        (false, _, _) => format!("it is not lower everywhere, or that is not decided; it is {}", lowered.join("; ")),
+        (false, _, _) => {
+            format!("it is not lower everywhere, or that is not decided; it is {}", lowered.join("; "))
+        }
         (true, true, true) => "it is no lower".to_owned(),
         (true, ..) if explored.full.is_empty() && open.is_empty() => "there are no states".to_owned(),
         (true, ..) => "it is not decided whether it is lower".to_owned(),

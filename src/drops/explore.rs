@@ -13,6 +13,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// No more minors are reduced on one set.
+const MOST_BORDERS: usize = 200;
 /// Of a minor whose doubtful factors have no more monomials than this no better one is looked for.
 const SHORT: usize = 40;
 /// No more cases are looked at.
@@ -136,6 +138,10 @@ impl Search<'_> {
                         open.extend(cases.into_iter().rev());
                     }
                     Ok(Ranked::Short(short)) => found.short.push(short),
+                    Ok(Ranked::Lower(cases, short)) => {
+                        found.short.push(short);
+                        open.extend(cases.into_iter().rev());
+                    }
                     Err(why) => found.short.push(ShortCase { case: *case, rank: 0, lower: Err(why) }),
                 },
                 Err(why) => found.short.push(ShortCase { case, rank: 0, lower: Err(why) }),
@@ -156,6 +162,9 @@ impl Search<'_> {
                     return Ok(found);
                 }
                 return Err("the minor that was tried is zero".to_owned());
+            }
+            if !case.relations.is_empty() {
+                return self.lower_on_relations(algebra, case, &point, rank);
             }
             let mut lower = self.lower_on(algebra, case, &point);
             if lower.is_err() && self.rows.order == 0 && self.rows.extend(algebra) {
@@ -259,7 +268,8 @@ impl Search<'_> {
         let mut total = Product::default();
         let (mut rows, mut all) = (Vec::new(), Vec::new());
         for row in &chosen.rows {
-            let entries: Vec<NodeId> = chosen.columns.iter().map(|column| self.rows.rows[*row][*column]).collect();
+            let entries: Vec<NodeId> =
+                chosen.columns.iter().map(|column| self.rows.rows[*row][*column]).collect();
             let entries = algebra.in_chart(&case.chart, &entries);
             let entries = algebra.system.graph.substitute(&entries, &case.values);
             all.extend(&entries);
@@ -310,6 +320,83 @@ impl Search<'_> {
             total.times(&factor, -i64::from(power), &mut self.known);
         }
         Ok(row)
+    }
+
+    /// The rank on a set that is cut out by equations that cannot be solved: the minors that border one which is not zero are
+    /// reduced by these equations. Where that one does not vanish, and they do, the rank is its size.
+    fn lower_on_relations(
+        &mut self,
+        algebra: &mut Algebra<'_>,
+        case: &Case,
+        point: &Point,
+        rank: usize,
+    ) -> Reach<Ranked> {
+        let short = |lower| Ok(Ranked::Short(ShortCase { case: case.clone(), rank, lower }));
+        if let Some(log2_error) = self.lower_around(algebra, case) {
+            return short(Ok(log2_error));
+        }
+        if self.rows.is_of_words() {
+            if let Some(field) = leaving_field(algebra, case) {
+                if self.rows.extend(algebra) {
+                    return self.rank_on(algebra, case);
+                }
+                return short(Err(format!(
+                    "the field {field} leaves it, so that longer words may add to the rank"
+                )));
+            }
+            let ranks = self.rows.ranks(algebra, &case.chart, point, &mut self.rng);
+            let (shorter, seen) = ranks.ok_or("no point was found at which the rows exist")?;
+            if !self.rows.complete && (self.rows.order == 0 || shorter < seen) {
+                if self.rows.extend(algebra) {
+                    return self.rank_on(algebra, case);
+                }
+                return short(Err("longer words may add to the rank".to_owned()));
+            }
+        }
+        let Some(basis) = self.rows.shortest(algebra, &case.chart, point, &mut self.rng) else {
+            return short(Err("no point was found at which the rows exist".to_owned()));
+        };
+        let (height, width) = (self.rows.rows.len(), self.rows.columns);
+        if (height - basis.rows.len()) * (width - basis.columns.len()) > MOST_BORDERS {
+            return short(Err("there are too many minors".to_owned()));
+        }
+        for row in (0..height).filter(|row| !basis.rows.contains(row)) {
+            for column in (0..width).filter(|column| !basis.columns.contains(column)) {
+                let bordered = Chosen {
+                    rows: basis.rows.iter().copied().chain([row]).collect(),
+                    columns: basis.columns.iter().copied().chain([column]).collect(),
+                };
+                let (minor, _) = self.minor(algebra, case, &bordered)?;
+                let mut vanishes = minor.is_zero();
+                for (factor, power) in &minor.powers {
+                    vanishes |= *power > 0 && case.reduced(factor)?.is_zero();
+                }
+                if !vanishes {
+                    return short(Err("a minor is not seen to vanish there".to_owned()));
+                }
+            }
+        }
+        let mut doubtful: Vec<Polynomial> = Vec::new();
+        if !basis.rows.is_empty() {
+            let (minor, _) = self.minor(algebra, case, &basis)?;
+            for (factor, _) in &minor.powers {
+                for factor in case.doubtful(&case.reduced(factor)?) {
+                    if !doubtful.contains(&factor) {
+                        doubtful.push(factor);
+                    }
+                }
+            }
+        }
+        let cases = case.where_one_vanishes(&doubtful, &[]);
+        let mut main = case.clone();
+        for factor in doubtful {
+            main.add_nonzero(&factor);
+            main.divisors.push(factor);
+        }
+        Ok(Ranked::Lower(
+            cases,
+            ShortCase { case: main, rank: basis.rows.len(), lower: Ok(f64::NEG_INFINITY) },
+        ))
     }
 
     /// The same by a larger set, on which fewer of the equations hold: the fields may leave the one and not the other.
@@ -416,6 +503,19 @@ fn leaving_field(algebra: &mut Algebra<'_>, case: &Case) -> Option<String> {
                 return Some(name);
             }
         }
+        for relation in &case.relations {
+            let node = algebra.node(&relation.polynomial);
+            let mut sum = algebra.system.graph.integer(0);
+            for symbol in algebra.system.graph.symbols_of([node]) {
+                let slope = algebra.system.partial(node, symbol);
+                let rate = rate_of(algebra, case, field, symbol);
+                let part = algebra.system.graph.mul(slope, rate);
+                sum = algebra.system.graph.add(sum, part);
+            }
+            if !algebra_vanishes(algebra, case, sum) {
+                return Some(name);
+            }
+        }
         for (symbol, value) in &solved {
             let mut difference = rate_of(algebra, case, field, *symbol);
             for other in algebra.system.graph.symbols_of([*value]) {
@@ -458,7 +558,11 @@ fn rate_of(algebra: &mut Algebra<'_>, case: &Case, field: usize, symbol: Symbol)
 /// Whether an expression of a chart is zero all over a case.
 fn algebra_vanishes(algebra: &mut Algebra<'_>, case: &Case, node: NodeId) -> bool {
     let there = algebra.system.graph.substitute(&[node], &case.values)[0];
-    vanishes(algebra.system, there)
+    if case.relations.is_empty() {
+        return vanishes(algebra.system, there);
+    }
+    let top = algebra.numerator(there).and_then(|top| case.reduced(&top));
+    top.is_ok_and(|top| top.is_zero())
 }
 
 /// What is known of a set.
@@ -467,4 +571,6 @@ enum Ranked {
     /// It is the union of these, and of one on which the rank is full.
     Unless(Vec<Case>, Box<FullCase>),
     Short(ShortCase),
+    /// It is the union of these, and of one on which the rank is lower.
+    Lower(Vec<Case>, ShortCase),
 }

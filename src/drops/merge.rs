@@ -102,17 +102,14 @@ impl Shown {
                 Line::Named(_) => false,
             })
             && self.divisors.iter().all(|divisor| {
-                vanishes(divisor, algebra).is_some_and(|top| !top.is_zero() && other.doubtful(&top).is_empty())
+                vanishes(divisor, algebra)
+                    .is_some_and(|top| !top.is_zero() && other.doubtful(&top).is_empty())
             })
     }
 }
 
 /// Few sets that together are the same.
-pub(super) fn merged(
-    algebra: &mut Algebra<'_>,
-    search: &Search<'_>,
-    short: &[ShortCase],
-) -> Vec<Shown> {
+pub(super) fn merged(algebra: &mut Algebra<'_>, search: &Search<'_>, short: &[ShortCase]) -> Vec<Shown> {
     let mut all: Vec<Shown> = short.iter().map(Shown::of).collect();
     for index in 0..all.len() {
         for divisor in all[index].divisors.clone() {
@@ -177,6 +174,16 @@ pub(super) fn merged(
             }
         }
     }
+    for shown in &mut kept {
+        for line in &mut shown.lines {
+            if let Line::Zero(polynomial) = line
+                && polynomial.len() > 2
+                && let Some(wave) = wave_of(algebra, &shown.chart, polynomial)
+            {
+                *line = Line::Named(wave);
+            }
+        }
+    }
     kept
 }
 
@@ -233,12 +240,11 @@ fn both(algebra: &mut Algebra<'_>, one: &Shown, other: &Shown) -> Option<Shown> 
     let without = |from: &[Line], what: &[Line]| -> Vec<Line> {
         from.iter().filter(|line| !what.contains(line)).cloned().collect()
     };
-    let (only_small, only_large) =
-        (without(&small.lines, &large.lines), without(&large.lines, &small.lines));
+    let (only_small, only_large) = (without(&small.lines, &large.lines), without(&large.lines, &small.lines));
     let place_of = |symbol: Symbol| {
-        algebra.variables().iter().position(|variable| {
-            matches!(variable, crate::expression::Variable::Plain(known) if *known == symbol)
-        })
+        algebra.variables().iter().position(
+            |variable| matches!(variable, crate::expression::Variable::Plain(known) if *known == symbol),
+        )
     };
     let merged_line = match (more.as_slice(), only_small.as_slice(), only_large.as_slice()) {
         // phi = 0 and phi = pi

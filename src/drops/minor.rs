@@ -116,9 +116,10 @@ fn pivot(rows: &[Vec<Polynomial>]) -> Option<(usize, usize)> {
         |column: usize| rows.iter().filter(|row| !row[column].is_zero()).count().saturating_sub(1);
     let places = rows.iter().enumerate().flat_map(|(at, row)| {
         let beside = filled(row).saturating_sub(1);
-        row.iter().enumerate().filter(|(_, entry)| !entry.is_zero()).map(move |(column, entry)| {
-            (beside, entry.len(), (at, column))
-        })
+        row.iter()
+            .enumerate()
+            .filter(|(_, entry)| !entry.is_zero())
+            .map(move |(column, entry)| (beside, entry.len(), (at, column)))
     });
     places.min_by_key(|(beside, length, place)| (beside * in_column(place.1), *length)).map(|found| found.2)
 }

@@ -22,6 +22,6 @@ mod real;
 mod rows;
 mod sets;
 
-pub(crate) use rows::rows_up_to;
 pub(crate) use claim::{ClaimedEverywhere, Everywhere, MinorIdentity, decide_everywhere};
+pub(crate) use rows::rows_up_to;
 pub use sets::{DropAnswer, DropSet, UsedMinor, where_it_drops};

@@ -50,7 +50,19 @@ impl Rows {
         let names = (1..=rows.len()).map(|n| format!("row {n}")).collect();
         let orders = vec![0; rows.len()];
         let (last, programs, written) = (Vec::new(), HashMap::new(), Vec::new());
-        Rows { columns, names, rows, written, orders, costs, last, order: 0, grows: false, complete: true, programs }
+        Rows {
+            columns,
+            names,
+            rows,
+            written,
+            orders,
+            costs,
+            last,
+            order: 0,
+            grows: false,
+            complete: true,
+            programs,
+        }
     }
 
     /// The differentials of the outputs, and what comes of them.
@@ -148,6 +160,20 @@ impl Rows {
         true
     }
 
+    /// Rows and columns that are independent at a point, of words that are shorter than the longest, unless these are all.
+    pub fn shortest(
+        &mut self,
+        algebra: &mut Algebra<'_>,
+        chart: &Chart,
+        point: &Point,
+        rng: &mut impl Rng,
+    ) -> Option<Chosen> {
+        let matrix = self.at(algebra, chart, point, rng)?;
+        let counts = |row: &usize| self.complete || self.orders[*row] < self.order;
+        let order: Vec<usize> = (0..matrix.len()).filter(counts).collect();
+        choose(&point.field, &matrix, &order, self.columns, self.columns)
+    }
+
     /// The rank at a point, of the words that are shorter than the longest, and of all.
     pub fn ranks(
         &mut self,
@@ -158,7 +184,8 @@ impl Rows {
     ) -> Option<(usize, usize)> {
         let matrix = self.at(algebra, chart, point, rng)?;
         let order: Vec<usize> = (0..matrix.len()).collect();
-        let shorter: Vec<usize> = order.iter().copied().filter(|row| self.orders[*row] < self.order).collect();
+        let shorter: Vec<usize> =
+            order.iter().copied().filter(|row| self.orders[*row] < self.order).collect();
         let rank = |rows: &[usize]| {
             choose(&point.field, &matrix, rows, self.columns, self.columns).map(|chosen| chosen.rows.len())
         };

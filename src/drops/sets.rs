@@ -1,6 +1,6 @@
 //! What was found, in the words of the file.
 
-use super::algebra::{Algebra, Reach};
+use super::algebra::{Algebra, Reach, with_angles};
 use super::case::Case;
 use super::coordinates;
 use super::explore::{FullCase, Search, ShortCase};
@@ -86,11 +86,23 @@ impl DropAnswer {
 ///
 /// # Errors
 /// In words, where there is no codistribution.
-pub fn where_it_drops(
-    system: &mut System,
-    seed: u64,
-    interrupt: &AtomicBool,
-) -> Result<DropAnswer, String> {
+pub fn where_it_drops(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<DropAnswer, String> {
+    let mentioned = mentioned_in_words(system);
+    with_angles(system, &mentioned, |system| drops_of(system, seed, interrupt))
+}
+
+/// All that Lie derivatives are made of: the outputs' differentials, the fields and where they exist.
+pub(super) fn mentioned_in_words(system: &mut System) -> Vec<NodeId> {
+    let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, output)| *output).collect();
+    let mut found: Vec<NodeId> = outputs.into_iter().flat_map(|output| system.differential(output)).collect();
+    for field in system.moving_fields() {
+        found.extend(system.fields[field].components.iter().map(|(_, rate)| *rate));
+    }
+    found.extend(system.smooth_guards(&system.moving_fields()).iter().map(|guard| guard.node));
+    found
+}
+
+fn drops_of(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<DropAnswer, String> {
     let begin = Instant::now();
     let words = Codistribution::new(system, &Default::default(), Length::UntilItStops)?;
     let (rank, is_final) = (words.generic_rank(), words.is_final());

@@ -35,7 +35,9 @@ fn statement_formula(text: &str) -> Option<Formula> {
 }
 
 fn expressions(statement: &Statement) -> impl Iterator<Item = &Expr> {
-    statement.all_equations().flat_map(|one| [Some(&one.left), Some(&one.right), one.within.as_ref()].into_iter().flatten())
+    statement
+        .all_equations()
+        .flat_map(|one| [Some(&one.left), Some(&one.right), one.within.as_ref()].into_iter().flatten())
 }
 
 fn expression_formula(text: &str) -> Option<Formula> {
