@@ -173,9 +173,7 @@ fn rows(system: &mut System, claim: &ClaimedEverywhere) -> (Vec<NodeId>, usize, 
         }
         None => {
             let (names, entries) = crate::drops::rows_up_to(system, claim.rank);
-            let columns: Vec<String> =
-                system.states.iter().map(|state| system.symbol_name(*state).to_owned()).collect();
-            (entries, system.states.len(), names, columns)
+            (entries, system.unknown_count(), names, system.column_names())
         }
     }
 }

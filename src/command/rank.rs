@@ -6,8 +6,9 @@ use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
+use palmistry::drops::where_it_drops;
 use palmistry::evidence::rank_records;
-use palmistry::report::{rank_json, rank_text};
+use palmistry::report::{drops_json, drops_text, rank_json, rank_text};
 use palmistry::sweep::MOST_DIGITS;
 use palmistry::{RankQuestion, System, answer_rank};
 use std::collections::BTreeMap;
@@ -24,6 +25,7 @@ use std::path::PathBuf;
   palmistry rank mysystem.proof --samples 100000
   palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
+  palmistry rank mysystem.proof --where-it-drops           the exact set, with a proof that it drops nowhere else
   palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain")]
 pub(crate) struct Rank {
     /// The proof file.
@@ -60,6 +62,10 @@ pub(crate) struct Rank {
     /// How many states that file holds at most; they are spread over the sweep, the worst conditioned one is among them.
     #[arg(long, default_value_t = 1000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     verdict_states: u64,
+    /// Instead of sampled states: the sets on which the rank drops, each by its equations, and a proof that off them it is what
+    /// it is at almost all states. The parameters may have any values.
+    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts"])]
+    where_it_drops: bool,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -68,6 +74,9 @@ pub(crate) struct Rank {
 impl Rank {
     pub fn run(self) -> miette::Result<Status> {
         let mut system = System::read(&self.file)?;
+        if self.where_it_drops {
+            return self.tell_where(&mut system);
+        }
         let fixed: BTreeMap<_, _> = assignments(&system, &self.at)?.into_iter().collect();
         let bar = progress(self.samples, "sampling states");
         let answer = answer_rank(
@@ -98,5 +107,14 @@ impl Rank {
         }
         let status = if answer.interrupted() { Status::CutOff } else { Status::AsExpected };
         files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
+    }
+
+    /// The exact set on which the rank drops.
+    fn tell_where(&self, system: &mut System) -> miette::Result<Status> {
+        let answer =
+            where_it_drops(system, self.seed, &INTERRUPTED).map_err(|why| Unusable::report(why, ""))?;
+        begin_to_tell();
+        let status = if answer.is_exact() { Status::AsExpected } else { Status::CutOff };
+        Files::default().print(Form::of(self.json), drops_json(&answer), || drops_text(&answer), status)
     }
 }

@@ -82,7 +82,7 @@ fn decided(
     seed: u64,
     interrupt: &AtomicBool,
 ) -> Result<Everywhere, String> {
-    let columns = claim.matrix.as_ref().map_or(system.states.len(), |(_, columns)| *columns);
+    let columns = claim.matrix.as_ref().map_or(system.unknown_count(), |(_, columns)| *columns);
     let height =
         claim.matrix.as_ref().map_or(usize::MAX, |(entries, columns)| entries.len() / (*columns).max(1));
     let mut log2_error = f64::NEG_INFINITY;

@@ -31,7 +31,7 @@ impl Coordinates {
             return row.to_vec();
         }
         let there = algebra.system.graph.substitute(row, &self.values);
-        let states = algebra.system.states.clone();
+        let states = algebra.system.unknowns();
         let mut found = Vec::new();
         for (place, state) in states.iter().enumerate() {
             let own = self.changed.iter().find(|(old, ..)| old == state);
@@ -68,7 +68,7 @@ pub(super) fn choose(algebra: &mut Algebra<'_>, search: &mut Search<'_>) -> Reac
             if before.changed.iter().any(|(_, _, known)| known == meaning) {
                 continue;
             }
-            for state in algebra.system.states.clone() {
+            for state in algebra.system.unknowns() {
                 let Some(next) = with(algebra, &before, &domains, (name, *meaning), state) else { continue };
                 algebra.change(next.clone());
                 rows.prepare(algebra);

@@ -209,6 +209,9 @@ fn sign_within(polynomial: &Polynomial, is_positive: &dyn Fn(usize) -> bool, dep
 /// How many different real zeros a polynomial in one variable has (Sturm); `None` where it has several variables or none.
 pub(super) fn real_zeros(polynomial: &Polynomial) -> Option<usize> {
     let [place] = places(polynomial)[..] else { return None };
+    if polynomial.degree_in(place) > HIGHEST {
+        return None;
+    }
     let dense = |polynomial: &Polynomial| -> Vec<RBig> {
         let mut values = vec![RBig::ZERO; usize::from(polynomial.degree_in(place)) + 1];
         for (exponents, value) in polynomial.terms() {
@@ -237,6 +240,9 @@ pub(super) fn real_zeros(polynomial: &Polynomial) -> Option<usize> {
     };
     Some(changes(true) - changes(false))
 }
+
+/// Zeros of polynomials of higher degrees are not counted.
+const HIGHEST: u8 = 40;
 
 /// The remainder of a division, lowest coefficient first and the last not zero.
 fn remainder(a: &[RBig], b: &[RBig]) -> Vec<RBig> {

@@ -20,9 +20,9 @@ impl Default for Product {
 }
 
 /// Longer entries are not reduced any further.
-const LONGEST: usize = 3_000;
+const LONGEST: usize = 1_500;
 /// Nor are those that come of more products of monomials.
-const MOST_PRODUCTS: usize = 400_000;
+const MOST_PRODUCTS: usize = 60_000;
 /// So many factors that were met before are tried.
 const MOST_KNOWN: usize = 40;
 

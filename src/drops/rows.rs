@@ -31,8 +31,8 @@ pub(super) struct Rows {
     programs: HashMap<Chart, (usize, Program)>,
 }
 
-/// Longer words than these are not taken, nor more of them.
-const LONGEST_WORD: usize = 12;
+/// Words have at most so many fields more than there are states, and no more of them are taken.
+const MORE_FIELDS: usize = 2;
 const MOST_WORDS: usize = 300;
 
 /// Rows and columns of a minor.
@@ -71,7 +71,7 @@ impl Rows {
             .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
             .collect();
         let mut rows = Rows {
-            columns: system.states.len(),
+            columns: system.unknown_count(),
             names: Vec::new(),
             rows: Vec::new(),
             written: Vec::new(),
@@ -137,7 +137,7 @@ impl Rows {
     fn longer(&mut self, system: &mut System) -> bool {
         let fields = system.moving_fields();
         let next = self.rows.len() + self.last.len() * fields.len();
-        if !self.grows || self.order >= LONGEST_WORD.max(self.columns) || next > MOST_WORDS {
+        if !self.grows || self.order >= self.columns + MORE_FIELDS || next > MOST_WORDS {
             return false;
         }
         let mut longer = Vec::new();

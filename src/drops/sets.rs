@@ -114,7 +114,7 @@ fn drops_of(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<Dr
     let mut answer = DropAnswer {
         file: system.name.clone(),
         title: system.title.clone(),
-        dimension: system.states.len(),
+        dimension: system.unknown_count(),
         rank,
         is_final,
         domain: guards.iter().map(|guard| guard.text(&system.graph)).collect(),
@@ -202,7 +202,7 @@ fn equations(algebra: &mut Algebra<'_>, case: &Case) -> Vec<String> {
 }
 
 fn used(algebra: &mut Algebra<'_>, rows: &Rows, full: &FullCase) -> UsedMinor {
-    let states = algebra.system.state_names();
+    let states = algebra.system.column_names();
     let columns = full.chosen.columns.iter();
     UsedMinor {
         equations: equations(algebra, &full.case),
