@@ -221,6 +221,9 @@ impl Case {
 
     /// Keeps an equation that cannot be solved.
     fn relate(mut self, factor: &Polynomial, touched: bool) -> Reach<Step> {
+        if factor.len() > LONGEST_RELATION || factor.degree() > HIGHEST_RELATION {
+            return Err(TOO_LONG.to_owned());
+        }
         let place = places(factor)
             .into_iter()
             .min_by_key(|place| {
@@ -299,6 +302,9 @@ impl Case {
     }
 }
 
+/// Equations that cannot be solved are calculated with up to this length and this total degree.
+const LONGEST_RELATION: usize = 60;
+const HIGHEST_RELATION: u32 = 12;
 /// Relations are used in turn so often.
 const MOST_ROUNDS: usize = 8;
 

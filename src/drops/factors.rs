@@ -12,11 +12,11 @@ use dashu::integer::IBig;
 use dashu::rational::RBig;
 
 /// Factors are looked for in polynomials of at most so many monomials.
-const LONGEST: usize = 400;
+const LONGEST: usize = 150;
 /// So many candidates for a linear factor are tried.
 const MOST_CANDIDATES: usize = 256;
 /// Semidefinite polynomials are recognised by so many completed squares.
-const DEEPEST: usize = 6;
+const DEEPEST: usize = 4;
 
 /// The factors of a polynomial with their powers, each primitive and with a positive leading coefficient; none of a constant.
 pub(super) fn factors(polynomial: &Polynomial, known: &[Polynomial]) -> Vec<(Polynomial, u32)> {
@@ -288,7 +288,7 @@ pub(super) fn pseudo_remainder(of: &Polynomial, by: &Polynomial, place: usize) -
 }
 
 /// Longer polynomials are not calculated with.
-pub(super) const MOST_TERMS: usize = 6_000;
+pub(super) const MOST_TERMS: usize = 2_000;
 
 #[cfg(test)]
 mod tests {

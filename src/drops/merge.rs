@@ -4,7 +4,7 @@
 use super::algebra::{Algebra, Chart, normal};
 use super::case::{Case, Step};
 use super::explore::{Search, ShortCase};
-use super::factors::coefficient;
+use super::factors::{coefficient, places};
 use crate::expression::{NodeId, Symbol};
 use crate::number::Function;
 use crate::number::polynomial::{Polynomial, Ring};
@@ -37,7 +37,7 @@ impl Shown {
         let case = short.case.clone();
         Shown {
             chart: case.chart.clone(),
-            lines: case.equations.iter().map(|equation| Line::Zero(equation.clone())).collect(),
+            lines: simplified(&case).into_iter().map(Line::Zero).collect(),
             divisors: case.divisors.clone(),
             no_half_turn: BTreeSet::new(),
             rank: short.rank,
@@ -108,6 +108,36 @@ impl Shown {
     }
 }
 
+/// The equations of a case with the variables that vanish left out of the others, as far as one factor is left of each.
+fn simplified(case: &Case) -> Vec<Polynomial> {
+    let mut lines = case.equations.clone();
+    for _ in 0..lines.len() {
+        let zero: Vec<usize> = lines
+            .iter()
+            .filter(|line| line.len() == 1 && line.degree() == 1)
+            .flat_map(|line| places(line).into_iter().take(1))
+            .collect();
+        let mut changed = false;
+        for line in lines.iter_mut().filter(|line| line.len() > 1) {
+            let mut rest = Polynomial::default();
+            for (exponents, value) in line.terms().filter(|(e, _)| zero.iter().all(|place| e[*place] == 0)) {
+                rest = rest.add(&Polynomial::term(*exponents, value.clone()));
+            }
+            if rest == *line || rest.is_zero() {
+                continue;
+            }
+            if let [factor] = case.doubtful(&rest).as_slice() {
+                *line = factor.clone();
+                changed = true;
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    lines
+}
+
 /// Few sets that together are the same.
 pub(super) fn merged(algebra: &mut Algebra<'_>, search: &Search<'_>, short: &[ShortCase]) -> Vec<Shown> {
     let mut all: Vec<Shown> = short.iter().map(Shown::of).collect();
@@ -155,7 +185,12 @@ pub(super) fn merged(algebra: &mut Algebra<'_>, search: &Search<'_>, short: &[Sh
                     && other.lines.len() == shown.lines.len()
                     && shown.contains(algebra, &other.case)
             });
-            if depends && !continued {
+            let there: Chart = shown.chart.iter().copied().chain([angle]).collect();
+            let exists = match search.domain(algebra, &there) {
+                Ok(domain) => domain.is_some_and(|case| !case.nonzero.iter().any(|factor| factor.is_zero())),
+                Err(_) => true,
+            };
+            if depends && !continued && exists {
                 shown.no_half_turn.insert(angle);
             }
         }

@@ -11,6 +11,7 @@
 
 mod algebra;
 mod case;
+mod choice;
 mod claim;
 mod coordinates;
 mod explore;

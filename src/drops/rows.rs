@@ -99,7 +99,7 @@ impl Rows {
     fn catch_up(&mut self, algebra: &mut Algebra<'_>) {
         let coordinates = algebra.coordinates.clone();
         for row in self.written.get(self.rows.len()..).unwrap_or_default() {
-            self.rows.push(coordinates.row(algebra, row));
+            self.rows.push(coordinates.row(algebra.system, row));
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::algebra::{Algebra, Reach, with_angles};
 use super::case::Case;
-use super::coordinates;
+use super::choice;
 use super::explore::{FullCase, Search, ShortCase};
 use super::merge::{Shown, merged};
 use super::minor::Product;
@@ -190,7 +190,7 @@ pub(super) fn prepared<T>(
     };
     if of_words {
         search.rows.extend(&mut algebra);
-        coordinates::choose(&mut algebra, &mut search)?;
+        choice::choose(&mut algebra, &mut search)?;
     }
     work(&mut algebra, &mut search)
 }

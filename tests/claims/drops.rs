@@ -259,9 +259,7 @@ fn random_systems_beside_elimination_state_by_state() {
             rates.collect::<String>(),
             outputs.iter().map(Sum::text).collect::<Vec<_>>().join(", ")
         );
-        eprintln!("{text}"); let t0 = std::time::Instant::now();
         let answer = drops(&text);
-        eprintln!("{:.2} s {:?} {} {text}", t0.elapsed().as_secs_f64(), answer.cases, answer.is_exact());
         if !answer.is_final {
             continue;
         }
