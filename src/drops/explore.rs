@@ -91,12 +91,17 @@ impl Search<'_> {
                 Err(_) if is_pole(algebra, node) => return Ok(None),
                 Err(why) => return Err(why),
             };
-            let odd = ratio.bottom.iter().filter(|(_, n)| n % 2 == 1).map(|(factor, _)| (factor.clone(), 1));
-            let signed: Vec<_> = ratio.top.iter().cloned().chain(odd).collect();
-            let polynomial = expanded(&signed).ok_or(TOO_LONG)?;
             match guard.need {
-                Need::NotZero => case.add_nonzero(&polynomial),
-                Need::Positive => case.add_positive(&polynomial),
+                Need::NotZero => ratio.top.iter().for_each(|(factor, _)| case.add_nonzero(factor)),
+                Need::Positive => {
+                    let odd = ratio.bottom.iter().filter(|(_, n)| n % 2 == 1);
+                    let odd = odd.map(|(factor, _)| (factor.clone(), 1));
+                    let signed: Vec<_> = ratio.top.iter().cloned().chain(odd).collect();
+                    match expanded(&signed) {
+                        Some(polynomial) => case.add_positive(&polynomial),
+                        None => ratio.top.iter().for_each(|(factor, _)| case.add_nonzero(factor)),
+                    }
+                }
                 // a case may be larger than the set that it stands for: more is proved then than is needed
                 Need::NotNegative | Need::WithinOne | Need::InsideOne => {}
             }

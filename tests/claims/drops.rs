@@ -48,9 +48,7 @@ fn a_unicycle_and_a_beacon() {
          output (x^2 + y^2)/2",
     );
     assert_eq!(straight.rank, 2);
-    for set in &straight.sets {
-        assert!(set.rank < 2 && set.open.is_none());
-    }
+    assert_eq!(sets(&straight), ["1: sin(theta)*x - cos(theta)*y = 0"]);
 }
 
 /// Lorenz's system seen through `x`: `d x`, `d Lf x`, `d Lf Lf x` have the determinant `-sigma^2 x` (up to sign), and on
@@ -304,7 +302,7 @@ fn random_systems_beside_elimination_state_by_state() {
         }
     }
     assert!(
-        exact > 30 && on > 200 && off > 500,
+        exact > 30 && on > 150 && off > 1500,
         "{exact} exact answers, {on} states on the sets, {off} off them"
     );
 }
