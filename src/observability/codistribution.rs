@@ -286,6 +286,7 @@ impl Codistribution {
         if length == Length::UntilItStops
             && missing
             && !cut_off
+            && system.time == Time::Continuous
             && matches!(result.stop, Stop::TooMany | Stop::Order)
         {
             result.take_by_need(system, conditions, &fields)?;

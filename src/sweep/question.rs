@@ -10,7 +10,7 @@ use crate::observability::{
     Probe, Stop, UnseenMotions, Unsolved, in_sign_cell, parse_condition, solve_conditions, unseen_motions,
 };
 use crate::sweep::certainty::Certainty;
-use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, UnknownKind, Value};
+use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, Time, UnknownKind, Value};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
@@ -387,7 +387,7 @@ fn answer_branch(
         interrupt: question.interrupt,
         progress: question.progress,
     };
-    let full = if codistribution.is_cut_off() {
+    let full = if codistribution.is_cut_off() && system.time == Time::Continuous {
         let probe = Probe::new(system, &conditions);
         let options = SweepOptions { most: Some(codistribution.most()), ..options };
         sweep_by_series(system, &locus, &probe, &options)?

@@ -92,6 +92,9 @@ pub struct Statement {
     pub on_sample: bool,
     /// `where a = b, c > d, ...`
     pub conditions: Vec<Equation>,
+    /// `except where a = b, c = d or e = f`: of a rank at all states, the sets that are left out, each by its equations; none
+    /// of them where it says `everywhere`, and nothing where the rank is that at almost all states.
+    pub except: Option<Vec<Vec<Equation>>>,
     /// The whole, in the text.
     pub span: Span,
 }
@@ -126,6 +129,11 @@ impl Statement {
     /// All that is said, one relation after the other.
     pub fn relations(&self) -> impl Iterator<Item = &Equation> {
         std::iter::once(&self.equation).chain(&self.further)
+    }
+
+    /// The same, and all that stands behind `where` and `except where`.
+    pub fn all_equations(&self) -> impl Iterator<Item = &Equation> {
+        self.relations().chain(&self.conditions).chain(self.except.iter().flatten().flatten())
     }
 }
 
@@ -403,7 +411,23 @@ pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
     let given = opt(preceded(keyword("where"), conditions)).parse_next(input)?;
     let conditions: Vec<Equation> = given.unwrap_or_default();
     end = conditions.last().map_or(end, |last| last.span.end);
-    Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, span: begin..end }))
+    let everywhere = opt(keyword("everywhere")).parse_next(input)?;
+    end = everywhere.as_ref().map_or(end, |word| word.end);
+    let except = match opt(keyword("except")).parse_next(input)? {
+        None => everywhere.map(|_| Vec::new()),
+        Some(_) => {
+            cut_err(keyword("where")).context("'where', as in 'except where x = 0'").parse_next(input)?;
+            let one = |input: &mut Text<'_>| -> Read<Vec<Equation>> {
+                let found: Vec<Vec<Equation>> =
+                    cut_err(separated(1.., equations, sign(","))).parse_next(input)?;
+                Ok(found.into_iter().flatten().collect())
+            };
+            let sets: Vec<Vec<Equation>> = cut_err(separated(1.., one, keyword("or"))).parse_next(input)?;
+            Some(sets)
+        }
+    };
+    end = except.iter().flatten().flatten().last().map_or(end, |last| last.span.end);
+    Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, except, span: begin..end }))
 }
 
 /// Reads a statement that is the whole text, as it stands behind the colon of a claim.

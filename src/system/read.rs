@@ -411,7 +411,19 @@ impl System {
             let message = "'on sample' is said of numbers; a rank is that at almost all states";
             return Err(Problem::new(&statement.span, message, "this claim"));
         }
-        for condition in &statement.conditions {
+        let is_rank = |value: &Value| matches!(value, Value::Rank(_) | Value::CodistributionRank);
+        if statement.except.is_some() && !is_rank(&values.0) && !is_rank(&values.1) {
+            let message =
+                "'everywhere' and 'except where' are said of a rank: all else is claimed wherever it exists";
+            return Err(Problem::new(&statement.span, message, "this claim"));
+        }
+        if let Some(unequal) =
+            statement.except.iter().flatten().flatten().find(|e| e.relation != Relation::Equal)
+        {
+            let message = "what is left out is said by equations";
+            return Err(Problem::new(&unequal.span, message, "no equation"));
+        }
+        for condition in statement.conditions.iter().chain(statement.except.iter().flatten().flatten()) {
             self.scalar(&condition.left)?;
             self.scalar(&condition.right)?;
             if let Some(within) = &condition.within {

@@ -9,6 +9,7 @@ mod brackets;
 mod composed;
 mod derivation;
 mod dimensions;
+mod drops;
 mod edges;
 mod formulas;
 mod functions;

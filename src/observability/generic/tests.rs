@@ -157,7 +157,7 @@ fn sequences_are_followed_in_discrete_time() {
     ] {
         let system: System =
             format!("system \"s\" {text}").parse().unwrap_or_else(|why| panic!("{why:?}: {text}"));
-        let found = generic_answer(&system, &Assignment::new(), true);
+        let found = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
         assert_eq!(found.at_least, rank, "{text}: {found:?}");
         assert_eq!(found.is_final(), !seen.starts_with('?'), "{text}: {found:?}");
         let word = |seen: &Seen| match seen {

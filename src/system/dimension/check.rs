@@ -355,6 +355,9 @@ impl Checker<'_> {
 
     fn statement(&mut self, statement: &Statement) {
         let at_numbers = self.conditions(&statement.conditions) || statement.on_sample;
+        statement.except.iter().flatten().for_each(|set| {
+            self.conditions(set);
+        });
         let mut left = self.quantity(&statement.equation.left);
         for equation in statement.relations() {
             let right = self.quantity(&equation.right);
