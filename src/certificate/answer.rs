@@ -2,7 +2,7 @@
 
 use super::boxes::FreeCoordinate;
 use super::progress::Progress;
-use crate::system::{CoordinateRange, FieldRole};
+use crate::system::{CoordinateRange, FieldRole, Range};
 
 /// How a box stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -136,6 +136,8 @@ pub struct RegionAnswer {
     pub rest: f64,
     /// What sampled states keep away from.
     pub avoid: Vec<String>,
+    /// Sides of the box that the file does not give, and what was taken for them.
+    pub by_default: Vec<(String, Range)>,
     /// The boxes that were looked at.
     pub boxes: u64,
     /// Those that are open.

@@ -11,7 +11,7 @@ use super::rows::{HeldSymbol, NamedRows, RegionRows, WrittenRows, rows_by_name};
 use crate::expression::{NodeId, Symbol, Variable, expand_angles};
 use crate::number::{Interval, RealNumber, rational_to_f64};
 use crate::observability::{Reduction, vanishes};
-use crate::system::{Assignment, FieldRole, Kind, System};
+use crate::system::{Assignment, FieldRole, Kind, Range, System};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap};
 
@@ -40,6 +40,8 @@ pub(super) struct Problem {
     pub avoid: Vec<String>,
     /// What could not be written as a product, and why.
     pub remarks: Vec<String>,
+    /// Sides of the box that the file does not give.
+    pub by_default: Vec<(String, Range)>,
     /// What would have to hold for the system and its rows to exist, and holds nowhere.
     pub nowhere: Vec<String>,
     /// The question as it was written, for those who check the answer.
@@ -59,7 +61,7 @@ impl Problem {
         if system.unknown_count() == 0 || system.outputs.is_empty() {
             return Err(format!("{} declares no states or no outputs", system.name));
         }
-        let RangesAndValues { ranges, values, exactly } = ranges_of(system, given)?;
+        let RangesAndValues { ranges, values, exactly, by_default } = ranges_of(system, given)?;
         let is_angle = &system.angle_test();
         let dimension = system.unknown_count();
         let NamedRows { names, entries: flat, order } = NamedRows::of(system, rows, &values)?;
@@ -138,6 +140,7 @@ impl Problem {
             parts,
             avoid,
             remarks,
+            by_default,
             nowhere,
             written: WrittenRows {
                 rows: as_written,
@@ -156,17 +159,31 @@ struct RangesAndValues {
     values: Assignment,
     /// All symbols that are held.
     exactly: Vec<HeldSymbol>,
+    /// What the file does not say, and is taken.
+    by_default: Vec<(String, Range)>,
 }
 
 /// The sides of the box, what the other symbols are, and which of these can be put in exactly.
 fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> Result<RangesAndValues, String> {
-    let mut exactly = Vec::new();
+    let (mut exactly, mut by_default) = (Vec::new(), Vec::new());
     let mut found = Ranges { free: Vec::new(), held: Default::default() };
     let mut values = Vec::new();
+    if let Some(open) = system.initial_value_without_a_number() {
+        return Err(format!(
+            "'{open}' has a value at the beginning that is no number: give the parameters in it numbers there"
+        ));
+    }
+    let without = system.without_range();
     for (symbol, info) in system.symbols().filter(|(_, info)| info.kind != Kind::Imported) {
         let range = info.range.as_ref().map(|range| (range.low.clone(), range.high.clone()));
         let value = info.default.as_ref().map(|value| (value.clone(), value.clone()));
-        let Some((low, high)) = given.get(&symbol).cloned().or(range).or(value) else { continue };
+        let default = match without.contains(&symbol) && !given.contains_key(&symbol) {
+            true => system.default_range(symbol),
+            false => None,
+        };
+        by_default.extend(default.iter().map(|range| (system.symbol_name(symbol).to_owned(), range.clone())));
+        let default = default.map(|range| (range.low, range.high));
+        let Some((low, high)) = given.get(&symbol).cloned().or(range).or(value).or(default) else { continue };
         let name = system.symbol_name(symbol).to_owned();
         if low == high {
             exactly.push(HeldSymbol { symbol, value: low.clone() });
@@ -184,7 +201,7 @@ fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> Res
         }
     }
     let values = values.into_iter().map(|(symbol, value)| (symbol, system.graph.rational(value))).collect();
-    Ok(RangesAndValues { ranges: found, values, exactly })
+    Ok(RangesAndValues { ranges: found, values, exactly, by_default })
 }
 
 /// An angle that is held, give or take what the exact states of [`Locus`](crate::observability::Locus) differ from it:

@@ -77,6 +77,7 @@ impl Region {
             minor_vanishes: down(&(&defined - &proved)),
             rest: up(&(RBig::ONE - defined)),
             avoid: problem.avoid.clone(),
+            by_default: problem.by_default.clone(),
             boxes: searches.boxes(),
             open_boxes: searches.searches.iter().map(|search| search.unproved_boxes() as u64).sum(),
             seconds: searches.seconds,

@@ -112,6 +112,9 @@ fn decided(
                         rank
                     }
                     GenericRank::Pole(_) => return Err("every state is a pole".to_owned()),
+                    GenericRank::Functions => {
+                        return Err("functions that are not rational are met".to_owned());
+                    }
                     GenericRank::Unknown(why) => return Err(why),
                 }
             }

@@ -476,6 +476,7 @@ impl Search<'_> {
             GenericRank::Rank { rank, log2_error, .. } if rank < self.rank && rank == seen => Ok(log2_error),
             GenericRank::Rank { .. } => Err("the rank is no lower there".to_owned()),
             GenericRank::Pole(_) => Err("every state of it is a pole".to_owned()),
+            GenericRank::Functions => Err("functions that are not rational are met".to_owned()),
             GenericRank::Unknown(why) => Err(why),
         }
     }

@@ -24,7 +24,7 @@ pub(super) fn described(found: &Found, name: &str, at_home: &Source, system: Opt
     let head = std::iter::once(head).chain(facts).collect::<Vec<_>>().join("; ");
     // of a long list of states the line on which the name stands
     let shown = match declaration.kind {
-        DeclarationKind::State | DeclarationKind::Parameter => &declaration.span,
+        DeclarationKind::State | DeclarationKind::Parameter | DeclarationKind::Signal(_) => &declaration.span,
         _ => &declaration.entry,
     };
     format!("{head}\n\n```palmistry\n{}\n```", found.source.lines_of(shown, MOST_LINES))
@@ -33,12 +33,16 @@ pub(super) fn described(found: &Found, name: &str, at_home: &Source, system: Opt
 fn facts(kind: DeclarationKind, name: &str, system: &System) -> Vec<String> {
     let mut facts = Vec::new();
     match kind {
-        DeclarationKind::State | DeclarationKind::Parameter => {
-            let Some((symbol, info)) =
-                system.find_symbol(name).and_then(|symbol| Some((symbol, system.symbol_info(symbol)?)))
+        DeclarationKind::State | DeclarationKind::Parameter | DeclarationKind::Signal(_) => {
+            let first = || system.first_component(name);
+            let Some((symbol, info)) = system
+                .find_symbol(name)
+                .or_else(first)
+                .and_then(|symbol| Some((symbol, system.symbol_info(symbol)?)))
             else {
                 return facts;
             };
+            facts.extend(system.stands_for(symbol));
             if info.is_angle {
                 facts.push("an angle".to_owned());
             }

@@ -28,7 +28,7 @@ fn symbol(source: &Source, declaration: &Declaration) -> Value {
     let Declaration { kind, name, span, entry } = declaration;
     let number = match kind {
         Is::System | Is::Import => NAMESPACE,
-        Is::State => VARIABLE,
+        Is::State | Is::Signal(_) => VARIABLE,
         Is::Parameter => CONSTANT,
         Is::Definition => FUNCTION,
         Is::Field(_) => METHOD,

@@ -5,7 +5,7 @@ use super::defined::Defined;
 use super::state::{Coordinate, MissingInput, State};
 use crate::expression::{NodeId, Program, Symbol, expand_angles};
 use crate::number::{Floats, Function, Rationals, Refusal, rational_from_f64, rational_to_f64};
-use crate::system::{Assignment, Kind, System};
+use crate::system::{Assignment, Kind, Range, System};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
 use rand::{RngExt, SeedableRng};
@@ -60,14 +60,17 @@ pub struct Locus {
     inside: Defined,
     /// The conditions and fixed values, in words.
     pub conditions: Vec<String>,
+    /// The symbols that are drawn from a range that the file does not give, and this range.
+    pub by_default: Vec<(String, Range)>,
 }
 
 impl Locus {
     /// The sample box of a system with some symbols held fixed and conditions met. `mentioned` are the expressions
-    /// that will be evaluated; parameters that they do not need are not drawn.
+    /// that will be evaluated; parameters that they do not need are not drawn. What the file gives neither a range nor a value
+    /// is drawn from [`System::default_range`].
     ///
     /// # Errors
-    /// Where a needed symbol has neither range nor value.
+    /// Where a needed symbol belongs to nobody.
     pub fn new(
         system: &mut System,
         branch: &Branch,
@@ -98,8 +101,16 @@ impl Locus {
         needed.sort_unstable();
         needed.dedup();
         let mut sources = BTreeMap::new();
+        let mut by_default = Vec::new();
         for symbol in needed {
             if branch.values.contains_key(&symbol) {
+                continue;
+            }
+            if !fixed.contains_key(&symbol)
+                && let Some(range) = system.default_range(symbol)
+            {
+                sources.insert(symbol, drawn_from(&range, is_angle(symbol)));
+                by_default.push((system.symbol_name(symbol).to_owned(), range));
                 continue;
             }
             sources.insert(symbol, source(system, symbol, fixed.get(&symbol))?);
@@ -120,6 +131,7 @@ impl Locus {
             is_cut: !branch.assumed.is_empty(),
             inside: Defined::new(system, &branch.assumed),
             conditions,
+            by_default,
         })
     }
 
@@ -231,11 +243,15 @@ fn source(system: &System, symbol: Symbol, fixed: Option<&RBig>) -> Result<Sourc
         }));
     }
     match info.and_then(|info| info.range.as_ref()) {
-        Some(range) if is_angle => {
-            Ok(Source::Turn(rational_to_f64(&range.low), rational_to_f64(&range.high)))
-        }
-        Some(range) => Ok(Source::Between(range.low.clone(), range.high.clone())),
+        Some(range) => Ok(drawn_from(range, is_angle)),
         None => Err(LocusError::NoRange(system.symbol_name(symbol).to_owned())),
+    }
+}
+
+fn drawn_from(range: &Range, is_angle: bool) -> Source {
+    match is_angle {
+        true => Source::Turn(rational_to_f64(&range.low), rational_to_f64(&range.high)),
+        false => Source::Between(range.low.clone(), range.high.clone()),
     }
 }
 

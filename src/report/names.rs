@@ -1,7 +1,7 @@
 //! Fields with their roles and symbols with their values, as JSON and in words.
 
 use crate::number::{parse_decimal, round_to_decimal};
-use crate::system::FieldRole;
+use crate::system::{FieldRole, Range};
 use dashu::rational::RBig;
 use serde_json::{Value, json};
 
@@ -28,6 +28,30 @@ pub(crate) fn values_text(values: &[(String, RBig)]) -> String {
     let each: Vec<String> =
         values.iter().map(|(name, value)| format!("{name} = {}", plain_number(value))).collect();
     each.join(", ")
+}
+
+/// Names and the ranges that they are drawn from.
+pub(crate) fn ranges_json(ranges: &[(String, Range)]) -> Value {
+    let ends = |range: &Range| json!([plain_number(&range.low), plain_number(&range.high)]);
+    let each = ranges.iter().map(|(name, range)| (name.clone(), ends(range)));
+    each.collect::<serde_json::Map<_, _>>().into()
+}
+
+/// That some symbols are drawn from ranges that the file does not give.
+pub(crate) fn by_default_text(ranges: &[(String, Range)]) -> String {
+    let mut text = "drawn by default, since no 'sample' says where from: ".to_owned();
+    for (place, (name, range)) in ranges.iter().enumerate() {
+        // names of one range stand together
+        let ends = format!("in [{}, {}]", plain_number(&range.low), plain_number(&range.high));
+        let same = ranges.get(place + 1).is_some_and(|(_, next)| next == range);
+        text.push_str(name);
+        match (same, place + 1 == ranges.len()) {
+            (true, _) => text.push_str(", "),
+            (false, false) => text.push_str(&format!(" {ends}; ")),
+            (false, true) => text.push_str(&format!(" {ends}")),
+        }
+    }
+    text
 }
 
 /// A rational as a decimal where a short one is exact, else as a fraction.

@@ -13,7 +13,7 @@ use dashu::rational::RBig;
 pub(super) const LARGEST_GRAPH: usize = 4_000_000;
 
 /// The functions of the language beside [`Function::ALL`].
-pub(super) const OTHER_FUNCTIONS: [&str; 14] = [
+pub(super) const OTHER_FUNCTIONS: [&str; 16] = [
     "tan",
     "cot",
     "sec",
@@ -28,6 +28,8 @@ pub(super) const OTHER_FUNCTIONS: [&str; 14] = [
     "inverse",
     "dot",
     "cross",
+    "sum",
+    "product",
 ];
 
 /// What a name should have been.
@@ -84,6 +86,7 @@ impl System {
                 }
                 Ok(Value::Scalar(self.graph.power(value, *exponent)))
             }
+            ExprKind::RealPower(base, exponent) => self.real_power(base, exponent, &expr.span),
             ExprKind::Matrix(rows) => self.blocks(rows, &expr.span),
             ExprKind::At(inner, list) => {
                 let (value, domain) = self.apart(|system| system.elaborate(inner))?;
@@ -98,6 +101,7 @@ impl System {
                 self.need_all(guards);
                 Ok(self.substitute(value, &assignment))
             }
+            ExprKind::Indexed(indexed) => Err(self.without_index(indexed, &expr.span)),
         }
     }
 
@@ -162,6 +166,9 @@ impl System {
         if let Some(symbol) = self.find_symbol(name) {
             return Ok(Value::Scalar(self.graph.symbol(symbol)));
         }
+        if let Some(value) = self.named_in_experiment(name, span)? {
+            return Ok(value);
+        }
         match name {
             "pi" => Ok(Value::Scalar(self.graph.pi())),
             "rank" => Ok(Value::CodistributionRank),
@@ -187,6 +194,9 @@ impl System {
             Wanted::Symbol => "state or parameter",
             Wanted::Name => "name",
         };
+        if let Some(problem) = self.unknown_component(name, span) {
+            return problem;
+        }
         let problem = if self.find_symbol(name).is_some() || self.definitions.contains_key(name) {
             Problem::new(span, format!("'{name}' is no {what}"), "declared above as something else")
         } else {
@@ -281,7 +291,10 @@ impl System {
                 )),
             },
             _ => {
-                let known = Function::ALL.iter().map(|f| f.name()).chain(OTHER_FUNCTIONS);
+                if let Some(found) = self.composed(name, arguments, span) {
+                    return found;
+                }
+                let known = super::vocabulary::functions();
                 let problem = Problem::new(span, format!("unknown function '{name}'"), "here");
                 Err(match nearest(name, known) {
                     Some(near) => problem.help(format!("perhaps you meant '{near}'")),

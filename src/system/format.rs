@@ -3,6 +3,7 @@
 
 use super::error::{Problem, ReadError};
 use super::grammar::{ENTRIES, parse_file};
+use super::signals;
 use super::source_text::{refuse_reordering, with_plain_line_ends};
 use super::views;
 
@@ -129,17 +130,22 @@ fn begins_an_entry(line: &str) -> Option<&'static str> {
     let word = ENTRIES.into_iter().find(|known| *known == word)?;
     let rest = rest.trim_start();
     let is_name = views::WORDS.contains(&word) && !rest.starts_with('"') && !rest.starts_with("of ");
+    let is_name = is_name || signals::WORDS.contains(&word) && !signals::goes_on(word, rest);
     (!is_name).then_some(word)
 }
 
 /// Where the sign stands in `name' = rate` or `name in [low, high]`.
 fn row(line: &str, sign: &str) -> Option<usize> {
     let end = line.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))?;
-    let mut rest = line[end..].trim_start();
     if end == 0 {
         return None;
     }
-    if sign == "=" {
+    // a component, a derivative of a signal, or what something is in another experiment
+    let component = if line[end..].starts_with('[') { line[end..].find(']')? + 1 } else { 0 };
+    let end = end + component;
+    let end = end + line[end..].find(|c: char| !(c.is_ascii_digit() || matches!(c, '@' | '\'')))?;
+    let (name, mut rest) = (&line[..end], line[end..].trim_start());
+    if sign == "=" && !name.ends_with('\'') {
         rest = rest.strip_prefix('\'')?.trim_start();
     }
     let after = rest.strip_prefix(sign)?;
@@ -185,6 +191,8 @@ fn align(lines: &mut [Line]) {
                     line.text = format!("{}{pad}{}", line.text[..place].trim_end(), &line.text[place..]);
                     shift = (widest + 1) as isize - before as isize;
                 }
+                // what is avoided goes on with no row
+                LineKind::Rest if line.text.starts_with("avoid") => shift = 0,
                 LineKind::Rest => {
                     line.indent = line.indent.saturating_add_signed(shift).max(INDENT);
                 }
@@ -234,6 +242,17 @@ mod tests {
         let wanted = "system \"s\"\nstate x, long\n\nparam set\ndrift f\n  x'    = long\n         + 1  # why\n  long' =x\nsample\n  \
                       x    in [0, 1]\n  long in [0, 1]\n  avoid x\nclaim 1: x\n  = x\n  \"two  \n   lines\"\n  # note\n\
                       set \"a\": x = 0\n";
+        assert_eq!(formatted(text), wanted);
+        assert_eq!(formatted(wanted), wanted);
+    }
+
+    /// By hand: components and ranges are names of rows, and what is avoided stays where it is.
+    #[test]
+    fn components_are_rows() {
+        let text = "system \"s\"\nstate x[1..3]\ndrift f\nx[1]' = x[2]\n  x[i+1]' = -x[i]\n for i in 1..2\nsample\n \
+                    x[1..2] in [0, 1]\n  x[3] in [0, 2]\n  avoid x[1]\n";
+        let wanted = "system \"s\"\nstate x[1..3]\ndrift f\n  x[1]'   = x[2]\n  x[i+1]' = -x[i]\n  for i in 1..2\nsample\n  \
+                      x[1..2] in [0, 1]\n  x[3]    in [0, 2]\n  avoid x[1]\n";
         assert_eq!(formatted(text), wanted);
         assert_eq!(formatted(wanted), wanted);
     }

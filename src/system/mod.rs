@@ -6,13 +6,17 @@
 //!
 //! This floor knows nothing of ranks, verdicts or palms.
 
+mod components;
+mod declare;
 mod determinant;
 mod dimension;
 mod domain;
+mod drawn;
 mod elaborate;
 mod error;
 mod extent;
 mod format;
+mod functions;
 mod grammar;
 mod imports;
 mod lie;
@@ -24,6 +28,7 @@ mod problems;
 mod read;
 mod references;
 mod restates;
+mod signals;
 mod source_text;
 mod standing;
 mod unknowns;

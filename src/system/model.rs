@@ -4,7 +4,7 @@ use super::dimension::{Dimensions, Import};
 use super::domain::Domain;
 use super::error::Problem;
 use super::grammar::{ClaimBody, ClaimSyntax};
-use super::unknowns::UnknownKind;
+use super::unknowns::Coordinates;
 use super::views::{LineView, MapView, NamedSet, ReductionTo};
 use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};
 use crate::expression::syntax::Span;
@@ -85,6 +85,13 @@ pub struct Field {
     /// Its components as they are written.
     pub(crate) written: Written,
     pub(crate) derivation: Derivation,
+}
+
+impl Field {
+    /// Forgets what was differentiated along it, since its components are others.
+    pub(crate) fn derive_anew(&mut self) {
+        self.derivation = Derivation::new(self.components.iter().copied().collect());
+    }
 }
 
 /// What names stand for, as it is written: name and text of each.
@@ -226,8 +233,8 @@ pub struct System {
     /// The systems that this one is under conditions.
     pub reductions: Vec<ReductionTo>,
     pub(crate) symbols: BTreeMap<Symbol, SymbolInfo>,
-    /// What unknown coordinates are, where they are no states.
-    pub(crate) unknown_kinds: BTreeMap<Symbol, UnknownKind>,
+    /// What the coordinates were declared as.
+    pub(crate) coordinates: Coordinates,
     pub(crate) definitions: BTreeMap<String, Value>,
     /// Where each definition exists, imported ones included.
     pub(crate) definition_domains: HashMap<String, Domain>,
@@ -250,6 +257,8 @@ pub struct System {
     pub(crate) calculated: HashSet<String>,
     /// What is known of dimensions.
     pub(crate) dimensions: Arc<Dimensions>,
+    /// The vectors, by their names: those whose components are symbols or definitions.
+    pub(crate) vectors: BTreeSet<String>,
     /// The dimensions of the files that this one imports, while it is read.
     pub(crate) imported_dimensions: Vec<Import>,
 }

@@ -9,6 +9,7 @@ use super::elaborate::Wanted;
 use super::error::Problem;
 use super::grammar::{ENTRIES, Item, Statement};
 use super::model::System;
+use super::signals;
 use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Equation, Expr, ExprKind, Span};
 use std::collections::HashSet;
@@ -88,7 +89,7 @@ impl Problems {
             Cause::Itself => false,
             // what is imported has the name of its system before a dot
             Cause::Unknown(name) => {
-                let parts = name.match_indices('.').map(|(at, _)| &name[..at]);
+                let parts = name.match_indices(['.', '[']).map(|(at, _)| &name[..at]);
                 parts.chain([name.as_str()]).any(|part| self.broken.contains(part))
             }
             Cause::Motion => failed(&["drift", "input", "field"]),
@@ -159,6 +160,7 @@ fn first_entry_word(text: &str) -> Option<&'static str> {
     // these are names too, unless a title follows, or what is reduced
     let begins = match entry {
         "set" | "pole" | "map" | "line" => rest.trim_start().starts_with('"'),
+        word if signals::WORDS.contains(&word) => signals::goes_on(word, rest),
         "reduction" => words(rest).next() == Some("of"),
         _ => !rest.trim_start().starts_with(['\'', '=']),
     };
@@ -176,9 +178,10 @@ pub(super) fn names_of_text(text: &str) -> Option<(&'static str, Vec<String>)> {
     let text = without_comments.collect::<Vec<_>>().join("\n");
     let rest = text.trim_start().trim_start_matches(entry);
     let names: Vec<String> = match entry {
-        "state" | "param" | "angle" => words(rest).map(str::to_owned).collect(),
+        "state" | "param" | "angle" | "known" | "unknown" => words(rest).map(str::to_owned).collect(),
         "let" | "drift" | "input" | "field" | "use" => words(rest).take(1).map(str::to_owned).collect(),
-        "set" | "pole" | "map" | "line" | "reduction" | "output" | "sample" | "system" => Vec::new(),
+        "set" | "pole" | "map" | "line" | "reduction" | "output" | "sample" | "system" | "initial"
+        | "experiments" => Vec::new(),
         // ids may have dots and dashes
         _ => rest
             .split(|c: char| !(c.is_alphanumeric() || matches!(c, '.' | '_' | '-')))
@@ -198,6 +201,8 @@ impl Item {
             Item::Use { .. } => "use",
             Item::State(_) => "state",
             Item::Param(_) => "param",
+            // what is broken in one of them may be missing wherever a state may
+            Item::Signals { .. } => "state",
             Item::Field { role, .. } => role.name(),
             _ => "",
         }
@@ -212,6 +217,7 @@ impl Item {
             Item::State(list) | Item::Param(list) => {
                 list.iter().map(|declared| declared.name.text.clone()).collect()
             }
+            Item::Signals { list, .. } => list.iter().map(|declared| declared.name.text.clone()).collect(),
             _ => Vec::new(),
         }
     }
@@ -221,7 +227,7 @@ impl Item {
         match self {
             Item::Let { value, .. } => vec![value.clone()],
             Item::Field { components, .. } => components.iter().map(|(_, expr)| expr.clone()).collect(),
-            Item::Output(list) => list.iter().map(|(expr, _)| expr.clone()).collect(),
+            Item::Output(list) => list.iter().map(|one| one.value.clone()).collect(),
             Item::View(view) => {
                 view.equations().into_iter().flat_map(|e| [e.left.clone(), e.right.clone()]).collect()
             }
@@ -294,7 +300,7 @@ impl System {
     /// The names in an expression that nobody has declared.
     fn unknown_names(&self, expr: &Expr, found: &mut Vec<Problem>) {
         match &expr.kind {
-            ExprKind::Number(_) => {}
+            ExprKind::Number(_) | ExprKind::Indexed(_) => {}
             ExprKind::Name(name) => {
                 let is_known = self.find_symbol(name).is_some() || self.definition(name).is_some();
                 if !is_known && !["pi", "rank"].contains(&name.as_str()) {
@@ -305,6 +311,9 @@ impl System {
                 parts.iter().for_each(|(_, part)| self.unknown_names(part, found));
             }
             ExprKind::Power(inner, _) => self.unknown_names(inner, found),
+            ExprKind::RealPower(base, exponent) => {
+                [base, exponent].into_iter().for_each(|part| self.unknown_names(part, found));
+            }
             ExprKind::Matrix(rows) => {
                 rows.iter().flatten().for_each(|entry| self.unknown_names(entry, found));
             }

@@ -1,16 +1,20 @@
 //! From a file to a system.
 
+use super::components::is_component;
+use super::declare::in_words;
 use super::dimension::{self, Declared};
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
-use super::grammar::{ClaimSyntax, Entries, Item, Statement, parse_entries};
+use super::grammar::{ClaimSyntax, Entries, Item, OutputSyntax, Statement, parse_entries};
 use super::imports::Reading;
-use super::model::{Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
+use super::model::{Field, FieldPlace, Kind, Range, Role, System, Value};
 use super::problems::{Cause, Full, Problems, Remnant, names_of_text};
+use super::signals::{Derivatives, Knowledge};
 use super::source_text::{load, refuse_reordering, with_plain_line_ends};
+use super::unknowns::UnknownKind;
 use super::written::{Scope, Written, in_one_line, places_in};
-use crate::expression::syntax::{Expr, Name, Relation, Span};
-use crate::expression::{Derivation, Graph, Guard, Symbol, parse_expression};
+use crate::expression::syntax::{Expr, ExprKind, Name, Relation, Span};
+use crate::expression::{Derivation, Graph, Guard, NodeId, Symbol, parse_expression};
 use crate::file;
 use miette::NamedSource;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -135,7 +139,7 @@ impl System {
             lines: Vec::new(),
             reductions: Vec::new(),
             symbols: BTreeMap::new(),
-            unknown_kinds: BTreeMap::new(),
+            coordinates: Default::default(),
             definitions: BTreeMap::new(),
             definition_domains: HashMap::new(),
             domain: Default::default(),
@@ -149,6 +153,7 @@ impl System {
             calculated: HashSet::new(),
             dimensions: Default::default(),
             imported_dimensions: Vec::new(),
+            vectors: BTreeSet::new(),
         };
         match system.fill(folder, reading, problems) {
             Ok(()) => Ok(system),
@@ -162,13 +167,14 @@ impl System {
         if let Err(problem) = refuse_reordering(&text) {
             problems.add(problem)?;
         }
-        let Entries { items, damage, .. } = parse_entries(&text, problems.room());
+        let Entries { items, damage, indices, .. } = parse_entries(&text, problems.room());
         for part in damage {
             problems.add(expected(part.expected))?;
             if let Some((word, names)) = names_of_text(&text[part.left_out]) {
                 problems.break_names(word, names);
             }
         }
+        let derivatives = self.look_ahead(&items);
         let mut ids = HashSet::new();
         for item in &items {
             if let Item::Claim(claim) = item
@@ -178,16 +184,22 @@ impl System {
                 problems.add(Problem::new(&claim.span, message, "the second one"))?;
             }
             let remnant = Remnant::of(item, problems);
-            if let Err(problem) = self.enter(item, folder, reading) {
+            if let Err(problem) = self.enter(item, folder, reading, &derivatives) {
                 self.entry_failed(problem, remnant, problems)?;
             }
         }
+        self.finish_signals();
         for claim in self.claims.clone() {
             for statement in claim.body.statements() {
                 if let Err(problem) = self.check(&claim, statement) {
                     let remnant = Remnant::of_statement(statement, problems);
                     self.entry_failed(problem, remnant, problems)?;
                 }
+            }
+        }
+        for index in &indices {
+            if let Err(problem) = self.refuse_taken_index(index) {
+                problems.add(problem)?;
             }
         }
         self.domain = Default::default();
@@ -207,7 +219,13 @@ impl System {
         Ok(())
     }
 
-    fn enter(&mut self, item: &Item, folder: &Path, reading: &mut Reading) -> Result<(), Problem> {
+    fn enter(
+        &mut self,
+        item: &Item,
+        folder: &Path,
+        reading: &mut Reading,
+        derivatives: &Derivatives,
+    ) -> Result<(), Problem> {
         match item {
             Item::System { title, cite, span } => {
                 if !self.title.is_empty() {
@@ -224,24 +242,16 @@ impl System {
             Item::Use { alias, path, span } => self.import(alias, &folder.join(path), span, reading)?,
             Item::State(list) => {
                 for Declared { name, .. } in list {
-                    if let Some(field) = self.fields.first() {
-                        let message = format!("the field '{}' above does not know of this state", field.name);
-                        return Err(Problem::new(&name.span, message, "declare states before fields"));
-                    }
-                    if self.states_are_final {
-                        let message = format!(
-                            "something above is differentiated by all states, and '{}' is none yet",
-                            name.text
-                        );
-                        return Err(Problem::new(&name.span, message, "declare states before 'd(...)'"));
-                    }
-                    let symbol = self.declare(name, Kind::State)?;
-                    self.states.push(symbol);
+                    self.declare_coordinate(name, UnknownKind::State)?;
                 }
             }
             Item::Param(list) => {
-                for Declared { name, value, .. } in list {
+                for Declared { name, value, knowledge, .. } in list {
                     let default = value.as_ref().map(|value| self.rational(value)).transpose()?;
+                    if *knowledge == Some(Knowledge::Unknown) {
+                        self.declare_unknown_constant(name, default)?;
+                        continue;
+                    }
                     let symbol = self.declare(name, Kind::Parameter)?;
                     if let Some(info) = self.symbols.get_mut(&symbol) {
                         info.default = default;
@@ -253,8 +263,10 @@ impl System {
                     let Some(symbol) = self.find_symbol(&name.text) else {
                         return Err(self.unknown(&name.text, &name.span, Wanted::Symbol));
                     };
-                    if let Some(info) = self.symbols.get_mut(&symbol) {
-                        info.is_angle = true;
+                    for one in self.everywhere(symbol) {
+                        if let Some(info) = self.symbols.get_mut(&one) {
+                            info.is_angle = true;
+                        }
                     }
                 }
             }
@@ -276,7 +288,13 @@ impl System {
                         "claim it as it is",
                     ));
                 }
-                self.written.insert(name.text.clone(), self.written_as(&expr.span, [expr]));
+                self.note_component(&name.text);
+                let written = match (&value, is_component(&name.text)) {
+                    // the text speaks of all components
+                    (Value::Scalar(value), true) => Written::plain(self.graph.text(*value)),
+                    _ => self.written_as(&expr.span, [expr]),
+                };
+                self.written.insert(name.text.clone(), written);
                 self.definition_domains.insert(name.text.clone(), domain);
                 self.definitions.insert(name.text.clone(), value);
             }
@@ -284,24 +302,53 @@ impl System {
                 self.enter_field(*role, name.clone(), components, *others_are_zero)?
             }
             Item::Output(list) => {
-                for (expr, _) in list {
+                let mut further = Vec::new();
+                for OutputSyntax { value: expr, is_repeated, .. } in list {
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
-                    // what is seen twice is seen once: a second time it would count as a measurement of its own
                     let guards = self.guards_of(&domain);
-                    match self.outputs.iter().position(|(_, known)| *known == value) {
-                        Some(place) => self.output_guards[place].extend(guards),
-                        None => {
-                            self.output_guards.push(guards);
-                            self.outputs.push((in_one_line(&self.source, &expr.span), value));
-                        }
+                    let text = match (&expr.kind, is_repeated) {
+                        (_, false) => in_one_line(&self.source, &expr.span),
+                        (ExprKind::Name(name), true) => name.clone(),
+                        (_, true) => self.graph.text(value),
+                    };
+                    for (experiment, copies) in self.further_experiments() {
+                        let there = self.graph.substitute(&[value], &copies)[0];
+                        let guards = self.substitute_guards(&guards, &copies);
+                        further.push((in_words(&text, experiment), there, guards));
                     }
+                    self.see(text, value, guards);
+                }
+                for (text, value, guards) in further {
+                    self.see(text, value, guards);
                 }
             }
+            Item::Signals { knowledge, list } => {
+                for signal in list {
+                    self.declare_signal(*knowledge, signal, derivatives)?;
+                }
+            }
+            Item::Initial(list) => {
+                for one in list {
+                    self.enter_initial(one)?;
+                }
+            }
+            Item::Experiments { count, span } => self.enter_experiments(count, span)?,
             Item::Sample { ranges, avoid } => self.sample(ranges, avoid)?,
             Item::Claim(claim) => self.claims.push((**claim).clone()),
             Item::View(view) => self.enter_view(view)?,
         }
         Ok(())
+    }
+
+    /// Adds an output. What is seen twice is seen once: a second time it would count as a measurement of its own.
+    fn see(&mut self, text: String, value: NodeId, guards: Vec<Guard>) {
+        match self.outputs.iter().position(|(_, known)| *known == value) {
+            Some(place) => self.output_guards[place].extend(guards),
+            None => {
+                self.output_guards.push(guards);
+                self.outputs.push((text, value));
+            }
+        }
     }
 
     /// Whether a statement of a claim can be understood: its names are known and its two sides can be equal at all.
@@ -395,14 +442,15 @@ impl System {
             let message = "a name with a dot belongs to an imported system";
             return Err(Problem::new(&name.span, message, "choose one without"));
         }
-        Ok(())
+        self.refuse_mixed(name)
     }
 
-    fn declare(&mut self, name: &Name, kind: Kind) -> Result<Symbol, Problem> {
+    pub(super) fn declare(&mut self, name: &Name, kind: Kind) -> Result<Symbol, Problem> {
         self.refuse_taken(name)?;
+        self.note_component(&name.text);
         let symbol = self.graph.intern(&name.text);
-        let is_angle = self.is_angle(symbol);
-        self.symbols.insert(symbol, SymbolInfo { kind, is_angle, default: None, range: None });
+        let info = self.fresh_info(symbol, kind);
+        self.symbols.insert(symbol, info);
         Ok(symbol)
     }
 
@@ -444,6 +492,7 @@ impl System {
             let Some(symbol) = symbol else {
                 return Err(self.unknown(&state.text, &state.span, Wanted::State));
             };
+            self.refuse_rate(role, symbol, &state.span)?;
             if !moved.insert(symbol) {
                 let message = format!("'{}' is given twice in the field '{}'", state.text, name.text);
                 return Err(Problem::new(&state.span, message, "the second time"));
@@ -452,10 +501,10 @@ impl System {
             rates.push((symbol, rate));
             guards.push(self.guards_of(&domain));
         }
-        let missing = self.states.iter().find(|state| !moved.contains(state));
+        let missing = self.moving_states().find(|state| !moved.contains(state));
         if let (Some(missing), false) = (missing, others_are_zero) {
             let message =
-                format!("the field '{}' does not say how '{}' moves", name.text, self.symbol_name(*missing));
+                format!("the field '{}' does not say how '{}' moves", name.text, self.symbol_name(missing));
             return Err(Problem::new(&name.span, message, "this field")
                 .help("end it with: others' = 0, if the states that it does not name stand still"));
         }
@@ -466,17 +515,31 @@ impl System {
             _ => Written::default(),
         };
         let written = if others_are_zero { written.followed_by("others' = 0") } else { written };
-        let derivation = Derivation::new(rates.iter().copied().collect());
-        self.field_places.insert(name.text.clone(), FieldPlace::Own(self.fields.len()));
-        self.fields.push(Field {
-            name: name.text,
-            role,
-            span: name.span,
-            components: rates,
-            guards,
-            written,
-            derivation,
-        });
+        let mut fields = Vec::new();
+        match role {
+            Role::Drift => self.complete_drift(&mut rates, &mut guards),
+            Role::Input => {
+                for (experiment, copies) in self.further_experiments() {
+                    let (rates, guards) = self.in_experiment(&rates, &guards, &copies);
+                    fields.push((in_words(&name.text, experiment), rates, guards));
+                }
+            }
+            Role::Other => {}
+        }
+        fields.insert(0, (name.text, rates, guards));
+        for (title, rates, guards) in fields {
+            let derivation = Derivation::new(rates.iter().copied().collect());
+            self.field_places.insert(title.clone(), FieldPlace::Own(self.fields.len()));
+            self.fields.push(Field {
+                name: title,
+                role,
+                span: name.span.clone(),
+                components: rates,
+                guards,
+                written: written.clone(),
+                derivation,
+            });
+        }
         Ok(())
     }
 
@@ -511,13 +574,21 @@ impl System {
                 let message = format!("'{}' has a range already", name.text);
                 return Err(Problem::new(&name.span, message, "the second one"));
             }
+            self.spread_range(symbol, &range);
             if let Some(info) = self.symbols.get_mut(&symbol) {
                 info.range = Some(range);
             }
         }
         for expr in avoid {
             let value = self.scalar(expr)?;
-            self.avoid.push((in_one_line(&self.source, &expr.span), value));
+            let text = in_one_line(&self.source, &expr.span);
+            self.avoid.push((text.clone(), value));
+            for (experiment, copies) in self.further_experiments() {
+                let there = self.graph.substitute(&[value], &copies)[0];
+                if there != value {
+                    self.avoid.push((in_words(&text, experiment), there));
+                }
+            }
         }
         Ok(())
     }

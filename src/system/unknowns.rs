@@ -6,6 +6,9 @@
 
 use super::model::System;
 use crate::expression::Symbol;
+use crate::expression::syntax::{Equation, ExprKind, Span};
+use dashu::rational::RBig;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What an unknown coordinate stands for in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -29,6 +32,38 @@ impl UnknownKind {
     }
 }
 
+/// A signal and those of its derivatives that are coordinates, itself first. Each moves as the next one says; the last of a
+/// known signal is driven by a field of its own, the last of an unknown one stands still.
+#[derive(Clone, Debug)]
+pub(crate) struct Signal {
+    pub is_known: bool,
+    pub chain: Vec<Symbol>,
+    pub span: Span,
+}
+
+/// What the coordinates of a system were declared as.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Coordinates {
+    /// Those of the first experiment, and what is the same in all, in the order of the file.
+    pub own: Vec<Symbol>,
+    /// What they are, where they are no states.
+    pub kinds: BTreeMap<Symbol, UnknownKind>,
+    /// The signals of all experiments.
+    pub signals: Vec<Signal>,
+    /// Values near which unknown constants are drawn.
+    pub hints: BTreeMap<Symbol, RBig>,
+    /// What the file says of values at the beginning.
+    pub initial: Vec<Equation>,
+    /// Those that are known at the beginning, and whose rates may depend on what is not.
+    pub known_at_first: BTreeSet<Symbol>,
+    /// How many experiments are made beside the first one.
+    pub further_experiments: usize,
+    /// Whether the file has said so.
+    pub experiments_said: bool,
+    /// What a coordinate of the first experiment is in each of the others.
+    pub copies: BTreeMap<Symbol, Vec<Symbol>>,
+}
+
 impl System {
     /// The coordinates that are not known, in the order of [`System::states`]: the columns of every codistribution. Their
     /// number is the dimension that a rank is measured against.
@@ -46,11 +81,79 @@ impl System {
         if self.known.contains(&symbol) || !self.states.contains(&symbol) {
             return None;
         }
-        Some(self.unknown_kinds.get(&symbol).copied().unwrap_or(UnknownKind::State))
+        Some(self.coordinates.kinds.get(&symbol).copied().unwrap_or(UnknownKind::State))
+    }
+
+    /// The coordinates whose differentials no field leads out of: all but the known signals, whose rates are known too. A
+    /// state that is known at the beginning is among them, for its rate need not be known.
+    pub(crate) fn closed_coordinates(&self) -> Vec<Symbol> {
+        let at_first = &self.coordinates.known_at_first;
+        let kept = |state: &Symbol| !self.known.contains(state) || at_first.contains(state);
+        self.states.iter().copied().filter(kept).collect()
     }
 
     /// The names of the unknown coordinates, in their order.
     pub(crate) fn column_names(&self) -> Vec<String> {
         self.unknowns().into_iter().map(|symbol| self.symbol_name(symbol).to_owned()).collect()
+    }
+
+    /// The names of the known coordinates, in their order.
+    pub(crate) fn known_names(&self) -> Vec<String> {
+        let known = self.states.iter().filter(|state| self.known.contains(state));
+        known.map(|symbol| self.symbol_name(*symbol).to_owned()).collect()
+    }
+
+    /// What a symbol stands for, in words, where it is no plain state and no plain parameter.
+    pub(crate) fn stands_for(&self, symbol: Symbol) -> Option<String> {
+        let kind = self.coordinates.kinds.get(&symbol);
+        let words = match kind {
+            _ if self.coordinates.known_at_first.contains(&symbol) => "known at the beginning",
+            Some(UnknownKind::Parameter) => "a constant that is to be identified",
+            Some(UnknownKind::Signal) if self.known.contains(&symbol) => "a signal that is known",
+            Some(UnknownKind::Signal) => "a signal that is not known",
+            _ => return None,
+        };
+        let signals = &self.coordinates.signals;
+        let last = signals.iter().find(|signal| !signal.is_known && signal.chain.contains(&symbol));
+        let assumed = last.and_then(|signal| signal.chain.last());
+        let assumed = assumed
+            .map(|last| format!(", with {} = 0", next_derivative(self.symbol_name(*last))))
+            .unwrap_or_default();
+        Some(format!("{words}{assumed}"))
+    }
+
+    /// What the file says of values at the beginning, as conditions: `initial x = 0`. A rank is that at states which meet
+    /// them.
+    pub fn initial_conditions(&self) -> &[Equation] {
+        &self.coordinates.initial
+    }
+
+    /// A state whose value at the beginning is told by parameters, and not a number.
+    pub(crate) fn initial_value_without_a_number(&self) -> Option<&str> {
+        let has_number = |symbol: Symbol| {
+            let range = self.symbol_info(symbol).and_then(|info| info.range.as_ref());
+            range.is_some_and(|range| range.low == range.high)
+        };
+        self.coordinates.initial.iter().find_map(|equation| match &equation.left.kind {
+            ExprKind::Name(name) => {
+                self.find_symbol(name).filter(|symbol| !has_number(*symbol)).map(|_| name.as_str())
+            }
+            _ => None,
+        })
+    }
+
+    /// What is assumed of unknown signals: that a derivative vanishes, as `w'' = 0`.
+    pub fn assumed_of_signals(&self) -> Vec<String> {
+        let unknown = self.coordinates.signals.iter().filter(|signal| !signal.is_known);
+        let last = unknown.filter_map(|signal| signal.chain.last());
+        last.map(|last| format!("{} = 0", next_derivative(self.symbol_name(*last)))).collect()
+    }
+}
+
+/// The name of the derivative of a signal: `u'` of `u`, `u''@2` of `u'@2`.
+pub(super) fn next_derivative(name: &str) -> String {
+    match name.split_once('@') {
+        Some((base, experiment)) => format!("{base}'@{experiment}"),
+        None => format!("{name}'"),
     }
 }

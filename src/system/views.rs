@@ -5,8 +5,11 @@ use super::elaborate::Wanted;
 use super::error::Problem;
 use super::grammar::{Item, quoted};
 use super::model::System;
+use super::signals;
 use super::written::in_one_line;
-use crate::expression::parse::{Read, Text, assignments, equations, keyword, name, range, sign, stop, sum};
+use crate::expression::parse::{
+    Read, Text, assignments, conditions, equations, keyword, name, range, repeat, sign, stop, sum, target,
+};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use crate::expression::{NodeId, Symbol};
 use dashu::rational::RBig;
@@ -158,12 +161,12 @@ pub(crate) enum End {
 /// The words that begin these entries; they are names too.
 pub(super) const WORDS: [&str; 5] = ["set", "pole", "map", "line", "reduction"];
 
-/// Whether one of these entries begins here, and not a name that is one of their words: a quotation mark or `of` follows.
+/// Whether one of these entries begins here, or one of what is known, and not a name that is one of their words: a quotation mark or `of` follows.
 pub(super) fn begins(input: &mut Text<'_>) -> bool {
     let title = |word: &'static str| (keyword(word), winnow::token::literal("\"")).void();
     let reduction = (keyword("reduction"), keyword("of"), name, sign(":")).void();
     let mut any = alt((title("set"), title("pole"), title("map"), title("line"), reduction));
-    peek(any.by_ref()).parse_next(input).is_ok()
+    peek(any.by_ref()).parse_next(input).is_ok() || signals::begins(input)
 }
 
 fn title(input: &mut Text<'_>) -> Read<(String, Span)> {
@@ -179,9 +182,14 @@ fn title(input: &mut Text<'_>) -> Read<(String, Span)> {
     Ok((title, span))
 }
 
-fn conditions(input: &mut Text<'_>) -> Read<Vec<Equation>> {
-    let list: Vec<Vec<Equation>> = cut_err(separated(1.., equations, sign(","))).parse_next(input)?;
-    Ok(list.concat())
+/// A name, or one component of a vector.
+fn coordinate(input: &mut Text<'_>) -> Read<Name> {
+    let target = target(input)?;
+    let mut names = repeat(input, &[], |indices| target.names(indices))?;
+    match names.len() {
+        1 => Ok(names.remove(0)),
+        _ => stop(target.span.start, "one coordinate", None),
+    }
 }
 
 fn set(input: &mut Text<'_>) -> Read<View> {
@@ -194,7 +202,7 @@ fn map(input: &mut Text<'_>) -> Read<View> {
     keyword("map").parse_next(input)?;
     let (title, span) = title(input)?;
     let axis = |input: &mut Text<'_>| -> Read<Axis> {
-        let name = name.context("a coordinate and its range, as in x in [0, 1]").parse_next(input)?;
+        let name = coordinate.context("a coordinate and its range, as in x in [0, 1]").parse_next(input)?;
         cut_err(keyword("in")).context("'in' and a range [low, high]").parse_next(input)?;
         let (low, high, _) = cut_err(range).parse_next(input)?;
         Ok(Axis { name, low, high })
@@ -213,7 +221,7 @@ fn map(input: &mut Text<'_>) -> Read<View> {
 fn line(input: &mut Text<'_>) -> Read<View> {
     keyword("line").parse_next(input)?;
     let (title, span) = title(input)?;
-    let moving = cut_err(name).context("the coordinate that moves").parse_next(input)?;
+    let moving = cut_err(coordinate).context("the coordinate that moves").parse_next(input)?;
     cut_err(keyword("to")).context("'to', as in x to 2, x to y = 3, x to infinity").parse_next(input)?;
     let end = match opt(keyword("infinity")).parse_next(input)? {
         Some(_) => End::Infinity,
@@ -245,7 +253,7 @@ fn reduction(input: &mut Text<'_>) -> Read<View> {
 
 /// One of these entries, where one begins.
 pub(super) fn view(input: &mut Text<'_>) -> Read<Item> {
-    if !begins(input) {
+    if !begins(input) || signals::begins(input) {
         return winnow::combinator::fail.parse_next(input);
     }
     alt((set, map, line, reduction)).map(|view| Item::View(Box::new(view))).parse_next(input)

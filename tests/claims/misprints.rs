@@ -57,7 +57,7 @@ fn misprint(
         is_it
     };
     match &mut expr.kind {
-        ExprKind::Number(_) => false,
+        ExprKind::Number(_) | ExprKind::Indexed(_) => false,
         ExprKind::Name(name) => {
             if kind != Misprint::OtherName {
                 return false;
@@ -105,6 +105,9 @@ fn misprint(
                 return true;
             }
             misprint(kind, base, number, other)
+        }
+        ExprKind::RealPower(base, exponent) => {
+            misprint(kind, base, number, other) || misprint(kind, exponent, number, other)
         }
         ExprKind::Call(name, arguments) => {
             // fields and the states of a differential are no formulas

@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/picture.rs"]
 mod picture;
 
+mod accessible;
 mod certify;
 mod certify_domains;
 mod certify_verdicts;
@@ -15,3 +16,4 @@ mod region_edges;
 mod stream;
 mod stress;
 mod trade;
+mod unseen_fields;

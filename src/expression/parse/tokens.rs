@@ -3,7 +3,7 @@
 
 use crate::expression::syntax::{Expr, ExprKind, Name, Span};
 use crate::number::parse_decimal;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use winnow::combinator::{alt, opt};
 use winnow::error::{AddContext, ErrMode, ModalResult, ParserError};
 use winnow::prelude::*;
@@ -13,9 +13,16 @@ use winnow::token::{literal, one_of, take_till, take_while};
 /// Text with the place in it, and how deep in brackets we are.
 pub(crate) type Text<'a> = Stateful<LocatingSlice<&'a str>, &'a Depth>;
 
-/// How many brackets are open, and how many may be.
+/// What is counted while a text is read.
 #[derive(Debug, Default)]
-pub(crate) struct Depth(pub(super) Cell<usize>);
+pub(crate) struct Depth {
+    /// How many brackets are open.
+    pub(super) open: Cell<usize>,
+    /// How many parts of expressions were written out for values of indices.
+    pub(super) written_out: Cell<usize>,
+    /// The indices that were met, where each gets its range.
+    pub(crate) indices: RefCell<Vec<Name>>,
+}
 
 /// More brackets within brackets than this are refused: nobody means them.
 pub(super) const DEEPEST: usize = 120;
@@ -94,7 +101,7 @@ pub(crate) fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<
 }
 
 /// Words that begin something and so cannot be names.
-pub(crate) const RESERVED: [&str; 30] = [
+pub(crate) const RESERVED: [&str; 31] = [
     "system",
     "cite",
     "use",
@@ -125,10 +132,11 @@ pub(crate) const RESERVED: [&str; 30] = [
     "at",
     "within",
     "expect",
+    "for",
 ];
 
 /// Words with a meaning at some places; elsewhere they are names.
-pub(crate) const SPECIAL: [&str; 26] = [
+pub(crate) const SPECIAL: [&str; 30] = [
     "proved",
     "refuted",
     "restates",
@@ -155,6 +163,10 @@ pub(crate) const SPECIAL: [&str; 26] = [
     "to",
     "from",
     "infinity",
+    "known",
+    "unknown",
+    "initial",
+    "experiments",
 ];
 
 /// Letters, digits and underscores, beginning with a letter.
@@ -197,6 +209,28 @@ pub(crate) fn keyword<'a>(text: &'static str) -> impl Parser<Text<'a>, Span, Err
 
 /// A name that is not reserved, with parts joined by dots (`general.f`), and the blank after it.
 pub(crate) fn name(input: &mut Text<'_>) -> Read<Name> {
+    let name = bare_name(input)?;
+    blank(input)?;
+    Ok(name)
+}
+
+/// Right behind a name that has been declared: `'` for a derivative of a signal, `@2` for the second experiment, or both. As it is
+/// written in names: the primes first, and of the first experiment nothing.
+pub(super) fn suffix(input: &mut Text<'_>) -> Read<String> {
+    let before = take_while(0.., '\'').parse_next(input)?;
+    let experiment =
+        opt((literal("@"), take_while(1.., |c: char| c.is_ascii_digit())).take()).parse_next(input)?;
+    // the primes may stand behind the experiment too
+    let behind = match experiment {
+        Some(_) => take_while(0.., '\'').parse_next(input)?,
+        None => "",
+    };
+    let experiment = experiment.filter(|experiment| *experiment != "@1").unwrap_or_default();
+    Ok(format!("{before}{behind}{experiment}"))
+}
+
+/// A name without the blank after it.
+pub(super) fn bare_name(input: &mut Text<'_>) -> Read<Name> {
     let start = input.checkpoint();
     let ((first, _), span) = (word, winnow::combinator::repeat::<_, _, (), _, _>(0.., (literal("."), word)))
         .map(|((text, span), ())| (text, span))
@@ -210,7 +244,6 @@ pub(crate) fn name(input: &mut Text<'_>) -> Read<Name> {
     let mut whole = *input;
     whole.reset(&start);
     let text = whole.input.as_ref()[..span.len()].to_owned();
-    blank(input)?;
     Ok(Name { text, span })
 }
 
@@ -238,7 +271,7 @@ pub(crate) fn within<'a, T>(
     inner: impl Parser<Text<'a>, T, ErrMode<Expected>>,
 ) -> Read<T> {
     let depth = input.state;
-    if depth.0.get() >= DEEPEST {
+    if depth.open.get() >= DEEPEST {
         let at = input.current_token_start();
         return stop(
             at,
@@ -246,9 +279,9 @@ pub(crate) fn within<'a, T>(
             Some("name the inner part with 'let'".into()),
         );
     }
-    depth.0.set(depth.0.get() + 1);
+    depth.open.set(depth.open.get() + 1);
     let mut inner = inner;
     let result = inner.parse_next(input);
-    depth.0.set(depth.0.get() - 1);
+    depth.open.set(depth.open.get() - 1);
     result
 }

@@ -3,7 +3,7 @@
 use crate::certificate::{BoxStanding, OpenBox, PartAnswer, RegionAnswer, Vanishing};
 use crate::number::rational_from_f64;
 use crate::observability::AVOIDED;
-use crate::report::names::{fields_json, fields_text};
+use crate::report::names::{by_default_text, fields_json, fields_text, ranges_json};
 use dashu::rational::RBig;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -74,6 +74,7 @@ pub fn region_json(answer: &RegionAnswer) -> Value {
         "free_coordinates": free
             .map(|(c, _)| json!({ "name": c.name, "low": c.low.to_string(), "high": c.high.to_string() }))
             .collect::<Vec<_>>(),
+        "drawn_by_default": ranges_json(&answer.by_default),
         "without_effect": idle.map(|(c, _)| c.name.clone()).collect::<Vec<_>>(),
         "avoided": { "expressions": answer.avoid, "distance": AVOIDED },
         "minors": answer.minors.iter().map(|minor| json!({ "rows": minor.rows, "factors": minor.factors })).collect::<Vec<_>>(),
@@ -128,6 +129,9 @@ pub fn region_text(answer: &RegionAnswer) -> String {
             let _ = writeln!(out, "  {remark}");
         }
         return out.trim_end().to_owned();
+    }
+    if !answer.by_default.is_empty() {
+        let _ = writeln!(out, "{}", by_default_text(&answer.by_default));
     }
     let _ = writeln!(out, "full rank is proved on {} of the volume of the box", percent(answer.proved));
     if !answer.avoid.is_empty() {

@@ -7,6 +7,7 @@ use crate::report::claims::outcomes::{claim_json, claim_line};
 use crate::report::claims::words::{counts, counts_text, errors};
 use crate::report::motion::answers::{Observed, observe_json};
 use crate::report::ranks::answer::rank_json;
+use crate::report::ranks::taken_for_granted;
 use crate::report::stress::answer::stress_json;
 use crate::report::trade::answer::trade_json;
 use crate::sweep::RankAnswer;
@@ -238,6 +239,10 @@ fn file_text(file: &FileFindings, out: &mut String) {
         let heading = if has_own { "the file's rows" } else { "" };
         let line = format!("  {:<48} {:>16} {heading:>16}", "rank on", "full");
         let _ = writeln!(out, "{}", line.trim_end());
+        let first = file.ranks.iter().find_map(|rank| rank.found.as_ref().ok());
+        for line in first.map(taken_for_granted).unwrap_or_default() {
+            let _ = writeln!(out, "  {line}");
+        }
         for rank in &file.ranks {
             let (full, own) = match rank.answer() {
                 _ if rank.is_pole() => ("a pole".to_owned(), "-".to_owned()),

@@ -2,10 +2,12 @@
 
 use super::entry::{explain, formula};
 use super::findings::ranks_in_words;
+use super::motions::unseen_motions;
 use crate::claim::Outcome;
 use crate::paper::{DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank};
 use crate::report::formula::{conditions_mathml, formula_mathml};
 use crate::report::plot;
+use crate::report::ranks::taken_for_granted;
 use crate::sweep::RankAnswer;
 use crate::tradeoff::{ExpandedText, LandscapeRows, PrintedExpression};
 use maud::{Markup, PreEscaped, html};
@@ -29,13 +31,20 @@ pub(super) fn file_section(anchor: &str, file: &FileFindings, units: Units<'_>) 
             h2 { (file.system.title) }
             @for found in &file.reductions { (reduction(found)) }
             @for left in &file.left_out { p.bad { "Not done: " (left.what) ": " (left.why) } }
-            @if !file.ranks.is_empty() { (ranks(&file.ranks)) }
+            @for line in granted(file) { p { (line) "." } }
+            @if !file.ranks.is_empty() { (ranks(&file.ranks)) (unseen_motions(&file.ranks)) }
             @for map in &file.maps { (maps(map, units)) }
             @if !file.lines.is_empty() { (lines(&file.lines, units)) }
             @for found in &file.printed { (printed(found, &file.outcomes)) }
             @if let Some(found) = &file.derivatives { (derivatives(found)) }
         }
     }
+}
+
+/// What the ranks of a file take for granted; the first of them is that at all states.
+fn granted(file: &FileFindings) -> Vec<String> {
+    let answer = file.ranks.iter().find_map(|rank| rank.found.as_ref().ok());
+    answer.map(taken_for_granted).unwrap_or_default()
 }
 
 fn maps(map: &MapFound, units: Units<'_>) -> Markup {

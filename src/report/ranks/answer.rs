@@ -1,10 +1,15 @@
 //! Answers about ranks, as JSON and as text.
 
+use super::generic::{add_generic_json, generic_text};
+use super::motions::{motions_json, motions_text};
 use super::seen::{deviations_json, deviations_text, direction_text, place_text};
 use crate::number::rational_to_f64;
 use crate::observability::{NamedCoordinate, Spectrum, Stop};
-use crate::report::names::{fields_json, fields_text, values_json, values_text};
+use crate::report::names::{
+    by_default_text, fields_json, fields_text, ranges_json, values_json, values_text,
+};
 use crate::sweep::{BranchAnswer, Certainty, Digits, NoDigits, RankAnswer, SweepReport};
+use crate::system::Range;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -18,7 +23,7 @@ fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
 }
 
 /// JSON has no infinity; a gap without bound is null.
-fn finite(value: f64) -> Value {
+pub(super) fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }
 
@@ -61,7 +66,7 @@ fn digits_json(found: &Result<Digits, NoDigits>) -> Value {
     }
 }
 
-fn sweep_json(report: &SweepReport) -> Value {
+pub(super) fn sweep_json(report: &SweepReport) -> Value {
     let worst = report.worst.as_ref().map(|(state, spectrum)| {
         let (values_of_worst, condition) = nearest_doubles(report, spectrum);
         let values: serde_json::Map<String, Value> = state
@@ -96,7 +101,8 @@ fn sweep_json(report: &SweepReport) -> Value {
                 (name.clone(), json!({ "exact": exact, "value": value }))
             }).collect::<serde_json::Map<_, _>>(),
             "vector": direction.states.iter().zip(&direction.vector).map(|(name, part)| {
-                (name.clone(), json!({ "exact": part.to_string(), "value": rational_to_f64(part) }))
+                let exact = direction.exact.then(|| part.to_string());
+                (name.clone(), json!({ "exact": exact, "value": rational_to_f64(part) }))
             }).collect::<serde_json::Map<_, _>>(),
         })).collect::<Vec<_>>(),
         "poles": report.poles,
@@ -117,6 +123,7 @@ pub(crate) fn stop_text(stop: Stop) -> &'static str {
         Stop::NoGrowth => "the rank stopped growing",
         Stop::Order => "the longest words that were allowed",
         Stop::TooMany => "there are too many longer words",
+        Stop::NotTaken => "none were asked for",
     }
 }
 
@@ -124,11 +131,14 @@ fn branch_json(branch: &BranchAnswer) -> Value {
     let mut object = sweep_json(&branch.full);
     object["conditions"] = json!(branch.conditions);
     object["held_at_the_files_values"] = values_json(&branch.held);
+    object["drawn_by_default"] = ranges_json(&branch.by_default);
     object["words"] = json!(branch.words);
     object["order"] = json!(branch.order);
     object["stopped_because"] = json!(stop_text(branch.stop));
     object["generic_rank"] = json!(branch.generic_rank);
     object["longer_words_cannot_raise_it"] = json!(branch.is_final);
+    add_generic_json(branch, &mut object);
+    object["unseen_fields"] = branch.motions.as_ref().map_or(Value::Null, motions_json);
     object["standard_deviations"] = branch.deviations.as_ref().map_or(Value::Null, deviations_json);
     object["own_rows"] = branch.rows.as_ref().map_or(Value::Null, sweep_json);
     object
@@ -139,8 +149,13 @@ pub fn rank_json(answer: &RankAnswer) -> Value {
     let mut branches: Vec<Value> = answer.branches.iter().map(branch_json).collect();
     let mut object = if branches.len() == 1 { branches.remove(0) } else { total_json(answer, branches) };
     object["file"] = json!(answer.file);
+    if !answer.left_out.is_empty() {
+        object["no_state_was_drawn_where"] = json!(answer.left_out);
+    }
     object["fields"] = fields_json(&answer.fields);
     object["dimension"] = json!(answer.dimension);
+    object["known"] = json!(answer.known);
+    object["assumed"] = json!(answer.assumed);
     object["seed"] = json!(answer.seed);
     object
 }
@@ -238,10 +253,35 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
     let _ = writeln!(out, "  {:.2} s", report.seconds);
 }
 
+/// What an answer takes for granted beside its file's equations: what is known and so not counted, what is assumed of signals,
+/// and ranges that the file does not give.
+pub(crate) fn taken_for_granted(answer: &RankAnswer) -> Vec<String> {
+    let mut lines = Vec::new();
+    if !answer.known.is_empty() {
+        lines.push(format!("known, and not counted: {}", answer.known.join(", ")));
+    }
+    if !answer.assumed.is_empty() {
+        lines.push(format!("assumed of unknown signals: {}", answer.assumed.join(", ")));
+    }
+    let mut by_default: Vec<(String, Range)> = Vec::new();
+    for one in answer.branches.iter().flat_map(|branch| &branch.by_default) {
+        if !by_default.contains(one) {
+            by_default.push(one.clone());
+        }
+    }
+    if !by_default.is_empty() {
+        lines.push(by_default_text(&by_default));
+    }
+    lines
+}
+
 /// An answer as text.
 pub fn rank_text(answer: &RankAnswer) -> String {
     let mut out = format!("{}: {} states, {} outputs\n", answer.title, answer.dimension, answer.outputs);
     let _ = writeln!(out, "fields: {}", fields_text(&answer.fields));
+    for line in taken_for_granted(answer) {
+        let _ = writeln!(out, "{line}");
+    }
     for branch in &answer.branches {
         if !branch.conditions.is_empty() {
             let _ = writeln!(out, "where {}", branch.conditions.join(", "));
@@ -253,6 +293,11 @@ pub fn rank_text(answer: &RankAnswer) -> String {
                 values_text(&branch.held)
             );
         }
+        generic_text(branch, &mut out);
+        if branch.stop == Stop::NotTaken {
+            let _ = writeln!(out, "no states were sampled (--samples N draws N)");
+            continue;
+        }
         let _ = writeln!(out, "words that were needed: {}", branch.words.join(", "));
         let _ =
             writeln!(out, "words of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
@@ -260,11 +305,15 @@ pub fn rank_text(answer: &RankAnswer) -> String {
             let _ =
                 writeln!(out, "longer words may still raise the rank: nothing here says that they cannot");
         }
+        branch.motions.iter().for_each(|found| motions_text(found, &mut out));
         sweep_text("the full codistribution", &branch.full, &mut out);
         branch.deviations.iter().for_each(|found| deviations_text(found, &mut out));
         if let Some(rows) = &branch.rows {
             sweep_text("the file's own choice of rows", rows, &mut out);
         }
+    }
+    for place in &answer.left_out {
+        let _ = writeln!(out, "no state of the sample box was found where {place}");
     }
     out.trim_end().to_owned()
 }

@@ -9,8 +9,10 @@ use super::solution::Solution;
 use crate::expression::Symbol;
 use crate::expression::syntax::{Equation, Expr, Name, Span};
 use crate::system::Problem;
-use crate::system::grammar::{ClaimBody, Expectation, Item, Statement};
+use crate::system::declare::in_words;
+use crate::system::grammar::{ClaimBody, Expectation, Item, OutputSyntax, Statement};
 use crate::system::model::{Role, System};
+use crate::system::signals::DeclaredInitial;
 use crate::system::views::{End, View};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashMap};
@@ -25,6 +27,8 @@ pub(crate) struct Dimensions {
     /// Whether the file, or one that it imports, declares a dimension.
     pub(super) is_declared: bool,
     pub(super) solution: Solution,
+    /// The dimensions of powers whose exponents are no numbers, as `length^(n)`, by what they are called.
+    pub(super) symbolic: HashMap<String, Form>,
     pub(super) symbols: Arc<BTreeMap<Symbol, Form>>,
     pub(super) definitions: Arc<HashMap<String, Quantity>>,
     /// The dimension by which a derivative along the field differs from what is differentiated.
@@ -58,8 +62,9 @@ pub(super) struct Checker<'s> {
 pub(crate) fn check(system: &System, items: &[Item], imports: &[Import]) -> (Dimensions, Vec<Problem>) {
     let declares = |item: &Item| match item {
         Item::State(list) | Item::Param(list) => list.iter().any(|one| one.dimension.is_some()),
+        Item::Signals { list, .. } => list.iter().any(|one| one.dimension.is_some()),
         Item::Let { dimension, .. } => dimension.is_some(),
-        Item::Output(list) => list.iter().any(|(_, dimension)| dimension.is_some()),
+        Item::Output(list) => list.iter().any(|one| one.dimension.is_some()),
         _ => false,
     };
     let is_declared = items.iter().any(declares) || imports.iter().any(|(_, _, other)| other.is_declared);
@@ -114,9 +119,12 @@ impl Checker<'_> {
             let form = theirs.resolve(form, &mut Default::default());
             let mut found = Form::known(form.known);
             for (unknown, power) in &form.unknown {
-                let place = places
-                    .entry(*unknown)
-                    .or_insert_with(|| mine.unknown(theirs.origin(*unknown).0.to_owned()));
+                let place = places.entry(*unknown).or_insert_with(|| {
+                    match (theirs.origin(*unknown).0.to_owned(), theirs.is_rigid(*unknown)) {
+                        (of, true) => mine.rigid(of),
+                        (of, false) => mine.unknown(of),
+                    }
+                });
                 found = found.times_power(place, power);
             }
             found
@@ -161,16 +169,22 @@ impl Checker<'_> {
     /// The symbols: those that are declared, angles, and unknowns.
     fn declare(&mut self, items: &[Item]) {
         for item in items {
-            let (Item::State(list) | Item::Param(list)) = item else { continue };
-            for one in list {
-                let Some(symbol) = self.system.find_symbol(&one.name.text) else { continue };
-                let Some(DeclaredDimension { dimension, span }) = &one.dimension else { continue };
+            let declared: Vec<_> = match item {
+                Item::State(list) | Item::Param(list) => {
+                    list.iter().map(|one| (&one.name, &one.dimension)).collect()
+                }
+                Item::Signals { list, .. } => list.iter().map(|one| (&one.name, &one.dimension)).collect(),
+                _ => continue,
+            };
+            for (name, dimension) in declared {
+                let Some(symbol) = self.system.find_symbol(&name.text) else { continue };
+                let Some(DeclaredDimension { dimension, span }) = dimension else { continue };
                 let form = Form::known(dimension.clone());
                 if self.system.is_angle(symbol) {
-                    self.equate(&form, &Form::number(), span, &Asked::Angle(one.name.text.clone()));
+                    self.equate(&form, &Form::number(), span, &Asked::Angle(name.text.clone()));
                 }
                 if let Some(known) = Arc::make_mut(&mut self.known.symbols).insert(symbol, form.clone()) {
-                    self.equate(&form, &known, span, &Asked::Imported(one.name.text.clone()));
+                    self.equate(&form, &known, span, &Asked::Imported(name.text.clone()));
                 }
             }
         }
@@ -183,6 +197,34 @@ impl Checker<'_> {
                 };
                 Arc::make_mut(&mut self.known.symbols).insert(symbol, form);
             }
+        }
+        self.follow();
+    }
+
+    /// What follows from these: each derivative of a signal is the one before by time, a copy in another experiment is what
+    /// it is a copy of, and along the field that drives a signal one derives by its highest derivative.
+    fn follow(&mut self) {
+        let system = self.system;
+        let by_time = Form::known(Dimension::of(Base::Time).power(&-RBig::ONE));
+        let symbols = Arc::make_mut(&mut self.known.symbols);
+        for (symbol, copies) in &system.coordinates.copies {
+            let Some(form) = symbols.get(symbol).cloned() else { continue };
+            symbols.extend(copies.iter().map(|copy| (*copy, form.clone())));
+        }
+        for signal in &system.coordinates.signals {
+            for pair in signal.chain.windows(2) {
+                let Some(rate) = symbols.get(&pair[0]).map(|form| form.times(&by_time)) else { continue };
+                symbols.insert(pair[1], rate);
+            }
+        }
+        let fields = Arc::make_mut(&mut self.known.fields);
+        for field in system.fields.iter().filter(|field| system.is_made(field)) {
+            let form = match (field.role, field.components.first()) {
+                (Role::Drift, _) => Some(by_time.clone()),
+                (_, Some((moved, _))) => symbols.get(moved).map(|form| form.power(&-RBig::ONE)),
+                _ => None,
+            };
+            fields.extend(form.map(|form| (field.name.clone(), form)));
         }
     }
 
@@ -199,13 +241,20 @@ impl Checker<'_> {
             }
             Item::Field { role, name, components, .. } => self.field(*role, name, components),
             Item::Output(list) => {
-                for (expr, dimension) in list {
+                for OutputSyntax { value: expr, dimension, .. } in list {
                     let found = self.quantity(expr);
                     self.note_units(&found);
                     if let Some(dimension) = dimension {
                         let text = crate::system::in_one_line(&self.system.source, &expr.span);
                         self.declared(found, &text, dimension);
                     }
+                }
+            }
+            Item::Signals { .. } | Item::Experiments { .. } => {}
+            Item::Initial(list) => {
+                for DeclaredInitial { name, value } in list {
+                    let Some(value) = value else { continue };
+                    self.known.holds_units |= self.at_point(&[(name.clone(), value.clone())]);
                 }
             }
             // a range is of numbers, in the unit of what it is of
@@ -293,7 +342,11 @@ impl Checker<'_> {
                 self.equate(&form.times(&factor), rate, &place, &asked);
             }
         }
-        Arc::make_mut(&mut self.known.fields).insert(name.text.clone(), factor);
+        let fields = Arc::make_mut(&mut self.known.fields);
+        for experiment in 2..self.system.coordinates.further_experiments + 2 {
+            fields.insert(in_words(&name.text, experiment), factor.clone());
+        }
+        fields.insert(name.text.clone(), factor);
     }
 
     fn statement(&mut self, statement: &Statement) {

@@ -30,8 +30,11 @@ impl Checker<'_> {
                 }
                 _ => Quantity::Open,
             },
+            ExprKind::RealPower(base, exponent) => self.real_power(base, exponent),
             ExprKind::Matrix(rows) => self.blocks(rows),
             ExprKind::At(inner, list) => self.at(inner, list),
+            // an index without a value is told where names are
+            ExprKind::Indexed(_) => Quantity::Open,
         };
         match found {
             Quantity::Table(table) if table.entries.len() > MOST_ENTRIES || !self.spend(table.size()) => {
@@ -42,6 +45,11 @@ impl Checker<'_> {
     }
 
     fn named(&mut self, name: &str) -> Quantity {
+        // a definition measures the same in all experiments
+        let name = match name.split_once('@') {
+            Some((base, _)) if self.system.definition(base).is_some() => base,
+            _ => name,
+        };
         if self.system.definition(name).is_some() {
             return self.known.definitions.get(name).cloned().unwrap_or(Quantity::Open);
         }
@@ -191,8 +199,9 @@ impl Checker<'_> {
             })
             .collect();
         let is_function = Function::ALL.iter().any(|function| function.name() == name)
-            || ["tan", "cot", "sec", "csc"].contains(&name);
+            || ["tan", "cot", "sec", "csc", "sinh", "cosh", "tanh"].contains(&name);
         match (name, tables.as_slice()) {
+            ("abs" | "sign" | "min" | "max" | "atan2", tables) => self.composed(name, tables, &place),
             ("rank" | "pole", _) => Quantity::scalar(Entry::number()),
             ("sqrt", [one]) if one.is_scalar() => {
                 let entry = match &one.entries[0] {
