@@ -186,7 +186,7 @@ fn sign_within(polynomial: &Polynomial, is_positive: &dyn Fn(usize) -> bool, dep
     if found.factors.len() > 1 || found.factors.iter().any(|(_, power)| *power > 1) {
         let mut sign = found.unit.sign();
         for (factor, _) in found.factors.iter().filter(|(_, power)| power % 2 == 1) {
-            sign = sign * sign_within(factor, is_positive, depth - 1)?;
+            sign *= sign_within(factor, is_positive, depth - 1)?;
         }
         return Some(sign);
     }
