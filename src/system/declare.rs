@@ -91,7 +91,11 @@ impl System {
                 format!("something above is differentiated by all states, and '{}' is none yet", name.text);
             return Err(Problem::new(&name.span, message, "declare states before 'd(...)'"));
         }
-        let symbol = self.declare(name, Kind::State)?;
+        // the derivatives of a signal
+        let symbol = match name.text.ends_with('\'') && kind == UnknownKind::Signal {
+            true => self.declare_anew(&name.text, Kind::State),
+            false => self.declare(name, Kind::State)?,
+        };
         self.coordinates.own.push(symbol);
         if kind != UnknownKind::Parameter {
             let info = self.symbols[&symbol].clone();
@@ -159,6 +163,7 @@ impl System {
         derivatives: &Derivatives,
     ) -> Result<(), Problem> {
         let name = &declared.name;
+        self.refuse_taken(name)?;
         let used = derivatives.highest(&name.text);
         let refuse = |span: &Span, message: String| {
             Problem::new(span, message, "this signal").help("name the derivative as a state of its own")

@@ -443,7 +443,7 @@ impl System {
         Ok(())
     }
 
-    fn refuse_taken(&self, name: &Name) -> Result<(), Problem> {
+    pub(super) fn refuse_taken(&self, name: &Name) -> Result<(), Problem> {
         let declared = self.find_symbol(&name.text).and_then(|symbol| self.symbols.get(&symbol));
         let taken = declared.is_some_and(|info| info.kind != Kind::Imported)
             || self.definitions.contains_key(&name.text)
@@ -459,16 +459,26 @@ impl System {
             let message = "a name with a dot belongs to an imported system";
             return Err(Problem::new(&name.span, message, "choose one without"));
         }
+        if name.text.contains(['\'', '@']) {
+            let message =
+                "derivatives of signals, and what belongs to further experiments, come with what they are of";
+            return Err(Problem::new(&name.span, message, "choose a name without"));
+        }
         self.refuse_mixed(name)
     }
 
     pub(super) fn declare(&mut self, name: &Name, kind: Kind) -> Result<Symbol, Problem> {
         self.refuse_taken(name)?;
-        self.note_component(&name.text);
-        let symbol = self.graph.intern(&name.text);
+        Ok(self.declare_anew(&name.text, kind))
+    }
+
+    /// The same of a name that nobody else can give.
+    pub(super) fn declare_anew(&mut self, name: &str, kind: Kind) -> Symbol {
+        self.note_component(name);
+        let symbol = self.graph.intern(name);
         let info = self.fresh_info(symbol, kind);
         self.symbols.insert(symbol, info);
-        Ok(symbol)
+        symbol
     }
 
     fn enter_field(

@@ -216,7 +216,12 @@ fn mistakes_are_refused_where_they_stand() {
         ("experiments 2\nexperiments 3", (4, 1), "says already"),
         ("experiments 2\ndrift f\n  x@2' = 1", (5, 3), "in the first experiment"),
         ("experiments 2\nlet v = x\noutput v@3", (5, 8), "no experiment 3"),
-        ("state x@2", (3, 8), "an operator, or the next entry"),
+        ("state y@2", (3, 7), "further experiments"),
+        ("state x'", (3, 7), "derivatives of signals"),
+        ("known u'(t)", (3, 7), ""),
+        ("known x(t)", (3, 7), "has a meaning already"),
+        ("let x' = 1", (3, 5), "derivatives of signals"),
+        ("param k, k' unknown", (3, 10), "derivatives of signals"),
     ] {
         let text = format!("system \"s\"\nstate x\n{text}\n");
         let error = System::parse("test.proof", &text, Path::new("")).expect_err(&text);
