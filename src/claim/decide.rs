@@ -1,5 +1,6 @@
 //! From a claim to its outcome.
 
+use super::cells::{cells, on_resolved};
 use super::defaults::at_the_files_values;
 use super::evidence::{Kept, Nearness, nearness};
 use super::existence::{Existence, existence};
@@ -13,8 +14,8 @@ use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict, Witness};
 use crate::checker::{Evidence, VerdictRecord};
 use crate::expression::syntax::{Equation, Relation};
-use crate::expression::{Symbol, add_guard};
-use crate::observability::{Branch, solve};
+use crate::expression::{Guard, NodeId, Symbol, add_guard};
+use crate::observability::{Branch, Edges, SignCell, in_sign_cell, solve};
 use crate::sweep::UNINTERRUPTED;
 use crate::system::{
     Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line, line_and_column,
@@ -319,30 +320,143 @@ fn attempt(
             if size == Size::Thinner && question.is_of_a_rank() {
                 continue; // a rank is that at almost all states of the set
             }
-            let mut all = branch.guards.clone();
-            sampled.iter().chain(&guards).for_each(|guard| add_guard(&system.graph, &mut all, *guard));
-            let is_assumed: Vec<bool> =
-                all.iter().map(|guard| branch.assumed.contains(guard) || sampled.contains(guard)).collect();
-            let (sides, relations) = (question.sides().to_vec(), question.all_relations().to_vec());
-            let conditions = conditions.clone();
-            let terms = Terms { sides, relations, guards: all, conditions, one_thing_twice };
-            let on = OnBranch::new(system, branch, &terms)?;
-            let verdict = match &question {
-                Question::Identity { columns, .. } => decide_identity(system, &on, *columns, rng),
-                Question::Relations { .. } => decide_relations(system, &on, &is_assumed, &unsolved, rng),
-                Question::Rank { columns, claimed, .. } => decide_rank(system, &on, *columns, *claimed, rng),
-                Question::Codistribution { claimed } => {
-                    decide_codistribution(system, &on, branch, *claimed, rng)?
-                }
+            let asked = Asked {
+                question: &question,
+                guards: &guards,
+                sampled: &sampled,
+                conditions: &conditions,
+                unsolved: &unsolved,
+                one_thing_twice,
             };
-            if let (OnOneBranch::Verdict(verdict, _), Kept::Evidence) = (&verdict, notes.kept) {
-                // random numbers of its own: what is kept changes no verdict
-                notes.evidence.extend(question.evidence(system, &on, verdict, &mut rng.clone()));
+            for (branch, verdict, evidence) in asked.on_branch(system, branch, notes.kept, rng)? {
+                notes.evidence.extend(evidence);
+                found.push((size, branch, verdict));
             }
-            found.push((size, branch, verdict));
         }
     }
     Ok(together(&question, found, &solution.unsolved))
+}
+
+/// What is asked of every branch.
+struct Asked<'a> {
+    question: &'a Question,
+    guards: &'a [Guard],
+    sampled: &'a [Guard],
+    conditions: &'a [NodeId],
+    unsolved: &'a [NodeId],
+    one_thing_twice: bool,
+}
+
+/// A branch, or a part of one, with its verdict and what that rests on.
+type DecidedBranch = (Branch, OnOneBranch, Option<Evidence>);
+
+impl Asked<'_> {
+    /// The verdict on a branch: of a rank on each part on which the signs under roots of squares are known, of anything else only
+    /// where it is not decided as a whole.
+    fn on_branch(
+        &self,
+        system: &mut System,
+        branch: &Branch,
+        kept: Kept,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Vec<DecidedBranch>, String> {
+        let guards = self.all_guards(system, branch);
+        if self.question.is_of_a_rank() {
+            let mut found = Vec::new();
+            for part in cells(system, self.question, branch, &guards, Edges::LeftOut)? {
+                let work = |system: &mut System| self.on_part(system, &part.branch, &part.cell, kept, rng);
+                let (verdict, evidence) = in_sign_cell(system, &part.cell, work)?;
+                found.push((part.branch, verdict, evidence));
+            }
+            return Ok(found);
+        }
+        // boxes are slow where they cannot tell
+        let by_boxes = matches!(self.question, Question::Relations { .. });
+        if by_boxes && let Some(found) = self.proved_by_signs(system, branch, &guards, kept, rng)? {
+            return Ok(found);
+        }
+        let (verdict, evidence) = self.on_part(system, branch, &SignCell::default(), kept, rng)?;
+        let is_open = matches!(verdict, OnOneBranch::Verdict(Verdict::Undecided { .. }, _));
+        if is_open
+            && !by_boxes
+            && let Some(found) = self.proved_by_signs(system, branch, &guards, kept, rng)?
+        {
+            return Ok(found);
+        }
+        Ok(vec![(branch.clone(), verdict, evidence)])
+    }
+
+    /// The verdicts on the parts of a branch by signs, where there are several and it is proved on all of them. A state at which
+    /// it fails is looked for on the whole branch.
+    fn proved_by_signs(
+        &self,
+        system: &mut System,
+        branch: &Branch,
+        guards: &[Guard],
+        kept: Kept,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Option<Vec<DecidedBranch>>, String> {
+        let Ok(parts) = cells(system, self.question, branch, guards, Edges::Counted) else { return Ok(None) };
+        let mut found = Vec::new();
+        for part in parts.iter().filter(|_| parts.len() > 1) {
+            let (verdict, evidence) = self.on_part(system, &part.branch, &part.cell, kept, rng)?;
+            match verdict {
+                OnOneBranch::Verdict(Verdict::Proved { .. }, _) | OnOneBranch::Empty(_) => {
+                    found.push((part.branch.clone(), verdict, evidence));
+                }
+                OnOneBranch::Verdict(..) => return Ok(None),
+            }
+        }
+        Ok(if found.is_empty() { None } else { Some(found) })
+    }
+
+    fn all_guards(&self, system: &System, branch: &Branch) -> Vec<Guard> {
+        let mut all = branch.guards.clone();
+        self.sampled.iter().chain(self.guards).for_each(|guard| add_guard(&system.graph, &mut all, *guard));
+        all
+    }
+
+    fn on_part(
+        &self,
+        system: &mut System,
+        branch: &Branch,
+        cell: &SignCell,
+        kept: Kept,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<(OnOneBranch, Option<Evidence>), String> {
+        let question = self.question;
+        let all = self.all_guards(system, branch);
+        let is_assumed: Vec<bool> =
+            all.iter().map(|guard| branch.assumed.contains(guard) || self.sampled.contains(guard)).collect();
+        let terms = Terms {
+            sides: question.sides().to_vec(),
+            relations: question.all_relations().to_vec(),
+            guards: all,
+            conditions: self.conditions.to_vec(),
+            one_thing_twice: self.one_thing_twice,
+        };
+        let on = OnBranch::new(system, branch, &terms)?;
+        let verdict = match question {
+            Question::Identity { columns, .. } => decide_identity(system, &on, *columns, rng),
+            Question::Relations { .. } => {
+                let resolved = on_resolved(system, &on, cell, rng)?;
+                decide_relations(system, resolved.as_ref().unwrap_or(&on), &is_assumed, self.unsolved, rng)
+            }
+            Question::Rank { columns, claimed, .. } => {
+                let resolved = on_resolved(system, &on, cell, rng)?;
+                decide_rank(system, resolved.as_ref().unwrap_or(&on), *columns, *claimed, rng)
+            }
+            Question::Codistribution { claimed } => {
+                decide_codistribution(system, &on, branch, *claimed, rng)?
+            }
+        };
+        let mut evidence = None;
+        if let (OnOneBranch::Verdict(verdict, _), Kept::Evidence) = (&verdict, kept) {
+            // random numbers of its own: what is kept changes no verdict
+            evidence = question.evidence(system, &on, verdict, &mut rng.clone());
+        }
+        Ok((verdict, evidence))
+    }
 }
 
 /// How a branch stands to the set of all states that meet the conditions.
@@ -357,7 +471,7 @@ enum Size {
 }
 
 /// What the verdicts on all branches come to together.
-fn together(question: &Question, found: Vec<(Size, &Branch, OnOneBranch)>, unsolved: &[String]) -> Verdict {
+fn together(question: &Question, found: Vec<(Size, Branch, OnOneBranch)>, unsolved: &[String]) -> Verdict {
     let of_rank = question.is_of_a_rank();
     let several = found.len() > 1;
     let (mut verdicts, mut shown, mut needs) = (Vec::new(), false, Vec::new());

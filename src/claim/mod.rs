@@ -6,6 +6,7 @@
 //!
 //! This floor shares no formula with `proofs/`, and knows nothing of pages or plots.
 
+mod cells;
 mod decide;
 mod defaults;
 mod evidence;
@@ -14,6 +15,7 @@ mod identity;
 mod inequality;
 mod pole;
 mod question;
+mod rank_bounds;
 mod rank_witness;
 mod ranks;
 mod selection;

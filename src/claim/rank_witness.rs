@@ -1,9 +1,9 @@
 //! A state in exact numbers at which a matrix has not the rank that was claimed.
 
-use super::terms::{OnBranch, Values};
+use super::terms::{OnBranch, Point, Values};
 use super::verdict::Witness;
 use crate::number::{Enclosure, Enclosures, Rationals, rational_to_f64};
-use crate::observability::{certain_rank, rank};
+use crate::observability::{StateInWords, certain_rank, rank};
 use crate::system::System;
 use rand::Rng;
 
@@ -19,6 +19,56 @@ pub(crate) struct Ranks {
     pub claimed: usize,
 }
 
+impl Ranks {
+    /// The two, where no state was drawn that shows it.
+    pub fn nowhere(self) -> Witness {
+        Witness {
+            state: Vec::new(),
+            left: self.generic.to_string(),
+            right: self.claimed.to_string(),
+            entry: None,
+            refutation: None,
+        }
+    }
+}
+
+/// The state of the branch, of those that are drawn, at which the rows have the greatest rank for certain, and that rank; the first
+/// one at which it is `most` ends the search. `None` where no state was found at which they exist.
+pub(super) fn best_state(
+    system: &mut System,
+    on: &OnBranch,
+    columns: usize,
+    most: usize,
+    rng: &mut impl Rng,
+) -> Option<(usize, StateInWords)> {
+    let mut best = None;
+    for attempt in 0..ATTEMPTS {
+        let point = on.draw(system, attempt, rng);
+        let Some(found) = rank_at(on, &point, columns) else { continue };
+        if best.as_ref().is_none_or(|(known, _)| found > *known) {
+            best = Some((found, on.describe(system, &point)));
+        }
+        if found >= most {
+            break;
+        }
+    }
+    best
+}
+
+/// The rank of the rows at a point by exact numbers, or what enclosures show it to be at the least.
+fn rank_at(on: &OnBranch, point: &Point, columns: usize) -> Option<usize> {
+    match on.sides(point)? {
+        Values::Exact(entries) => {
+            let rows = entries.chunks(columns.max(1)).map(<[_]>::to_vec).collect();
+            rank(&Rationals::default(), rows).ok()
+        }
+        Values::Enclosed(entries) => {
+            let rows = entries.chunks(columns.max(1)).map(<[_]>::to_vec).collect();
+            certain_rank(&Enclosures::new(BITS), rows, significance).ok()
+        }
+    }
+}
+
 /// A state of the branch at which everything exists and the rows, of so many columns, have their generic rank, found by
 /// elimination over the rationals, or in enclosures where there are no exact values. `None` where no such state was drawn.
 pub(crate) fn rank_witness(
@@ -30,18 +80,8 @@ pub(crate) fn rank_witness(
 ) -> Option<Witness> {
     for attempt in 0..ATTEMPTS {
         let point = on.draw(system, attempt, rng);
-        let found = match on.sides(&point) {
-            Some(Values::Exact(entries)) => {
-                let rows = entries.chunks(columns.max(1)).map(<[_]>::to_vec).collect();
-                rank(&Rationals::default(), rows).ok()
-            }
-            // no state has a higher rank than almost all have, and enclosures show that it is not lower
-            Some(Values::Enclosed(entries)) => {
-                let rows = entries.chunks(columns.max(1)).map(<[_]>::to_vec).collect();
-                certain_rank(&Enclosures::new(BITS), rows, significance).ok()
-            }
-            None => continue,
-        };
+        // no state has a higher rank than almost all have, and enclosures show that it is not lower
+        let found = rank_at(on, &point, columns);
         if found == Some(ranks.generic) {
             return Some(Witness {
                 state: on.describe(system, &point),

@@ -2,9 +2,10 @@
 
 use super::existence::{Existence, existence};
 use super::identity::{OnOneBranch, RANDOM_PRIMES};
+use super::rank_bounds::by_bounds;
 use super::rank_witness::{Ranks, rank_witness};
 use super::terms::{OnBranch, Terms};
-use super::verdict::{Verdict, Witness};
+use super::verdict::Verdict;
 use crate::expression::NodeId;
 use crate::observability::{Branch, Codistribution, GenericRank, Length, Stop, generic_rank};
 use crate::system::System;
@@ -12,6 +13,10 @@ use rand::Rng;
 
 /// A nonzero minor, the certain half of a statement about a rank.
 const MINOR: &str = "a minor that is not zero modulo a prime";
+
+/// The same of the differentials of derivatives along a trajectory, and the other half.
+const MINOR_OF_SERIES: &str = "a minor of the differentials of power series that is not zero modulo a prime";
+const SERIES: &str = "power series at random points of random prime fields";
 
 /// Decides `rank(M) = claimed` on a branch; the entries are the sides of the terms.
 pub(crate) fn decide_rank(
@@ -24,7 +29,8 @@ pub(crate) fn decide_rank(
     let entries = on.terms.sides.clone();
     let exists = existence(system, on, rng);
     let rows = Rows { entries: &entries, columns, scope: "", on };
-    on_one_branch(system, exists, &rows, claimed, rng)
+    let limits = Limits { most: columns, log2_error: f64::NEG_INFINITY, settled: true };
+    on_one_branch(exists, || decide(system, &rows, limits, claimed, rng))
 }
 
 /// Decides `rank = claimed` for the codistribution, on the states of a branch.
@@ -47,9 +53,20 @@ pub(crate) fn decide_codistribution(
         return Ok(OnOneBranch::Empty(guard));
     }
     let words = Codistribution::new(system, &branch.values, Length::UntilItStops)?;
-    let entries = system.graph.substitute(&words.entries(), &branch.values);
     let found = words.generic_rank();
-    if !words.is_final() && found <= claimed && found < system.unknown_count() {
+    let columns = system.unknown_count();
+    // the rows that give the rank at almost all states: no other row adds to it anywhere
+    let terms = Terms { sides: words.needed_entries(), guards: on.terms.guards.clone(), ..Terms::default() };
+    let needed = OnBranch::new(system, branch, &terms)?;
+    if let Some(rank) = words.generic.rank()
+        && (words.guessed || rank > found)
+    {
+        // no words were written down that show it, or it is not known of them: the series are
+        let log2_error = words.generic.log2_error;
+        return Ok(on_one_branch(exists, || by_series(system, &needed, rank, claimed, log2_error, rng)));
+    }
+    let entries = system.graph.substitute(&words.entries(), &branch.values);
+    if !words.is_final() && !words.guessed && found <= claimed && found < columns {
         return Err(format!(
             "words of up to {} fields give the rank {found}; the fields leave these states, so that longer words may add \
              to it (to claim a rank for some words, write rank([d(...); ...]))",
@@ -60,42 +77,72 @@ pub(crate) fn decide_codistribution(
         Stop::Full => "",
         _ => ", and longer words do not raise it",
     };
-    let columns = system.unknown_count();
-    // the rows that give the rank at almost all states: no other row adds to it anywhere
-    let terms = Terms { sides: words.needed_entries(), guards: on.terms.guards.clone(), ..Terms::default() };
-    let needed = OnBranch::new(system, branch, &terms)?;
     let rows = Rows { entries: &entries, columns, scope, on: &needed };
-    Ok(on_one_branch(system, exists, &rows, claimed, rng))
+    let limits = Limits {
+        most: words.generic.at_most,
+        log2_error: words.generic.log2_error,
+        settled: words.stop == Stop::NoGrowth && words.invariant,
+    };
+    Ok(on_one_branch(exists, || decide(system, &rows, limits, claimed, rng)))
 }
 
 /// Rows of expressions, one after the other.
-struct Rows<'a> {
-    entries: &'a [NodeId],
-    columns: usize,
+pub(super) struct Rows<'a> {
+    pub entries: &'a [NodeId],
+    pub columns: usize,
     /// What is said of them beside their rank.
-    scope: &'a str,
+    pub scope: &'a str,
     /// Those of them that give the rank, as terms that a state can be put into.
-    on: &'a OnBranch,
+    pub on: &'a OnBranch,
 }
 
-fn on_one_branch(
-    system: &mut System,
-    exists: Existence,
-    rows: &Rows<'_>,
-    claimed: usize,
-    rng: &mut impl Rng,
-) -> OnOneBranch {
+/// What is known of a rank beside the rows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// It is no more at any state.
+    pub most: usize,
+    /// But for an error of this probability, as a power of two.
+    pub log2_error: f64,
+    /// Whether the rows without those that give the rank hold all that comes next: where these add nothing, nothing does.
+    pub settled: bool,
+}
+
+fn on_one_branch(exists: Existence, verdict: impl FnOnce() -> Verdict) -> OnOneBranch {
     match exists {
         Existence::Nowhere(guard) => OnOneBranch::Empty(guard),
         Existence::NotShown(guard) => {
             let why = format!("no state was found at which all of it exists; it needs {guard}");
             OnOneBranch::Verdict(Verdict::undecided(why), Existence::NotShown(guard))
         }
-        Existence::Shown => OnOneBranch::Verdict(decide(system, rows, claimed, rng), exists),
+        Existence::Shown => OnOneBranch::Verdict(verdict(), exists),
     }
 }
 
-fn decide(system: &mut System, rows: &Rows<'_>, claimed: usize, rng: &mut impl Rng) -> Verdict {
+/// What is known of the rank without words; where it is another one, a state at which the words show it, if they do.
+fn by_series(
+    system: &mut System,
+    needed: &OnBranch,
+    rank: usize,
+    claimed: usize,
+    log2_error: f64,
+    rng: &mut impl Rng,
+) -> Verdict {
+    let engine = if log2_error == f64::NEG_INFINITY { MINOR_OF_SERIES } else { SERIES };
+    if rank == claimed {
+        return Verdict::Proved { engine: engine.to_owned(), log2_error };
+    }
+    let ranks = Ranks { generic: rank, claimed };
+    let witness = rank_witness(system, needed, system.unknown_count(), ranks, rng);
+    Verdict::Refuted { engine: engine.to_owned(), witness: witness.unwrap_or_else(|| ranks.nowhere()) }
+}
+
+fn decide(
+    system: &mut System,
+    rows: &Rows<'_>,
+    limits: Limits,
+    claimed: usize,
+    rng: &mut impl Rng,
+) -> Verdict {
     let is_angle = &system.angle_test();
     match generic_rank(&mut system.graph, rows.entries, rows.columns, is_angle, rng) {
         GenericRank::Rank { rank, log2_error, .. } if rank == claimed => {
@@ -104,20 +151,15 @@ fn decide(system: &mut System, rows: &Rows<'_>, claimed: usize, rng: &mut impl R
         }
         GenericRank::Rank { rank, .. } => {
             let ranks = Ranks { generic: rank, claimed };
-            let witness =
-                rank_witness(system, rows.on, rows.columns, ranks, rng).unwrap_or_else(|| Witness {
-                    state: Vec::new(),
-                    left: rank.to_string(),
-                    right: claimed.to_string(),
-                    entry: None,
-                    refutation: None,
-                });
+            let witness = rank_witness(system, rows.on, rows.columns, ranks, rng);
+            let witness = witness.unwrap_or_else(|| ranks.nowhere());
             Verdict::Refuted { engine: format!("{RANDOM_PRIMES}{}", rows.scope), witness }
         }
         GenericRank::Pole(divisor) => {
             let text = system.graph.text(divisor);
             Verdict::undecided(format!("every state there is a pole: {text} = 0 is divided by"))
         }
+        GenericRank::Functions => by_bounds(system, rows, limits, claimed, rng),
         GenericRank::Unknown(why) => Verdict::undecided(why),
     }
 }

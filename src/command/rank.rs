@@ -3,20 +3,23 @@
 use super::arguments::{Wanted, assignments};
 use super::interrupt::{INTERRUPTED, begin_to_tell};
 use super::output::{Files, Form, progress};
+use super::reparametrise::reparametrisation;
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::evidence::rank_records;
 use palmistry::report::{accessibility_json, accessibility_text, rank_json, rank_text};
-use palmistry::sweep::MOST_DIGITS;
+use palmistry::sweep::{MOST_DIGITS, answer_rank_at_once};
 use palmistry::{RankQuestion, System, answer_accessibility, answer_rank};
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Decides the rank of the observability codistribution at sampled states.
 ///
-/// Words of Lie derivatives along the drift and the inputs are added shortest first until the rank stops growing or reaches the dimension. At every
-/// state the rank is computed by singular values and certified by exact arithmetic at that very state. Where the file
+/// First what holds at almost all states: the rank, by power series at random points modulo random primes, and of each unknown whether
+/// it is seen. Then at sampled states: words of Lie derivatives along the drift and the inputs are added shortest first until the rank
+/// stops growing or reaches the dimension. At every state the rank is computed by singular values and certified by exact arithmetic at that very state. Where the file
 /// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
 /// the file, and the answer says which; a claim 'rank = n' in a file is about all values.
 #[derive(Args)]
@@ -29,9 +32,10 @@ use std::path::PathBuf;
 pub(crate) struct Rank {
     /// The proof file.
     file: PathBuf,
-    /// How many states are drawn from the sample box.
-    #[arg(long, default_value_t = 1000, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
-    samples: u64,
+    /// How many states are drawn from the sample box, to see where the rank drops; with 0 only almost all states are spoken of, which takes
+    /// no words of Lie derivatives and no time [default: 1000, where the words are short enough to be written down in a moment, else 0].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
+    samples: Option<u64>,
     /// Seed of the sampled states.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -66,6 +70,10 @@ pub(crate) struct Rank {
     /// accessibility), at almost all states and at the sampled ones. Outputs play no part.
     #[arg(long, conflicts_with_all = ["digits", "verdicts"])]
     accessible: bool,
+    /// Write a proof file of the system without what is not seen: its states are the functions that are seen, its claims, which are
+    /// proved, that they move as this file says and that the outputs are the same.
+    #[arg(long, value_name = "FILE")]
+    reparametrise: Option<PathBuf>,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -75,9 +83,10 @@ impl Rank {
     pub fn run(self) -> miette::Result<Status> {
         let mut system = System::read(&self.file)?;
         let fixed: BTreeMap<_, _> = assignments(&system, &self.at)?.into_iter().collect();
-        let bar = progress(self.samples, "sampling states");
+        let samples = self.samples.unwrap_or(RankQuestion::default().samples);
+        let bar = progress(samples, "sampling states");
         let question = &RankQuestion {
-            samples: self.samples,
+            samples,
             seed: self.seed,
             wanted: self.verdict.into(),
             digits: self.digits.map(usize::from),
@@ -91,6 +100,8 @@ impl Rank {
         if self.accessible {
             return accessible(&mut system, question, &bar, self.json);
         }
+        let nothing_asked = self.samples.is_none() && self.order.is_none() && self.verdicts.is_none();
+        let answer_rank = if nothing_asked { answer_rank_at_once } else { answer_rank };
         let answer = answer_rank(&mut system, question);
         bar.finish_and_clear();
         let answer = answer.map_err(|why| Unusable::report(why.to_string(), ""))?;
@@ -103,8 +114,22 @@ impl Rank {
             });
             files.text_or(path, text);
         }
-        let status = if answer.interrupted() { Status::CutOff } else { Status::AsExpected };
-        files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
+        let written = self.reparametrise.as_ref().map(|path| {
+            let written = reparametrisation(&system, &answer, &self.file, path);
+            files.text_or(path, written.as_ref().map(|found| found.text.clone()).map_err(String::clone));
+            written
+        });
+        let mut object = rank_json(&answer);
+        if let Some(Ok(found)) = &written {
+            object["reparametrised"] = json!({ "claims": found.claims, "proved": found.proved });
+        }
+        let text = || match &written {
+            Some(Ok(found)) => format!("{}\n{}", rank_text(&answer), found.in_words()),
+            _ => rank_text(&answer),
+        };
+        let status =
+            if answer.interrupted() || answer.cut_off() { Status::CutOff } else { Status::AsExpected };
+        files.print(Form::of(self.json), object, text, status)
     }
 }
 

@@ -5,7 +5,7 @@
 //! exists where all of them hold and the value can be computed, and nowhere else. Guards are never simplified away, other
 //! than by a constant of which they hold.
 
-use super::graph::{Graph, NodeId, Symbol};
+use super::graph::{Graph, Node, NodeId, Symbol};
 use super::sign::{Sign, sign};
 use crate::number::{Enclosure, Function, Interval};
 use dashu::rational::RBig;
@@ -108,6 +108,10 @@ impl Need {
 impl Guard {
     /// The guard in the notation of the proof language: `x + 1 != 0`, `x >= 0`.
     pub fn text(self, graph: &Graph) -> String {
+        if let (Node::Neg(inner), Need::Positive | Need::NotNegative) = (graph.node(self.node), self.need) {
+            let sign = if self.need == Need::Positive { "<" } else { "<=" };
+            return format!("{} {sign} 0", graph.text(inner));
+        }
         let operand = graph.text(self.node);
         match self.need {
             Need::NotZero => format!("{operand} != 0"),

@@ -9,6 +9,7 @@ mod adjoin;
 mod angle;
 mod block;
 mod common_factor;
+mod composed;
 mod derivative;
 mod domain;
 mod expansion;
@@ -29,12 +30,15 @@ mod zero_test;
 
 pub(crate) mod parse;
 
-pub(crate) use adjoin::{Related, zero_by_relations};
+pub(crate) use adjoin::{
+    GeneratorPoints, NormalForm, Related, normal_form, over_generators, without_signs, zero_by_relations,
+};
 pub use angle::expand_angles;
 #[doc(hidden)]
 pub use block::BlockProgram;
 pub(crate) use block::Machine;
 pub(crate) use common_factor::share_a_factor;
+pub(crate) use composed::COMPOSED;
 pub use derivative::Derivation;
 pub(crate) use derivative::signal_of;
 pub use domain::{Guard, Need};

@@ -1,5 +1,6 @@
 //! An expression of the graph as text, for messages.
 
+use super::composed::Written;
 use super::graph::{Graph, Node, NodeId};
 
 /// Longer texts than this are not written: nobody reads them, and an expression whose parts are shared many times over may
@@ -50,10 +51,40 @@ impl Graph {
 
     /// Writes what comes first and leaves the rest pending, so that no depth of an expression exhausts the stack.
     fn write(&self, id: NodeId, around: Binding, pending: &mut Vec<Pending>, out: &mut String) {
-        let binding = self.binding(id);
+        let written = self.written(id);
+        let binding = match written {
+            Some(Written::Call(..)) => Binding::Atom,
+            Some(Written::Power { .. }) => Binding::Power,
+            None => self.binding(id),
+        };
         if binding < around {
             out.push('(');
             pending.push(Pending::Sign(")"));
+        }
+        match written {
+            Some(Written::Call(name, arguments)) => {
+                out.push_str(name);
+                out.push('(');
+                pending.push(Pending::Sign(")"));
+                for (place, argument) in arguments.into_iter().enumerate().rev() {
+                    pending.push(Pending::Expression(argument, Binding::Sum));
+                    if place > 0 {
+                        pending.push(Pending::Sign(", "));
+                    }
+                }
+                return;
+            }
+            Some(Written::Power { base, exponent, negated }) => {
+                let least = if negated { Binding::Product } else { Binding::Atom };
+                if negated {
+                    pending.push(Pending::Sign(")"));
+                }
+                pending.push(Pending::Expression(exponent, least));
+                pending.push(Pending::Sign(if negated { "^(-" } else { "^" }));
+                pending.push(Pending::Expression(base, Binding::Atom));
+                return;
+            }
+            None => {}
         }
         let mut two = |a: NodeId, left: Binding, sign: &'static str, b: NodeId, right: Binding| {
             pending.push(Pending::Expression(b, right));

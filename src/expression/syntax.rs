@@ -47,6 +47,8 @@ pub enum ExprKind {
     /// Factors; `true` where a factor divides.
     Product(Vec<(bool, Expr)>),
     Power(Box<Expr>, i32),
+    /// A power whose exponent is not written as an integer.
+    RealPower(Box<Expr>, Box<Expr>),
     /// Rows of blocks: `[a, b; c, d]`
     Matrix(Vec<Vec<Expr>>),
     /// `e at {name = value, ...}`

@@ -330,6 +330,7 @@ fn bounds(
             })
         }
         GenericRank::Pole(divisor) => Err(CodistributionError::Pole { divisor: system.graph.text(divisor) }),
+        GenericRank::Functions => Ok(RankBounds::open(columns)),
         GenericRank::Unknown(why) => Err(CodistributionError::NotEvaluated(why)),
     }
 }

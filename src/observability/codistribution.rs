@@ -4,6 +4,8 @@
 use super::composition;
 use super::conditions::{all_vanish, vanishes};
 use super::elimination::independent_rows;
+use super::generic::{Ceiling, GenericAnswer, generic_answer};
+use super::related_rank::related_rank;
 use super::series::lie_derivative_by_series;
 use crate::expression::{NodeId, Program, draw_residues, expand_angles, gradient};
 use crate::number::PrimeField;
@@ -24,13 +26,21 @@ pub struct Word {
 }
 
 impl Word {
-    /// As a paper writes it: `Lg1 Lf s1`.
+    /// As a paper writes it: `Lg1 Lf s1`; long words in powers, `Lg1 Lf^14 s1`.
     pub fn text(&self, system: &System) -> String {
         let mut text = String::new();
-        for field in &self.fields {
+        // nobody counts more than a dozen of the same
+        let in_powers = self.fields.len() > LONGEST;
+        let mut rest = self.fields.as_slice();
+        while let Some(field) = rest.first() {
+            let run = if in_powers { rest.iter().take_while(|other| *other == field).count() } else { 1 };
             text.push('L');
             text.push_str(&system.fields[*field].name);
+            if run > 1 {
+                text.push_str(&format!("^{run}"));
+            }
             text.push(' ');
+            rest = &rest[run..];
         }
         text + &system.outputs[self.output].0
     }
@@ -91,6 +101,8 @@ pub enum Stop {
     Order,
     /// There are more words of the next length than are worth taking.
     TooMany,
+    /// No words were asked for.
+    NotTaken,
 }
 
 /// The rows from which the rank is decided.
@@ -111,9 +123,46 @@ pub struct Codistribution {
     /// Whether the fields leave no state of the locus. There a rank that has stopped growing has stopped for good: the
     /// span of the words is then mapped into itself by every field.
     pub invariant: bool,
+    /// What is seen at almost all states of the locus, by series and not by words.
+    pub generic: GenericAnswer,
     /// Whether functions other than sines and cosines of angles are met, which the choice of words takes for
     /// independent unknowns: the generic rank is then no more than a guess.
     pub guessed: bool,
+}
+
+/// Expressions of words that are taken by need have no more nodes than this.
+const MOST_NODES: usize = 2_000_000;
+/// What is known of a locus before any words are taken.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    around: Ceiling,
+    /// What is seen at almost all of its states.
+    pub generic: GenericAnswer,
+}
+
+impl Frame {
+    /// What is seen at almost all states that satisfy `conditions`, values for solved symbols.
+    ///
+    /// # Errors
+    /// Where no field is a drift or an input.
+    pub fn new(system: &mut System, conditions: &Assignment) -> Result<Frame, CodistributionError> {
+        system.require_motion().map_err(CodistributionError::NoMotion)?;
+        let around =
+            if is_invariant(system, conditions) { Ceiling::Rests } else { rank_around(system, conditions) };
+        let generic = generic_answer(system, conditions, around);
+        Ok(Frame { around, generic })
+    }
+
+    /// Whether the words that show what is seen are short enough to be written down in a moment: along one field the k-th has of
+    /// the order of `k^2` operations for each of the system's, and so has its differential.
+    pub fn words_are_short(&self, system: &System) -> bool {
+        let mut nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
+        for field in system.moving_fields() {
+            nodes.extend(system.fields[field].components.iter().map(|(_, rate)| *rate));
+        }
+        let operations = system.graph.reachable(nodes).len();
+        operations * (self.generic.order + 1).pow(3) <= MOST_NODES
+    }
 }
 
 /// No more words than this are taken.
@@ -131,12 +180,43 @@ impl Codistribution {
         conditions: &Assignment,
         length: Length,
     ) -> Result<Codistribution, CodistributionError> {
-        system.require_motion().map_err(CodistributionError::NoMotion)?;
+        let frame = Frame::new(system, conditions)?;
+        Codistribution::within(system, conditions, length, frame)
+    }
+
+    /// No words at all, and what is known without them.
+    pub fn without_words(frame: Frame) -> Codistribution {
+        Codistribution {
+            words: Vec::new(),
+            values: Vec::new(),
+            rows: Vec::new(),
+            needed: Vec::new(),
+            order: 0,
+            stop: Stop::NotTaken,
+            invariant: frame.around == Ceiling::Rests,
+            generic: frame.generic,
+            guessed: false,
+        }
+    }
+
+    /// The same as [`Codistribution::new`], of what is known without words.
+    ///
+    /// # Errors
+    /// Where every state of the locus is a pole or an angle is met outside sines and cosines.
+    pub fn within(
+        system: &mut System,
+        conditions: &Assignment,
+        length: Length,
+        frame: Frame,
+    ) -> Result<Codistribution, CodistributionError> {
         let fields = system.moving_fields();
         let dimension = system.unknown_count();
-        let invariant = is_invariant(system, conditions);
         let closed = system.closed_coordinates();
-        let ceiling = if invariant { closed.len() } else { rank_around(system, conditions, length)? };
+        let ceiling = match frame.around {
+            Ceiling::Rests => closed.len(),
+            Ceiling::Around { closed, .. } => closed,
+        };
+        let invariant = frame.around == Ceiling::Rests;
         let steps = composition::steps(system, conditions)?;
         let (at_least, longest, most) = match length {
             Length::UntilItStops if invariant && let Some(steps) = steps => {
@@ -146,16 +226,8 @@ impl Codistribution {
             Length::UntilItStops => (closed.len(), closed.len(), PATIENCE),
             Length::Exactly(order) => (order, order, MOST_WORDS),
         };
-        let mut result = Codistribution {
-            words: Vec::new(),
-            values: Vec::new(),
-            rows: Vec::new(),
-            needed: Vec::new(),
-            order: 0,
-            stop: Stop::Order,
-            invariant,
-            guessed: false,
-        };
+        let mut result = Codistribution::without_words(frame);
+        result.stop = Stop::Order;
         // a state that is known at the beginning has no column, and yet what it does not see may be seen through its rate: the
         // words have ended where those of all that moves have
         let (mut with_all, mut closed_rank) = (Vec::new(), 0);
@@ -207,14 +279,93 @@ impl Codistribution {
                 break;
             }
         }
+        // words by need are taken as series, which are of flows
+        let missing = result.generic.at_least > result.needed.len() && system.time == Time::Continuous;
+        if length == Length::UntilItStops && missing && matches!(result.stop, Stop::TooMany | Stop::Order) {
+            result.take_by_need(system, conditions, &fields)?;
+        }
         Ok(result)
+    }
+
+    /// Takes only words that raise the rank, and of longer ones only those that continue one of these: over the field of functions the
+    /// differentials of all others lie in the span of theirs, and so do those of what continues them.
+    fn take_by_need(
+        &mut self,
+        system: &mut System,
+        conditions: &Assignment,
+        fields: &[usize],
+    ) -> Result<(), CodistributionError> {
+        let begin = system.graph.len();
+        let mut taken =
+            Codistribution { words: Vec::new(), values: Vec::new(), rows: Vec::new(), ..self.clone() };
+        (taken.needed, taken.order, taken.stop) = (Vec::new(), 0, Stop::NoGrowth);
+        let outputs = (0..system.outputs.len()).map(|output| Word { fields: Vec::new(), output });
+        let mut candidates: Vec<Word> = outputs.collect();
+        while !candidates.is_empty() {
+            let before = taken.words.len();
+            for word in candidates.drain(..) {
+                if system.graph.len() - begin > MOST_NODES {
+                    // what was taken before names more
+                    self.stop = Stop::TooMany;
+                    if taken.words.len() > self.needed.len() {
+                        taken.stop = Stop::TooMany;
+                        *self = taken;
+                    }
+                    return Ok(());
+                }
+                let output = system.outputs[word.output].1;
+                let Ok(value) = lie_derivative_by_series(system, &word.fields, output) else { continue };
+                taken.rows.push(system.differential(value));
+                taken.words.push(word);
+                taken.values.push(value);
+            }
+            let (needed, guessed) = needed(system, &taken.rows, conditions)?;
+            let keep = |list: &[usize]| list.to_vec();
+            taken.rows = keep(&needed).into_iter().map(|place| taken.rows[place].clone()).collect();
+            taken.words = keep(&needed).into_iter().map(|place| taken.words[place].clone()).collect();
+            taken.values = keep(&needed).into_iter().map(|place| taken.values[place]).collect();
+            taken.needed = (0..needed.len()).collect();
+            taken.guessed = guessed;
+            taken.order = taken.words.iter().map(|word| word.fields.len()).max().unwrap_or(0);
+            if taken.words.len() >= self.generic.at_most {
+                taken.stop =
+                    if taken.words.len() == system.unknown_count() { Stop::Full } else { Stop::NoGrowth };
+                break;
+            }
+            for word in &taken.words[before.min(taken.words.len())..] {
+                for field in fields {
+                    let fields = std::iter::once(*field).chain(word.fields.iter().copied()).collect();
+                    candidates.push(Word { fields, output: word.output });
+                }
+            }
+        }
+        *self = taken;
+        Ok(())
+    }
+
+    /// Whether the words that were taken show less than is there: those that are missing were too long, or too many, to be written.
+    pub fn is_cut_off(&self) -> bool {
+        self.needed.len() < self.generic.at_least && matches!(self.stop, Stop::TooMany | Stop::Order)
+    }
+
+    /// Whether the search came to its own end, and was not cut off.
+    pub fn has_rested(&self) -> bool {
+        !matches!(self.stop, Stop::TooMany | Stop::Order)
+    }
+
+    /// What no rank can exceed at any state of the locus, for certain but for the error of the generic answer.
+    pub fn most(&self) -> usize {
+        self.generic.at_most
     }
 
     /// Whether longer words cannot raise the rank at a generic state of the locus.
     pub fn is_final(&self) -> bool {
-        !self.guessed
-            && (matches!(self.stop, Stop::Full | Stop::Ceiling)
-                || self.stop == Stop::NoGrowth && self.invariant)
+        let stopped = match self.stop {
+            Stop::Full | Stop::Ceiling => true,
+            Stop::NoGrowth => self.invariant,
+            _ => false,
+        };
+        self.generic.rank() == Some(self.needed.len()) || !self.guessed && stopped
     }
 
     /// The rank at a generic state of the locus, by the words that were taken.
@@ -237,11 +388,7 @@ impl Codistribution {
 /// rank is not known for good. A rank falls on a special set, and never rises. Values that are known at the beginning count as
 /// unknown here: where the words that were taken have this rank they span, around such a state, the differentials of all words,
 /// so that at it no longer word adds anything to them, whichever columns are left out.
-fn rank_around(
-    system: &mut System,
-    conditions: &Assignment,
-    length: Length,
-) -> Result<usize, CodistributionError> {
+fn rank_around(system: &mut System, conditions: &Assignment) -> Ceiling {
     let states = system.states.clone();
     let kept: Assignment = conditions
         .iter()
@@ -251,13 +398,8 @@ fn rank_around(
         })
         .map(|(symbol, value)| (*symbol, *value))
         .collect();
-    let closed = system.closed_coordinates();
-    let known = system.known.clone();
-    system.known.retain(|symbol| !closed.contains(symbol));
-    let around = Codistribution::new(system, &kept, length);
-    system.known = known;
-    let around = around?;
-    Ok(if around.is_final() { around.generic_rank() } else { closed.len() })
+    let around = generic_answer(system, &kept, Ceiling::Rests);
+    Ceiling::Around { closed: around.closed_at_most, unknown: around.at_most }
 }
 
 /// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
@@ -317,7 +459,8 @@ pub(super) fn needed(
 ) -> Result<(Vec<usize>, bool), CodistributionError> {
     let is_angle = &system.angle_test();
     let as_written: Vec<NodeId> = rows.iter().flatten().copied().collect();
-    let entries = system.graph.substitute(&as_written, conditions);
+    let as_written_there = system.graph.substitute(&as_written, conditions);
+    let entries = as_written_there.clone();
     let entries = expand_angles(&mut system.graph, &entries, is_angle);
     let program = Program::with_unknown_functions(&system.graph, &entries, is_angle);
     if let Some(angle) = program.bare_angle() {
@@ -325,6 +468,15 @@ pub(super) fn needed(
         return Err(CodistributionError::AngleOutside(name.to_owned()));
     }
     let mut rng = ChaCha8Rng::seed_from_u64(0x0077_6f72_6473); // any fixed seed: the words do not depend on the user's
+    if program.unknown_function(&system.graph).is_some() {
+        // what functions satisfy may make a row zero, or a multiple of others
+        let guards = system.smooth_guards(&system.moving_fields());
+        let guards = system.substitute_guards(&guards, conditions);
+        let columns = system.unknown_count();
+        if let Ok(found) = related_rank(system, &as_written_there, columns, &guards, &mut rng) {
+            return Ok((found.needed, !found.exact));
+        }
+    }
     let (mut registers, mut divisor, mut best) = (Vec::new(), None, None::<Vec<usize>>);
     let mut successes = 0;
     for _ in 0..ATTEMPTS {

@@ -22,9 +22,10 @@ fn reduce<A: Arithmetic>(
             continue;
         };
         rows.swap(top, found);
-        let pivot = rows[top][column].clone();
+        let inverse =
+            arithmetic.div(&arithmetic.rational(&dashu::rational::RBig::ONE)?, &rows[top][column])?;
         for entry in &mut rows[top][column..] {
-            *entry = arithmetic.div(entry, &pivot)?;
+            *entry = arithmetic.mul(entry, &inverse)?;
         }
         let (above, rest) = rows.split_at_mut(top);
         let Some((pivot_row, below)) = rest.split_first_mut() else { break };
@@ -146,9 +147,10 @@ pub(crate) fn independent_rows<A: Arithmetic>(
             }
         }
         if let Some(column) = rest.iter().position(|entry| arithmetic.is_zero(entry) == Some(false)) {
-            let pivot = rest[column].clone();
+            let inverse =
+                arithmetic.div(&arithmetic.rational(&dashu::rational::RBig::ONE)?, &rest[column])?;
             for entry in &mut rest {
-                *entry = arithmetic.div(entry, &pivot)?;
+                *entry = arithmetic.mul(entry, &inverse)?;
             }
             echelon.push((column, rest));
             kept.push(index);

@@ -18,14 +18,17 @@ mod generic;
 mod locus;
 mod nested;
 mod reduction;
+mod related_rank;
 mod series;
+mod signs;
 mod singular;
 mod state;
+mod symmetry;
 
 pub use accessibility::{Accessibility, Minor, RankBounds};
 #[doc(hidden)]
 pub use codistribution::OWN_ROWS;
-pub use codistribution::{Codistribution, CodistributionError, Length, Stop, Word};
+pub use codistribution::{Codistribution, CodistributionError, Frame, Length, Stop, Word};
 pub(crate) use conditions::vanishes;
 pub use conditions::{Branch, Unsolved, parse_condition, solve_conditions};
 pub(crate) use conditions::{also_met_otherwise, assumed, linear_solution, solve};
@@ -40,9 +43,9 @@ pub(crate) use equilibrate::WEIGHT_OF_ERRORS;
 pub(crate) use equilibrate::equilibrate;
 #[doc(hidden)]
 pub use flow::Flow;
+pub use generic::{Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, generic_rank};
 #[doc(hidden)]
 pub use generic::{Directions, Probe};
-pub use generic::{GenericAnswer, GenericRank, Seen, generic_answer, generic_rank};
 pub(crate) use locus::AVOIDED;
 pub(crate) use locus::{ATTEMPTS, Source};
 pub use locus::{Locus, LocusError};
@@ -50,8 +53,10 @@ pub use locus::{Locus, LocusError};
 pub use nested::{differential_by_duals, lie_derivative_by_duals};
 #[doc(hidden)]
 pub use reduction::Reduction;
+pub(crate) use related_rank::{RelatedRank, related_rank};
 #[doc(hidden)]
 pub use series::lie_derivative_by_series;
+pub(crate) use signs::{Edges, SignCell, in_sign_cell, sign_cells};
 pub(crate) use singular::SEPARATED;
 #[doc(hidden)]
 pub use singular::customary_singular_values;
@@ -59,3 +64,7 @@ pub use singular::{Spectrum, singular_values};
 #[doc(hidden)]
 pub use state::float_inputs;
 pub use state::{Coordinate, MissingInput, NamedCoordinate, State, StateInWords};
+pub use symmetry::{
+    FieldComponent, NotReparametrised, SeenFunction, UnseenField, UnseenMotions, reparametrise,
+    unseen_motions,
+};

@@ -134,6 +134,7 @@ pub fn answer_accessibility(
         let options = SweepOptions {
             samples: question.samples,
             seed: question.seed,
+            most: None,
             guards: &[],
             wanted: question.wanted,
             digits: None,

@@ -16,9 +16,7 @@ use super::certainty::Certainty;
 use super::digits::{Digits, Matrices, NoDigits, NoEntries, digits_of};
 use crate::expression::{Failure, Graph, Loaded, NodeId, Program, Symbol};
 use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals, Rung};
-use crate::observability::{
-    Defined, Reduction, Spectrum, State, certain_rank, kernel, rank, singular_values,
-};
+use crate::observability::{Defined, Reduction, Spectrum, State, certain_rank, kernel, singular_values};
 use dashu::rational::RBig;
 
 /// The bits of enclosures, one after the other.
@@ -39,8 +37,11 @@ pub struct StateReport {
     pub quick: bool,
     /// The rank that floating point suggests, unit rows included.
     pub computed: Option<usize>,
-    /// Where the rank is short: a basis of the directions that no row sees, exactly.
+    /// Where the rank is short: a basis of the directions that no row sees, exactly; nothing where residues decided, which
+    /// only know which unknowns take part ([`RankDecider::unseen`] has the rest).
     pub unseen: Vec<Vec<RBig>>,
+    /// The same basis as residues know it: of each direction the unknowns that take part.
+    pub hidden: Vec<Vec<bool>>,
 }
 
 /// What deciding at one state came to.
@@ -130,6 +131,12 @@ struct ExactRank {
     unseen: Vec<Vec<RBig>>,
 }
 
+/// The rank modulo a prime, and of a basis of what no row sees the unknowns that take part.
+struct ResidueRank {
+    rank: usize,
+    hidden: Vec<Vec<bool>>,
+}
+
 /// Decides the rank of some rows at any state.
 pub struct RankDecider<'g> {
     graph: &'g Graph,
@@ -139,6 +146,7 @@ pub struct RankDecider<'g> {
     /// All rows without any elimination, for the directions that they do not see.
     exact: Program,
     columns: usize,
+    most: usize,
     field: PrimeField,
     wanted: Certainty,
 }
@@ -161,14 +169,26 @@ impl<'g> RankDecider<'g> {
             all: Rows::new(graph, all, columns, is_angle),
             exact: Program::new(graph, all, is_angle),
             columns,
+            most: columns,
             field,
             wanted,
         }
     }
 
+    /// The same where no state's rank exceeds `most`, for certain.
+    #[must_use]
+    pub fn at_most(self, most: usize) -> Self {
+        RankDecider { most: most.min(self.columns), ..self }
+    }
+
     /// Rows and columns of what remains of the quick rows without unit rows.
     pub fn remaining(&self) -> (usize, usize) {
         (self.quick.reduction.rows.len(), self.quick.reduction.columns.len())
+    }
+
+    /// How many entries a row has.
+    pub fn columns(&self) -> usize {
+        self.columns
     }
 
     /// The rank at a state.
@@ -185,7 +205,9 @@ impl<'g> RankDecider<'g> {
             quick: true,
             computed: None,
             unseen: Vec::new(),
+            hidden: Vec::new(),
         };
+        let mut residues = None;
         for rows in [&self.quick, &self.all] {
             let found = self.intervals(rows, state);
             let certain = found.as_ref().map(|(rank, _)| *rank);
@@ -195,8 +217,12 @@ impl<'g> RankDecider<'g> {
             if certain == Some(full) {
                 return StateDecision::Report(report);
             }
-            if self.wanted == Certainty::Certified && self.residue_rank(rows, state) == Some(full) {
-                report.rung = Rung::Residues;
+            residues = self.residues(rows, state);
+            if let Some(found) = &mut residues
+                && found.rank == self.most
+            {
+                (report.rank, report.rung) = (found.rank, Rung::Residues);
+                report.hidden = std::mem::take(&mut found.hidden);
                 return StateDecision::Report(report);
             }
         }
@@ -209,13 +235,23 @@ impl<'g> RankDecider<'g> {
                 Err(NoExactRank::Pole(pole)) => return StateDecision::Pole(pole),
                 Err(NoExactRank::NotExact) => {}
             }
+        } else if let Some(found) = residues {
+            // no more than this but for one prime in 10^15: found by arithmetic that may err, and sooner than by any other
+            (report.rank, report.certainty, report.rung) = (found.rank, Certainty::Computed, Rung::Residues);
+            report.hidden = found.hidden;
+            return StateDecision::Report(report);
         }
         match self.precise(state) {
             Ok((rank, bits)) => {
                 report.rank = rank;
                 report.rung = Rung::Enclosures(bits);
-                if rank < full {
+                if rank < full && rank != self.most {
                     report.certainty = Certainty::Computed;
+                } else if rank < full {
+                    // no state's rank is higher: this one is known, and so is what takes part in what is not seen
+                    let kernel = self.enclosed_kernel(state, bits).unwrap_or_default();
+                    let parts = |vector: &Vec<Enclosure>| vector.iter().map(|v| !v.contains_zero()).collect();
+                    report.hidden = kernel.iter().map(parts).collect();
                 }
                 StateDecision::Report(report)
             }
@@ -262,10 +298,58 @@ impl<'g> RankDecider<'g> {
         Some((rows.reduction.eliminated + certain, spectrum))
     }
 
-    /// A lower bound on the rank: the rank modulo a prime.
-    fn residue_rank(&self, rows: &Rows, state: &State) -> Option<usize> {
+    /// A lower bound on the rank: the rank modulo a prime; with what takes part in the directions that are not seen modulo it.
+    fn residues(&self, rows: &Rows, state: &State) -> Option<ResidueRank> {
         let values = self.values(rows, state, self.field).ok()?;
-        Some(rows.reduction.eliminated + rank(&self.field, rows.matrix(values)).ok()?)
+        let width = rows.reduction.columns.len();
+        let kernel = kernel(&self.field, rows.matrix(values), width).ok()?;
+        let hidden = kernel.iter().map(|vector| {
+            // what was eliminated is seen
+            let mut parts = vec![false; self.columns];
+            for (column, part) in rows.reduction.columns.iter().zip(vector) {
+                parts[*column] = *part != 0;
+            }
+            parts
+        });
+        Some(ResidueRank { rank: rows.reduction.eliminated + width - kernel.len(), hidden: hidden.collect() })
+    }
+
+    /// A basis of the directions that no row sees at a state, exactly; nothing where there is no exact arithmetic.
+    pub fn unseen(&self, state: &State) -> Vec<Vec<RBig>> {
+        self.exact(state).map(|found| found.unseen).unwrap_or_default()
+    }
+
+    /// The same to many digits, where the rank there is no less than any: a number that is enclosed together with zero is taken for
+    /// zero, every other one for the simplest that is enclosed.
+    pub fn unseen_nearly(&self, state: &State) -> Vec<Vec<RBig>> {
+        let value = |value: &Enclosure| match (value.low(), value.high()) {
+            _ if value.contains_zero() => RBig::ZERO,
+            (low, high) if low == high => low,
+            (low, high) => RBig::simplest_in(low, high),
+        };
+        let kernel = self.enclosed_kernel(state, PRECISE[1]).unwrap_or_default();
+        kernel.iter().map(|vector| vector.iter().map(value).collect()).collect()
+    }
+
+    /// A basis of the directions that no row sees, enclosed; nothing where more than `most` says cannot be told from zero.
+    fn enclosed_kernel(&self, state: &State, bits: usize) -> Option<Vec<Vec<Enclosure>>> {
+        let arithmetic = Enclosures::new(bits);
+        let values = self.values(&self.all, state, arithmetic).ok()?;
+        let reduction = &self.all.reduction;
+        let found = kernel(&arithmetic, self.all.matrix(values), reduction.columns.len()).ok()?;
+        if found.len() + self.most != self.columns {
+            return None;
+        }
+        let zero = arithmetic.rational(&RBig::ZERO).ok()?;
+        let whole = |vector: Vec<Enclosure>| {
+            // what was eliminated is seen
+            let mut parts = vec![zero.clone(); self.columns];
+            for (column, part) in reduction.columns.iter().zip(vector) {
+                parts[*column] = part;
+            }
+            parts
+        };
+        Some(found.into_iter().map(whole).collect())
     }
 
     /// The rank and the unseen directions by exact elimination.
@@ -299,7 +383,7 @@ impl<'g> RankDecider<'g> {
                 }
                 Err(NoValues::NotInThese) => return found,
             };
-            if found == Ok((self.columns, bits)) {
+            if found.as_ref().is_ok_and(|(rank, _)| *rank == self.columns || *rank == self.most) {
                 break;
             }
         }

@@ -8,11 +8,13 @@
 //! This floor knows nothing of claims or palms.
 
 mod accessible;
+mod cells;
 mod certainty;
 mod deviation;
 mod digits;
 mod ladder;
 mod question;
+mod series;
 mod states;
 mod stream;
 mod unseen;
@@ -27,7 +29,9 @@ pub use digits::MOST_DIGITS;
 pub use digits::{Digits, NoDigits};
 #[doc(hidden)]
 pub use ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
-pub use question::{BranchAnswer, RankAnswer, RankError, RankQuestion, TakenRow, answer_rank};
+pub use question::{
+    BranchAnswer, RankAnswer, RankError, RankQuestion, TakenRow, answer_rank, answer_rank_at_once,
+};
 pub(crate) use states::UNINTERRUPTED;
 pub use states::{RecordedState, SweepOptions, SweepReport, sweep};
 pub(crate) use stream::{Elimination, Jacobi};

@@ -1,21 +1,23 @@
 //! The whole question of a rank, from a system and some conditions to sweeps of every branch.
 
+use super::cells::by_signs;
 use super::deviation::{StandardDeviations, standard_deviations};
+use super::series::sweep_by_series;
 use super::states::{SweepOptions, SweepReport, UNINTERRUPTED, sweep};
-use crate::expression::{NodeId, Symbol};
+use crate::expression::{Guard, NodeId, Symbol};
 use crate::observability::{
-    Codistribution, CodistributionError, Length, Locus, LocusError, OWN_ROWS, Stop, Unsolved,
-    parse_condition, solve_conditions,
+    Branch, Codistribution, CodistributionError, Frame, GenericAnswer, Length, Locus, LocusError, OWN_ROWS,
+    Probe, Stop, UnseenMotions, Unsolved, in_sign_cell, parse_condition, solve_conditions, unseen_motions,
 };
 use crate::sweep::certainty::Certainty;
-use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, Value};
+use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, UnknownKind, Value};
 use dashu::rational::RBig;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
 
 /// What is asked.
 pub struct RankQuestion<'a> {
-    /// States drawn on each branch of the conditions.
+    /// States drawn on each branch of the conditions; none, and no words are taken either.
     pub samples: u64,
     /// The seed of the drawn states.
     pub seed: u64,
@@ -74,6 +76,10 @@ pub struct BranchAnswer {
     pub by_default: Vec<(String, Range)>,
     /// The words that were needed, as a paper writes them.
     pub words: Vec<String>,
+    /// What is seen at almost all states of the branch, and of each unknown whether it is.
+    pub generic: GenericAnswer,
+    /// The unknowns: their names and what they are.
+    pub unknowns: Vec<(String, UnknownKind)>,
     /// The length of the longest word taken, and why no longer ones were.
     pub order: usize,
     /// Why no longer words were taken.
@@ -82,6 +88,11 @@ pub struct BranchAnswer {
     pub generic_rank: usize,
     /// Whether longer words cannot raise it there.
     pub is_final: bool,
+    /// Whether the rank is not known because no longer words were looked at, though nobody asked for shorter ones.
+    pub cut_off: bool,
+    /// What is not seen as fields, and what is seen of it as functions: where the rank is short of the dimension and no
+    /// condition is one on states.
+    pub motions: Option<UnseenMotions>,
     /// The rank of the full codistribution at the sampled states.
     pub full: SweepReport,
     /// How well each state is seen where what is measured has noise; none where the sweep was interrupted.
@@ -112,14 +123,24 @@ pub struct RankAnswer {
     pub known: Vec<String>,
     /// What is assumed of signals that are not known.
     pub assumed: Vec<String>,
-    /// An answer for each branch of the conditions; one where there are none.
+    /// An answer for each branch of the conditions, and for each part of one by the signs on which roots depend; one where there are
+    /// none.
     pub branches: Vec<BranchAnswer>,
+    /// Parts by signs of which no state was found in the sample box, in words.
+    pub left_out: Vec<String>,
 }
 
 impl RankAnswer {
     /// Whether any sweep was stopped early.
     pub fn interrupted(&self) -> bool {
         self.branches.iter().any(|branch| branch.full.interrupted)
+    }
+}
+
+impl RankAnswer {
+    /// Whether a search ended before its end: longer words might say more, and no series did.
+    pub fn cut_off(&self) -> bool {
+        self.branches.iter().any(|branch| branch.cut_off)
     }
 }
 
@@ -188,11 +209,68 @@ pub(super) fn guarded(system: &System) -> Vec<NodeId> {
     open.map(|guard| guard.node).collect()
 }
 
+/// The unknowns of a system, by name; a state that no field moves is a parameter, whatever it is called.
+fn named_unknowns(system: &System) -> Vec<(String, UnknownKind)> {
+    let fields = || system.moving_fields().into_iter().flat_map(|field| &system.fields[field].components);
+    let moved: HashSet<Symbol> = fields()
+        .filter(|(_, rate)| !system.graph.constant_value(*rate).is_some_and(RBig::is_zero))
+        .map(|(symbol, _)| *symbol)
+        .collect();
+    let named = |symbol: Symbol| {
+        let kind = match system.unknown_kind(symbol) {
+            Some(UnknownKind::State) | None if !moved.contains(&symbol) => UnknownKind::Parameter,
+            kind => kind.unwrap_or(UnknownKind::State),
+        };
+        (system.symbol_name(symbol).to_owned(), kind)
+    };
+    system.unknowns().into_iter().map(named).collect()
+}
+
+/// The unseen fields, where something is unseen and all conditions are on parameters; `given` are those of the question.
+fn motions(
+    system: &mut System,
+    codistribution: &Codistribution,
+    conditions: &Assignment,
+    given: &[Symbol],
+) -> Option<UnseenMotions> {
+    let found = codistribution.generic.rank().unwrap_or(codistribution.generic_rank());
+    let unseen = found < system.unknown_count();
+    let of_states = |system: &System, symbol: &Symbol, value: NodeId| {
+        let mentioned = system.graph.symbols_of([value]);
+        [*symbol].iter().chain(&mentioned).any(|symbol| system.states.contains(symbol))
+    };
+    if !unseen || conditions.iter().any(|(symbol, value)| of_states(system, symbol, *value)) {
+        return None;
+    }
+    let given = given.iter().map(|symbol| (*symbol, conditions[symbol])).collect();
+    let found = unseen_motions(system, Some(codistribution), conditions, &given)?;
+    (found.directions() > 0).then_some(found)
+}
+
 /// Answers a question about the rank of a system's observability codistribution.
 ///
 /// # Errors
 /// No states or outputs, no drift or input, conditions that cannot be solved, a pole everywhere, an empty sample box.
 pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<RankAnswer, RankError> {
+    answer(system, question, false)
+}
+
+/// The same, but states are drawn only where the words that show what is seen are short enough to be written down in a moment.
+///
+/// # Errors
+/// As for [`answer_rank`].
+pub fn answer_rank_at_once(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+) -> Result<RankAnswer, RankError> {
+    answer(system, question, true)
+}
+
+fn answer(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    only_if_short: bool,
+) -> Result<RankAnswer, RankError> {
     if system.unknown_count() == 0 || system.outputs.is_empty() {
         return Err(RankError::NothingToSee(system.name.clone()));
     }
@@ -218,80 +296,12 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
     };
     let own_guards = system.definition_guards(OWN_ROWS);
     let mut answers = Vec::new();
-    for branch in branches {
-        branch.check_codistribution(system).map_err(RankError::Condition)?;
-        // values that are held fixed are conditions too, but for angles, whose values are no rational half turns
-        let mut conditions = branch.values.clone();
-        for (symbol, value) in &question.fixed {
-            if !system.is_angle(*symbol) || value.is_zero() {
-                conditions.insert(*symbol, system.graph.rational(value.clone()));
-            }
-        }
-        // so are parameters that the file gives one value to
-        for (symbol, value) in held_by_the_file(system, question) {
-            let value = system.graph.rational(value);
-            conditions.entry(symbol).or_insert(value);
-        }
-        for known in conditions.clone().keys() {
-            let value = conditions[known];
-            let value = system.graph.substitute(&[value], &conditions)[0];
-            conditions.insert(*known, value);
-        }
-        let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
-        let codistribution = Codistribution::new(system, &conditions, length)?;
-        let all = codistribution.entries();
-        let mut mentioned: Vec<NodeId> = all.clone();
-        mentioned.extend(own.iter().flatten());
-        mentioned.extend(guarded(system));
-        let locus = Locus::new(system, &branch, &question.fixed, &mentioned)?;
-        let options = SweepOptions {
-            samples: question.samples,
-            seed: question.seed,
-            guards: &[],
-            wanted: question.wanted,
-            digits: question.digits,
-            recorded: question.recorded,
-            interrupt: question.interrupt,
-            progress: question.progress,
+    let (parts, left_out) = by_signs(system, question, branches, own.as_deref().unwrap_or_default())?;
+    for (branch, cell) in parts {
+        let work = |system: &mut System| {
+            answer_branch(system, question, only_if_short, &branch, own.as_deref(), &own_guards)
         };
-        let full = codistribution.sweep(system, &locus, options)?;
-        let deviations = match full.interrupted {
-            true => None,
-            false => {
-                standard_deviations(system, &locus, &codistribution, &full, question.seed, question.samples)?
-            }
-        };
-        let rows = match &own {
-            Some(own) => {
-                let silent = SweepOptions { guards: &own_guards, progress: &|_| (), ..options };
-                Some(sweep(system, &locus, own, own, silent)?)
-            }
-            None => None,
-        };
-        let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
-            word: word.text(system),
-            entries: entries.clone(),
-        };
-        let numbered = |(index, entries): (usize, &[NodeId])| TakenRow {
-            word: format!("row {}", index + 1),
-            entries: entries.to_vec(),
-        };
-        let own_rows = own.as_deref().unwrap_or_default().chunks(system.unknown_count());
-        answers.push(BranchAnswer {
-            taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
-            own: own_rows.enumerate().map(numbered).collect(),
-            conditions: locus.conditions.clone(),
-            by_default: locus.by_default.clone(),
-            held: held_parameters(system, question, &branch.values, own.iter().flatten()),
-            words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
-            order: codistribution.order,
-            stop: codistribution.stop,
-            generic_rank: codistribution.generic_rank(),
-            is_final: codistribution.is_final(),
-            full,
-            deviations,
-            rows,
-        });
+        answers.push(in_sign_cell(system, &cell, work)?);
     }
     Ok(RankAnswer {
         file: system.name.clone(),
@@ -303,5 +313,128 @@ pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<R
         known: system.known_names(),
         assumed: system.assumed_of_signals(),
         branches: answers,
+        left_out,
+    })
+}
+
+/// The values that every state of a branch has.
+pub(super) fn held_conditions(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    branch: &Branch,
+) -> Assignment {
+    // values that are held fixed are conditions too, but for angles, whose values are no rational half turns
+    let mut conditions = branch.values.clone();
+    for (symbol, value) in &question.fixed {
+        if !system.is_angle(*symbol) || value.is_zero() {
+            conditions.insert(*symbol, system.graph.rational(value.clone()));
+        }
+    }
+    // so are parameters that the file gives one value to
+    for (symbol, value) in held_by_the_file(system, question) {
+        let value = system.graph.rational(value);
+        conditions.entry(symbol).or_insert(value);
+    }
+    for known in conditions.clone().keys() {
+        let value = conditions[known];
+        let value = system.graph.substitute(&[value], &conditions)[0];
+        conditions.insert(*known, value);
+    }
+    conditions
+}
+
+/// The answer on one branch.
+fn answer_branch(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    only_if_short: bool,
+    branch: &Branch,
+    own: Option<&[NodeId]>,
+    own_guards: &[Guard],
+) -> Result<BranchAnswer, RankError> {
+    branch.check_codistribution(system).map_err(RankError::Condition)?;
+    let conditions = held_conditions(system, question, branch);
+    let given = |symbol: &Symbol| branch.values.contains_key(symbol) || question.fixed.contains_key(symbol);
+    let given: Vec<Symbol> = conditions.keys().copied().filter(given).collect();
+    let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
+    let frame = Frame::new(system, &conditions)?;
+    let wanted = question.samples > 0 && (!only_if_short || frame.words_are_short(system));
+    let samples = if wanted { question.samples } else { 0 };
+    let codistribution = match wanted {
+        true => Codistribution::within(system, &conditions, length, frame)?,
+        false => Codistribution::without_words(frame),
+    };
+    let all = codistribution.entries();
+    let mut mentioned: Vec<NodeId> = all.clone();
+    mentioned.extend(own.into_iter().flatten());
+    mentioned.extend(guarded(system));
+    let locus = Locus::new(system, branch, &question.fixed, &mentioned)?;
+    let options = SweepOptions {
+        samples,
+        seed: question.seed,
+        most: None,
+        guards: &[],
+        wanted: question.wanted,
+        digits: question.digits,
+        recorded: question.recorded,
+        interrupt: question.interrupt,
+        progress: question.progress,
+    };
+    let full = if codistribution.is_cut_off() {
+        let probe = Probe::new(system, &conditions);
+        let options = SweepOptions { most: Some(codistribution.most()), ..options };
+        sweep_by_series(system, &locus, &probe, &options)?
+    } else {
+        codistribution.sweep(system, &locus, options)?
+    };
+    let deviations = match full.interrupted || codistribution.is_cut_off() || !wanted {
+        true => None,
+        false => standard_deviations(system, &locus, &codistribution, &full, question.seed, samples)?,
+    };
+    let rows = match own {
+        Some(own) if wanted => {
+            let silent = SweepOptions { guards: own_guards, progress: &|_| (), ..options };
+            Some(sweep(system, &locus, own, own, silent)?)
+        }
+        _ => None,
+    };
+    let known = codistribution.generic.is_final() && question.order.is_none();
+    let motions = motions(system, &codistribution, &conditions, &given);
+    let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
+        word: word.text(system),
+        entries: entries.clone(),
+    };
+    let numbered = |(index, entries): (usize, &[NodeId])| TakenRow {
+        word: format!("row {}", index + 1),
+        entries: entries.to_vec(),
+    };
+    let own_rows = own.unwrap_or_default().chunks(system.unknown_count());
+    Ok(BranchAnswer {
+        taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
+        own: own_rows.enumerate().map(numbered).collect(),
+        conditions: locus.conditions.clone(),
+        by_default: locus.by_default.clone(),
+        held: held_parameters(system, question, &branch.values, own.into_iter().flatten()),
+        words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
+        unknowns: named_unknowns(system),
+        order: codistribution.order,
+        stop: codistribution.stop,
+        generic_rank: codistribution
+            .generic
+            .rank()
+            .filter(|_| known)
+            .unwrap_or(codistribution.generic_rank()),
+        is_final: codistribution.is_final()
+            || known
+            || motions.as_ref().is_some_and(|found| found.settles_the_rank),
+        motions,
+        cut_off: question.order.is_none()
+            && !known
+            && !codistribution.is_final()
+            && !codistribution.has_rested(),
+        generic: codistribution.generic,
+        full,
+        deviations,
+        rows,
     })
 }

@@ -24,6 +24,8 @@ pub struct SweepOptions<'a> {
     pub samples: u64,
     /// The seed from which they are drawn.
     pub seed: u64,
+    /// No state's rank is higher, for certain; nothing where only the number of unknowns bounds it.
+    pub most: Option<usize>,
     /// What the rows need to exist, beside what outputs and fields need.
     pub guards: &'a [Guard],
     /// What every rank has to be, at the least.
@@ -47,6 +49,7 @@ impl Default for SweepOptions<'_> {
         SweepOptions {
             samples: 1000,
             seed: 1,
+            most: None,
             guards: &[],
             wanted: Certainty::Certified,
             digits: None,
@@ -145,9 +148,11 @@ pub fn sweep(
     let field = PrimeField::random(&mut rng);
     // the decider looks at the graph while the counts asks the system for names
     let graph = system.graph.clone();
-    let rows = DecidedRows { quick: &quick, all: &all, columns: system.unknown_count() };
+    let columns = system.unknown_count();
+    let rows = DecidedRows { quick: &quick, all: &all, columns };
     let decider =
-        RankDecider::new(&graph, defined, rows, is_angle, ProofWanted { wanted: options.wanted, field });
+        RankDecider::new(&graph, defined, rows, is_angle, ProofWanted { wanted: options.wanted, field })
+            .at_most(options.most.unwrap_or(columns));
     // a stream decides full ranks only; where the quick rows cannot have it, there is nothing to stream
     let stream = Stream::new(system, locus, &quick)
         .filter(|_| watched)
@@ -255,8 +260,12 @@ fn recorded(
     let states: Vec<State> = first.into_iter().chain(drawn).take(count as usize).collect();
     let decided = states.into_par_iter().map(|state| match decider.decide(&state) {
         _ if options.interrupt.load(Ordering::Relaxed) => None,
-        StateDecision::Report(StateReport { rank, unseen, certainty: Certainty::Certified, .. }) => {
-            Some(RecordedState { state, rank, unseen })
+        StateDecision::Report(StateReport {
+            rank, unseen, hidden, certainty: Certainty::Certified, ..
+        }) => {
+            let unseen = if hidden.is_empty() { unseen } else { decider.unseen(&state) };
+            // a short rank is checked by what is not seen, exactly
+            (rank + unseen.len() == decider.columns()).then_some(RecordedState { state, rank, unseen })
         }
         _ => None,
     });
@@ -281,7 +290,7 @@ fn decide_all(
         .collect();
     for (index, item) in indices.iter().zip(block) {
         let (state, decided) = item?;
-        counts.add(system, *index, state, decided);
+        counts.add(system, decider, *index, state, decided);
     }
     Ok(())
 }
@@ -301,7 +310,14 @@ struct SweepCounts {
 }
 
 impl SweepCounts {
-    fn add(&mut self, system: &System, index: u64, state: State, decided: StateDecision) {
+    fn add(
+        &mut self,
+        system: &System,
+        decider: &RankDecider<'_>,
+        index: u64,
+        state: State,
+        decided: StateDecision,
+    ) {
         let report = match decided {
             StateDecision::Pole(divisor) => {
                 *self.poles.entry(divisor).or_insert(0) += 1;
@@ -314,7 +330,22 @@ impl SweepCounts {
         self.certified += u64::from(report.certainty == Certainty::Certified);
         *self.rungs.entry(report.rung).or_insert(0) += 1;
         for direction in &report.unseen {
-            self.unseen.add(system, direction, &state, index);
+            self.unseen.add(system, direction, true, &state, index);
+        }
+        // one exact example of each kind is enough
+        let mut first = report.hidden;
+        first.retain(|parts| !self.unseen.count(system, parts));
+        if !first.is_empty() {
+            let (mut unseen, mut exact) = (decider.unseen(&state), true);
+            if unseen.is_empty() {
+                (unseen, exact) = (decider.unseen_nearly(&state), false);
+            }
+            for direction in unseen {
+                let parts: Vec<bool> = direction.iter().map(|part| !part.is_zero()).collect();
+                if first.contains(&parts) {
+                    self.unseen.add(system, &direction, exact, &state, index);
+                }
+            }
         }
         let (Some(spectrum), Some(computed)) = (report.spectrum, report.computed) else { return };
         *self.computed.entry(computed).or_insert(0) += 1;
@@ -371,6 +402,7 @@ impl Codistribution {
         locus: &Locus,
         options: SweepOptions<'_>,
     ) -> Result<SweepReport, LocusError> {
+        let options = SweepOptions { most: Some(self.most()), ..options };
         sweep(system, locus, &self.needed_entries(), &self.entries(), options)
     }
 }

@@ -21,9 +21,11 @@ pub struct UnseenDirection {
     pub index: u64,
     /// The state at which it is not seen, all its coordinates.
     pub at: StateInWords,
-    /// That direction as a vector, a part for each of `states`, exactly: in small integers where its parts are in such a
+    /// That direction as a vector, a part for each of `states`: in small integers where its parts are in such a
     /// proportion, else with one as its largest part. The first part is positive.
     pub vector: Vec<RBig>,
+    /// Whether these parts are exact; else they are correct to more than a hundred digits.
+    pub exact: bool,
 }
 
 /// Integers up to this are small.
@@ -35,7 +37,7 @@ pub(super) struct UnseenDirections(BTreeMap<Vec<String>, UnseenDirection>);
 
 impl UnseenDirections {
     /// Counts a direction that is not seen at a state, the draw of an index.
-    pub fn add(&mut self, system: &System, direction: &[RBig], state: &State, index: u64) {
+    pub fn add(&mut self, system: &System, direction: &[RBig], exact: bool, state: &State, index: u64) {
         let parts: Vec<(&RBig, String)> = direction
             .iter()
             .zip(system.unknowns())
@@ -50,8 +52,17 @@ impl UnseenDirections {
             index,
             at: state.describe(system),
             vector: in_proportion(&parts),
+            exact,
         });
         entry.count += 1;
+    }
+
+    /// Counts a direction of which only the unknowns that take part are known; whether there is an example of such.
+    pub fn count(&mut self, system: &System, parts: &[bool]) -> bool {
+        let part_of = parts.iter().zip(system.unknowns()).filter(|(takes_part, _)| **takes_part);
+        let names: Vec<String> = part_of.map(|(_, symbol)| system.symbol_name(symbol).to_owned()).collect();
+        let known = self.0.get_mut(&names);
+        known.map(|direction| direction.count += 1).is_some()
     }
 
     /// All of them, in order of the names.

@@ -86,6 +86,7 @@ impl System {
                 }
                 Ok(Value::Scalar(self.graph.power(value, *exponent)))
             }
+            ExprKind::RealPower(base, exponent) => self.real_power(base, exponent, &expr.span),
             ExprKind::Matrix(rows) => self.blocks(rows, &expr.span),
             ExprKind::At(inner, list) => {
                 let (value, domain) = self.apart(|system| system.elaborate(inner))?;
@@ -290,7 +291,10 @@ impl System {
                 )),
             },
             _ => {
-                let known = Function::ALL.iter().map(|f| f.name()).chain(OTHER_FUNCTIONS);
+                if let Some(found) = self.composed(name, arguments, span) {
+                    return found;
+                }
+                let known = super::vocabulary::functions();
                 let problem = Problem::new(span, format!("unknown function '{name}'"), "here");
                 Err(match nearest(name, known) {
                     Some(near) => problem.help(format!("perhaps you meant '{near}'")),

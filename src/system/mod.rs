@@ -17,6 +17,7 @@ mod elaborate;
 mod error;
 mod extent;
 mod format;
+mod functions;
 mod grammar;
 mod imports;
 mod lie;

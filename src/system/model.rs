@@ -97,6 +97,13 @@ pub struct Field {
     pub(crate) derivation: Derivation,
 }
 
+impl Field {
+    /// Forgets what was differentiated along it, since its components are others.
+    pub(crate) fn derive_anew(&mut self) {
+        self.derivation = Derivation::new(self.components.iter().copied().collect());
+    }
+}
+
 /// What names stand for, as it is written: name and text of each.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Explanations {

@@ -311,6 +311,9 @@ impl System {
                 parts.iter().for_each(|(_, part)| self.unknown_names(part, found));
             }
             ExprKind::Power(inner, _) => self.unknown_names(inner, found),
+            ExprKind::RealPower(base, exponent) => {
+                [base, exponent].into_iter().for_each(|part| self.unknown_names(part, found));
+            }
             ExprKind::Matrix(rows) => {
                 rows.iter().flatten().for_each(|entry| self.unknown_names(entry, found));
             }

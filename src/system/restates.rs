@@ -4,6 +4,7 @@
 use super::grammar::Statement;
 use super::model::{System, Value};
 use super::written::in_one_line;
+use crate::expression::COMPOSED;
 use crate::expression::syntax::{Expr, ExprKind, Relation};
 use crate::number::Function;
 
@@ -44,6 +45,9 @@ impl System {
                     && factors.iter().filter(|(_, factor)| self.is_matrix(factor)).count() < 2
             }
             ExprKind::Power(base, _) => self.calculates_nothing(base),
+            ExprKind::RealPower(base, exponent) => {
+                self.calculates_nothing(base) && self.calculates_nothing(exponent)
+            }
             ExprKind::Matrix(rows) => rows.iter().flatten().all(|entry| self.calculates_nothing(entry)),
             ExprKind::At(..) | ExprKind::Indexed(_) => false,
             ExprKind::Call(name, arguments) => match (name.as_str(), arguments.as_slice()) {
@@ -51,6 +55,9 @@ impl System {
                 ("L", [field, of]) => matches!(field.kind, ExprKind::Name(_)) && self.are_states(of),
                 ("d", [of, ..]) => self.are_states(of),
                 ("tan" | "cot" | "sec" | "csc", [of]) => self.calculates_nothing(of),
+                (name, of) if COMPOSED.iter().any(|(known, ..)| *known == name) => {
+                    of.iter().all(|of| self.calculates_nothing(of))
+                }
                 (name, [of]) if Function::ALL.iter().any(|known| known.name() == name) => {
                     self.calculates_nothing(of)
                 }
@@ -68,6 +75,7 @@ impl System {
                 parts.iter().any(|(_, part)| self.looks_up(part))
             }
             ExprKind::Power(inner, _) | ExprKind::At(inner, _) => self.looks_up(inner),
+            ExprKind::RealPower(base, exponent) => self.looks_up(base) || self.looks_up(exponent),
             ExprKind::Matrix(rows) => rows.iter().flatten().any(|entry| self.looks_up(entry)),
             ExprKind::Call(name, arguments) => {
                 ["L", "d"].contains(&name.as_str()) || arguments.iter().any(|part| self.looks_up(part))

@@ -258,6 +258,9 @@ impl Derivatives {
                 };
                 arguments[fields..].iter().for_each(|argument| self.expression(argument));
             }
+            ExprKind::RealPower(base, exponent) => {
+                [base, exponent].into_iter().for_each(|part| self.expression(part));
+            }
             ExprKind::Sum(parts) | ExprKind::Product(parts) => {
                 parts.iter().for_each(|(_, part)| self.expression(part));
             }

@@ -2,7 +2,7 @@
 
 use super::elaborate::OTHER_FUNCTIONS;
 use super::{dimension, grammar, views};
-use crate::expression::parse;
+use crate::expression::{COMPOSED, parse};
 use crate::number::Function;
 
 /// The words that begin an entry.
@@ -22,7 +22,8 @@ pub const CONSTANTS: &[&str] = &["pi", "rank"];
 
 /// The functions of the language: each is one where a bracket follows.
 pub fn functions() -> impl Iterator<Item = &'static str> {
-    Function::ALL.into_iter().map(Function::name).chain(OTHER_FUNCTIONS)
+    let composed = COMPOSED.into_iter().map(|(name, ..)| name);
+    Function::ALL.into_iter().map(Function::name).chain(OTHER_FUNCTIONS).chain(composed)
 }
 
 /// The words of dimensions: quantities and units, behind the colon of a declaration.

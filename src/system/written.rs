@@ -185,6 +185,7 @@ pub(crate) fn places_in(scope: &Scope<'_>, expr: &Expr, found: &mut Vec<Place>) 
         }
         ExprKind::Sum(parts) | ExprKind::Product(parts) => parts.iter().for_each(|(_, part)| inner(part)),
         ExprKind::Power(base, _) => inner(base),
+        ExprKind::RealPower(base, exponent) => [base, exponent].into_iter().for_each(|part| inner(part)),
         ExprKind::Matrix(rows) => rows.iter().flatten().for_each(inner),
         ExprKind::At(value, list) => {
             inner(value);

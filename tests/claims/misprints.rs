@@ -106,6 +106,9 @@ fn misprint(
             }
             misprint(kind, base, number, other)
         }
+        ExprKind::RealPower(base, exponent) => {
+            misprint(kind, base, number, other) || misprint(kind, exponent, number, other)
+        }
         ExprKind::Call(name, arguments) => {
             // fields and the states of a differential are no formulas
             let formulas = match (name.as_str(), arguments.len()) {

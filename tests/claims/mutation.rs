@@ -30,6 +30,7 @@ fn flip(expr: &mut Expr, number: &mut usize) -> bool {
         ExprKind::Matrix(rows) => rows.iter_mut().flatten().any(|entry| flip(entry, number)),
         // the point at which something is taken is a condition, and not what is claimed
         ExprKind::Power(inner, _) | ExprKind::At(inner, _) => flip(inner, number),
+        ExprKind::RealPower(base, exponent) => flip(base, number) || flip(exponent, number),
     }
 }
 

@@ -17,3 +17,4 @@ mod region_edges;
 mod stream;
 mod stress;
 mod trade;
+mod unseen_fields;

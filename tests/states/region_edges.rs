@@ -29,7 +29,7 @@ fn a_map_is_not_proved_where_another_part_is_not() {
     let map = open.map.as_ref().unwrap();
     assert_eq!((map.x.name.as_str(), map.y.name.as_str()), ("x", "y"));
     assert!(map.at.contains(&("z".to_owned(), 0.0)), "{:?}", map.at);
-    assert_eq!(standings(&open), [BoxStanding::MinorVanishes]);
+    assert_eq!(standings(&open), [BoxStanding::Undecided]);
     assert_eq!(standings(&certified(&system("-1"), 0)), [BoxStanding::MinorVanishes]);
     let proved = certified(&system("1"), 100);
     assert_eq!((proved.proved, standings(&proved)), (1.0, vec![BoxStanding::Proved]));
@@ -38,13 +38,13 @@ fn a_map_is_not_proved_where_another_part_is_not() {
 /// Nothing is proved before a box was looked at, and a box of one point is looked at like another.
 #[test]
 fn what_no_box_was_asked_for_is_not_proved() {
-    let system = |x: &str| {
-        format!("system \"s\" state x, v drift f x' = v v' = -x output x^2 sample x in {x} v in [2, 2]")
+    let system = |x: &str, v: &str| {
+        format!("system \"s\" state x, v drift f x' = v v' = -x output x^2 sample x in {x} v in {v}")
     };
-    let none = certified(&system("[1, 1]"), 0);
+    let none = certified(&system("[1, 1]", "[2, 2]"), 0);
     assert_eq!((none.proved, none.proved_of_sampled, none.boxes, none.finished), (0.0, 0.0, 0, false));
-    let one = certified(&system("[1, 1]"), 1);
+    let one = certified(&system("[1, 1]", "[2, 2]"), 1);
     assert_eq!((one.proved, one.boxes, one.finished), (1.0, 1, true));
-    let singular = certified(&system("[0, 0]"), 10);
+    let singular = certified(&system("[0, 0]", "[0, 0]"), 10);
     assert_eq!((singular.proved, singular.minors.len(), singular.finished), (0.0, 0, true));
 }

@@ -88,6 +88,11 @@ impl Generators {
         &self.keys[variable as usize]
     }
 
+    /// The symbol of a generator, or its sine or cosine, as an expression.
+    pub fn node_at(&self, variable: Variable) -> NodeId {
+        self.nodes[variable as usize]
+    }
+
     /// How deep the deepest generator of a form is nested.
     pub fn depth(&self, form: &Form) -> usize {
         form.0.keys().map(|monomial| self.depth_of_monomial(monomial)).max().unwrap_or(0)

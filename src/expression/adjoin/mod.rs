@@ -18,6 +18,10 @@
 mod circular;
 mod form;
 mod generators;
+mod independence;
+mod normal;
+mod original;
+mod points;
 mod powers;
 mod principal;
 mod signs;
@@ -32,6 +36,8 @@ use crate::number::{Function, Turn};
 use dashu::rational::RBig;
 use form::Form;
 use generators::{DEEPEST, Generators, Key};
+pub(crate) use normal::{NormalForm, normal_form, without_signs};
+pub(crate) use points::{GeneratorPoints, over_generators};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -126,28 +132,31 @@ pub fn zero_by_relations(
     }
     let Some(turn) = Turn::new(1) else { return Related::NoFunctions };
     let extent = graph.extent();
-    let mut all = Adjunction {
-        rng: ChaCha8Rng::seed_from_u64(rng.random()),
-        generators: Generators::new(turn),
-        images: HashMap::new(),
-        forms: HashMap::new(),
-        signs: HashMap::new(),
-        nonzero: HashSet::new(),
-        factors: HashSet::new(),
-        multiples: HashMap::new(),
-        used: BTreeSet::new(),
-        left: None,
-        error: 0.0,
-        points: 0,
-        degree: 0.0,
-        graph,
-    };
-    let found = all.passes(roots, assumptions);
+    let found = Adjunction::new(graph, turn, rng.random()).passes(roots, assumptions);
     graph.shrink_to(&extent);
     found
 }
 
-impl Adjunction<'_> {
+impl<'g> Adjunction<'g> {
+    fn new(graph: &'g mut Graph, turn: Turn, seed: u64) -> Self {
+        Adjunction {
+            rng: ChaCha8Rng::seed_from_u64(seed),
+            generators: Generators::new(turn),
+            images: HashMap::new(),
+            forms: HashMap::new(),
+            signs: HashMap::new(),
+            nonzero: HashSet::new(),
+            factors: HashSet::new(),
+            multiples: HashMap::new(),
+            used: BTreeSet::new(),
+            left: None,
+            error: 0.0,
+            points: 0,
+            degree: 0.0,
+            graph,
+        }
+    }
+
     fn passes(&mut self, roots: &[NodeId], assumptions: &[Guard]) -> Related {
         for _ in 0..MOST_PASSES {
             match self.pass(roots, assumptions) {
@@ -159,7 +168,11 @@ impl Adjunction<'_> {
         Related::NotShown("the arguments of its functions have too many denominators".to_owned())
     }
 
-    fn pass(&mut self, roots: &[NodeId], assumptions: &[Guard]) -> Result<Related, Halt> {
+    /// Expressions over generators, with what the assumptions say.
+    ///
+    /// # Errors
+    /// Where the pass has to begin anew.
+    fn rewritten_all(&mut self, roots: &[NodeId], assumptions: &[Guard]) -> Result<Vec<NodeId>, Halt> {
         self.forms.clear();
         self.signs.clear();
         self.nonzero.clear();
@@ -179,10 +192,11 @@ impl Adjunction<'_> {
             }
         }
         self.images.clear();
-        let mut images = Vec::new();
-        for root in roots {
-            images.push(self.rewritten(*root)?);
-        }
+        roots.iter().map(|root| self.rewritten(*root)).collect()
+    }
+
+    fn pass(&mut self, roots: &[NodeId], assumptions: &[Guard]) -> Result<Related, Halt> {
+        let images = self.rewritten_all(roots, assumptions)?;
         let why = match self.tested(&images) {
             Tested::Zero(log2_error, points, degree) => {
                 self.error += log2_error.exp2();

@@ -38,7 +38,7 @@ pub(super) enum Tested {
 }
 
 /// An adjoined root: its symbol, and what it is a root of.
-struct Root {
+pub(super) struct Root {
     symbol: Symbol,
     program: Program,
 }
@@ -63,12 +63,8 @@ impl Adjunction<'_> {
             return Tested::Zero(f64::NEG_INFINITY, 0, 0.0);
         }
         let roots = self.roots_below(nodes);
-        let length = (self.generators.turn.minimal.len() as u64).checked_shl(roots.len() as u32);
-        if length.is_none_or(|length| length > LONGEST as u64) {
-            return Tested::NotShown(format!(
-                "{} roots are met that do not come of one another",
-                roots.len()
-            ));
+        if let Err(why) = self.is_short(&roots) {
+            return Tested::NotShown(why);
         }
         let program = self.program(nodes);
         let (rounds, log2_error, degree) = match self.size(&program, &roots) {
@@ -95,13 +91,22 @@ impl Adjunction<'_> {
         Tested::Zero(log2_error, rounds, degree)
     }
 
-    fn program(&self, nodes: &[NodeId]) -> Program {
+    /// Whether elements of the ring with these roots have few enough coefficients.
+    pub(super) fn is_short(&self, roots: &[Root]) -> Result<(), String> {
+        let length = (self.generators.turn.minimal.len() as u64).checked_shl(roots.len() as u32);
+        match length.is_some_and(|length| length <= LONGEST as u64) {
+            true => Ok(()),
+            false => Err(format!("{} roots are met that do not come of one another", roots.len())),
+        }
+    }
+
+    pub(super) fn program(&self, nodes: &[NodeId]) -> Program {
         let circles = &self.generators.circles;
         Program::with_unknown_functions(self.graph, nodes, |symbol| circles.contains_key(&symbol))
     }
 
     /// The roots that expressions need, each after those that it is made of.
-    fn roots_below(&mut self, nodes: &[NodeId]) -> Vec<Root> {
+    pub(super) fn roots_below(&mut self, nodes: &[NodeId]) -> Vec<Root> {
         let (mut open, mut seen) = (nodes.to_vec(), HashSet::new());
         let mut found = std::collections::BTreeMap::new();
         while let Some(node) = open.pop() {
@@ -133,6 +138,21 @@ impl Adjunction<'_> {
 
     /// A bound on the numerators, by the argument above.
     fn size(&mut self, program: &Program, roots: &[Root]) -> Result<Size, Refusal> {
+        let mut size = Size::default();
+        for (top, _) in self.sizes(program, roots)? {
+            size = Size { degree: size.degree.max(top.degree), bits: size.bits.max(top.bits) };
+        }
+        size.bits += self.weight_of_turn();
+        Ok(size)
+    }
+
+    /// What is added to the bits of a numerator when it is reduced in the end.
+    pub(super) fn weight_of_turn(&self) -> f64 {
+        (self.generators.turn.largest_sum as f64).log2()
+    }
+
+    /// Bounds on all numerators and denominators.
+    pub(super) fn sizes(&mut self, program: &Program, roots: &[Root]) -> Result<Vec<(Size, Size)>, Refusal> {
         let fractions = Fractions::<Size>::default();
         let turn = self.turn_symbol();
         let mut known: HashMap<Symbol, Fraction> = HashMap::new();
@@ -172,46 +192,54 @@ impl Adjunction<'_> {
             let root_of_product = fractions.element(size);
             known.insert(root.symbol, Fraction { top: root_of_product.top, bottom: radicand.bottom });
         }
-        let mut size = Size::default();
-        for value in run(program, &known)? {
-            let top = fractions.expand(&value.top)?;
-            size = Size { degree: size.degree.max(top.degree), bits: size.bits.max(top.bits) };
-        }
-        size.bits += (self.generators.turn.largest_sum as f64).log2();
-        Ok(size)
+        let values = run(program, &known)?;
+        values
+            .iter()
+            .map(|value| Ok((fractions.expand(&value.top)?, fractions.expand(&value.bottom)?)))
+            .collect()
     }
 
     /// Whether all are zero at one point; nothing where no point was found at which they exist.
     fn round(&mut self, program: &Program, roots: &[Root]) -> Option<bool> {
-        let turn = self.turn_symbol();
         (0..ATTEMPTS).find_map(|_| {
             let field = PrimeField::random(&mut self.rng);
-            let mut all = Extension::new(field, &self.generators.turn.minimal);
-            let (mut numbers, mut circles) = (HashMap::new(), HashMap::new());
-            let rng = &mut self.rng;
-            let mut run = |all: &Extension, numbers: &mut HashMap<Symbol, Vec<u64>>, program: &Program| {
-                let mut inputs = Vec::new();
-                for input in program.inputs() {
-                    let mut circle =
-                        |symbol| *circles.entry(symbol).or_insert_with(|| unit_residue(&field, rng));
-                    inputs.push(match input {
-                        Input::Sine(symbol) => vec![circle(*symbol).0],
-                        Input::Cosine(symbol) => vec![circle(*symbol).1],
-                        Input::Plain(symbol) if Some(*symbol) == turn => all.generator(),
-                        Input::Plain(symbol) => {
-                            numbers.entry(*symbol).or_insert_with(|| vec![field.draw(rng)]).clone()
-                        }
-                        Input::Opaque(_) => return None,
-                    });
-                }
-                program.load(all).ok()?.run(&inputs, &mut Vec::new()).ok()
-            };
-            for root in roots {
-                let radicand = run(&all, &mut numbers, &root.program)?.pop()?;
-                numbers.insert(root.symbol, all.adjoin_root(radicand));
-            }
-            let values = run(&all, &mut numbers, program)?;
+            let (_, values) = self.point(program, roots, field)?;
             Some(values.iter().flatten().all(|value| *value == 0))
         })
+    }
+
+    /// The values at a random point, and the ring in which they lie; nothing where they do not exist there.
+    pub(super) fn point(
+        &mut self,
+        program: &Program,
+        roots: &[Root],
+        field: PrimeField,
+    ) -> Option<(Extension, Vec<Vec<u64>>)> {
+        let turn = self.turn_symbol();
+        let mut all = Extension::new(field, &self.generators.turn.minimal);
+        let (mut numbers, mut circles) = (HashMap::new(), HashMap::new());
+        let rng = &mut self.rng;
+        let mut run = |all: &Extension, numbers: &mut HashMap<Symbol, Vec<u64>>, program: &Program| {
+            let mut inputs = Vec::new();
+            for input in program.inputs() {
+                let mut circle = |symbol| *circles.entry(symbol).or_insert_with(|| unit_residue(&field, rng));
+                inputs.push(match input {
+                    Input::Sine(symbol) => vec![circle(*symbol).0],
+                    Input::Cosine(symbol) => vec![circle(*symbol).1],
+                    Input::Plain(symbol) if Some(*symbol) == turn => all.generator(),
+                    Input::Plain(symbol) => {
+                        numbers.entry(*symbol).or_insert_with(|| vec![field.draw(rng)]).clone()
+                    }
+                    Input::Opaque(_) => return None,
+                });
+            }
+            program.load(all).ok()?.run(&inputs, &mut Vec::new()).ok()
+        };
+        for root in roots {
+            let radicand = run(&all, &mut numbers, &root.program)?.pop()?;
+            numbers.insert(root.symbol, all.adjoin_root(radicand));
+        }
+        let values = run(&all, &mut numbers, program)?;
+        Some((all, values))
     }
 }

@@ -122,6 +122,7 @@ impl Indices<'_> {
             ExprKind::Sum(terms) => ExprKind::Sum(parts(terms)?),
             ExprKind::Product(factors) => ExprKind::Product(parts(factors)?),
             ExprKind::Power(base, exponent) => ExprKind::Power(one(base)?, *exponent),
+            ExprKind::RealPower(base, exponent) => ExprKind::RealPower(one(base)?, one(exponent)?),
             ExprKind::Matrix(rows) => {
                 let rows = rows.iter().map(|row| list(row).map(spread));
                 ExprKind::Matrix(rows.collect::<Result<_, _>>()?)

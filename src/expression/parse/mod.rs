@@ -101,7 +101,7 @@ fn at_depth(value: &Expr) -> usize {
     depth
 }
 
-/// `base^n`, `n` an integer, in brackets or not.
+/// `base^n`: `n` an integer, in brackets or not, or any number, name, call or expression in brackets, perhaps behind a minus.
 fn power(input: &mut Text<'_>) -> Read<Expr> {
     let base = primary(input)?;
     if opt(sign("^")).parse_next(input)?.is_none() {
@@ -128,12 +128,24 @@ fn power(input: &mut Text<'_>) -> Read<Expr> {
             Ok(Expr { kind: ExprKind::Power(Box::new(base), n), span })
         }
         Some((None, _)) => stop(at, format!("an exponent of at most {LARGEST_EXPONENT}"), None),
-        None => stop(
-            at,
-            "an integer as exponent, as in x^2 or x^(-1)",
-            Some("write sqrt(x) for a square root".into()),
-        ),
+        None => real_power(input, base),
     }
+}
+
+/// The rest of a power whose exponent is no integer.
+fn real_power(input: &mut Text<'_>, base: Expr) -> Read<Expr> {
+    let at = input.current_token_start();
+    let negative = opt(sign("-")).parse_next(input)?.is_some();
+    let exponent = cut_err(alt((number, bracketed, name_or_call)))
+        .context("an exponent, as in x^2, x^(-1), x^n or x^(n + 1/2)")
+        .parse_next(input)?;
+    let exponent = signed(negative, at, exponent);
+    let next = input.current_token_start();
+    if opt(sign("^")).parse_next(input)?.is_some() {
+        return stop(next, "one exponent; write (a^b)^c with its brackets", None);
+    }
+    let span = base.span.start..exponent.span.end;
+    Ok(Expr { kind: ExprKind::RealPower(Box::new(base), Box::new(exponent)), span })
 }
 
 /// Signs before a term or a factor, if there are any: whether they amount to a minus.

@@ -2,8 +2,8 @@
 //!
 //! Modulo a prime there is no exponential. Along a flow a function `y = exp(u)` is known by its differential equation
 //! `y' = u' y`, and any initial value lies on a leaf `y = c exp(u)` that the flow does not leave. What is found with a random
-//! initial value is therefore what holds for almost all `c`, and an upper bound for `c = 1`; see [`independence`](super::independence)
-//! for when it is the same. A square root is a true one, where one is asked for: its argument has to be a square.
+//! initial value is therefore what holds for almost all `c`, and an upper bound for `c = 1`; the expressions are
+//! written so that it is the same where that can be shown. A square root is a true one, where one is asked for: its argument has to be a square.
 
 use crate::number::{Arithmetic, Function, PrimeField, Refusal};
 use dashu::rational::RBig;

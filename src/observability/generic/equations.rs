@@ -3,7 +3,8 @@
 use super::adjoined::Adjoined;
 use super::covectors::{Covector, Entry};
 use crate::expression::{
-    Derivation, Graph, Input, Node, NodeId, Program, Symbol, draw_residues, expand_angles, gradient,
+    Derivation, Graph, Guard, Input, Node, NodeId, Program, Symbol, draw_residues, expand_angles, gradient,
+    normal_form, substitute_guards,
 };
 use crate::number::{Coefficients, Function, PrimeField, Refusal};
 use crate::observability::flow::Flow;
@@ -20,8 +21,7 @@ pub(super) struct Equations {
     /// The states, and among them the unknowns, by their places.
     pub states: usize,
     pub columns: Vec<usize>,
-    /// The unknowns, and beside them the states that are known at the beginning: what rates lead to may have been known then,
-    /// and derivatives end where those by all of these do.
+    /// The unknowns and what is known at the beginning: the rows of these are what rests when it has stopped growing.
     pub closed: Vec<usize>,
     pub outputs: usize,
     /// What the bound of degrees is taken from: rates, outputs, and how functions move.
@@ -32,6 +32,8 @@ pub(super) struct Equations {
     pub roots: usize,
     /// All functions that are met, but sines and cosines of angles.
     pub functions: Vec<NodeId>,
+    /// Whether these are written so that they satisfy no relation but those that define them.
+    pub related: bool,
     flow: Flow,
     pub angles: HashSet<Symbol>,
     /// The signals that drive the inputs, by their places among what the flow is given.
@@ -91,6 +93,7 @@ impl Equations {
         written.extend(system.outputs.iter().map(|(_, node)| *node));
         let written = graph.substitute(&written, &fixed);
         let written = expand_angles(&mut graph, &written, |symbol| angles.contains(&symbol));
+        let (written, related) = related(&mut graph, system, &written, &fixed, conditions, &angles);
         let (rates, outputs) = written.split_at(moved.len());
         let components: Vec<(Symbol, NodeId)> = moved.iter().copied().zip(rates.iter().copied()).collect();
 
@@ -126,18 +129,14 @@ impl Equations {
         let square_root = |node: &NodeId| matches!(graph.node(*node), Node::Apply(Function::Sqrt, _));
         Equations {
             states: system.states.len(),
-            columns: (0..system.states.len())
-                .filter(|place| !system.known.contains(&system.states[*place]))
-                .collect(),
-            closed: {
-                let closed = system.closed_coordinates();
-                (0..system.states.len()).filter(|place| closed.contains(&system.states[*place])).collect()
-            },
+            columns: places(system, &system.unknowns()),
+            closed: places(system, &system.closed_coordinates()),
             outputs: outputs.len(),
             measured,
             starts,
             roots: functions.iter().filter(|node| square_root(node)).count(),
             functions,
+            related,
             flow,
             angles,
             driven,
@@ -210,6 +209,11 @@ impl Equations {
     }
 }
 
+/// The places of some states among all.
+fn places(system: &System, wanted: &[Symbol]) -> Vec<usize> {
+    (0..system.states.len()).filter(|place| wanted.contains(&system.states[*place])).collect()
+}
+
 /// Coefficients up to the last that is not zero.
 fn residues(series: Coefficients<u64>) -> Vec<u64> {
     let mut values: Vec<u64> = series.into_iter().map(|term| term.unwrap_or(0)).collect();
@@ -237,6 +241,54 @@ fn starts(graph: &mut Graph, given: &[Input], conditions: &Assignment, angles: &
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
     let expanded = expand_angles(graph, &on_the_set, is_angle);
     Program::with_unknown_functions(graph, &expanded, is_angle)
+}
+
+/// Rates and outputs with equal functions under one name; and whether those functions are shown to satisfy no relation but those
+/// that define them, nowhere on the set of the conditions.
+fn related(
+    graph: &mut Graph,
+    system: &System,
+    written: &[NodeId],
+    fixed: &Assignment,
+    conditions: &Assignment,
+    angles: &HashSet<Symbol>,
+) -> (Vec<NodeId>, bool) {
+    let is_angle = |symbol: Symbol| angles.contains(&symbol);
+    let is_function = |graph: &Graph, id: &NodeId| match graph.node(*id) {
+        Node::Apply(Function::Sin | Function::Cos, a) => !graph.as_symbol(a).is_some_and(is_angle),
+        Node::Apply(..) => true,
+        _ => false,
+    };
+    if !graph.reachable(written.iter().copied()).iter().any(|id| is_function(graph, id)) {
+        return (written.to_vec(), true);
+    }
+    let guards = substitute_guards(graph, &system.smooth_guards(&system.moving_fields()), fixed);
+    let nodes: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
+    let nodes = expand_angles(graph, &nodes, is_angle);
+    let guards: Vec<Guard> =
+        guards.iter().zip(nodes).map(|(guard, node)| Guard { node, need: guard.need }).collect();
+    let mut rng = ChaCha8Rng::seed_from_u64(0x6e6f_726d); // any fixed seed
+    let Ok(found) = normal_form(graph, written, &guards, &mut rng) else {
+        return (written.to_vec(), false);
+    };
+    let found_nodes = expand_angles(graph, &found.nodes, is_angle);
+    let met = graph.reachable(found_nodes.iter().copied());
+    let functions: Vec<NodeId> = met.into_iter().filter(|id| is_function(graph, id)).collect();
+    // a series of an inverse sine takes a root that is none of these
+    let followed = !functions
+        .iter()
+        .any(|id| matches!(graph.node(*id), Node::Apply(Function::Asin | Function::Acos, _)));
+    // an angle has a sine and a cosine here, and no value of its own
+    let bare = found_nodes.iter().chain(&functions).copied();
+    let is_bare = graph.reachable(bare).into_iter().any(|id| match graph.node(id) {
+        Node::Apply(Function::Sin | Function::Cos, _) => false,
+        node => node.operands().any(|part| graph.as_symbol(part).is_some_and(is_angle)),
+    });
+    // on a set of states functions may be related that are not elsewhere
+    let mentioned = graph.symbols_of(functions.iter().copied());
+    let apart = mentioned.iter().all(|symbol| fixed.contains_key(symbol) || !conditions.contains_key(symbol));
+    let known = found.independent && found.constants_known && found.open_signs.is_empty();
+    (found_nodes, known && followed && apart && !is_bare)
 }
 
 /// The functions that are met, and all that a minor's degree depends on: rates, outputs, slopes of functions along the flow and

@@ -20,6 +20,8 @@ pub enum GenericRank {
     },
     /// Every point was a pole; this divisor was zero.
     Pole(NodeId),
+    /// Functions other than sines and cosines of angles are met, and nothing was found out.
+    Functions,
     /// Nothing was found out.
     Unknown(String),
 }
@@ -47,7 +49,7 @@ pub fn generic_rank(
         ));
     }
     if program.unknown_function(graph).is_some() {
-        return GenericRank::Unknown("a function other than sines and cosines of angles is met".to_owned());
+        return GenericRank::Functions;
     }
     rank_of(&program, entries.len(), columns, rng)
 }

@@ -16,7 +16,6 @@ mod bound;
 mod covectors;
 mod echelon;
 mod equations;
-mod independence;
 mod matrix;
 mod steps;
 #[cfg(test)]
@@ -27,6 +26,7 @@ pub use matrix::{GenericRank, generic_rank};
 
 use crate::expression::Symbol;
 use crate::number::{PrimeField, Refusal};
+use crate::observability::State;
 use crate::system::{Assignment, System, Time};
 use bound::Rounds;
 use covectors::Covector;
@@ -55,6 +55,8 @@ pub struct GenericAnswer {
     pub at_least: usize,
     /// Nor more, but for an error of probability below `2^log2_error`.
     pub at_most: usize,
+    /// The same bound where what is known at the beginning counts as unknown.
+    pub(crate) closed_at_most: usize,
     /// Minus infinity where the rank is full and there is nothing to err about.
     pub log2_error: f64,
     /// At how many random points, each modulo a random prime.
@@ -87,14 +89,17 @@ const ATTEMPTS_FOR_ROOTS: usize = 4000;
 const MOST_ROOTS: usize = 5;
 
 /// A point at which the equations were run to the end.
-pub struct Evaluated {
+struct Evaluated {
+    /// Of the unknowns.
     echelon: Echelon,
+    /// The rank where what is known at the beginning counts as unknown.
+    closed: usize,
     order: usize,
 }
 
 impl Evaluated {
     /// The rank at this point.
-    pub fn rank(&self) -> usize {
+    fn rank(&self) -> usize {
         self.echelon.rank()
     }
 }
@@ -122,39 +127,40 @@ impl Probe {
     fn evaluate(&self, start: &[u64], draw: Draw, rests: bool) -> Result<Evaluated, Refusal> {
         let equations = &self.equations;
         let full = equations.columns.len();
-        let outputs = equations.outputs.max(1);
         let most = equations.closed.len().max(1);
-        let mut length = if rests { (full.div_ceil(outputs) + 2).min(most) } else { most };
+        let outputs = equations.outputs.max(1);
+        let mut length = if rests { (most.div_ceil(outputs) + 2).min(most) } else { most };
         loop {
             let trajectory = equations.trajectory(draw.field, start, (draw.seed, draw.signs), length)?;
-            let integers: Vec<u64> = {
-                let one = draw.field.one();
-                std::iter::successors(Some(0), |k| Some(draw.field.sum(*k, one))).take(length + 1).collect()
-            };
+            let one = draw.field.one();
+            let integers: Vec<u64> =
+                std::iter::successors(Some(0), |k| Some(draw.field.sum(*k, one))).take(length + 1).collect();
             let mut echelon = Echelon::new(draw.field, full);
-            let some_are_known = equations.closed.len() > full;
-            let mut closed = Echelon::new(draw.field, equations.closed.len());
+            // where all that moves is unknown the two are one
+            let all = equations.closed.len();
+            let mut closed = (all > full).then(|| Echelon::new(draw.field, all));
             let mut open: Vec<Covector> = trajectory.covectors;
-            let mut order = 0;
+            let (mut order, mut spanned) = (0, 0);
             for k in 0..length {
                 let mut further = Vec::new();
                 for covector in open {
                     let value = covector.value();
-                    let raised =
-                        echelon.insert(equations.columns.iter().map(|column| value[*column]).collect());
+                    let part = |places: &[usize]| places.iter().map(|place| value[*place]).collect();
+                    let raised = echelon.insert(part(&equations.columns));
                     if raised {
                         order = k;
                     }
-                    let goes_on = match some_are_known {
-                        true => closed.insert(equations.closed.iter().map(|column| value[*column]).collect()),
-                        false => raised,
+                    let goes_on = match &mut closed {
+                        Some(closed) => closed.insert(part(&equations.closed)),
+                        None => raised,
                     };
                     if goes_on || !rests {
                         further.push(covector);
                     }
                 }
                 open = further;
-                if echelon.rank() == full || open.is_empty() {
+                spanned = closed.as_ref().unwrap_or(&echelon).rank();
+                if spanned == all || open.is_empty() {
                     break;
                 }
                 if k + 1 < length {
@@ -163,11 +169,25 @@ impl Probe {
                     open = open.iter().map(next).collect();
                 }
             }
-            if open.is_empty() || echelon.rank() == full || length >= most {
-                return Ok(Evaluated { echelon, order });
+            if open.is_empty() || spanned == all || length >= most {
+                return Ok(Evaluated { echelon, closed: spanned, order });
             }
             length = (2 * length).min(most);
         }
+    }
+
+    /// The rank at a state modulo a prime: no more than it is there. `most` is what it cannot exceed: where it is that, it
+    /// is so for certain. Nothing where the state or a function has no residue.
+    pub fn rank_at(&self, state: &State, field: PrimeField, seed: u64, most: usize) -> Option<usize> {
+        if !self.equations.functions.is_empty() {
+            return None;
+        }
+        let inputs = state.inputs(&self.equations.starts, &field).ok()?;
+        let start = self.equations.start(field, &inputs, seed).ok()?;
+        let draw = Draw { field, seed, signs: None };
+        let quick = self.evaluate(&start, draw, true).ok()?.rank();
+        // at a state of its own a derivative may add nothing and the next one may
+        if quick == most { Some(quick) } else { Some(self.evaluate(&start, draw, false).ok()?.rank()) }
     }
 
     /// The equations at a random point, for every choice of signs of the roots where there are few.
@@ -213,6 +233,30 @@ impl Probe {
         Err(format!("{ATTEMPTS} random points were poles: {refused}"))
     }
 
+    /// What the equations are given at a point, in the order of [`Probe::directions_at`].
+    pub fn inputs(&self) -> &[crate::expression::Input] {
+        self.equations.inputs()
+    }
+
+    /// Whether functions other than sines and cosines of angles are met.
+    pub fn has_functions(&self) -> bool {
+        !self.equations.functions.is_empty()
+    }
+
+    /// A basis of the vectors that nothing sees at one point, by unknowns in the order of the file; all else is drawn from the seed.
+    ///
+    /// # Errors
+    /// Where the point is a pole.
+    pub fn directions_at(
+        &self,
+        field: PrimeField,
+        point: &[u64],
+        seed: u64,
+    ) -> Result<Vec<Vec<u64>>, Refusal> {
+        let evaluated = self.evaluate(point, Draw { field, seed, signs: None }, true)?;
+        Ok(evaluated.echelon.kernel())
+    }
+
     /// The same modulo a prime of one's own choice.
     ///
     /// # Errors
@@ -239,19 +283,35 @@ pub struct Directions {
     pub kernel: Vec<Vec<u64>>,
 }
 
-/// What is seen at almost all states that satisfy the conditions. `rests` says that the fields leave no state of that set: there what
-/// has stopped growing has stopped for good.
-pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> GenericAnswer {
+/// What bounds a rank from above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ceiling {
+    /// The fields leave no state of the set: what has stopped growing has stopped for good.
+    Rests,
+    /// They may, and these are the ranks at almost all states around, with what is known at the beginning as unknown, and of the
+    /// unknowns; a rank falls on a special set, and never rises.
+    Around {
+        /// That of all that moves.
+        closed: usize,
+        /// That of the unknowns.
+        unknown: usize,
+    },
+}
+
+/// What is seen at almost all states that satisfy the conditions.
+pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
     if system.time == Time::Discrete {
-        return answer_in_steps(system, conditions, rests);
+        return answer_in_steps(system, conditions, ceiling);
     }
-    let mut probe = Probe::new(system, conditions);
+    let rests = ceiling == Ceiling::Rests;
+    let probe = Probe::new(system, conditions);
     let columns = probe.equations.columns.clone();
     let dimension = columns.len();
     let mut answer = GenericAnswer {
         dimension,
         at_least: 0,
         at_most: dimension,
+        closed_at_most: probe.equations.closed.len(),
         log2_error: f64::NEG_INFINITY,
         rounds: 0,
         order: 0,
@@ -264,7 +324,8 @@ pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> 
     let rounds = bounds.as_ref().map_or(1, |bounds| bounds.rounds);
     // of each choice of signs the ranks of all columns, and of all but one
     let mut best: Vec<(usize, Vec<bool>)> = Vec::new();
-    let known_functions = functions_are_known(&mut probe.equations, &mut rng);
+    let (mut closed, all) = (0, probe.equations.closed.len());
+    let known_functions = functions_are_known(&probe.equations);
     for _ in 0..rounds {
         let found = match probe.round(&mut rng, rests) {
             Ok(found) => found,
@@ -276,6 +337,7 @@ pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> 
         answer.rounds += 1;
         best.resize(found.len(), (0, vec![false; dimension]));
         answer.order = found.iter().map(|here| here.order).fold(answer.order, usize::max);
+        closed = found.iter().map(|here| here.closed).fold(closed, usize::max);
         // which choice of signs is which is another matter at every point
         let mut found: Vec<_> = found.iter().map(|here| (here.rank(), here.echelon.seen())).collect();
         found.sort_unstable();
@@ -291,14 +353,15 @@ pub fn generic_answer(system: &System, conditions: &Assignment, rests: bool) -> 
             break;
         }
     }
-    conclude(&mut answer, &best, &bounds, known_functions, rests);
+    answer.closed_at_most = if bounds.is_ok() { closed } else { all };
+    conclude(&mut answer, &best, &bounds, known_functions, ceiling);
     answer
 }
 
 /// The same in discrete time.
-fn answer_in_steps(system: &System, conditions: &Assignment, rests: bool) -> GenericAnswer {
+fn answer_in_steps(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
     let mut answer = nothing_known(system, String::new());
-    let steps = match steps::Steps::new(system, conditions, rests) {
+    let steps = match steps::Steps::new(system, conditions, ceiling == Ceiling::Rests) {
         Ok(steps) => steps,
         Err(why) => return nothing_known(system, why),
     };
@@ -339,7 +402,20 @@ fn answer_in_steps(system: &System, conditions: &Assignment, rests: bool) -> Gen
         return nothing_known(system, format!("too many of the random sequences met poles: {refused}"));
     }
     answer.open = None;
-    conclude(&mut answer, &[best], &bounds, true, rests);
+    let closed = system.closed_coordinates();
+    if bounds.is_ok() {
+        answer.closed_at_most = best.0;
+        if closed.len() > answer.dimension {
+            // what is known at the beginning counts as unknown
+            let mut all = system.clone();
+            all.known.retain(|symbol| !closed.contains(symbol));
+            answer.closed_at_most = match answer_in_steps(&all, conditions, ceiling) {
+                found if found.open.is_none() || ceiling != Ceiling::Rests => found.at_least,
+                _ => closed.len(),
+            };
+        }
+    }
+    conclude(&mut answer, &[best], &bounds, true, ceiling);
     answer
 }
 
@@ -350,6 +426,7 @@ fn nothing_known(system: &System, why: String) -> GenericAnswer {
         dimension: unknowns.len(),
         at_least: 0,
         at_most: unknowns.len(),
+        closed_at_most: system.closed_coordinates().len(),
         log2_error: f64::NEG_INFINITY,
         rounds: 0,
         order: 0,
@@ -359,18 +436,8 @@ fn nothing_known(system: &System, why: String) -> GenericAnswer {
 }
 
 /// Whether values of functions are known by their relations, so that a random one shows what the true one does.
-fn functions_are_known(equations: &mut Equations, rng: &mut ChaCha8Rng) -> bool {
-    let functions = std::mem::take(&mut equations.functions);
-    let angles = equations.angles.clone();
-    let known = functions.is_empty()
-        || independence::independent(
-            &mut equations.graph,
-            &functions,
-            &|symbol| angles.contains(&symbol),
-            rng,
-        );
-    equations.functions = functions;
-    known && (equations.roots == 0 || equations.roots <= MOST_ROOTS)
+fn functions_are_known(equations: &Equations) -> bool {
+    equations.related && (equations.roots == 0 || equations.roots <= MOST_ROOTS)
 }
 
 /// What follows from the ranks of each choice of signs.
@@ -379,7 +446,7 @@ fn conclude(
     best: &[(usize, Vec<bool>)],
     bounds: &Result<Rounds, String>,
     known_functions: bool,
-    rests: bool,
+    ceiling: Ceiling,
 ) {
     let ranks = || best.iter().map(|(rank, _)| *rank);
     let (least, most) = (ranks().min().unwrap_or(0), ranks().max().unwrap_or(0));
@@ -391,18 +458,26 @@ fn conclude(
                 .to_owned(),
         );
     }
-    match bounds {
-        Ok(bounds) if rests => {
+    match (bounds, ceiling) {
+        (Ok(bounds), Ceiling::Rests) => {
             answer.at_most = most;
             if most < answer.dimension {
                 answer.log2_error = bounds.log2_error;
             }
         }
-        Ok(_) if least < answer.dimension => {
-            answer.open =
-                Some("the fields leave the set: derivatives of higher orders may see more".to_owned());
+        (Ok(bounds), Ceiling::Around { closed, unknown }) => {
+            // where all that moves is spanned as around, longer derivatives lie in the span
+            let spanned = answer.closed_at_most == closed;
+            answer.at_most = if spanned { most.min(unknown) } else { unknown };
+            if answer.at_most < answer.dimension {
+                answer.log2_error = bounds.log2_error;
+            }
+            if answer.at_least < answer.at_most && answer.open.is_none() {
+                answer.open =
+                    Some("the fields leave the set: derivatives of higher orders may see more".to_owned());
+            }
         }
-        Err(why) if least < answer.dimension => answer.open = Some(why.clone()),
+        (Err(why), _) if least < answer.dimension => answer.open = Some(why.clone()),
         _ => {}
     }
     if least < most && answer.open.is_none() {

@@ -5,6 +5,7 @@ mod claims;
 mod entry;
 pub(super) mod extremes;
 pub(super) mod findings;
+mod motions;
 mod regime;
 mod source;
 pub(super) mod whole;

@@ -1,5 +1,7 @@
 //! Answers about ranks, as JSON and as text.
 
+use super::generic::{add_generic_json, generic_text};
+use super::motions::{motions_json, motions_text};
 use super::seen::{deviations_json, deviations_text, direction_text, place_text};
 use crate::number::rational_to_f64;
 use crate::observability::{NamedCoordinate, Spectrum, Stop};
@@ -99,7 +101,8 @@ pub(super) fn sweep_json(report: &SweepReport) -> Value {
                 (name.clone(), json!({ "exact": exact, "value": value }))
             }).collect::<serde_json::Map<_, _>>(),
             "vector": direction.states.iter().zip(&direction.vector).map(|(name, part)| {
-                (name.clone(), json!({ "exact": part.to_string(), "value": rational_to_f64(part) }))
+                let exact = direction.exact.then(|| part.to_string());
+                (name.clone(), json!({ "exact": exact, "value": rational_to_f64(part) }))
             }).collect::<serde_json::Map<_, _>>(),
         })).collect::<Vec<_>>(),
         "poles": report.poles,
@@ -120,6 +123,7 @@ pub(crate) fn stop_text(stop: Stop) -> &'static str {
         Stop::NoGrowth => "the rank stopped growing",
         Stop::Order => "the longest words that were allowed",
         Stop::TooMany => "there are too many longer words",
+        Stop::NotTaken => "none were asked for",
     }
 }
 
@@ -133,6 +137,8 @@ fn branch_json(branch: &BranchAnswer) -> Value {
     object["stopped_because"] = json!(stop_text(branch.stop));
     object["generic_rank"] = json!(branch.generic_rank);
     object["longer_words_cannot_raise_it"] = json!(branch.is_final);
+    add_generic_json(branch, &mut object);
+    object["unseen_fields"] = branch.motions.as_ref().map_or(Value::Null, motions_json);
     object["standard_deviations"] = branch.deviations.as_ref().map_or(Value::Null, deviations_json);
     object["own_rows"] = branch.rows.as_ref().map_or(Value::Null, sweep_json);
     object
@@ -143,6 +149,9 @@ pub fn rank_json(answer: &RankAnswer) -> Value {
     let mut branches: Vec<Value> = answer.branches.iter().map(branch_json).collect();
     let mut object = if branches.len() == 1 { branches.remove(0) } else { total_json(answer, branches) };
     object["file"] = json!(answer.file);
+    if !answer.left_out.is_empty() {
+        object["no_state_was_drawn_where"] = json!(answer.left_out);
+    }
     object["fields"] = fields_json(&answer.fields);
     object["dimension"] = json!(answer.dimension);
     object["known"] = json!(answer.known);
@@ -284,6 +293,11 @@ pub fn rank_text(answer: &RankAnswer) -> String {
                 values_text(&branch.held)
             );
         }
+        generic_text(branch, &mut out);
+        if branch.stop == Stop::NotTaken {
+            let _ = writeln!(out, "no states were sampled (--samples N draws N)");
+            continue;
+        }
         let _ = writeln!(out, "words that were needed: {}", branch.words.join(", "));
         let _ =
             writeln!(out, "words of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
@@ -291,11 +305,15 @@ pub fn rank_text(answer: &RankAnswer) -> String {
             let _ =
                 writeln!(out, "longer words may still raise the rank: nothing here says that they cannot");
         }
+        branch.motions.iter().for_each(|found| motions_text(found, &mut out));
         sweep_text("the full codistribution", &branch.full, &mut out);
         branch.deviations.iter().for_each(|found| deviations_text(found, &mut out));
         if let Some(rows) = &branch.rows {
             sweep_text("the file's own choice of rows", rows, &mut out);
         }
+    }
+    for place in &answer.left_out {
+        let _ = writeln!(out, "no state of the sample box was found where {place}");
     }
     out.trim_end().to_owned()
 }

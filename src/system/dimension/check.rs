@@ -27,6 +27,8 @@ pub(crate) struct Dimensions {
     /// Whether the file, or one that it imports, declares a dimension.
     pub(super) is_declared: bool,
     pub(super) solution: Solution,
+    /// The dimensions of powers whose exponents are no numbers, as `length^(n)`, by what they are called.
+    pub(super) symbolic: HashMap<String, Form>,
     pub(super) symbols: Arc<BTreeMap<Symbol, Form>>,
     pub(super) definitions: Arc<HashMap<String, Quantity>>,
     /// The dimension by which a derivative along the field differs from what is differentiated.
@@ -117,9 +119,12 @@ impl Checker<'_> {
             let form = theirs.resolve(form, &mut Default::default());
             let mut found = Form::known(form.known);
             for (unknown, power) in &form.unknown {
-                let place = places
-                    .entry(*unknown)
-                    .or_insert_with(|| mine.unknown(theirs.origin(*unknown).0.to_owned()));
+                let place = places.entry(*unknown).or_insert_with(|| {
+                    match (theirs.origin(*unknown).0.to_owned(), theirs.is_rigid(*unknown)) {
+                        (of, true) => mine.rigid(of),
+                        (of, false) => mine.unknown(of),
+                    }
+                });
                 found = found.times_power(place, power);
             }
             found

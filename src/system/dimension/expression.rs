@@ -30,6 +30,7 @@ impl Checker<'_> {
                 }
                 _ => Quantity::Open,
             },
+            ExprKind::RealPower(base, exponent) => self.real_power(base, exponent),
             ExprKind::Matrix(rows) => self.blocks(rows),
             ExprKind::At(inner, list) => self.at(inner, list),
             // an index without a value is told where names are
@@ -198,8 +199,9 @@ impl Checker<'_> {
             })
             .collect();
         let is_function = Function::ALL.iter().any(|function| function.name() == name)
-            || ["tan", "cot", "sec", "csc"].contains(&name);
+            || ["tan", "cot", "sec", "csc", "sinh", "cosh", "tanh"].contains(&name);
         match (name, tables.as_slice()) {
+            ("abs" | "sign" | "min" | "max" | "atan2", tables) => self.composed(name, tables, &place),
             ("rank" | "pole", _) => Quantity::scalar(Entry::number()),
             ("sqrt", [one]) if one.is_scalar() => {
                 let entry = match &one.entries[0] {

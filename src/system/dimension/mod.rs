@@ -16,6 +16,7 @@ mod definition;
 mod exponents;
 mod expression;
 mod form;
+mod functions;
 mod matrices;
 mod mistakes;
 mod problem;

@@ -13,6 +13,10 @@ pub(super) enum Asked {
     Products(&'static str),
     /// The argument of a function has none.
     Argument(String),
+    /// The arguments of a function that compares them.
+    Arguments(String),
+    /// An exponent has none.
+    Exponent,
     /// What a symbol is replaced by.
     Replaced(String),
     /// The rate of a state in a field.
@@ -34,6 +38,8 @@ impl Asked {
             Asked::Relation(sign) => format!("two sides of two dimensions: {left} {sign} {right}"),
             Asked::Products(what) => format!("{what} adds products of two dimensions: {left} + {right}"),
             Asked::Argument(name) => format!("'{name}' takes a number without dimension, not {left}"),
+            Asked::Arguments(name) => format!("'{name}' of two dimensions: {left} and {right}"),
+            Asked::Exponent => format!("an exponent is a number without dimension, not {left}"),
             Asked::Replaced(name) => format!("'{name}' is {left}, and what stands for it is {right}"),
             Asked::Rate { state, field } => {
                 format!("in '{field}' the rate of '{state}' has to be {left}, and is {right}")
@@ -50,7 +56,8 @@ impl Asked {
             Asked::Sum(_) => "these cannot be added",
             Asked::Relation(_) => "these cannot be compared",
             Asked::Products(_) => "in this",
-            Asked::Argument(_) => "this function",
+            Asked::Argument(_) | Asked::Arguments(_) => "this function",
+            Asked::Exponent => "this exponent",
             Asked::Replaced(_) | Asked::Rate { .. } => "of two dimensions",
             Asked::Declared(_) => "this is something else",
             Asked::Tolerance => "this tolerance",
@@ -67,7 +74,7 @@ impl Asked {
                 "a number has no dimension; give what it stands for a name and a dimension, as in \
                  'param k : length = 2'",
             ),
-            Asked::Argument(_) => Some("divide by something of the same dimension"),
+            Asked::Argument(_) | Asked::Exponent => Some("divide by something of the same dimension"),
             _ => None,
         }
     }

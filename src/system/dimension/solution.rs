@@ -9,6 +9,8 @@ use std::collections::BTreeSet;
 #[derive(Clone, Debug)]
 struct Entry {
     of: String,
+    /// Whether it is what it is, as `length^n` is: no equation says what it has to be.
+    rigid: bool,
     /// What it is, in others that are not solved for at the time, and where the equation stands; `None` is an import.
     solved: Option<(Form, Option<Span>)>,
 }
@@ -31,8 +33,19 @@ pub(super) struct Conflict {
 impl Solution {
     /// An unknown more.
     pub fn unknown(&mut self, of: String) -> Form {
-        self.entries.push(Entry { of, solved: None });
+        self.entries.push(Entry { of, rigid: false, solved: None });
         Form::unknown(self.entries.len() - 1)
+    }
+
+    /// A dimension more that nothing else is, and no number.
+    pub fn rigid(&mut self, of: String) -> Form {
+        self.entries.push(Entry { of, rigid: true, solved: None });
+        Form::unknown(self.entries.len() - 1)
+    }
+
+    /// Whether an unknown is none that an equation may decide.
+    pub fn is_rigid(&self, unknown: Unknown) -> bool {
+        self.entries[unknown].rigid
     }
 
     /// What a form is by all that is known; the unknowns that were put in are noted.
@@ -72,8 +85,9 @@ impl Solution {
     pub fn equate(&mut self, left: &Form, right: &Form, place: Option<Span>) -> Result<(), Box<Conflict>> {
         let mut decided = BTreeSet::new();
         let difference = self.resolve(&left.over(right), &mut decided);
-        let Some((last, power)) = difference.unknown.last().cloned() else {
-            if difference.known.is_none() {
+        let open = difference.unknown.iter().rev().find(|(unknown, _)| !self.is_rigid(*unknown));
+        let Some((last, power)) = open.cloned() else {
+            if difference.known.is_none() && difference.unknown.is_empty() {
                 return Ok(());
             }
             let mut decided = BTreeSet::new();
@@ -106,7 +120,10 @@ impl Solution {
         }
         let known = super::exponents::Base::ALL;
         let known = known.iter().map(|base| (base.name().to_owned(), form.known.exponent(*base)));
-        let name = |unknown: Unknown| format!("[{}]", self.entries[unknown].of.trim_matches('\''));
+        let name = |unknown: Unknown| match &self.entries[unknown] {
+            Entry { of, rigid: true, .. } => of.clone(),
+            Entry { of, .. } => format!("[{}]", of.trim_matches('\'')),
+        };
         fraction(known.chain(form.unknown.iter().map(|(unknown, power)| (name(*unknown), power))))
     }
 }

@@ -6,7 +6,7 @@ use crate::expression::notation::{Fence, Formula, FormulaName, FormulaSign};
 use crate::expression::syntax::{Expr, ExprKind, Relation};
 
 /// Functions whose names stand as they are, or with another word.
-const FUNCTIONS: [(&str, &str); 11] = [
+const FUNCTIONS: [(&str, &str); 15] = [
     ("sin", "sin"),
     ("cos", "cos"),
     ("tan", "tan"),
@@ -18,7 +18,14 @@ const FUNCTIONS: [(&str, &str); 11] = [
     ("atan", "arctan"),
     ("exp", "exp"),
     ("log", "log"),
+    ("sinh", "sinh"),
+    ("cosh", "cosh"),
+    ("tanh", "tanh"),
+    ("sign", "sgn"),
 ];
+
+/// Functions of several arguments, and how they are called.
+const OF_SEVERAL: [(&str, &str); 3] = [("min", "min"), ("max", "max"), ("atan2", "atan2")];
 
 impl FormulaLayout<'_> {
     pub(super) fn power(&self, base: &Expr, exponent: i32) -> Formula {
@@ -36,12 +43,17 @@ impl FormulaLayout<'_> {
                 let arguments = arguments.iter().map(|argument| self.expression(argument)).collect();
                 Formula::Row(vec![word, round(commas(arguments))])
             }
-            _ => match self.at_least(base, Binding::Atom) {
-                Formula::Scripts { base, below, above: None } => {
-                    Formula::Scripts { base, below, above: Some(Box::new(above)) }
-                }
-                base => scripts(base, None, Some(above)),
-            },
+            _ => self.raised(base, above),
+        }
+    }
+
+    /// A base with an exponent above it.
+    pub(super) fn raised(&self, base: &Expr, above: Formula) -> Formula {
+        match self.at_least(base, Binding::Atom) {
+            Formula::Scripts { base, below, above: None } => {
+                Formula::Scripts { base, below, above: Some(Box::new(above)) }
+            }
+            base => scripts(base, None, Some(above)),
         }
     }
 
@@ -87,6 +99,11 @@ impl FormulaLayout<'_> {
             }
             (name, [inner]) if FUNCTIONS.iter().any(|(known, _)| *known == name) => {
                 self.applied(Formula::Word(function_word(name)), inner, closed)
+            }
+            (name, [_, _, ..])
+                if let Some((_, word)) = OF_SEVERAL.iter().find(|(known, _)| *known == name) =>
+            {
+                (Formula::Row(vec![Formula::Word(word), round(all())]), Binding::Prefix)
             }
             _ => (Formula::Row(vec![self.name(name), round(all())]), Binding::Prefix),
         }

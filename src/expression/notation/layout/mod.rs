@@ -24,9 +24,9 @@ enum Binding {
 }
 
 /// Upright words with a meaning: a name may not look like one.
-const WORDS: [&str; 17] = [
+const WORDS: [&str; 24] = [
     "sin", "cos", "tan", "cot", "sec", "csc", "arcsin", "arccos", "arctan", "exp", "log", "det", "rank",
-    "pole", "lg", "ln", "mod",
+    "pole", "lg", "ln", "mod", "sinh", "cosh", "tanh", "min", "max", "sgn", "atan2",
 ];
 
 /// Lays out the expressions of one text.
@@ -125,6 +125,9 @@ impl<'a> FormulaLayout<'a> {
             ExprKind::Sum(terms) => self.sum(terms),
             ExprKind::Product(factors) => self.product(factors),
             ExprKind::Power(base, exponent) => (self.power(base, *exponent), Binding::Power),
+            ExprKind::RealPower(base, exponent) => {
+                (self.raised(base, self.expression(exponent)), Binding::Power)
+            }
             ExprKind::Matrix(rows) => {
                 let rows = rows.iter().map(|row| row.iter().map(|entry| self.expression(entry)).collect());
                 (Formula::Matrix(rows.collect()), Binding::Atom)
@@ -246,6 +249,9 @@ fn collect(expr: &Expr, names: &mut BTreeSet<String>, derives: &mut bool) {
             parts.iter().for_each(|(_, part)| collect(part, names, derives));
         }
         ExprKind::Power(base, _) => collect(base, names, derives),
+        ExprKind::RealPower(base, exponent) => {
+            [base, exponent].into_iter().for_each(|part| collect(part, names, derives));
+        }
         ExprKind::Matrix(rows) => rows.iter().flatten().for_each(|entry| collect(entry, names, derives)),
         ExprKind::At(value, list) => {
             collect(value, names, derives);

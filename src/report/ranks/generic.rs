@@ -1,0 +1,80 @@
+//! What is seen at almost all states, and of each unknown whether it is.
+
+use super::answer::finite;
+use crate::observability::{GenericAnswer, Seen};
+use crate::sweep::BranchAnswer;
+use crate::system::UnknownKind;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// What is said of an unknown.
+fn verdict(kind: UnknownKind, seen: Seen) -> &'static str {
+    match (kind, seen) {
+        (UnknownKind::Parameter, Seen::Yes) => "locally identifiable",
+        (_, Seen::Yes) => "locally observable",
+        (UnknownKind::Parameter, Seen::No) => "not identifiable",
+        (_, Seen::No) => "not observable",
+        (_, Seen::Undecided) => "undecided",
+    }
+}
+
+/// The answer and the table of unknowns, as the fields of an object.
+pub(super) fn add_generic_json(branch: &BranchAnswer, object: &mut Value) {
+    let generic = &branch.generic;
+    object["generic"] = json!({
+        "rank": generic.rank(),
+        "at_least": generic.at_least,
+        "at_most": generic.at_most,
+        "log2_error": finite(generic.log2_error),
+        "points": generic.rounds,
+        "derivatives": generic.order,
+        "open": generic.open,
+    });
+    let unknown = |((name, kind), (_, seen)): (&(String, UnknownKind), &(_, Seen))| json!({ "name": name, "kind": kind.name(), "verdict": verdict(*kind, *seen) });
+    let unknowns = branch.unknowns.iter().zip(&generic.unknowns).map(unknown);
+    object["unknowns"] = unknowns.collect();
+    object["degrees_of_freedom_left"] = json!(generic.rank().map(|rank| generic.dimension - rank));
+}
+
+/// How the answer is known, in brackets.
+fn certainty(generic: &GenericAnswer) -> String {
+    match generic.log2_error.is_finite() {
+        false => "proved by a minor".to_owned(),
+        true => format!("but for an error of probability below 2^{:.0}", generic.log2_error.ceil()),
+    }
+}
+
+/// The answer and the table of unknowns, in words.
+pub(super) fn generic_text(branch: &BranchAnswer, out: &mut String) {
+    let generic = &branch.generic;
+    let dimension = generic.dimension;
+    let _ = match generic.rank() {
+        Some(rank) if rank == dimension => {
+            writeln!(
+                out,
+                "at almost all states the rank is {rank} of {dimension}: all is seen ({})",
+                certainty(generic)
+            )
+        }
+        Some(rank) => writeln!(
+            out,
+            "at almost all states the rank is {rank} of {dimension}: {} left ({})",
+            match dimension - rank {
+                1 => "1 degree of freedom is".to_owned(),
+                free => format!("{free} degrees of freedom are"),
+            },
+            certainty(generic)
+        ),
+        None => writeln!(
+            out,
+            "at almost all states the rank is at least {} and at most {} of {dimension}: {}",
+            generic.at_least,
+            generic.at_most,
+            generic.open.as_deref().unwrap_or("nothing more is known")
+        ),
+    };
+    let width = branch.unknowns.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    for ((name, kind), (_, seen)) in branch.unknowns.iter().zip(&generic.unknowns) {
+        let _ = writeln!(out, "  {name:<width$}  {:<9}  {}", kind.name(), verdict(*kind, *seen));
+    }
+}
