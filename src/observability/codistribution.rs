@@ -482,7 +482,8 @@ pub(super) fn needed(
         // what functions satisfy may make a row zero, or a multiple of others
         let guards = system.smooth_guards(&system.moving_fields());
         let guards = system.substitute_guards(&guards, conditions);
-        let columns = system.unknown_count();
+        // rows may have more columns than there are unknowns: those of all that moves, or fewer
+        let columns = rows.first().map_or(1, Vec::len);
         if let Ok(found) = related_rank(system, &as_written_there, columns, &guards, &mut rng) {
             return Ok((found.needed, !found.exact));
         }

@@ -300,10 +300,10 @@ pub enum Ceiling {
 
 /// What is seen at almost all states that satisfy the conditions.
 pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
-    let rests = ceiling == Ceiling::Rests;
     if system.time == Time::Discrete {
         return answer_in_steps(system, conditions, ceiling);
     }
+    let rests = ceiling == Ceiling::Rests;
     let probe = Probe::new(system, conditions);
     let columns = probe.equations.columns.clone();
     let dimension = columns.len();
@@ -360,9 +360,8 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
 
 /// The same in discrete time.
 fn answer_in_steps(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
-    let rests = ceiling == Ceiling::Rests;
     let mut answer = nothing_known(system, String::new());
-    let steps = match steps::Steps::new(system, conditions, rests) {
+    let steps = match steps::Steps::new(system, conditions, ceiling == Ceiling::Rests) {
         Ok(steps) => steps,
         Err(why) => return nothing_known(system, why),
     };
@@ -403,19 +402,19 @@ fn answer_in_steps(system: &System, conditions: &Assignment, ceiling: Ceiling) -
         return nothing_known(system, format!("too many of the random sequences met poles: {refused}"));
     }
     answer.open = None;
-    let all_are_unknown = system.closed_coordinates().len() == answer.dimension;
-    answer.closed_at_most = match ceiling {
-        Ceiling::Rests if bounds.is_ok() && all_are_unknown => best.0,
-        Ceiling::Rests => system.closed_coordinates().len(),
-        // what is known at the beginning is not followed: nothing is said to be spanned
-        Ceiling::Around { .. } => {
-            if all_are_unknown {
-                best.0
-            } else {
-                0
-            }
+    let closed = system.closed_coordinates();
+    if bounds.is_ok() {
+        answer.closed_at_most = best.0;
+        if closed.len() > answer.dimension {
+            // what is known at the beginning counts as unknown
+            let mut all = system.clone();
+            all.known.retain(|symbol| !closed.contains(symbol));
+            answer.closed_at_most = match answer_in_steps(&all, conditions, ceiling) {
+                found if found.open.is_none() || ceiling != Ceiling::Rests => found.at_least,
+                _ => closed.len(),
+            };
         }
-    };
+    }
     conclude(&mut answer, &[best], &bounds, true, ceiling);
     answer
 }
