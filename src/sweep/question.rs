@@ -409,6 +409,12 @@ fn answer_branch(
     codistribution.generic.seen_at_states(&full);
     let known = codistribution.generic.is_final() && question.order.is_none();
     let motions = motions(system, &codistribution, &conditions, &given);
+    let generic_rank =
+        codistribution.generic.rank().filter(|_| known).unwrap_or(codistribution.generic_rank());
+    // fields settle what the rank of all words is, and these words may be fewer
+    let settled = motions.as_ref().is_some_and(|found| {
+        found.settles_the_rank && generic_rank + found.directions() == system.unknown_count()
+    });
     let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
         word: word.text(system),
         entries: entries.clone(),
@@ -428,14 +434,8 @@ fn answer_branch(
         unknowns: named_unknowns(system),
         order: codistribution.order,
         stop: codistribution.stop,
-        generic_rank: codistribution
-            .generic
-            .rank()
-            .filter(|_| known)
-            .unwrap_or(codistribution.generic_rank()),
-        is_final: codistribution.is_final()
-            || known
-            || motions.as_ref().is_some_and(|found| found.settles_the_rank),
+        generic_rank,
+        is_final: codistribution.is_final() || known || settled,
         motions,
         cut_off: question.order.is_none()
             && !known

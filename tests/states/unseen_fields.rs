@@ -9,7 +9,8 @@ use palmistry::System;
 use palmistry::expression::Program;
 use palmistry::number::Floats;
 use palmistry::observability::{
-    Codistribution, Length, UnseenMotions, differential_by_duals, reparametrise, unseen_motions,
+    Codistribution, Length, NotReparametrised, UnseenMotions, differential_by_duals, reparametrise,
+    unseen_motions,
 };
 use palmistry::report::unseen_field_text;
 use palmistry::system::Assignment;
@@ -360,6 +361,26 @@ fn functions_that_are_not_rational() {
     no_word_changes(&system, &found);
     let reduced = is_reparametrised(&system, text, &found);
     assert!(reduced.contains("z1' = -z1*z2"), "{reduced}");
+}
+
+/// Constants to be identified and a signal that nobody knows are unknowns like states; a known signal has no column, and a system that
+/// has one is not written anew.
+#[test]
+fn signals_and_constants() {
+    check(&Case {
+        text: "system \"a force in unknown units\"  state x  param a unknown, s unknown  unknown w(t)
+            drift f x' = -a*x + s*w  output x",
+        fields: &["s d/ds - w d/dw - w' d/dw'"],
+        seen: &["x", "a"],
+        functions: &["w/w'", "s*w"],
+    });
+    let text = "system \"a known force\"  state x  param a unknown, b unknown, c unknown  known u(t)
+        drift f x' = -a*x + b*c*u  output x";
+    let (system, found) = found(text);
+    assert_eq!(fields(&found), ["b d/db - c d/dc"]);
+    assert_eq!((found.seen_names.join(" "), functions(&found)), ("x a".to_owned(), vec!["b*c"]));
+    no_word_changes(&system, &found);
+    assert_eq!(reparametrise(&system, &found, "a.proof"), Err(NotReparametrised::KnownSignals));
 }
 
 /// A chain of twenty, 61 unknowns, in a time that a test has: the scalings of each link.
