@@ -40,7 +40,7 @@ def theirs(report):
     return (generic["at_least"] if generic["rank"] is None else generic["rank"]), generic["rank"] is not None, words
 
 
-def compare(binary, text, folder, limit=20, samples=3):
+def compare(binary, text, folder, limit=20, samples=0):
     """What they say beside what is so: a word, and a line."""
     path = Path(folder) / "system.proof"
     path.write_text(text)
@@ -207,6 +207,7 @@ def main():
     parser.add_argument("binary")
     parser.add_argument("--from", dest="first", type=int, default=1)
     parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--samples", type=int, default=0, help="states at which the rank is decided as well (default %(default)s)")
     parser.add_argument("--edges", action="store_true")
     parser.add_argument(
         "--declared", action="store_true", help="constants, signals and experiments as the language declares them"
@@ -233,7 +234,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for name, text in systems:
             decider = compare_accessible if options.accessible else compare_fields if options.fields else compare
-            word, line = decider(options.binary, text, folder)
+            more = {"samples": options.samples} if decider is compare else {}
+            word, line = decider(options.binary, text, folder, **more)
             counts[word] += 1
             if word not in ("agrees", "no state"):
                 name = re.sub(r"\W+", "_", str(name))
