@@ -9,6 +9,7 @@ answer differs.
 import argparse
 import collections
 import json
+import math
 import re
 import subprocess
 import sys
@@ -16,7 +17,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from generic_rank import NoSuchState, Prime, Reals, Series, accessible_rank, decide, insert
+from generic_rank import NoSuchState, Prime, Reals, Series, accessible_rank, constant, decide, insert
 from proof_file import TOKEN, ProofFile
 from random_systems import declared_system, edge_systems, random_system, related_system
 
@@ -31,6 +32,20 @@ def truth(text):
     if answer["rank"] < answer["dimension"]:
         answer = decide(text, tries=1, numbers=lambda seed: Prime(seed, 2**127 - 1))
     return answer
+
+
+def branch_of(report, text):
+    """The part of an answer, given for each choice of signs, that the middle of the sample box is in."""
+    if "branches" not in report:
+        return report
+    model, middle = ProofFile(text), {name: getattr(math, name) for name in ("exp", "log", "sqrt", "sin", "cos", "tan", "atan")}
+    reals = Reals(1)
+    for name, (low, high) in model.ranges.items():
+        middle[name] = float(constant(model, low, reals) + constant(model, high, reals)) / 2
+    for branch in report["branches"]:
+        if all(eval(condition.replace("^", "**"), {"__builtins__": {}}, middle) for condition in branch["conditions"]):
+            return branch
+    raise LookupError(f"the sample box is in none of {[branch['conditions'] for branch in report['branches']]}")
 
 
 def theirs(report):
@@ -61,6 +76,10 @@ def compare(binary, text, folder, limit=20, samples=0):
     except json.JSONDecodeError:
         word = "panic" if "panicked" in run.stderr or run.returncode not in (0, 1, 2, 3) else "refused"
         return word, f"status {run.returncode}: {' '.join(run.stderr.split())[:300]}"
+    try:
+        report = branch_of(report, text)
+    except LookupError as error:
+        return "BRANCH", str(error)
     rank, final, words = theirs(report)
     of = f"{expected['rank']} of {expected['dimension']}"
     ranks = {int(rank) for rank in (report.get("rank_histogram") or {})}
