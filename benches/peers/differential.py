@@ -9,6 +9,7 @@ answer differs.
 import argparse
 import collections
 import json
+import math
 import re
 import subprocess
 import sys
@@ -16,7 +17,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from generic_rank import NoSuchState, Prime, Reals, Series, accessible_rank, decide, insert
+from generic_rank import NoSuchState, Prime, Reals, Series, accessible_rank, constant, decide, insert
 from proof_file import TOKEN, ProofFile
 from random_systems import declared_system, edge_systems, random_system, related_system
 
@@ -33,6 +34,20 @@ def truth(text):
     return answer
 
 
+def branch_of(report, text):
+    """The part of an answer, given for each choice of signs, that the middle of the sample box is in."""
+    if "branches" not in report:
+        return report
+    model, middle = ProofFile(text), {name: getattr(math, name) for name in ("exp", "log", "sqrt", "sin", "cos", "tan", "atan")}
+    reals = Reals(1)
+    for name, (low, high) in model.ranges.items():
+        middle[name] = float(constant(model, low, reals) + constant(model, high, reals)) / 2
+    for branch in report["branches"]:
+        if all(eval(condition.replace("^", "**"), {"__builtins__": {}}, middle) for condition in branch["conditions"]):
+            return branch
+    raise LookupError(f"the sample box is in none of {[branch['conditions'] for branch in report['branches']]}")
+
+
 def theirs(report):
     """Rank, whether it is said to be final, and the unknowns that are said (not) to be seen, from the JSON of `rank`."""
     generic = report["generic"]
@@ -40,7 +55,7 @@ def theirs(report):
     return (generic["at_least"] if generic["rank"] is None else generic["rank"]), generic["rank"] is not None, words
 
 
-def compare(binary, text, folder, limit=20, samples=3):
+def compare(binary, text, folder, limit=20, samples=0):
     """What they say beside what is so: a word, and a line."""
     path = Path(folder) / "system.proof"
     path.write_text(text)
@@ -61,6 +76,10 @@ def compare(binary, text, folder, limit=20, samples=3):
     except json.JSONDecodeError:
         word = "panic" if "panicked" in run.stderr or run.returncode not in (0, 1, 2, 3) else "refused"
         return word, f"status {run.returncode}: {' '.join(run.stderr.split())[:300]}"
+    try:
+        report = branch_of(report, text)
+    except LookupError as error:
+        return "BRANCH", str(error)
     rank, final, words = theirs(report)
     of = f"{expected['rank']} of {expected['dimension']}"
     ranks = {int(rank) for rank in (report.get("rank_histogram") or {})}
@@ -207,6 +226,7 @@ def main():
     parser.add_argument("binary")
     parser.add_argument("--from", dest="first", type=int, default=1)
     parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--samples", type=int, default=0, help="states at which the rank is decided as well (default %(default)s)")
     parser.add_argument("--edges", action="store_true")
     parser.add_argument(
         "--declared", action="store_true", help="constants, signals and experiments as the language declares them"
@@ -233,7 +253,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for name, text in systems:
             decider = compare_accessible if options.accessible else compare_fields if options.fields else compare
-            word, line = decider(options.binary, text, folder)
+            more = {"samples": options.samples} if decider is compare else {}
+            word, line = decider(options.binary, text, folder, **more)
             counts[word] += 1
             if word not in ("agrees", "no state"):
                 name = re.sub(r"\W+", "_", str(name))

@@ -33,10 +33,10 @@ SIZES = [15, 24, 60, 100, 150, 200, 300]
 CURVES = {  # what the families are called in the book
     "ring": "ring of oscillators, one output",
     "chain": "chain of compartments, one input, one output",
-    "two_inputs": "two inputs on every state, one output",
     "lotka_volterra": "Lotka-Volterra, all species seen",
     "masses": "masses between springs, one input, one output",
     "goodwin": "feedback loop, one output",
+    "two_inputs": "two inputs on every state, one output",
 }
 MODELS = """c2m cr bolie two_compartments two_compartments_fed mammillary3 michaelis_menten lotka_volterra_fed
 predator_logistic sir_scaled seir_known_n seir2 hiv_load hiv_eta integral_feedback dynamical_compensation goodwin sirs_forced siwr siwr_two
@@ -53,7 +53,7 @@ def commands(binary):
 
     itself = lambda report: (report["rank"], report["seconds"])
     return {
-        OURS: ([binary, "rank", "--json"], ours),
+        OURS: ([binary, "rank", "--json", "--samples", "0"], ours),
         PLAIN: ([sys.executable, str(HERE / "generic_rank.py"), "--once"], itself),
         STRIKEPY: ([sys.executable, str(HERE / "peer_strikepy.py")], itself),
     }
@@ -159,7 +159,9 @@ class Measure:
             note(key)
             self.kept[key] = run(*self.programs[program], path, self.options.limit, self.options.rounds)
             if self.options.results:
-                self.options.results.write_text(json.dumps(self.kept, indent=1))
+                whole = self.options.results.with_suffix(".new")  # in one step: another run may read it
+                whole.write_text(json.dumps(self.kept, indent=1))
+                whole.replace(self.options.results)
         return self.kept[key]
 
 
