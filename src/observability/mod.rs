@@ -53,7 +53,7 @@ pub use locus::{Locus, LocusError};
 pub use nested::{differential_by_duals, lie_derivative_by_duals};
 #[doc(hidden)]
 pub use reduction::Reduction;
-pub(crate) use related_rank::{RelatedRank, related_rank};
+pub(crate) use related_rank::related_rank;
 #[doc(hidden)]
 pub use series::lie_derivative_by_series;
 pub(crate) use signs::{Edges, SignCell, in_sign_cell, sign_cells};
