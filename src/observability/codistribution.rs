@@ -1,6 +1,7 @@
 //! The observability codistribution (equations 4.36 and 4.37): the differentials of the outputs and of their repeated
 //! Lie derivatives along words of fields, added shortest first.
 
+use super::composition;
 use super::conditions::{all_vanish, vanishes};
 use super::elimination::independent_rows;
 use super::generic::{Ceiling, GenericAnswer, generic_answer};
@@ -8,7 +9,7 @@ use super::related_rank::related_rank;
 use super::series::lie_derivative_by_series;
 use crate::expression::{NodeId, Program, Symbol, draw_residues, expand_angles, gradient};
 use crate::number::PrimeField;
-use crate::system::{Assignment, System};
+use crate::system::{Assignment, System, Time};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -18,7 +19,7 @@ pub const OWN_ROWS: &str = "rows";
 /// A repeated Lie derivative of an output: `L_{X1} L_{X2} ... h`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// The fields, outermost first, by their places in the system.
+    /// The fields, outermost first, by their places in the system. In discrete time the drift for each step.
     pub fields: Vec<usize>,
     /// The output, by its place in the system.
     pub output: usize,
@@ -216,7 +217,11 @@ impl Codistribution {
             Ceiling::Around { closed, .. } => closed,
         };
         let invariant = frame.around == Ceiling::Rests;
+        let steps = composition::steps(system, conditions)?;
         let (at_least, longest, most) = match length {
+            Length::UntilItStops if invariant && let Some(steps) = steps => {
+                (steps.at_least, steps.most.max(LONGEST), MOST_WORDS)
+            }
             Length::UntilItStops if invariant => (0, LONGEST, MOST_WORDS),
             Length::UntilItStops => (closed.len(), closed.len(), PATIENCE),
             Length::Exactly(order) => (order, order, MOST_WORDS),
@@ -281,6 +286,7 @@ impl Codistribution {
         if length == Length::UntilItStops
             && missing
             && !cut_off
+            && system.time == Time::Continuous
             && matches!(result.stop, Stop::TooMany | Stop::Order)
         {
             result.take_by_need(system, conditions, &fields)?;
@@ -443,7 +449,8 @@ const SERIES_FROM: usize = 5;
 
 /// The same Lie derivative in the fewer operations: as it was derived, or by series.
 fn cheaper(system: &mut System, word: &Word, derived: NodeId) -> NodeId {
-    if word.fields.len() < SERIES_FROM {
+    // series are of flows
+    if word.fields.len() < SERIES_FROM || system.time == Time::Discrete {
         return derived;
     }
     let operations = |system: &System, value| system.graph.reachable([value]).len();

@@ -8,7 +8,7 @@
 
 use super::error::Problem;
 use super::grammar::Item;
-use super::model::{Assignment, Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
+use super::model::{Assignment, Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Time, Value};
 use super::signals::{DeclaredInitial, DeclaredSignal, Derivatives, Knowledge, NOWHERE};
 use super::unknowns::{Signal, UnknownKind, next_derivative};
 use super::written::Written;
@@ -298,7 +298,18 @@ impl System {
     fn chains(&mut self) -> Vec<(Symbol, NodeId)> {
         let links = self.coordinates.signals.iter().flat_map(|signal| signal.chain.windows(2));
         let links: Vec<(Symbol, Symbol)> = links.map(|pair| (pair[0], pair[1])).collect();
-        links.into_iter().map(|(link, next)| (link, self.graph.symbol(next))).collect()
+        let mut rate = |(link, next): (Symbol, Symbol)| {
+            let difference = self.graph.symbol(next);
+            let value = match self.time {
+                Time::Continuous => difference,
+                Time::Discrete => {
+                    let before = self.graph.symbol(link);
+                    self.graph.add(before, difference)
+                }
+            };
+            (link, value)
+        };
+        links.into_iter().map(&mut rate).collect()
     }
 
     /// What a drift moves besides: signals, and the states in the other experiments.

@@ -44,6 +44,8 @@ pub(crate) enum Item {
         name: Name,
         components: Vec<(Name, Expr)>,
         others_are_zero: bool,
+        /// Whether it takes states to their successors, `x+ = e`, and is no field.
+        is_map: bool,
     },
     Output(Vec<OutputSyntax>),
     /// Outputs that are zero: `output 0 = y`.
@@ -90,6 +92,9 @@ pub struct Statement {
     pub on_sample: bool,
     /// `where a = b, c > d, ...`
     pub conditions: Vec<Equation>,
+    /// `except where a = b, c = d or e = f`: of a rank at all states, the sets that are left out, each by its equations; none
+    /// of them where it says `everywhere`, and nothing where the rank is that at almost all states.
+    pub except: Option<Vec<Vec<Equation>>>,
     /// The whole, in the text.
     pub span: Span,
 }
@@ -124,6 +129,11 @@ impl Statement {
     /// All that is said, one relation after the other.
     pub fn relations(&self) -> impl Iterator<Item = &Equation> {
         std::iter::once(&self.equation).chain(&self.further)
+    }
+
+    /// The same, and all that stands behind `where` and `except where`.
+    pub fn all_equations(&self) -> impl Iterator<Item = &Equation> {
+        self.relations().chain(&self.conditions).chain(self.except.iter().flatten().flatten())
     }
 }
 
@@ -288,8 +298,17 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     ))
     .parse_next(input)?;
     let title = cut_err(name).context("the field's name").parse_next(input)?;
-    let component = |input: &mut Text<'_>| -> Read<Vec<(Name, Expr)>> {
-        let state = moved(input)?;
+    let mut time = None;
+    let mut component = |input: &mut Text<'_>| -> Read<Vec<(Name, Expr)>> {
+        let begin = input.current_token_start();
+        let (state, steps) = moved(input)?;
+        if *time.get_or_insert(steps) != steps {
+            let help = "x' is a rate of change, x+ the value after a step: a system has one of the two";
+            return stop(begin, "one kind of time in a field", Some(help.to_owned()));
+        }
+        if steps && state.name == "others" {
+            return stop(begin, "the name of a state: one that is not named stays as it is", None);
+        }
         cut_err(sign("=")).context("'=' and the rate of change").parse_next(input)?;
         let rate = cut_err(sum).parse_next(input)?;
         let loops = loops(input)?;
@@ -300,7 +319,7 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     };
     let mut components: Vec<(Name, Expr)> = Vec::new();
     while !begins(input)
-        && let Some(found) = opt(component).parse_next(input)?
+        && let Some(found) = opt(component.by_ref()).parse_next(input)?
     {
         components.extend(found);
     }
@@ -311,7 +330,8 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
         return stop(value.span.start, "0: the components that are not named can only be zero", None);
     }
     let others_are_zero = !others.is_empty();
-    Ok(Item::Field { role, name: title, components, others_are_zero })
+    let is_map = time == Some(true);
+    Ok(Item::Field { role, name: title, components, others_are_zero, is_map })
 }
 
 fn sample(input: &mut Text<'_>) -> Read<Item> {
@@ -391,7 +411,23 @@ pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
     let given = opt(preceded(keyword("where"), conditions)).parse_next(input)?;
     let conditions: Vec<Equation> = given.unwrap_or_default();
     end = conditions.last().map_or(end, |last| last.span.end);
-    Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, span: begin..end }))
+    let everywhere = opt(keyword("everywhere")).parse_next(input)?;
+    end = everywhere.as_ref().map_or(end, |word| word.end);
+    let except = match opt(keyword("except")).parse_next(input)? {
+        None => everywhere.map(|_| Vec::new()),
+        Some(_) => {
+            cut_err(keyword("where")).context("'where', as in 'except where x = 0'").parse_next(input)?;
+            let one = |input: &mut Text<'_>| -> Read<Vec<Equation>> {
+                let found: Vec<Vec<Equation>> =
+                    cut_err(separated(1.., equations, sign(","))).parse_next(input)?;
+                Ok(found.into_iter().flatten().collect())
+            };
+            let sets: Vec<Vec<Equation>> = cut_err(separated(1.., one, keyword("or"))).parse_next(input)?;
+            Some(sets)
+        }
+    };
+    end = except.iter().flatten().flatten().last().map_or(end, |last| last.span.end);
+    Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, except, span: begin..end }))
 }
 
 /// Reads a statement that is the whole text, as it stands behind the colon of a claim.

@@ -243,7 +243,7 @@ fn expressions(statement: &Statement) -> Vec<Expr> {
         let within = equation.within.clone();
         [equation.left.clone(), equation.right.clone()].into_iter().chain(within).collect::<Vec<_>>()
     };
-    statement.relations().chain(&statement.conditions).flat_map(sides).collect()
+    statement.all_equations().flat_map(sides).collect()
 }
 
 /// What is needed to go on behind an entry that fails; nothing where the reading ends there.
