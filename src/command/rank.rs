@@ -24,7 +24,7 @@ use std::path::PathBuf;
 /// it is seen. Then at sampled states: words of Lie derivatives along the drift and the inputs are added shortest first until the rank
 /// stops growing or reaches the dimension. At every state the rank is computed by singular values and certified by exact arithmetic at that very state. Where the file
 /// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
-/// the file, and the answer says which; a claim 'rank = n' in a file is about all values.
+/// the file, and the answer says which, as it says from where it draws what has neither; a claim 'rank = n' in a file is about all values.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry rank mysystem.proof --samples 100000
