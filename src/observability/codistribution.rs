@@ -7,7 +7,7 @@ use super::elimination::independent_rows;
 use super::generic::{Ceiling, GenericAnswer, generic_answer};
 use super::related_rank::related_rank;
 use super::series::lie_derivative_by_series;
-use crate::expression::{NodeId, Program, draw_residues, expand_angles, gradient};
+use crate::expression::{NodeId, Program, Symbol, draw_residues, expand_angles, gradient};
 use crate::number::PrimeField;
 use crate::system::{Assignment, System, Time};
 use rand::SeedableRng;
@@ -226,6 +226,8 @@ impl Codistribution {
             Length::UntilItStops => (closed.len(), closed.len(), PATIENCE),
             Length::Exactly(order) => (order, order, MOST_WORDS),
         };
+        // known signals that outputs tie have derivatives up to there
+        let longest = system.longest_word().map_or(longest, |limit| longest.min(limit));
         let mut result = Codistribution::without_words(frame);
         result.stop = Stop::Order;
         // a state that is known at the beginning has no column, and yet what it does not see may be seen through its rate: the
@@ -279,9 +281,14 @@ impl Codistribution {
                 break;
             }
         }
-        // words by need are taken as series, which are of flows
-        let missing = result.generic.at_least > result.needed.len() && system.time == Time::Continuous;
-        if length == Length::UntilItStops && missing && matches!(result.stop, Stop::TooMany | Stop::Order) {
+        let missing = result.generic.at_least > result.needed.len();
+        let cut_off = system.longest_word().is_some();
+        if length == Length::UntilItStops
+            && missing
+            && !cut_off
+            && system.time == Time::Continuous
+            && matches!(result.stop, Stop::TooMany | Stop::Order)
+        {
             result.take_by_need(system, conditions, &fields)?;
         }
         Ok(result)
@@ -404,7 +411,10 @@ fn rank_around(system: &mut System, conditions: &Assignment) -> Ceiling {
 
 /// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
 pub(super) fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
-    let mut solved: Vec<_> = conditions.iter().map(|(symbol, value)| (*symbol, *value)).collect();
+    // of the last derivative of a signal that outputs tie, the rate is not that of the field
+    let counts = |(symbol, _): &(&Symbol, &NodeId)| !system.is_cut_off(**symbol);
+    let mut solved: Vec<_> =
+        conditions.iter().filter(counts).map(|(symbol, value)| (*symbol, *value)).collect();
     solved.sort_unstable();
     solved.into_iter().all(|(symbol, value)| {
         let left = system.graph.symbol(symbol);

@@ -12,7 +12,7 @@ use crate::expression::parse::{
     read_all, repeat, sign, stop, sum, target, written_out,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
-use winnow::combinator::{alt, cut_err, opt, preceded, separated};
+use winnow::combinator::{alt, cut_err, opt, peek, preceded, separated};
 use winnow::error::{ErrMode, ParserError};
 use winnow::prelude::*;
 use winnow::stream::{Location, Stream};
@@ -48,6 +48,8 @@ pub(crate) enum Item {
         is_map: bool,
     },
     Output(Vec<OutputSyntax>),
+    /// Outputs that are zero: `output 0 = y`.
+    Zero(Vec<OutputSyntax>),
     /// Signals that somebody knows, or nobody.
     Signals {
         knowledge: Knowledge,
@@ -90,6 +92,9 @@ pub struct Statement {
     pub on_sample: bool,
     /// `where a = b, c > d, ...`
     pub conditions: Vec<Equation>,
+    /// `except where a = b, c = d or e = f`: of a rank at all states, the sets that are left out, each by its equations; none
+    /// of them where it says `everywhere`, and nothing where the rank is that at almost all states.
+    pub except: Option<Vec<Vec<Equation>>>,
     /// The whole, in the text.
     pub span: Span,
 }
@@ -124,6 +129,11 @@ impl Statement {
     /// All that is said, one relation after the other.
     pub fn relations(&self) -> impl Iterator<Item = &Equation> {
         std::iter::once(&self.equation).chain(&self.further)
+    }
+
+    /// The same, and all that stands behind `where` and `except where`.
+    pub fn all_equations(&self) -> impl Iterator<Item = &Equation> {
+        self.relations().chain(&self.conditions).chain(self.except.iter().flatten().flatten())
     }
 }
 
@@ -223,8 +233,10 @@ fn states(input: &mut Text<'_>) -> Read<Item> {
     cut_err(declared(false)).context("a list of names").map(Item::State).parse_next(input)
 }
 
-fn outputs(input: &mut Text<'_>) -> Read<Item> {
+/// The values of a list of outputs, each behind what is read before it.
+fn seen(input: &mut Text<'_>, before: impl Fn(&mut Text<'_>) -> Read<()>) -> Read<Vec<OutputSyntax>> {
     let one = |input: &mut Text<'_>| -> Read<Vec<OutputSyntax>> {
+        before(input)?;
         let (expr, dimension) = (sum(input)?, annotation(input)?);
         let loops = loops(input)?;
         repeat(input, &loops, |indices| {
@@ -234,9 +246,27 @@ fn outputs(input: &mut Text<'_>) -> Read<Item> {
             Ok(entries.into_iter().map(one).collect())
         })
     };
-    keyword("output").parse_next(input)?;
     let list: Vec<Vec<_>> = cut_err(separated(1.., one, sign(","))).parse_next(input)?;
-    Ok(Item::Output(list.concat()))
+    Ok(list.concat())
+}
+
+fn outputs(input: &mut Text<'_>) -> Read<Item> {
+    keyword("output").parse_next(input)?;
+    seen(input, |_| Ok(())).map(Item::Output)
+}
+
+fn zero_outputs(input: &mut Text<'_>) -> Read<Item> {
+    let zero = |input: &mut Text<'_>| -> Read<()> {
+        (literal("0"), blank, literal("=")).void().parse_next(input)?;
+        blank(input)
+    };
+    keyword("output").parse_next(input)?;
+    peek(zero).parse_next(input)?;
+    let before = |input: &mut Text<'_>| {
+        let what = "'0 =': where one output of a list is zero all of them are";
+        cut_err(zero).context(what).parse_next(input)
+    };
+    seen(input, before).map(Item::Zero)
 }
 
 fn params(input: &mut Text<'_>) -> Read<Item> {
@@ -381,7 +411,23 @@ pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
     let given = opt(preceded(keyword("where"), conditions)).parse_next(input)?;
     let conditions: Vec<Equation> = given.unwrap_or_default();
     end = conditions.last().map_or(end, |last| last.span.end);
-    Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, span: begin..end }))
+    let everywhere = opt(keyword("everywhere")).parse_next(input)?;
+    end = everywhere.as_ref().map_or(end, |word| word.end);
+    let except = match opt(keyword("except")).parse_next(input)? {
+        None => everywhere.map(|_| Vec::new()),
+        Some(_) => {
+            cut_err(keyword("where")).context("'where', as in 'except where x = 0'").parse_next(input)?;
+            let one = |input: &mut Text<'_>| -> Read<Vec<Equation>> {
+                let found: Vec<Vec<Equation>> =
+                    cut_err(separated(1.., equations, sign(","))).parse_next(input)?;
+                Ok(found.into_iter().flatten().collect())
+            };
+            let sets: Vec<Vec<Equation>> = cut_err(separated(1.., one, keyword("or"))).parse_next(input)?;
+            Some(sets)
+        }
+    };
+    end = except.iter().flatten().flatten().last().map_or(end, |last| last.span.end);
+    Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, except, span: begin..end }))
 }
 
 /// Reads a statement that is the whole text, as it stands behind the colon of a claim.
@@ -452,7 +498,7 @@ fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
         params,
         preceded(keyword("angle"), names).map(Item::Angle),
         field,
-        outputs,
+        alt((zero_outputs, outputs)),
         alt((sample, claim, faulty, remark_only, view, entry)),
     ));
     alt((definitions, one.map(|item| vec![item]))).parse_next(input)

@@ -38,6 +38,7 @@ mod views;
 pub mod vocabulary;
 mod written;
 
+pub(crate) use determinant::determinant;
 pub use dimension::{Base, Dimension};
 pub use error::ReadError;
 #[cfg(feature = "cli")]

@@ -413,7 +413,7 @@ impl System {
         let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
         let mut places = Vec::new();
         for statement in body.statements() {
-            for equation in statement.relations().chain(&statement.conditions) {
+            for equation in statement.all_equations() {
                 places_in_equation(&scope, equation, &mut places);
             }
         }

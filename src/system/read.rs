@@ -189,13 +189,12 @@ impl System {
                 self.entry_failed(problem, remnant, problems)?;
             }
         }
-        match self.time {
+        let finished = match self.time {
             Time::Continuous => self.finish_signals(),
-            Time::Discrete => {
-                if let Err(problem) = self.finish_discrete_signals() {
-                    problems.add(problem)?;
-                }
-            }
+            Time::Discrete => self.finish_discrete_signals(),
+        };
+        if let Err(problem) = finished {
+            problems.add(problem)?;
         }
         for claim in self.claims.clone() {
             for statement in claim.body.statements() {
@@ -312,7 +311,8 @@ impl System {
             Item::Field { role, name, components, others_are_zero, .. } => {
                 self.enter_field(*role, name.clone(), components, *others_are_zero)?
             }
-            Item::Output(list) => {
+            Item::Output(list) | Item::Zero(list) => {
+                let is_zero = matches!(item, Item::Zero(_));
                 let mut further = Vec::new();
                 for OutputSyntax { value: expr, is_repeated, .. } in list {
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
@@ -327,9 +327,15 @@ impl System {
                         let guards = self.substitute_guards(&guards, &copies);
                         further.push((in_words(&text, experiment), there, guards));
                     }
+                    if is_zero {
+                        self.coordinates.zero_outputs.push(value);
+                    }
                     self.see(text, value, guards);
                 }
                 for (text, value, guards) in further {
+                    if is_zero {
+                        self.coordinates.zero_outputs.push(value);
+                    }
                     self.see(text, value, guards);
                 }
             }
@@ -405,7 +411,19 @@ impl System {
             let message = "'on sample' is said of numbers; a rank is that at almost all states";
             return Err(Problem::new(&statement.span, message, "this claim"));
         }
-        for condition in &statement.conditions {
+        let is_rank = |value: &Value| matches!(value, Value::Rank(_) | Value::CodistributionRank);
+        if statement.except.is_some() && !is_rank(&values.0) && !is_rank(&values.1) {
+            let message =
+                "'everywhere' and 'except where' are said of a rank: all else is claimed wherever it exists";
+            return Err(Problem::new(&statement.span, message, "this claim"));
+        }
+        if let Some(unequal) =
+            statement.except.iter().flatten().flatten().find(|e| e.relation != Relation::Equal)
+        {
+            let message = "what is left out is said by equations";
+            return Err(Problem::new(&unequal.span, message, "no equation"));
+        }
+        for condition in statement.conditions.iter().chain(statement.except.iter().flatten().flatten()) {
             self.scalar(&condition.left)?;
             self.scalar(&condition.right)?;
             if let Some(within) = &condition.within {

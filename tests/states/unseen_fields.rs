@@ -287,6 +287,99 @@ fn sums_products_and_angles() {
     });
 }
 
+/// Three points of the plane by their distances: they may be moved and turned together. And a point in space with a constant velocity,
+/// its distance from the origin seen: the three turns.
+#[test]
+fn turns() {
+    let text = "system \"three points\"  state x1, y1, x2, y2, x3, y3  drift f others' = 0
+        output (x1 - x2)^2 + (y1 - y2)^2, (x1 - x3)^2 + (y1 - y3)^2, (x2 - x3)^2 + (y2 - y3)^2";
+    let (system, three) = found(text);
+    let mut of_three = fields(&three);
+    of_three.sort();
+    assert_eq!(
+        of_three,
+        [
+            "-y1 d/dx1 + x1 d/dy1 - y2 d/dx2 + x2 d/dy2 - y3 d/dx3 + x3 d/dy3",
+            "d/dx1 + d/dx2 + d/dx3",
+            "d/dy1 + d/dy2 + d/dy3",
+        ]
+    );
+    assert_eq!((three.functions.len(), three.functions_missing), (3, 0));
+    no_word_changes(&system, &three);
+    let text = "system \"in space\"  state x, y, z, u, v, w  drift f x' = u y' = v z' = w others' = 0
+        output x^2 + y^2 + z^2";
+    let (system, space) = found(text);
+    let mut of_space = fields(&space);
+    of_space.sort();
+    assert_eq!(
+        of_space,
+        [
+            "-y d/dx + x d/dy - v d/du + u d/dv",
+            "-z d/dx + x d/dz - w d/du + u d/dw",
+            "-z d/dy + y d/dz - w d/dv + v d/dw",
+        ]
+    );
+    assert_eq!(functions(&space), ["x*u + y*v + z*w", "x^2 + y^2 + z^2", "u^2 + v^2 + w^2"]);
+    no_word_changes(&system, &space);
+    // no section would do: a length is no linear function of any coordinate
+    let reduced = is_reparametrised(&system, text, &space);
+    assert!(reduced.contains("z1' = z3\n  z2' = 2*z1\n"), "{reduced}");
+}
+
+/// The cross ratio of four numbers is that of their images under every fractional linear map: the third field is quadratic.
+#[test]
+fn projective_motions() {
+    let (system, found) = found(
+        "system \"cross ratio\"  state a, b, c, d  drift f others' = 0
+        output (a - c)*(b - d)/((a - d)*(b - c))",
+    );
+    assert_eq!(
+        fields(&found),
+        [
+            "d/da + d/db + d/dc + d/dd",
+            "a d/da + b d/db + c d/dc + d d/dd",
+            "a^2 d/da + b^2 d/db + c^2 d/dc + d^2 d/dd",
+        ]
+    );
+    assert_eq!((found.functions.len(), found.functions_missing), (1, 0));
+    no_word_changes(&system, &found);
+}
+
+/// Arrhenius' law at one temperature: of A, E and T only the rate is seen, which stands in the file. Functions that are not rational are
+/// proved by what is known of them.
+#[test]
+fn functions_that_are_not_rational() {
+    let text =
+        "system \"Arrhenius\"  state x, T, A, E, c  drift f x' = -A*exp(-E/T)*x others' = 0  output c*x";
+    let mut system: System = text.parse().unwrap();
+    let nothing = Assignment::new();
+    let found = unseen_motions(&mut system, None, &nothing, &nothing).unwrap();
+    assert_eq!(fields(&found), ["x d/dx - c d/dc", "T d/dT + E d/dE", "A d/dA + T d/dE"]);
+    assert_eq!(functions(&found), ["x*c", "A*exp(-E/T)"]);
+    assert!(found.settles_the_rank);
+    no_word_changes(&system, &found);
+    let reduced = is_reparametrised(&system, text, &found);
+    assert!(reduced.contains("z1' = -z1*z2"), "{reduced}");
+}
+
+/// A chain of twenty, 61 unknowns, in a time that a test has: the scalings of each link.
+#[test]
+fn sixty_unknowns() {
+    let names = |letter: &str| (1..=20).map(|k| format!("{letter}{k}")).collect::<Vec<_>>().join(", ");
+    let mut text = format!("system \"chain\"  state {}, {}, {}, c\n", names("x"), names("a"), names("b"));
+    text += "input u x1' = a1 others' = 0  drift f x1' = -b1*x1";
+    (2..=20).for_each(|k| text += &format!(" x{k}' = a{k}*x{} - b{k}*x{k}", k - 1));
+    text += " others' = 0  output c*x20";
+    let mut system: System = text.parse().unwrap();
+    let nothing = Assignment::new();
+    let found = unseen_motions(&mut system, None, &nothing, &nothing).unwrap();
+    assert_eq!((found.fields.len(), found.fields_missing), (20, 0));
+    assert_eq!((found.functions.len(), found.functions_missing), (21, 0));
+    assert_eq!(found.seen_names.len(), 20);
+    assert!(fields(&found).contains(&"x7 d/dx7 + a7 d/da7 - a8 d/da8".to_owned()));
+    assert!(functions(&found).contains(&"x6*a7/x7"));
+}
+
 /// The field through fractions: along it x/(1 + z^2) and y/(1 + z^3) are kept, over a common denominator it has degree five. The
 /// outputs themselves say what is seen.
 #[test]

@@ -9,6 +9,7 @@
 
 mod ansatz;
 mod answer;
+mod express;
 mod functions;
 mod kernel;
 mod lattice;
@@ -32,7 +33,7 @@ use super::Codistribution;
 use super::generic::{Ceiling, generic_answer};
 use crate::expression::{NodeId, Program, Symbol, draw_residues, expand_angles};
 use crate::number::PrimeField;
-use crate::system::{Assignment, System};
+use crate::system::{Assignment, System, Time};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -48,6 +49,9 @@ pub fn unseen_motions(
     held: &Assignment,
     given: &Assignment,
 ) -> Option<UnseenMotions> {
+    if system.time == Time::Discrete {
+        return None; // what is proved of the fields is proved of rates
+    }
     let mut rng = ChaCha8Rng::seed_from_u64(0x0066_6965_6c64); // any fixed seed: what is found is proved
     let words = words.filter(|words| words.is_final());
     let everywhere = Attempt::new(system, words, (given, given.len() == held.len()), &mut rng)
@@ -206,7 +210,8 @@ impl Attempt {
         }
     }
 
-    /// Where functions are missing, takes outputs and their Lie derivatives: these are seen, and say less than their parts would.
+    /// Where functions are missing, takes what stands in the file: parts of rates and outputs that are seen, the outputs
+    /// themselves, and their Lie derivatives.
     fn measured(
         &mut self,
         system: &mut System,
@@ -218,11 +223,22 @@ impl Attempt {
         if self.found.functions_missing == 0 {
             return;
         }
-        let mut candidates = motion.outputs.clone();
+        // a part of a rate or an output that no field changes is seen, if there are no other unseen directions
+        let mut candidates: Vec<(NodeId, String, Option<f64>)> = Vec::new();
+        if self.is_complete() && self.found.settles_the_rank {
+            let fields_err = together(self.found.fields.iter().map(|field| field.log2_error));
+            for (value, text) in parts(system, motion) {
+                if let Some(log2_error) = is_unchanged(system, motion, &self.vectors, value, rng) {
+                    candidates.push((value, text, Some(together([log2_error, fields_err]))));
+                }
+            }
+        }
+        let mut measured = motion.outputs.clone();
         if let Some(words) = words {
             let values: Vec<NodeId> = words.needed.iter().map(|word| words.values[*word]).collect();
-            candidates.extend(system.graph.substitute(&values, &self.found.values));
+            measured.extend(system.graph.substitute(&values, &self.found.values));
         }
+        candidates.extend(measured.into_iter().map(|value| (value, system.graph.text(value), None)));
         let unknowns = system.unknowns();
         let coupled = |column: &usize| blocks.iter().any(|block| block.columns.contains(column));
         let columns: Vec<usize> = (0..unknowns.len()).filter(coupled).collect();
@@ -235,8 +251,7 @@ impl Attempt {
         for function in &self.found.functions {
             rows.extend(row(system, function.value));
         }
-        for value in candidates {
-            let text = system.graph.text(value);
+        for (value, text, log2_error) in candidates {
             if self.found.functions_missing == 0 || text.len() > LONGEST_TEXT {
                 continue;
             }
@@ -244,7 +259,7 @@ impl Attempt {
             let rank = self.found.functions.len();
             if rank_somewhere(system, &longer, columns.len(), rng) == Some(rank + 1) {
                 rows = longer;
-                let (log2_error, factors) = (f64::NEG_INFINITY, vec![(value, 1)]);
+                let (log2_error, factors) = (log2_error.unwrap_or(f64::NEG_INFINITY), vec![(value, 1)]);
                 self.found.functions.push(SeenFunction { value, text, log2_error, factors });
                 self.found.functions_missing -= 1;
                 // it may be one of several blocks
@@ -270,6 +285,23 @@ impl Attempt {
             rank_somewhere(system, &entries, columns, rng) == Some(wanted)
         })
     }
+}
+
+/// No more parts of rates and outputs are looked at.
+const MOST_PARTS: usize = 200;
+
+/// The parts of rates and outputs, shortest first, but symbols and numbers.
+fn parts(system: &System, motion: &Motion) -> Vec<(NodeId, String)> {
+    let nodes = system.graph.reachable(motion.fields.iter().flatten().chain(&motion.outputs).copied());
+    let is_part = |node: &NodeId| {
+        system.graph.as_symbol(*node).is_none() && !system.graph.symbols_of([*node]).is_empty()
+    };
+    let with_text = |node: NodeId| (node, system.graph.text(node));
+    let mut found: Vec<(NodeId, String)> = nodes.into_iter().filter(is_part).map(with_text).collect();
+    found.retain(|(_, text)| text.len() <= LONGEST_TEXT && !text.starts_with('-'));
+    found.sort_by_key(|(_, text)| text.len());
+    found.truncate(MOST_PARTS);
+    found
 }
 
 /// The rank of rows of so many columns at a random point modulo a prime, which it is at least at almost all states.

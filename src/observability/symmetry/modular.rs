@@ -124,6 +124,8 @@ pub(super) fn rank(residues: Residues, rows: &[Vec<u64>]) -> usize {
     echelon.rank()
 }
 
+/// How often all vectors of a basis are gone through.
+const PASSES: usize = 3;
 /// More vectors of one space than this are not combined with one another.
 const MOST_COMBINED: usize = 160;
 
@@ -149,7 +151,7 @@ pub(super) fn simple_vectors(
         for vector in basis {
             echelon.add(order.iter().map(|place| vector[*place]).collect());
         }
-        let reduced: Vec<Vec<u64>> = echelon
+        let mut reduced: Vec<Vec<u64>> = echelon
             .reduced()
             .into_iter()
             .map(|(_, row)| {
@@ -158,16 +160,22 @@ pub(super) fn simple_vectors(
                 vector
             })
             .collect();
-        for (place, vector) in reduced.iter().enumerate() {
-            // multiples of the others only: what makes this one independent of them stays
-            let others: Vec<&[u64]> = reduced
-                .iter()
-                .enumerate()
-                .filter(|(at, _)| *at != place)
-                .map(|(_, other)| &**other)
-                .collect();
-            found.push(with_fewer_terms(residues, vector.clone(), &others, weight));
+        // one after the other, so that what is left is a basis of the same space
+        for _ in 0..PASSES {
+            let mut shorter = false;
+            for place in 0..reduced.len() {
+                let vector = reduced.swap_remove(place);
+                let next = with_fewer_terms(residues, vector.clone(), &reduced, weight);
+                shorter |= next != vector;
+                reduced.push(next);
+                let last = reduced.len() - 1;
+                reduced.swap(place, last);
+            }
+            if !shorter {
+                break;
+            }
         }
+        found.extend(reduced);
     }
     found.iter_mut().for_each(|vector| normalise(residues, vector));
     found.sort_by_cached_key(|vector| (cost(vector, weight), vector.clone()));
@@ -192,7 +200,7 @@ fn normalise(residues: Residues, vector: &mut [u64]) {
 fn with_fewer_terms(
     residues: Residues,
     mut vector: Vec<u64>,
-    others: &[&[u64]],
+    others: &[Vec<u64>],
     weight: &dyn Fn(usize) -> u64,
 ) -> Vec<u64> {
     if others.len() > MOST_COMBINED {

@@ -2,10 +2,11 @@
 //! that are seen of the others, its claims that these move as the file says and that the outputs are the same.
 
 use super::answer::UnseenMotions;
+use super::express::{Ingredient, as_polynomial};
 use super::proof::{Motion, vanish};
 use super::section::sections;
 use crate::expression::{Derivation, NodeId, Program, Symbol, expand};
-use crate::number::{Floats, rational_to_f64};
+use crate::number::{Floats, Function, rational_to_f64};
 use crate::system::{Assignment, Kind, SymbolInfo, System};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -28,6 +29,9 @@ pub enum NotReparametrised {
         "the states could not be expressed by what is seen, with as many of them held at 0 or 1 as are not seen"
     )]
     NoSection,
+    /// Known signals would have to be declared in the new file as in the old one.
+    #[error("a system with known signals is not written anew")]
+    KnownSignals,
     /// A rate would be longer than anybody reads.
     #[error("the rates are too long to be written")]
     TooLong,
@@ -63,6 +67,9 @@ pub fn reparametrise(
         let (fields, functions) = (found.fields_missing, found.functions_missing);
         return Err(NotReparametrised::Incomplete { fields, functions });
     }
+    if !system.known.is_empty() {
+        return Err(NotReparametrised::KnownSignals);
+    }
     let mut system = system.clone();
     let coordinates = coordinates(&mut system, found);
     let names: Vec<Symbol> =
@@ -74,22 +81,52 @@ pub fn reparametrise(
         let found = sections(&mut system, block, functions, &names[block.functions.clone()], SECTIONS);
         choices.push(found);
     }
-    let mut last = NotReparametrised::NoSection;
     // of each block the shortest; where that does not do, the next of all
     for place in 0..SECTIONS {
-        let mut values = Assignment::new();
-        for choice in &choices {
-            let Some(section) = choice.get(place).or(choice.last()) else {
-                return Err(NotReparametrised::NoSection);
-            };
-            values.extend(section.iter().map(|(symbol, node)| (*symbol, *node)));
-        }
-        match Reduced::new(&mut system, &motion, &coordinates, &values) {
-            Ok(reduced) => return Ok(text(&system, found, &coordinates, &reduced, import)),
-            Err(why) => last = why,
+        let chosen: Option<Vec<&Assignment>> =
+            choices.iter().map(|choice| choice.get(place).or(choice.last())).collect();
+        let Some(chosen) = chosen else { break };
+        let values: Assignment =
+            chosen.into_iter().flatten().map(|(symbol, node)| (*symbol, *node)).collect();
+        let mut on_section =
+            |system: &mut System, value: NodeId| Some(system.graph.substitute(&[value], &values)[0]);
+        match Reduced::new(&mut system, &motion, &coordinates, &mut on_section) {
+            Err(NotReparametrised::NoSection) => {}
+            found_there => {
+                return found_there.map(|reduced| text(&system, found, &coordinates, &reduced, import));
+            }
         }
     }
-    Err(last)
+    let ingredients = ingredients(&mut system, &motion, &coordinates);
+    let mut rng = ChaCha8Rng::seed_from_u64(0x0065_7870_7265); // any fixed seed: what is found is proved
+    let mut polynomial =
+        |system: &mut System, value: NodeId| as_polynomial(system, value, &ingredients, &mut rng);
+    let reduced = Reduced::new(&mut system, &motion, &coordinates, &mut polynomial)?;
+    Ok(text(&system, found, &coordinates, &reduced, import))
+}
+
+/// What rates and outputs may be made of: the new coordinates and the parameters, of angles their sines and cosines.
+fn ingredients(system: &mut System, motion: &Motion, coordinates: &[Coordinate]) -> Vec<Ingredient> {
+    let nodes = motion.fields.iter().flatten().chain(&motion.outputs).copied();
+    let others = system.graph.symbols_of(nodes);
+    let mut pairs: Vec<(NodeId, NodeId, bool)> = coordinates
+        .iter()
+        .map(|coordinate| (coordinate.value, system.graph.symbol(coordinate.symbol), coordinate.is_angle))
+        .collect();
+    for symbol in others.into_iter().filter(|symbol| !motion.states.contains(symbol)) {
+        let node = system.graph.symbol(symbol);
+        pairs.push((node, node, system.is_angle(symbol)));
+    }
+    let mut found = Vec::new();
+    for (old, new, is_angle) in pairs {
+        let functions = if is_angle { &[Some(Function::Sin), Some(Function::Cos)][..] } else { &[None] };
+        for function in functions {
+            let mut of = |node: NodeId| function.map_or(node, |function| system.graph.apply(function, node));
+            let (old, new) = (of(old), of(new));
+            found.push(Ingredient { old, new, is_sine: *function == Some(Function::Sin) });
+        }
+    }
+    found
 }
 
 /// What is seen by itself, and a new symbol for each function.
@@ -136,21 +173,21 @@ struct Reduced {
 }
 
 impl Reduced {
-    /// The rates and outputs on a section, proved to be the same everywhere.
+    /// The rates and outputs as they are expressed in the new coordinates, proved to be the same everywhere.
     fn new(
         system: &mut System,
         motion: &Motion,
         coordinates: &[Coordinate],
-        section: &Assignment,
+        express: &mut dyn FnMut(&mut System, NodeId) -> Option<NodeId>,
     ) -> Result<Reduced, NotReparametrised> {
         let back: HashMap<Symbol, NodeId> =
             coordinates.iter().map(|coordinate| (coordinate.symbol, coordinate.value)).collect();
         let mut differences = Vec::new();
-        let mut on_section = |system: &mut System, value: NodeId| {
-            let there = system.graph.substitute(&[value], section)[0];
+        let mut expressed = |system: &mut System, value: NodeId| {
+            let there = express(system, value).ok_or(NotReparametrised::NoSection)?;
             let again = system.graph.substitute(&[there], &back)[0];
             differences.push(system.graph.sub(value, again));
-            there
+            Ok(there)
         };
         let mut rates = Vec::new();
         for field in &motion.fields {
@@ -159,11 +196,12 @@ impl Reduced {
             let mut of_field = Vec::new();
             for coordinate in coordinates {
                 let rate = along.apply(&mut system.graph, coordinate.value);
-                of_field.push(on_section(system, rate));
+                of_field.push(expressed(system, rate)?);
             }
             rates.push(of_field);
         }
-        let outputs: Vec<NodeId> = motion.outputs.iter().map(|output| on_section(system, *output)).collect();
+        let outputs: Vec<NodeId> =
+            motion.outputs.iter().map(|output| expressed(system, *output)).collect::<Result<_, _>>()?;
         let mut rng = ChaCha8Rng::seed_from_u64(0x0073_6563_7469); // any fixed seed: it is a proof
         vanish(system, &differences, &motion.guards, &mut rng).ok_or(NotReparametrised::NoSection)?;
         let texts = |system: &mut System, nodes: &[NodeId]| {

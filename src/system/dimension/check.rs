@@ -64,7 +64,7 @@ pub(crate) fn check(system: &System, items: &[Item], imports: &[Import]) -> (Dim
         Item::State(list) | Item::Param(list) => list.iter().any(|one| one.dimension.is_some()),
         Item::Signals { list, .. } => list.iter().any(|one| one.dimension.is_some()),
         Item::Let { dimension, .. } => dimension.is_some(),
-        Item::Output(list) => list.iter().any(|one| one.dimension.is_some()),
+        Item::Output(list) | Item::Zero(list) => list.iter().any(|one| one.dimension.is_some()),
         _ => false,
     };
     let is_declared = items.iter().any(declares) || imports.iter().any(|(_, _, other)| other.is_declared);
@@ -242,7 +242,7 @@ impl Checker<'_> {
             Item::Field { role, name, components, is_map, .. } => {
                 self.field(*role, name, components, *is_map);
             }
-            Item::Output(list) => {
+            Item::Output(list) | Item::Zero(list) => {
                 for OutputSyntax { value: expr, dimension, .. } in list {
                     let found = self.quantity(expr);
                     self.note_units(&found);
@@ -355,6 +355,9 @@ impl Checker<'_> {
 
     fn statement(&mut self, statement: &Statement) {
         let at_numbers = self.conditions(&statement.conditions) || statement.on_sample;
+        statement.except.iter().flatten().for_each(|set| {
+            self.conditions(set);
+        });
         let mut left = self.quantity(&statement.equation.left);
         for equation in statement.relations() {
             let right = self.quantity(&equation.right);
