@@ -213,7 +213,10 @@ pub(super) fn guarded(system: &System) -> Vec<NodeId> {
 fn named_unknowns(system: &System) -> Vec<(String, UnknownKind)> {
     let fields = || system.moving_fields().into_iter().flat_map(|field| &system.fields[field].components);
     let moved: HashSet<Symbol> = fields()
-        .filter(|(_, rate)| !system.graph.constant_value(*rate).is_some_and(RBig::is_zero))
+        .filter(|(symbol, rate)| match system.time {
+            Time::Continuous => !system.graph.constant_value(*rate).is_some_and(RBig::is_zero),
+            Time::Discrete => system.graph.as_symbol(*rate) != Some(*symbol),
+        })
         .map(|(symbol, _)| *symbol)
         .collect();
     let named = |symbol: Symbol| {

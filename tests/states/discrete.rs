@@ -200,6 +200,17 @@ fn answers_that_are_known() {
     }
 }
 
+/// What stays is a constant, and what becomes zero is none.
+#[test]
+fn constants_are_what_stays() {
+    let text = "system \"s\" state x, y, z, k drift f x+ = y*k y+ = z z+ = 0 k+ = k output x sample x in [1, 2] y in [1, 2] z in [1, 2] k in [1, 2]";
+    let mut system: System = text.parse().unwrap();
+    let answer = answer_rank(&mut system, &RankQuestion { samples: 5, ..RankQuestion::default() }).unwrap();
+    let kinds: Vec<String> =
+        answer.branches[0].unknowns.iter().map(|(name, kind)| format!("{name} {}", kind.name())).collect();
+    assert_eq!(kinds, ["x state", "y state", "z state", "k parameter"]);
+}
+
 /// On a set that a step leaves nothing is final but a rank that cannot be exceeded; on one that it does not, what rests long enough.
 #[test]
 fn special_sets() {
