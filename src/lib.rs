@@ -89,6 +89,10 @@ pub mod certificate;
 // inequalities: signs, sums of squares, boxes
 pub(crate) mod inequality;
 
+// the exact sets on which a rank drops
+#[doc(hidden)]
+pub mod drops;
+
 // what verdicts rest on, written down for the checker
 #[doc(hidden)]
 pub mod evidence;

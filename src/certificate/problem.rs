@@ -61,13 +61,14 @@ impl Problem {
         if system.unknown_count() == 0 || system.outputs.is_empty() {
             return Err(format!("{} declares no states or no outputs", system.name));
         }
-        let RangesAndValues { ranges, values, exactly, by_default } = ranges_of(system, given)?;
+        let RangesAndValues { mut ranges, values, exactly, by_default } = ranges_of(system, given)?;
         let is_angle = &system.angle_test();
         let dimension = system.unknown_count();
         let NamedRows { names, entries: flat, order } = NamedRows::of(system, rows, &values)?;
         let as_written = rows_by_name(&names, &flat, dimension);
         let flat = system.graph.substitute(&flat, &values);
         let flat = expand_angles(&mut system.graph, &flat, is_angle);
+        add_later_values(system, &flat, &mut ranges);
         let block = Reduction::new(&system.graph, &flat, dimension);
 
         let mut collector = Collector::default();
@@ -161,6 +162,22 @@ struct RangesAndValues {
     exactly: Vec<HeldSymbol>,
     /// What the file does not say, and is taken.
     by_default: Vec<(String, Range)>,
+}
+
+/// Known signals lie at every step where they do at the first.
+fn add_later_values(system: &System, entries: &[NodeId], ranges: &mut Ranges) {
+    let mut later: Vec<Symbol> = system.graph.symbols_of(entries.iter().copied()).into_iter().collect();
+    later.retain(|symbol| system.now(*symbol) != *symbol);
+    later.sort_unstable();
+    for symbol in later {
+        let now = system.now(symbol);
+        let name = system.symbol_name(symbol).to_owned();
+        if let Some(found) = ranges.free.iter().find(|range| range.symbol == now).cloned() {
+            ranges.free.push(FreeCoordinate { symbol, name, ..found });
+        } else if let Some(held) = ranges.held.get(&now).cloned() {
+            ranges.held.insert(symbol, held);
+        }
+    }
 }
 
 /// The sides of the box, what the other symbols are, and which of these can be put in exactly.

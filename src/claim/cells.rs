@@ -25,16 +25,20 @@ pub(super) fn cells(
     guards: &[Guard],
     edges: Edges,
 ) -> Result<Vec<BranchCell>, String> {
-    let mut nodes = question.sides().to_vec();
-    if let Question::Codistribution { .. } = question {
-        nodes.extend(system.outputs.iter().map(|(_, node)| *node));
-        for field in system.moving_fields() {
-            nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
-        }
-    }
-    let nodes = branch.put_in(system, &nodes)?;
     let operands: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
-    let operands = branch.put_in(system, &operands)?;
+    let (nodes, operands) = match question {
+        Question::Codistribution { .. } => {
+            let mut nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
+            for field in system.moving_fields() {
+                nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
+            }
+            // they are differentiated by the states before these have the values that the conditions give
+            let mut held = branch.values.clone();
+            held.retain(|symbol, _| !system.states.contains(symbol));
+            (system.graph.substitute(&nodes, &held), system.graph.substitute(&operands, &held))
+        }
+        _ => (branch.put_in(system, question.sides())?, branch.put_in(system, &operands)?),
+    };
     let guards: Vec<Guard> =
         guards.iter().zip(operands).map(|(guard, node)| Guard { node, need: guard.need }).collect();
     let found = sign_cells(system, &nodes, &guards, edges)?;

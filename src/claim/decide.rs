@@ -13,9 +13,10 @@ use super::ranks::{decide_codistribution, decide_rank};
 use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict, Witness};
 use crate::checker::{Evidence, VerdictRecord};
-use crate::expression::syntax::{Equation, Relation};
+use crate::drops::ClaimedEverywhere;
+use crate::expression::syntax::{Equation, Expr, Relation};
 use crate::expression::{Guard, NodeId, Symbol, add_guard};
-use crate::observability::{Branch, Edges, SignCell, in_sign_cell, solve};
+use crate::observability::{Branch, Edges, SignCell, assumed, in_sign_cell, solve};
 use crate::sweep::UNINTERRUPTED;
 use crate::system::{
     Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line, line_and_column,
@@ -97,10 +98,11 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
     let mut at_files_values = None;
     let mut printed_at_files_values = None;
     let mut printed = None;
-    let mut domain = Vec::new();
+    let (mut domain, mut beside) = (Vec::new(), Vec::new());
     let mut evidence = Vec::new();
     let mut known = |decided: Decided, text: &str, suffix: &str| {
         domain = decided.domain;
+        beside = decided.beside;
         let records = decided.evidence.into_iter().map(|evidence| VerdictRecord {
             file: system_name.clone(),
             id: format!("{}{suffix}", claim.id),
@@ -172,6 +174,7 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
         pole_of: claim.body.pole_of().map(|expr| in_one_line(&system.source, &expr.span)),
         verdict,
         domain,
+        beside,
         evidence,
         expected,
         remark: claim.remark.clone(),
@@ -191,6 +194,7 @@ fn fingerprint(text: &str) -> u64 {
 /// A verdict, what has to hold for the statement's terms to exist, in words, and what it rests on.
 struct Decided {
     verdict: Verdict,
+    beside: Vec<String>,
     domain: Vec<String>,
     evidence: Vec<Evidence>,
 }
@@ -198,17 +202,23 @@ struct Decided {
 /// What is noted beside a verdict.
 struct Notes {
     domain: Vec<String>,
+    beside: Vec<String>,
     /// Of all branches, whatever the verdict on them.
     evidence: Vec<Evidence>,
     kept: Kept,
 }
 
 fn decide_statement(system: &mut System, statement: &Statement, kept: Kept, rng: &mut ChaCha8Rng) -> Decided {
-    let mut notes = Notes { domain: Vec::new(), evidence: Vec::new(), kept };
+    let mut notes = Notes { domain: Vec::new(), beside: Vec::new(), evidence: Vec::new(), kept };
     let verdict = attempt(system, statement, rng, &mut notes).unwrap_or_else(Verdict::undecided);
-    let Notes { domain, mut evidence, .. } = notes;
+    let Notes { domain, beside, mut evidence, .. } = notes;
     let word = verdict.word();
-    evidence.retain(|evidence| [word, "unchecked"].contains(&evidence.word()));
+    // at a state where a rank is lower than claimed it is certified
+    let is_of_it = |evidence: &Evidence| {
+        [word, "unchecked"].contains(&evidence.word())
+            || word == "refuted" && matches!(evidence, Evidence::Rank(_))
+    };
+    evidence.retain(is_of_it);
     match &verdict {
         _ if kept == Kept::Verdicts => evidence.clear(),
         Verdict::Refuted { witness: Witness { refutation: Some(refutation), .. }, .. } => {
@@ -220,7 +230,7 @@ fn decide_statement(system: &mut System, statement: &Statement, kept: Kept, rng:
         Verdict::Proved { .. } | Verdict::Refuted { .. } => {}
         Verdict::Definition { .. } | Verdict::Undecided { .. } => evidence.clear(),
     }
-    Decided { verdict, domain, evidence }
+    Decided { verdict, domain, beside, evidence }
 }
 
 fn attempt(
@@ -293,6 +303,9 @@ fn attempt(
     if let Question::Relations { .. } = question {
         notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
     }
+    if let Some(except) = &statement.except {
+        return everywhere(system, statement, &question, except, (guards, conditions), rng, notes);
+    }
     let sampled =
         if statement.on_sample { sample_box(system, question.sides(), &conditions) } else { Vec::new() };
     let (solution, unsolved) = match solve(system, &statement.conditions) {
@@ -308,6 +321,14 @@ fn attempt(
         }
         Err(why) => return Err(why.to_string()),
     };
+    let mut solution = solution;
+    if of_rank {
+        for branch in solution.parts.iter_mut().chain(&mut solution.smaller) {
+            let tied = std::mem::take(branch).tied_by_outputs(system);
+            *branch = tied.map_err(|why| why.to_string())?;
+        }
+        conditions.extend(system.zero_outputs());
+    }
     let one_thing_twice = system.says_one_thing_twice(statement);
     let mut found = Vec::new();
     let lists = [
@@ -457,6 +478,56 @@ impl Asked<'_> {
         }
         Ok((verdict, evidence))
     }
+}
+
+/// A rank at all states but those of some sets.
+fn everywhere(
+    system: &mut System,
+    statement: &Statement,
+    question: &Question,
+    except: &[Vec<Equation>],
+    (mut guards, conditions): (Vec<Guard>, Vec<NodeId>),
+    rng: &mut ChaCha8Rng,
+    notes: &mut Notes,
+) -> Result<Verdict, String> {
+    let (matrix, rank) = match question {
+        Question::Rank { entries, columns, claimed } => (Some((entries.clone(), *columns)), *claimed),
+        Question::Codistribution { claimed } => (None, *claimed),
+        _ => return Err("'except where' is said of a rank".to_owned()),
+    };
+    for guard in guards_of_conditions(system, statement)? {
+        add_guard(&system.graph, &mut guards, guard);
+    }
+    for condition in statement.conditions.iter().filter(|one| one.relation != Relation::Equal) {
+        let left = system.scalar(&condition.left).map_err(|problem| problem.message)?;
+        let right = system.scalar(&condition.right).map_err(|problem| problem.message)?;
+        if let Some(guard) = assumed(&mut system.graph, condition.relation, left, right) {
+            add_guard(&system.graph, &mut guards, guard);
+        }
+    }
+    let (mut sets, mut written) = (Vec::new(), Vec::new());
+    for set in except {
+        let ends = set.first().zip(set.last()).map(|(first, last)| first.span.start..last.span.end);
+        written.push(in_one_line(&system.source, &ends.unwrap_or_default()));
+        let mut vanishing = Vec::new();
+        for equation in set {
+            let mut side = |expr: &Expr| -> Result<NodeId, String> {
+                let (value, needed) = system.elaborate_guarded(expr).map_err(|problem| problem.message)?;
+                needed.into_iter().for_each(|guard| add_guard(&system.graph, &mut guards, guard));
+                value.as_number().ok_or_else(|| "what is left out is said by numbers".to_owned())
+            };
+            let (left, right) = (side(&equation.left)?, side(&equation.right)?);
+            vanishing.push(system.graph.sub(left, right));
+        }
+        sets.push(vanishing);
+    }
+    guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
+    notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
+    let claim = ClaimedEverywhere { matrix, rank, guards, conditions, except: sets, written };
+    let decided = super::everywhere::decide(system, &claim, rng)?;
+    notes.evidence = decided.evidence;
+    notes.beside = decided.beside;
+    Ok(decided.verdict)
 }
 
 /// How a branch stands to the set of all states that meet the conditions.

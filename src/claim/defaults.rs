@@ -18,8 +18,8 @@ pub(crate) fn at_the_files_values(
     verdict: &Verdict,
     decide: impl FnOnce(&mut System, &Statement) -> Verdict,
 ) -> Option<AtFilesValues> {
-    // numbers have nothing to depend on
-    if statement.equation.within.is_some() {
+    // numbers have nothing to depend on, and what is left out is said for all values
+    if statement.equation.within.is_some() || statement.except.is_some() {
         return None;
     }
     let values = values_for(system, statement);

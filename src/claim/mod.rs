@@ -9,6 +9,7 @@
 mod cells;
 mod decide;
 mod defaults;
+mod everywhere;
 mod evidence;
 mod existence;
 mod identity;

@@ -151,6 +151,8 @@ pub struct Outcome {
     pub printed_at_files_values: Option<AtFilesValues>,
     /// The fields of which words are made, where the claim is about the rank of the codistribution.
     pub fields: Vec<FieldRole>,
+    /// Of a rank at all states: what it is on each of the sets that are left out, in words.
+    pub beside: Vec<String>,
     /// How long it took.
     pub seconds: f64,
 }

@@ -7,8 +7,11 @@ use super::reparametrise::reparametrisation;
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
+use palmistry::drops::where_it_drops;
 use palmistry::evidence::rank_records;
-use palmistry::report::{accessibility_json, accessibility_text, rank_json, rank_text};
+use palmistry::report::{
+    accessibility_json, accessibility_text, drops_json, drops_text, rank_json, rank_text,
+};
 use palmistry::sweep::{MOST_DIGITS, answer_rank_at_once};
 use palmistry::{RankQuestion, System, answer_accessibility, answer_rank};
 use serde_json::json;
@@ -27,6 +30,7 @@ use std::path::PathBuf;
   palmistry rank mysystem.proof --samples 100000
   palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
+  palmistry rank mysystem.proof --where-it-drops           the exact set, with a proof that it drops nowhere else
   palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain
   palmistry rank mysystem.proof --accessible               what the inputs can move, by brackets")]
 pub(crate) struct Rank {
@@ -74,6 +78,10 @@ pub(crate) struct Rank {
     /// proved, that they move as this file says and that the outputs are the same.
     #[arg(long, value_name = "FILE")]
     reparametrise: Option<PathBuf>,
+    /// Instead of sampled states: the sets on which the rank drops, each by its equations, and a proof that off them it is what
+    /// it is at almost all states. The parameters may have any values.
+    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts"])]
+    where_it_drops: bool,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -82,6 +90,9 @@ pub(crate) struct Rank {
 impl Rank {
     pub fn run(self) -> miette::Result<Status> {
         let mut system = System::read(&self.file)?;
+        if self.where_it_drops {
+            return self.tell_where(&mut system);
+        }
         let fixed: BTreeMap<_, _> = assignments(&system, &self.at)?.into_iter().collect();
         let samples = self.samples.unwrap_or(RankQuestion::default().samples);
         let bar = progress(samples, "sampling states");
@@ -130,6 +141,15 @@ impl Rank {
         let status =
             if answer.interrupted() || answer.cut_off() { Status::CutOff } else { Status::AsExpected };
         files.print(Form::of(self.json), object, text, status)
+    }
+
+    /// The exact set on which the rank drops.
+    fn tell_where(&self, system: &mut System) -> miette::Result<Status> {
+        let answer =
+            where_it_drops(system, self.seed, &INTERRUPTED).map_err(|why| Unusable::report(why, ""))?;
+        begin_to_tell();
+        let status = if answer.is_exact() { Status::AsExpected } else { Status::CutOff };
+        Files::default().print(Form::of(self.json), drops_json(&answer), || drops_text(&answer), status)
     }
 }
 

@@ -10,10 +10,25 @@ use super::graph::{Graph, Node, NodeId, Symbol};
 use crate::number::Function;
 use std::collections::HashMap;
 
-/// A derivation and what it has computed so far.
+/// The name of a known signal's value some steps later.
+fn later_value(signal: &str, steps: usize) -> String {
+    format!("{signal}(t+{steps})")
+}
+
+/// The signal of which a symbol is a later value, by their names.
+pub(crate) fn signal_of(name: &str) -> Option<&str> {
+    let (signal, step) = name.strip_suffix(')')?.split_once("(t+")?;
+    step.parse::<usize>().is_ok().then_some(signal)
+}
+
+/// A derivation and what it has computed so far; or the composition with a map, which takes each symbol to its successor and
+/// everything else to what it is of these.
 #[derive(Clone, Debug)]
 pub struct Derivation {
     slopes: HashMap<Symbol, NodeId>,
+    composes: bool,
+    /// Of a composition: symbols whose successors are new at every step, by the name of the first and the step.
+    fresh: HashMap<Symbol, (String, usize)>,
     known: HashMap<NodeId, NodeId>,
     /// What is known, in the order in which it was found.
     found: Vec<NodeId>,
@@ -22,7 +37,42 @@ pub struct Derivation {
 impl Derivation {
     /// The derivation that takes each of these symbols to its expression and all others to zero.
     pub fn new(slopes: HashMap<Symbol, NodeId>) -> Self {
-        Derivation { slopes, known: HashMap::new(), found: Vec::new() }
+        let (known, fresh) = (HashMap::new(), HashMap::new());
+        Derivation { slopes, composes: false, fresh, known, found: Vec::new() }
+    }
+
+    /// The composition with the map that takes symbols to their successors, and others to themselves. What is `fresh` has
+    /// any value at every step: `u` goes to the symbol `u(t+1)`, and that to `u(t+2)`.
+    pub fn composition(graph: &Graph, successors: HashMap<Symbol, NodeId>, fresh: &[Symbol]) -> Self {
+        let named = |symbol: &Symbol| (*symbol, (graph.symbol_name(*symbol).to_owned(), 0));
+        let fresh = fresh.iter().map(named).collect();
+        Derivation { composes: true, fresh, ..Derivation::new(successors) }
+    }
+
+    /// Whether it is the composition with a map.
+    pub fn composes(&self) -> bool {
+        self.composes
+    }
+
+    /// An expression after one step.
+    fn composed(&mut self, graph: &mut Graph, root: NodeId) -> NodeId {
+        if let Some(known) = self.known.get(&root) {
+            return *known;
+        }
+        for symbol in graph.symbols_of([root]) {
+            if let Some((name, step)) = self.fresh.get(&symbol).cloned()
+                && !self.slopes.contains_key(&symbol)
+            {
+                let next = graph.intern(&later_value(&name, step + 1));
+                let node = graph.symbol(next);
+                self.slopes.insert(symbol, node);
+                self.fresh.insert(next, (name, step + 1));
+            }
+        }
+        let value = graph.substitute(&[root], &self.slopes)[0];
+        self.known.insert(root, value);
+        self.found.push(root);
+        value
     }
 
     /// The partial derivative by one symbol.
@@ -33,6 +83,9 @@ impl Derivation {
 
     /// `D(root)`.
     pub fn apply(&mut self, graph: &mut Graph, root: NodeId) -> NodeId {
+        if self.composes {
+            return self.composed(graph, root);
+        }
         if let Some(known) = self.known.get(&root) {
             return *known;
         }

@@ -26,7 +26,7 @@ pub struct Expansion {
 /// Expands an expression.
 ///
 /// # Errors
-/// In words, where it is no rational expression in at most sixteen variables, or too long.
+/// In words, where it is no rational expression in at most [`LARGEST_ARITY`] variables, or too long.
 pub fn expand(
     graph: &mut Graph,
     root: NodeId,

@@ -40,6 +40,7 @@ pub(crate) use block::Machine;
 pub(crate) use common_factor::share_a_factor;
 pub(crate) use composed::COMPOSED;
 pub use derivative::Derivation;
+pub(crate) use derivative::signal_of;
 pub use domain::{Guard, Need};
 pub(crate) use domain::{add_guard, substitute_guards};
 pub(crate) use expansion::Expansion;

@@ -52,7 +52,7 @@ impl Products {
     /// have been expanded.
     ///
     /// # Errors
-    /// In words, where they are no rational expressions in at most sixteen variables, are nowhere defined, or would be
+    /// In words, where they are no rational expressions in at most [`LARGEST_ARITY`] variables, are nowhere defined, or would be
     /// too long.
     pub fn read(
         &mut self,
@@ -109,6 +109,12 @@ impl Products {
         Ok(self.fractions.element(Polynomial::variable(place)))
     }
 
+    /// The same polynomials in other variables, for their forms: place by place.
+    pub fn renamed(&self, name: impl Fn(Variable) -> Variable) -> Products {
+        let variables = self.variables.iter().map(|variable| name(*variable)).collect();
+        Products { variables, fractions: Fractions::default() }
+    }
+
     /// The polynomials `1 + t^2`, which vanish nowhere.
     pub fn circles(&self) -> Vec<Polynomial> {
         let is_tangent = |place: &usize| matches!(self.variables[*place], Variable::HalfTangent(_));
@@ -131,7 +137,7 @@ impl Products {
     }
 
     /// The form itself.
-    pub(super) fn exactly(&self, graph: &mut Graph, polynomial: &Polynomial) -> NodeId {
+    pub fn exactly(&self, graph: &mut Graph, polynomial: &Polynomial) -> NodeId {
         let (factor, form) = self.form(graph, polynomial);
         let factor = graph.rational(factor);
         graph.mul(factor, form)

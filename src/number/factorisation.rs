@@ -95,7 +95,7 @@ fn divide_out(mut rest: Polynomial, factor: &Polynomial, factors: &mut Vec<(Poly
 }
 
 /// The polynomial whose square this is, term by term from the leading one.
-fn square_root(polynomial: &Polynomial) -> Option<Polynomial> {
+pub fn square_root(polynomial: &Polynomial) -> Option<Polynomial> {
     let (exponents, coefficient) = polynomial.terms().next_back()?;
     if exponents.iter().any(|e| e % 2 == 1) {
         return None;

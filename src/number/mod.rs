@@ -46,7 +46,7 @@ pub(crate) use enclosure::Enclosure;
 pub use enclosure::Enclosures;
 pub(crate) use enclosure::{common_decimal, round_to_decimal};
 pub(crate) use extension::Extension;
-pub(crate) use factorisation::{Factorisation, primitive, split};
+pub(crate) use factorisation::{Factorisation, primitive, split, square_root};
 pub use float::Floats;
 pub(crate) use fraction::{Factors, Fraction, Fractions};
 #[doc(hidden)]

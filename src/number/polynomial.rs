@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 /// The most variables that a polynomial may have.
-pub const LARGEST_ARITY: usize = 16;
+pub const LARGEST_ARITY: usize = 24;
 
 /// Products of more pairs of monomials than this are not multiplied out.
 const MOST_PAIRS: usize = 1 << 24;

@@ -1,14 +1,15 @@
 //! The observability codistribution (equations 4.36 and 4.37): the differentials of the outputs and of their repeated
 //! Lie derivatives along words of fields, added shortest first.
 
+use super::composition;
 use super::conditions::{all_vanish, vanishes};
 use super::elimination::independent_rows;
 use super::generic::{Ceiling, GenericAnswer, generic_answer};
 use super::related_rank::related_rank;
 use super::series::lie_derivative_by_series;
-use crate::expression::{NodeId, Program, draw_residues, expand_angles, gradient};
+use crate::expression::{NodeId, Program, Symbol, draw_residues, expand_angles, gradient};
 use crate::number::PrimeField;
-use crate::system::{Assignment, System};
+use crate::system::{Assignment, System, Time};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -18,7 +19,7 @@ pub const OWN_ROWS: &str = "rows";
 /// A repeated Lie derivative of an output: `L_{X1} L_{X2} ... h`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// The fields, outermost first, by their places in the system.
+    /// The fields, outermost first, by their places in the system. In discrete time the drift for each step.
     pub fields: Vec<usize>,
     /// The output, by its place in the system.
     pub output: usize,
@@ -216,11 +217,17 @@ impl Codistribution {
             Ceiling::Around { closed, .. } => closed,
         };
         let invariant = frame.around == Ceiling::Rests;
+        let steps = composition::steps(system, conditions)?;
         let (at_least, longest, most) = match length {
+            Length::UntilItStops if invariant && let Some(steps) = steps => {
+                (steps.at_least, steps.most.max(LONGEST), MOST_WORDS)
+            }
             Length::UntilItStops if invariant => (0, LONGEST, MOST_WORDS),
             Length::UntilItStops => (closed.len(), closed.len(), PATIENCE),
             Length::Exactly(order) => (order, order, MOST_WORDS),
         };
+        // known signals that outputs tie have derivatives up to there
+        let longest = system.longest_word().map_or(longest, |limit| longest.min(limit));
         let mut result = Codistribution::without_words(frame);
         result.stop = Stop::Order;
         // a state that is known at the beginning has no column, and yet what it does not see may be seen through its rate: the
@@ -275,7 +282,13 @@ impl Codistribution {
             }
         }
         let missing = result.generic.at_least > result.needed.len();
-        if length == Length::UntilItStops && missing && matches!(result.stop, Stop::TooMany | Stop::Order) {
+        let cut_off = system.longest_word().is_some();
+        if length == Length::UntilItStops
+            && missing
+            && !cut_off
+            && system.time == Time::Continuous
+            && matches!(result.stop, Stop::TooMany | Stop::Order)
+        {
             result.take_by_need(system, conditions, &fields)?;
         }
         Ok(result)
@@ -398,7 +411,10 @@ fn rank_around(system: &mut System, conditions: &Assignment) -> Ceiling {
 
 /// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
 pub(super) fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
-    let mut solved: Vec<_> = conditions.iter().map(|(symbol, value)| (*symbol, *value)).collect();
+    // of the last derivative of a signal that outputs tie, the rate is not that of the field
+    let counts = |(symbol, _): &(&Symbol, &NodeId)| !system.is_cut_off(**symbol);
+    let mut solved: Vec<_> =
+        conditions.iter().filter(counts).map(|(symbol, value)| (*symbol, *value)).collect();
     solved.sort_unstable();
     solved.into_iter().all(|(symbol, value)| {
         let left = system.graph.symbol(symbol);
@@ -433,7 +449,8 @@ const SERIES_FROM: usize = 5;
 
 /// The same Lie derivative in the fewer operations: as it was derived, or by series.
 fn cheaper(system: &mut System, word: &Word, derived: NodeId) -> NodeId {
-    if word.fields.len() < SERIES_FROM {
+    // series are of flows
+    if word.fields.len() < SERIES_FROM || system.time == Time::Discrete {
         return derived;
     }
     let operations = |system: &System, value| system.graph.reachable([value]).len();

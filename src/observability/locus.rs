@@ -227,7 +227,8 @@ fn grid_half_tangent(angle: f64) -> RBig {
 }
 
 fn source(system: &System, symbol: Symbol, fixed: Option<&RBig>) -> Result<Source, LocusError> {
-    let info = system.symbol_info(symbol);
+    // a known signal is the same kind of thing at every step
+    let info = system.symbol_info(system.now(symbol));
     let is_angle = info.is_some_and(|info| info.is_angle);
     let value = fixed.or(match info {
         Some(info) if info.range.is_none() => info.default.as_ref(),

@@ -8,6 +8,7 @@
 
 mod accessibility;
 mod codistribution;
+mod composition;
 mod conditions;
 mod defined;
 mod elimination;

@@ -204,6 +204,8 @@ fn totals(
 ) -> Result<(Vec<NodeId>, Outputs), ModelError> {
     let list = || system.fields.iter().map(|field| field.name.as_str()).collect::<Vec<_>>().join(", ");
     system.require_motion().map_err(|why| ModelError::NoMotion { why })?;
+    let flows = system.require_continuous("observers follow flows");
+    flows.map_err(|why| ModelError::NoMotion { why })?;
     let mut driven = Vec::new();
     for (field, symbol) in inputs {
         let place = system.fields.iter().position(|other| other.name == *field);

@@ -88,6 +88,8 @@ fn claims(small: &System, large: &System, reduction: &ReductionTo) -> Result<(St
         // no claim of the file has a name like this: it would be the same number of the same reduction
         let _ = write!(text, "\nclaim {PREFIX}-{alias}-{count}-{what}: {statement}");
     };
+    small.require_continuous("reductions are of systems that flow")?;
+    large.require_continuous("reductions are of systems that flow")?;
     let mut fields = Vec::new();
     for field in small.moving_fields() {
         let field = &small.fields[field];

@@ -245,6 +245,7 @@ impl Run<'_> {
 
 /// Lie derivatives of the first output along the first field that moves the states.
 fn derivatives(system: &System, seed: u64) -> Result<DerivativesFound, String> {
+    system.require_continuous("the ways to Lie derivatives are those along flows")?;
     let field = *system.moving_fields().first().ok_or("no field moves the states")?;
     Ok(DerivativesFound {
         field: system.fields[field].name.clone(),

@@ -24,12 +24,20 @@ fn statement_formula(text: &str) -> Option<Formula> {
         row.push(Formula::Text("where"));
         row.extend(relations(statement.conditions.iter().collect()));
     }
+    if statement.except.as_ref().is_some_and(Vec::is_empty) {
+        row.push(Formula::Text("everywhere"));
+    }
+    for (place, set) in statement.except.iter().flatten().enumerate() {
+        row.push(Formula::Text(if place == 0 { "except where" } else { "or" }));
+        row.extend(relations(set.iter().collect()));
+    }
     Some(Formula::Row(row))
 }
 
 fn expressions(statement: &Statement) -> impl Iterator<Item = &Expr> {
-    let equations = statement.relations().chain(&statement.conditions);
-    equations.flat_map(|one| [Some(&one.left), Some(&one.right), one.within.as_ref()].into_iter().flatten())
+    statement
+        .all_equations()
+        .flat_map(|one| [Some(&one.left), Some(&one.right), one.within.as_ref()].into_iter().flatten())
 }
 
 fn expression_formula(text: &str) -> Option<Formula> {

@@ -91,6 +91,8 @@ pub fn answer_accessibility(
         return Err(RankError::NothingToSee(system.name.clone()));
     }
     system.require_motion().map_err(CodistributionError::NoMotion)?;
+    let brackets = "accessibility by brackets is of continuous time";
+    system.require_continuous(brackets).map_err(CodistributionError::NoMotion)?;
     let system = &mut without_outputs(system);
     let mut equations = Vec::new();
     for text in &question.conditions {

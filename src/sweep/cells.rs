@@ -2,28 +2,35 @@
 
 use super::question::{RankQuestion, held_conditions};
 use crate::expression::{Guard, NodeId, add_guard};
-use crate::observability::{Branch, Edges, Locus, LocusError, SignCell, sign_cells};
+use crate::observability::{Branch, Edges, Locus, SignCell, sign_cells};
 use crate::system::System;
 
-/// The parts of the branches by signs; and, in words, those of which no state was found in the sample box.
-///
-/// # Errors
-/// Where no state of any part was found, as [`Locus::draw`].
+/// A part of a branch.
+pub(super) struct BranchPart {
+    pub branch: Branch,
+    pub cell: SignCell,
+    /// In words, where no state of it was found in the sample box.
+    pub without_states: Option<String>,
+}
+
+/// The parts of the branches by signs.
 pub(super) fn by_signs(
     system: &mut System,
     question: &RankQuestion<'_>,
     branches: Vec<Branch>,
     own: &[NodeId],
-) -> Result<(Vec<(Branch, SignCell)>, Vec<String>), LocusError> {
+) -> Vec<BranchPart> {
     let mut nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
     for field in system.moving_fields() {
         nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
     }
     nodes.extend(own);
     let smooth = system.smooth_guards(&system.moving_fields());
-    let (mut found, mut left_out, mut trouble) = (Vec::new(), Vec::new(), None);
+    let mut found = Vec::new();
     for branch in branches {
-        let held = held_conditions(system, question, &branch);
+        // outputs are differentiated by the states before these have the values that the conditions give
+        let mut held = held_conditions(system, question, &branch);
+        held.retain(|symbol, _| !system.states.contains(symbol));
         let there = system.graph.substitute(&nodes, &held);
         let guards: Vec<Guard> = branch.guards.iter().chain(&smooth).copied().collect();
         let guards = system.substitute_guards(&guards, &held);
@@ -39,22 +46,18 @@ pub(super) fn by_signs(
                 add_guard(&system.graph, &mut part.guards, *guard);
                 add_guard(&system.graph, &mut part.assumed, *guard);
             }
+            let mut without_states = None;
             if several && question.samples > 0 {
                 let operands = smooth.iter().map(|guard| guard.node);
                 let mentioned: Vec<NodeId> = nodes.iter().copied().chain(operands).collect();
                 let drawn = Locus::new(system, &part, &question.fixed, &mentioned)
                     .and_then(|locus| locus.draw(question.seed, 0));
-                if let Err(error) = drawn {
-                    left_out.push(cell.words.join(", "));
-                    trouble = Some(error);
-                    continue;
+                if drawn.is_err() {
+                    without_states = Some(cell.words.join(", "));
                 }
             }
-            found.push((part, cell));
+            found.push(BranchPart { branch: part, cell, without_states });
         }
     }
-    match trouble {
-        Some(error) if found.is_empty() => Err(error),
-        _ => Ok((found, left_out)),
-    }
+    found
 }

@@ -10,7 +10,7 @@ use crate::observability::{
     Probe, Stop, UnseenMotions, Unsolved, in_sign_cell, parse_condition, solve_conditions, unseen_motions,
 };
 use crate::sweep::certainty::Certainty;
-use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, UnknownKind, Value};
+use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, Time, UnknownKind, Value};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
@@ -280,7 +280,10 @@ fn answer(
         equations.extend(parse_condition(text).map_err(RankError::Condition)?);
     }
     equations.extend(system.initial_conditions().iter().cloned());
-    let mut branches = solve_conditions(system, &equations)?;
+    let mut branches = Vec::new();
+    for branch in solve_conditions(system, &equations)? {
+        branches.push(branch.tied_by_outputs(system)?);
+    }
     for branch in &mut branches {
         for symbol in question.fixed.keys() {
             if branch.values.contains_key(symbol) {
@@ -296,12 +299,16 @@ fn answer(
     };
     let own_guards = system.definition_guards(OWN_ROWS);
     let mut answers = Vec::new();
-    let (parts, left_out) = by_signs(system, question, branches, own.as_deref().unwrap_or_default())?;
-    for (branch, cell) in parts {
+    let mut left_out = Vec::new();
+    for part in by_signs(system, question, branches, own.as_deref().unwrap_or_default()) {
+        let unsampled =
+            RankQuestion { samples: 0, conditions: Vec::new(), fixed: question.fixed.clone(), ..*question };
+        let question = if part.without_states.is_some() { &unsampled } else { question };
+        left_out.extend(part.without_states);
         let work = |system: &mut System| {
-            answer_branch(system, question, only_if_short, &branch, own.as_deref(), &own_guards)
+            answer_branch(system, question, only_if_short, &part.branch, own.as_deref(), &own_guards)
         };
-        answers.push(in_sign_cell(system, &cell, work)?);
+        answers.push(in_sign_cell(system, &part.cell, work)?);
     }
     Ok(RankAnswer {
         file: system.name.clone(),
@@ -380,7 +387,7 @@ fn answer_branch(
         interrupt: question.interrupt,
         progress: question.progress,
     };
-    let full = if codistribution.is_cut_off() {
+    let full = if codistribution.is_cut_off() && system.time == Time::Continuous {
         let probe = Probe::new(system, &conditions);
         let options = SweepOptions { most: Some(codistribution.most()), ..options };
         sweep_by_series(system, &locus, &probe, &options)?
@@ -398,6 +405,8 @@ fn answer_branch(
         }
         _ => None,
     };
+    let mut codistribution = codistribution;
+    codistribution.generic.seen_at_states(&full);
     let known = codistribution.generic.is_final() && question.order.is_none();
     let motions = motions(system, &codistribution, &conditions, &given);
     let generic_rank =

@@ -7,7 +7,9 @@ use super::stream::{Stream, StreamOptions};
 use super::unseen::{UnseenDirection, UnseenDirections};
 use crate::expression::{Guard, NodeId, add_guard, expand_angles};
 use crate::number::{PrimeField, Rung};
-use crate::observability::{Codistribution, Defined, Locus, LocusError, Spectrum, State, StateInWords};
+use crate::observability::{
+    Codistribution, Defined, GenericAnswer, Locus, LocusError, Seen, Spectrum, State, StateInWords,
+};
 use crate::system::System;
 use dashu::rational::RBig;
 use rand::SeedableRng;
@@ -404,5 +406,24 @@ impl Codistribution {
     ) -> Result<SweepReport, LocusError> {
         let options = SweepOptions { most: Some(self.most()), ..options };
         sweep(system, locus, &self.needed_entries(), &self.entries(), options)
+    }
+}
+
+impl GenericAnswer {
+    /// Takes the highest rank that was certified at a state for a lower bound, on the component of the domain on which the state lies,
+    /// where that decides the rank.
+    pub(super) fn seen_at_states(&mut self, report: &SweepReport) {
+        let highest = report.rank_histogram.keys().next_back().copied();
+        let all_certified = report.samples > 0 && report.certified == report.samples;
+        if self.is_final() || !all_certified || highest != Some(self.at_most) {
+            return;
+        }
+        self.at_least = self.at_most;
+        self.open = Some(
+            "by minors at the sampled states, for the components of the domain on which these lie".to_owned(),
+        );
+        if self.at_least == self.dimension {
+            self.unknowns.iter_mut().for_each(|(_, seen)| *seen = Seen::Yes);
+        }
     }
 }

@@ -8,7 +8,7 @@
 
 use super::error::Problem;
 use super::grammar::Item;
-use super::model::{Assignment, Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Value};
+use super::model::{Assignment, Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Time, Value};
 use super::signals::{DeclaredInitial, DeclaredSignal, Derivatives, Knowledge, NOWHERE};
 use super::unknowns::{Signal, UnknownKind, next_derivative};
 use super::written::Written;
@@ -22,6 +22,25 @@ const MOST_EXPERIMENTS: usize = 20;
 const HIGHEST_DERIVATIVE: usize = 30;
 /// Of an unknown signal of which nothing else is said so many derivatives are taken not to vanish.
 pub(crate) const DEFAULT_ORDER: usize = 1;
+
+/// No more unknowns are told by outputs that are zero: the derivatives of these are as many.
+const MOST_TIED: usize = 20;
+
+/// How many unknowns the entries of a file declare.
+fn unknowns_of(items: &[Item], derivatives: &Derivatives) -> usize {
+    let of_signal = |signal: &DeclaredSignal| {
+        let used = derivatives.highest(&signal.name.text);
+        let order = signal.order.as_ref().and_then(|order| whole(order, 0..=HIGHEST_DERIVATIVE));
+        order.unwrap_or(used.max(DEFAULT_ORDER)) + 1
+    };
+    let count = |item: &Item| match item {
+        Item::State(list) => list.len(),
+        Item::Param(list) => list.iter().filter(|one| one.knowledge == Some(Knowledge::Unknown)).count(),
+        Item::Signals { knowledge: Knowledge::Unknown, list } => list.iter().map(of_signal).sum(),
+        _ => 0,
+    };
+    items.iter().map(count).sum()
+}
 
 /// The whole number that an expression is, if it lies within bounds.
 fn whole(expr: &Expr, bounds: std::ops::RangeInclusive<usize>) -> Option<usize> {
@@ -38,7 +57,13 @@ impl System {
             _ => None,
         });
         self.coordinates.further_experiments = count.unwrap_or(1) - 1;
-        Derivatives::of(items)
+        let derivatives = Derivatives::of(items);
+        if items.iter().any(|item| matches!(item, Item::Zero(_))) {
+            // as many derivatives as there are unknowns: a rank has stopped growing by then
+            let unknowns = unknowns_of(items, &derivatives) * count.unwrap_or(1);
+            self.coordinates.longest_word = Some(unknowns);
+        }
+        derivatives
     }
 
     /// `experiments 2`; what it says was looked for before.
@@ -157,7 +182,7 @@ impl System {
                 order
             }
             None if knowledge == Knowledge::Unknown => used.max(DEFAULT_ORDER),
-            None => used,
+            None => used + self.coordinates.longest_word.map_or(0, |longest| longest + 1),
         };
         let mut chain = Vec::new();
         for place in 0..=order {
@@ -268,7 +293,18 @@ impl System {
     fn chains(&mut self) -> Vec<(Symbol, NodeId)> {
         let links = self.coordinates.signals.iter().flat_map(|signal| signal.chain.windows(2));
         let links: Vec<(Symbol, Symbol)> = links.map(|pair| (pair[0], pair[1])).collect();
-        links.into_iter().map(|(link, next)| (link, self.graph.symbol(next))).collect()
+        let mut rate = |(link, next): (Symbol, Symbol)| {
+            let difference = self.graph.symbol(next);
+            let value = match self.time {
+                Time::Continuous => difference,
+                Time::Discrete => {
+                    let before = self.graph.symbol(link);
+                    self.graph.add(before, difference)
+                }
+            };
+            (link, value)
+        };
+        links.into_iter().map(&mut rate).collect()
     }
 
     /// What a drift moves besides: signals, and the states in the other experiments.
@@ -301,8 +337,9 @@ impl System {
         (found, needs)
     }
 
-    /// Adds the fields that drive known signals, and where nothing else moves by itself a drift for signals.
-    pub(super) fn finish_signals(&mut self) {
+    /// Adds the fields that drive known signals, and where nothing else moves by itself a drift for signals. Signals that
+    /// outputs tie are not driven at will.
+    pub(super) fn finish_signals(&mut self) -> Result<(), Problem> {
         let chains = self.chains();
         if !chains.is_empty() && self.drift().is_none() {
             let mut name = "signals".to_owned();
@@ -310,6 +347,23 @@ impl System {
                 name.push('_');
             }
             self.add_field(name, Role::Drift, NOWHERE, chains);
+        }
+        if self.longest_word().is_some_and(|longest| longest > MOST_TIED) {
+            let message = format!("an output is zero, and there are more than {MOST_TIED} unknowns");
+            return Err(
+                Problem::new(&(0..0), message, "").help("write what it says as an output that is measured")
+            );
+        }
+        if self.longest_word().is_some() {
+            return match self.fields.iter().find(|field| field.role == Role::Input) {
+                Some(input) => {
+                    let message =
+                        format!("an output is zero, and so the input '{}' is not anything", input.name);
+                    Err(Problem::new(&input.span, message, "this input")
+                        .help("write what drives it as a known signal: known u(t), and u in the drift"))
+                }
+                None => Ok(()),
+            };
         }
         let driven = self.coordinates.signals.iter().filter(|signal| signal.is_known);
         let driven: Vec<(Symbol, Span)> =
@@ -319,6 +373,7 @@ impl System {
             let one = self.graph.integer(1);
             self.add_field(name, Role::Input, span, vec![(symbol, one)]);
         }
+        Ok(())
     }
 
     /// Whether a field is one that the file did not write: it drives a known signal, or moves signals alone.

@@ -11,6 +11,8 @@ impl System {
     /// divided by, or has a root or a logarithm taken of, in the outputs and in the fields that move; else from -1 to 1.
     /// Nothing where the file says one.
     pub fn default_range(&self, symbol: Symbol) -> Option<Range> {
+        // a known signal is the same kind of thing at every step
+        let symbol = self.now(symbol);
         let info = self.symbol_info(symbol)?;
         if info.range.is_some() || info.default.is_some() {
             return None;

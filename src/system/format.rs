@@ -145,7 +145,9 @@ fn row(line: &str, sign: &str) -> Option<usize> {
     let end = end + component;
     let end = end + line[end..].find(|c: char| !(c.is_ascii_digit() || matches!(c, '@' | '\'')))?;
     let (name, mut rest) = (&line[..end], line[end..].trim_start());
-    if sign == "=" && !name.ends_with('\'') {
+    if sign == "=" && rest.starts_with('+') {
+        rest = rest[1..].trim_start();
+    } else if sign == "=" && !name.ends_with('\'') {
         rest = rest.strip_prefix('\'')?.trim_start();
     }
     let after = rest.strip_prefix(sign)?;

@@ -12,7 +12,7 @@ use crate::expression::parse::{
     read_all, repeat, sign, stop, sum, target, written_out,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
-use winnow::combinator::{alt, cut_err, opt, preceded, separated};
+use winnow::combinator::{alt, cut_err, opt, peek, preceded, separated};
 use winnow::error::{ErrMode, ParserError};
 use winnow::prelude::*;
 use winnow::stream::{Location, Stream};
@@ -44,8 +44,12 @@ pub(crate) enum Item {
         name: Name,
         components: Vec<(Name, Expr)>,
         others_are_zero: bool,
+        /// Whether it takes states to their successors, `x+ = e`, and is no field.
+        is_map: bool,
     },
     Output(Vec<OutputSyntax>),
+    /// Outputs that are zero: `output 0 = y`.
+    Zero(Vec<OutputSyntax>),
     /// Signals that somebody knows, or nobody.
     Signals {
         knowledge: Knowledge,
@@ -88,6 +92,9 @@ pub struct Statement {
     pub on_sample: bool,
     /// `where a = b, c > d, ...`
     pub conditions: Vec<Equation>,
+    /// `except where a = b, c = d or e = f`: of a rank at all states, the sets that are left out, each by its equations; none
+    /// of them where it says `everywhere`, and nothing where the rank is that at almost all states.
+    pub except: Option<Vec<Vec<Equation>>>,
     /// The whole, in the text.
     pub span: Span,
 }
@@ -122,6 +129,11 @@ impl Statement {
     /// All that is said, one relation after the other.
     pub fn relations(&self) -> impl Iterator<Item = &Equation> {
         std::iter::once(&self.equation).chain(&self.further)
+    }
+
+    /// The same, and all that stands behind `where` and `except where`.
+    pub fn all_equations(&self) -> impl Iterator<Item = &Equation> {
+        self.relations().chain(&self.conditions).chain(self.except.iter().flatten().flatten())
     }
 }
 
@@ -221,8 +233,10 @@ fn states(input: &mut Text<'_>) -> Read<Item> {
     cut_err(declared(false)).context("a list of names").map(Item::State).parse_next(input)
 }
 
-fn outputs(input: &mut Text<'_>) -> Read<Item> {
+/// The values of a list of outputs, each behind what is read before it.
+fn seen(input: &mut Text<'_>, before: impl Fn(&mut Text<'_>) -> Read<()>) -> Read<Vec<OutputSyntax>> {
     let one = |input: &mut Text<'_>| -> Read<Vec<OutputSyntax>> {
+        before(input)?;
         let (expr, dimension) = (sum(input)?, annotation(input)?);
         let loops = loops(input)?;
         repeat(input, &loops, |indices| {
@@ -232,9 +246,27 @@ fn outputs(input: &mut Text<'_>) -> Read<Item> {
             Ok(entries.into_iter().map(one).collect())
         })
     };
-    keyword("output").parse_next(input)?;
     let list: Vec<Vec<_>> = cut_err(separated(1.., one, sign(","))).parse_next(input)?;
-    Ok(Item::Output(list.concat()))
+    Ok(list.concat())
+}
+
+fn outputs(input: &mut Text<'_>) -> Read<Item> {
+    keyword("output").parse_next(input)?;
+    seen(input, |_| Ok(())).map(Item::Output)
+}
+
+fn zero_outputs(input: &mut Text<'_>) -> Read<Item> {
+    let zero = |input: &mut Text<'_>| -> Read<()> {
+        (literal("0"), blank, literal("=")).void().parse_next(input)?;
+        blank(input)
+    };
+    keyword("output").parse_next(input)?;
+    peek(zero).parse_next(input)?;
+    let before = |input: &mut Text<'_>| {
+        let what = "'0 =': where one output of a list is zero all of them are";
+        cut_err(zero).context(what).parse_next(input)
+    };
+    seen(input, before).map(Item::Zero)
 }
 
 fn params(input: &mut Text<'_>) -> Read<Item> {
@@ -266,8 +298,17 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     ))
     .parse_next(input)?;
     let title = cut_err(name).context("the field's name").parse_next(input)?;
-    let component = |input: &mut Text<'_>| -> Read<Vec<(Name, Expr)>> {
-        let state = moved(input)?;
+    let mut time = None;
+    let mut component = |input: &mut Text<'_>| -> Read<Vec<(Name, Expr)>> {
+        let begin = input.current_token_start();
+        let (state, steps) = moved(input)?;
+        if *time.get_or_insert(steps) != steps {
+            let help = "x' is a rate of change, x+ the value after a step: a system has one of the two";
+            return stop(begin, "one kind of time in a field", Some(help.to_owned()));
+        }
+        if steps && state.name == "others" {
+            return stop(begin, "the name of a state: one that is not named stays as it is", None);
+        }
         cut_err(sign("=")).context("'=' and the rate of change").parse_next(input)?;
         let rate = cut_err(sum).parse_next(input)?;
         let loops = loops(input)?;
@@ -278,7 +319,7 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     };
     let mut components: Vec<(Name, Expr)> = Vec::new();
     while !begins(input)
-        && let Some(found) = opt(component).parse_next(input)?
+        && let Some(found) = opt(component.by_ref()).parse_next(input)?
     {
         components.extend(found);
     }
@@ -289,7 +330,8 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
         return stop(value.span.start, "0: the components that are not named can only be zero", None);
     }
     let others_are_zero = !others.is_empty();
-    Ok(Item::Field { role, name: title, components, others_are_zero })
+    let is_map = time == Some(true);
+    Ok(Item::Field { role, name: title, components, others_are_zero, is_map })
 }
 
 fn sample(input: &mut Text<'_>) -> Read<Item> {
@@ -369,7 +411,23 @@ pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
     let given = opt(preceded(keyword("where"), conditions)).parse_next(input)?;
     let conditions: Vec<Equation> = given.unwrap_or_default();
     end = conditions.last().map_or(end, |last| last.span.end);
-    Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, span: begin..end }))
+    let everywhere = opt(keyword("everywhere")).parse_next(input)?;
+    end = everywhere.as_ref().map_or(end, |word| word.end);
+    let except = match opt(keyword("except")).parse_next(input)? {
+        None => everywhere.map(|_| Vec::new()),
+        Some(_) => {
+            cut_err(keyword("where")).context("'where', as in 'except where x = 0'").parse_next(input)?;
+            let one = |input: &mut Text<'_>| -> Read<Vec<Equation>> {
+                let found: Vec<Vec<Equation>> =
+                    cut_err(separated(1.., equations, sign(","))).parse_next(input)?;
+                Ok(found.into_iter().flatten().collect())
+            };
+            let sets: Vec<Vec<Equation>> = cut_err(separated(1.., one, keyword("or"))).parse_next(input)?;
+            Some(sets)
+        }
+    };
+    end = except.iter().flatten().flatten().last().map_or(end, |last| last.span.end);
+    Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, except, span: begin..end }))
 }
 
 /// Reads a statement that is the whole text, as it stands behind the colon of a claim.
@@ -440,7 +498,7 @@ fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
         params,
         preceded(keyword("angle"), names).map(Item::Angle),
         field,
-        outputs,
+        alt((zero_outputs, outputs)),
         alt((sample, claim, faulty, remark_only, view, entry)),
     ));
     alt((definitions, one.map(|item| vec![item]))).parse_next(input)

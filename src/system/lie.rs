@@ -36,6 +36,13 @@ impl System {
                 Problem::new(span, "'L' takes a field and an expression", "here").help("as in L(f, s1)")
             );
         }
+        let steps = fields.iter().any(|field| match &field.kind {
+            ExprKind::Name(name) => self.field(name).is_some_and(|field| field.derivation.composes()),
+            _ => false,
+        });
+        if steps {
+            return self.after_steps(fields, last, span);
+        }
         let mut value = self.elaborate(last)?;
         for field in fields.iter().rev() {
             value = match &field.kind {
@@ -47,6 +54,38 @@ impl System {
             };
             self.refuse_growth(span)?;
         }
+        Ok(value)
+    }
+
+    /// The same along maps: what is after the last step has to exist there, and each step at the state before it.
+    fn after_steps(&mut self, fields: &[Expr], last: &Expr, span: &Span) -> Result<Value, Problem> {
+        let (mut value, domain) = self.apart(|system| system.elaborate(last))?;
+        let mut guards = self.guards_of(&domain);
+        for field in fields.iter().rev() {
+            let ExprKind::Name(name) = &field.kind else {
+                let message =
+                    "maps have no bracket: 'L' takes the names of maps, and what is composed with them";
+                return Err(Problem::new(&field.span, message, "this"));
+            };
+            let Some(found) = self.field(name) else {
+                return Err(self.unknown(name, &field.span, Wanted::Field));
+            };
+            let needs: Vec<Guard> = found.guards.iter().flatten().copied().collect();
+            let step = |system: &mut System, id: NodeId| {
+                let mut graph = std::mem::take(&mut system.graph);
+                let after = system.field_mut(name).map_or(id, |field| field.derivation.apply(&mut graph, id));
+                system.graph = graph;
+                after
+            };
+            guards = guards
+                .into_iter()
+                .map(|guard| Guard { node: step(self, guard.node), need: guard.need })
+                .chain(needs)
+                .collect();
+            value = self.map(value, &last.span, step)?;
+            self.refuse_growth(span)?;
+        }
+        self.need_all(guards);
         Ok(value)
     }
 
@@ -103,6 +142,10 @@ impl System {
     fn rates_of(&mut self, field: &Expr, depth: usize) -> Result<Rates, Problem> {
         match &field.kind {
             ExprKind::Name(name) => match self.field(name) {
+                Some(found) if found.derivation.composes() => {
+                    let message = format!("'{name}' is a map, and maps have no bracket");
+                    Err(Problem::new(&field.span, message, "this one"))
+                }
                 Some(found) => {
                     let parts = found.components.iter().zip(&found.guards);
                     let rate = |((symbol, value), guards): (&(Symbol, NodeId), &Vec<Guard>)| {

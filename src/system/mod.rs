@@ -10,6 +10,7 @@ mod components;
 mod declare;
 mod determinant;
 mod dimension;
+mod discrete;
 mod domain;
 mod drawn;
 mod elaborate;
@@ -37,6 +38,7 @@ mod views;
 pub mod vocabulary;
 mod written;
 
+pub(crate) use determinant::determinant;
 pub use dimension::{Base, Dimension};
 pub use error::ReadError;
 #[cfg(feature = "cli")]
@@ -48,7 +50,7 @@ pub use grammar::Expectation;
 pub use grammar::parse_statement;
 #[doc(hidden)]
 pub use grammar::{ClaimBody, ClaimSyntax, Statement};
-pub use model::{Assignment, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Value};
+pub use model::{Assignment, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Time, Value};
 #[cfg(feature = "cli")]
 pub(crate) use outline::{Declaration, DeclarationKind, Outline};
 #[doc(hidden)]

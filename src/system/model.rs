@@ -69,6 +69,16 @@ impl Role {
     }
 }
 
+/// How the states of a system move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Time {
+    /// At rates: `x' = e`.
+    #[default]
+    Continuous,
+    /// In steps: `x+ = e`. The drift is a map, and the derivative along it the composition with it.
+    Discrete,
+}
+
 /// A vector field: `x' = component` for each state that it moves.
 #[derive(Clone, Debug)]
 pub struct Field {
@@ -257,6 +267,8 @@ pub struct System {
     pub(crate) calculated: HashSet<String>,
     /// What is known of dimensions.
     pub(crate) dimensions: Arc<Dimensions>,
+    /// Whether the states move continuously or in steps.
+    pub time: Time,
     /// The vectors, by their names: those whose components are symbols or definitions.
     pub(crate) vectors: BTreeSet<String>,
     /// The dimensions of the files that this one imports, while it is read.
@@ -401,7 +413,7 @@ impl System {
         let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
         let mut places = Vec::new();
         for statement in body.statements() {
-            for equation in statement.relations().chain(&statement.conditions) {
+            for equation in statement.all_equations() {
                 places_in_equation(&scope, equation, &mut places);
             }
         }

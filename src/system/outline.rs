@@ -147,7 +147,7 @@ impl Outline {
                 self.imports.push(ImportedFile { alias, path, entry });
             }
             Item::Field { role, name, .. } => add(DeclarationKind::Field(*role), &name.text, &name.span),
-            Item::Output(list) => {
+            Item::Output(list) | Item::Zero(list) => {
                 // what stands for several is listed once
                 let mut last = None;
                 for OutputSyntax { value, .. } in list {

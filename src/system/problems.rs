@@ -227,7 +227,7 @@ impl Item {
         match self {
             Item::Let { value, .. } => vec![value.clone()],
             Item::Field { components, .. } => components.iter().map(|(_, expr)| expr.clone()).collect(),
-            Item::Output(list) => list.iter().map(|one| one.value.clone()).collect(),
+            Item::Output(list) | Item::Zero(list) => list.iter().map(|one| one.value.clone()).collect(),
             Item::View(view) => {
                 view.equations().into_iter().flat_map(|e| [e.left.clone(), e.right.clone()]).collect()
             }
@@ -243,7 +243,7 @@ fn expressions(statement: &Statement) -> Vec<Expr> {
         let within = equation.within.clone();
         [equation.left.clone(), equation.right.clone()].into_iter().chain(within).collect::<Vec<_>>()
     };
-    statement.relations().chain(&statement.conditions).flat_map(sides).collect()
+    statement.all_equations().flat_map(sides).collect()
 }
 
 /// What is needed to go on behind an entry that fails; nothing where the reading ends there.

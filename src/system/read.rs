@@ -7,7 +7,7 @@ use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
 use super::grammar::{ClaimSyntax, Entries, Item, OutputSyntax, Statement, parse_entries};
 use super::imports::Reading;
-use super::model::{Field, FieldPlace, Kind, Range, Role, System, Value};
+use super::model::{Field, FieldPlace, Kind, Range, Role, System, Time, Value};
 use super::problems::{Cause, Full, Problems, Remnant, names_of_text};
 use super::signals::{Derivatives, Knowledge};
 use super::source_text::{load, refuse_reordering, with_plain_line_ends};
@@ -154,6 +154,7 @@ impl System {
             dimensions: Default::default(),
             imported_dimensions: Vec::new(),
             vectors: BTreeSet::new(),
+            time: Time::Continuous,
         };
         match system.fill(folder, reading, problems) {
             Ok(()) => Ok(system),
@@ -188,7 +189,13 @@ impl System {
                 self.entry_failed(problem, remnant, problems)?;
             }
         }
-        self.finish_signals();
+        let finished = match self.time {
+            Time::Continuous => self.finish_signals(),
+            Time::Discrete => self.finish_discrete_signals(),
+        };
+        if let Err(problem) = finished {
+            problems.add(problem)?;
+        }
         for claim in self.claims.clone() {
             for statement in claim.body.statements() {
                 if let Err(problem) = self.check(&claim, statement) {
@@ -298,10 +305,14 @@ impl System {
                 self.definition_domains.insert(name.text.clone(), domain);
                 self.definitions.insert(name.text.clone(), value);
             }
-            Item::Field { role, name, components, others_are_zero } => {
+            Item::Field { role, name, components, is_map: true, .. } => {
+                self.enter_map(*role, name.clone(), components)?
+            }
+            Item::Field { role, name, components, others_are_zero, .. } => {
                 self.enter_field(*role, name.clone(), components, *others_are_zero)?
             }
-            Item::Output(list) => {
+            Item::Output(list) | Item::Zero(list) => {
+                let is_zero = matches!(item, Item::Zero(_));
                 let mut further = Vec::new();
                 for OutputSyntax { value: expr, is_repeated, .. } in list {
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
@@ -316,9 +327,15 @@ impl System {
                         let guards = self.substitute_guards(&guards, &copies);
                         further.push((in_words(&text, experiment), there, guards));
                     }
+                    if is_zero {
+                        self.coordinates.zero_outputs.push(value);
+                    }
                     self.see(text, value, guards);
                 }
                 for (text, value, guards) in further {
+                    if is_zero {
+                        self.coordinates.zero_outputs.push(value);
+                    }
                     self.see(text, value, guards);
                 }
             }
@@ -394,7 +411,19 @@ impl System {
             let message = "'on sample' is said of numbers; a rank is that at almost all states";
             return Err(Problem::new(&statement.span, message, "this claim"));
         }
-        for condition in &statement.conditions {
+        let is_rank = |value: &Value| matches!(value, Value::Rank(_) | Value::CodistributionRank);
+        if statement.except.is_some() && !is_rank(&values.0) && !is_rank(&values.1) {
+            let message =
+                "'everywhere' and 'except where' are said of a rank: all else is claimed wherever it exists";
+            return Err(Problem::new(&statement.span, message, "this claim"));
+        }
+        if let Some(unequal) =
+            statement.except.iter().flatten().flatten().find(|e| e.relation != Relation::Equal)
+        {
+            let message = "what is left out is said by equations";
+            return Err(Problem::new(&unequal.span, message, "no equation"));
+        }
+        for condition in statement.conditions.iter().chain(statement.except.iter().flatten().flatten()) {
             self.scalar(&condition.left)?;
             self.scalar(&condition.right)?;
             if let Some(within) = &condition.within {
@@ -449,17 +478,7 @@ impl System {
         components: &[(Name, Expr)],
         others_are_zero: bool,
     ) -> Result<(), Problem> {
-        if name.text.contains('.') {
-            let message = "a name with a dot belongs to an imported system";
-            return Err(Problem::new(&name.span, message, "choose one without"));
-        }
-        if self.field(&name.text).is_some() {
-            return Err(Problem::new(
-                &name.span,
-                format!("there is a field '{}' already", name.text),
-                "the second one",
-            ));
-        }
+        self.refuse_field(&name, Time::Continuous)?;
         // asked in this order: a file of many fields is not gone through for each of them
         if role == Role::Drift
             && let Some(first) = self.drift()
@@ -470,25 +489,8 @@ impl System {
                 name.text
             )));
         }
-        let mut rates: Vec<(Symbol, _)> = Vec::new();
-        let mut moved: HashSet<Symbol> = HashSet::new();
-        let mut guards = Vec::new();
-        for (state, expr) in components {
-            let is_state =
-                |symbol: &Symbol| self.symbol_info(*symbol).is_some_and(|info| info.kind == Kind::State);
-            let symbol = self.find_symbol(&state.text).filter(is_state);
-            let Some(symbol) = symbol else {
-                return Err(self.unknown(&state.text, &state.span, Wanted::State));
-            };
-            self.refuse_rate(role, symbol, &state.span)?;
-            if !moved.insert(symbol) {
-                let message = format!("'{}' is given twice in the field '{}'", state.text, name.text);
-                return Err(Problem::new(&state.span, message, "the second time"));
-            }
-            let (rate, domain) = self.apart(|system| system.scalar(expr))?;
-            rates.push((symbol, rate));
-            guards.push(self.guards_of(&domain));
-        }
+        let (mut rates, mut guards) = self.rates_as_written(role, &name, components)?;
+        let moved: HashSet<Symbol> = rates.iter().map(|(symbol, _)| *symbol).collect();
         let missing = self.moving_states().find(|state| !moved.contains(state));
         if let (Some(missing), false) = (missing, others_are_zero) {
             let message =
@@ -496,12 +498,7 @@ impl System {
             return Err(Problem::new(&name.span, message, "this field")
                 .help("end it with: others' = 0, if the states that it does not name stand still"));
         }
-        let written = match (components.first(), components.last()) {
-            (Some((first, _)), Some((_, last))) => {
-                self.written_as(&(first.span.start..last.span.end), components.iter().map(|(_, expr)| expr))
-            }
-            _ => Written::default(),
-        };
+        let written = self.written_components(components);
         let written = if others_are_zero { written.followed_by("others' = 0") } else { written };
         let mut fields = Vec::new();
         match role {
@@ -529,6 +526,45 @@ impl System {
             });
         }
         Ok(())
+    }
+
+    /// The components of a field as they are written.
+    pub(super) fn written_components(&self, components: &[(Name, Expr)]) -> Written {
+        match (components.first(), components.last()) {
+            (Some((first, _)), Some((_, last))) => {
+                self.written_as(&(first.span.start..last.span.end), components.iter().map(|(_, expr)| expr))
+            }
+            _ => Written::default(),
+        }
+    }
+
+    /// What a field says of each state that it names, and where that exists.
+    pub(super) fn rates_as_written(
+        &mut self,
+        role: Role,
+        name: &Name,
+        components: &[(Name, Expr)],
+    ) -> Result<Components, Problem> {
+        let mut rates: Vec<(Symbol, _)> = Vec::new();
+        let mut moved: HashSet<Symbol> = HashSet::new();
+        let mut guards = Vec::new();
+        for (state, expr) in components {
+            let is_state =
+                |symbol: &Symbol| self.symbol_info(*symbol).is_some_and(|info| info.kind == Kind::State);
+            let symbol = self.find_symbol(&state.text).filter(is_state);
+            let Some(symbol) = symbol else {
+                return Err(self.unknown(&state.text, &state.span, Wanted::State));
+            };
+            self.refuse_rate(role, symbol, &state.span)?;
+            if !moved.insert(symbol) {
+                let message = format!("'{}' is given twice in the field '{}'", state.text, name.text);
+                return Err(Problem::new(&state.span, message, "the second time"));
+            }
+            let (rate, domain) = self.apart(|system| system.scalar(expr))?;
+            rates.push((symbol, rate));
+            guards.push(self.guards_of(&domain));
+        }
+        Ok((rates, guards))
     }
 
     /// Some expressions as they are written, within a span that holds them all.
@@ -581,6 +617,9 @@ impl System {
         Ok(())
     }
 }
+
+/// What a field says of states, and where each component exists.
+pub(super) type Components = (Vec<(Symbol, NodeId)>, Vec<Vec<Guard>>);
 
 /// What examining a file came to.
 #[derive(Debug)]

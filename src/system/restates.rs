@@ -16,7 +16,11 @@ impl System {
     pub(crate) fn says_one_thing_twice(&mut self, statement: &Statement) -> bool {
         let equation = &statement.equation;
         let is_one_equation = equation.relation == Relation::Equal && statement.further.is_empty();
-        if !is_one_equation || !statement.conditions.is_empty() || equation.within.is_some() {
+        if !is_one_equation
+            || !statement.conditions.is_empty()
+            || statement.except.is_some()
+            || equation.within.is_some()
+        {
             return false;
         }
         let (left, right) = (&equation.left, &equation.right);

@@ -209,7 +209,7 @@ impl Derivatives {
             Item::Let { value, .. } => self.expression(value),
             // what moves is no mention: (w')' = e is written w'' = e
             Item::Field { components, .. } => components.iter().for_each(|(_, expr)| self.expression(expr)),
-            Item::Output(list) => list.iter().for_each(|one| self.expression(&one.value)),
+            Item::Output(list) | Item::Zero(list) => list.iter().for_each(|one| self.expression(&one.value)),
             Item::Sample { ranges, avoid } => {
                 ranges.iter().for_each(|(name, ..)| self.name(&name.text));
                 avoid.iter().for_each(|expr| self.expression(expr));

@@ -5,8 +5,8 @@
 //! drawn, and has no column.
 
 use super::model::System;
-use crate::expression::Symbol;
 use crate::expression::syntax::{Equation, ExprKind, Span};
+use crate::expression::{NodeId, Symbol};
 use dashu::rational::RBig;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -56,6 +56,10 @@ pub(crate) struct Coordinates {
     pub initial: Vec<Equation>,
     /// Those that are known at the beginning, and whose rates may depend on what is not.
     pub known_at_first: BTreeSet<Symbol>,
+    /// The outputs that are zero.
+    pub zero_outputs: Vec<NodeId>,
+    /// How long words may be where there are such: known signals have derivatives up to there.
+    pub longest_word: Option<usize>,
     /// How many experiments are made beside the first one.
     pub further_experiments: usize,
     /// Whether the file has said so.
@@ -140,6 +144,28 @@ impl System {
             }
             _ => None,
         })
+    }
+
+    /// The outputs that are zero, `output 0 = y(x, u)`: they tie known signals to states.
+    pub(crate) fn zero_outputs(&self) -> Vec<NodeId> {
+        self.coordinates.zero_outputs.clone()
+    }
+
+    /// How long words may be, where known signals have derivatives up to an order only since outputs tie them.
+    pub(crate) fn longest_word(&self) -> Option<usize> {
+        self.coordinates.longest_word
+    }
+
+    /// The how manieth derivative of a signal a symbol is.
+    pub(crate) fn derivative_of_signal(&self, symbol: Symbol) -> Option<usize> {
+        let mut signals = self.coordinates.signals.iter();
+        signals.find_map(|signal| signal.chain.iter().position(|link| *link == symbol))
+    }
+
+    /// Whether a symbol is the last derivative that is taken of a signal that outputs tie: its rate is nothing that is known.
+    pub(crate) fn is_cut_off(&self, symbol: Symbol) -> bool {
+        let last = |signal: &Signal| signal.is_known && signal.chain.last() == Some(&symbol);
+        self.longest_word().is_some() && self.coordinates.signals.iter().any(last)
     }
 
     /// What is assumed of unknown signals: that a derivative vanishes, as `w'' = 0`.

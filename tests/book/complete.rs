@@ -69,10 +69,11 @@ fn every_field_of_the_json_is_named() {
         ["v.json", "paper", "out"].map(|name| folder.path().join(name).display().to_string());
     let chapter = chapter("json.md");
     let begin = chapter.split_once("\n## ").expect("parts").0;
-    let runs: [&[&str]; 12] = [
+    let runs: [&[&str]; 13] = [
         &["prove", file, "--verdicts", &verdicts],
         &["recheck", &verdicts],
         &["rank", file, "--samples", "20", "--digits", "5"],
+        &["rank", file, "--where-it-drops"],
         &["eval", file, "x", "--at", "x=1", "--latex"],
         &["certify", file, "--boxes", "20"],
         &["trade", file, "--samples", "20"],

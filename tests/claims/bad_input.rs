@@ -26,7 +26,7 @@ fn mistakes_are_shown_at_their_place() {
         ("misspelt", "let v = omga0*r1\n"),
         ("missing_bracket", "let v = (omega0 + r1\nlet w = 2\n"),
         ("missing_operand", "let v = omega0 +\nlet w = 2\n"),
-        ("fractional_power", "let v = r1^0.5\n"),
+        ("two_exponents", "let v = r1^0.5^2\n"),
         ("unknown_function", "let v = sine(r1)\n"),
         ("implied_product", "let v = 2 r1\n"),
         ("field_lacks_a_state", "field f\n  r1' = 1\n"),

@@ -242,3 +242,63 @@ fn what_has_no_range_is_drawn_by_default() {
         String::from_utf8(palmistry(&["rank", file.to_str().unwrap(), "--samples", "20"]).stdout).unwrap();
     assert!(text.contains("drawn by default"), "{text}");
 }
+
+/// Signals that are tied to states by outputs that are zero. By hand: `u = x` with `x' = k` tells x, and by its derivative k.
+/// `u = y/x` of what turns with the rate w tells the angle and w, and not the radius. `u = 1/x`, `v = -x y` tell both, and their
+/// rates. `x + k u^2 = 1` with x and k at rest keeps u at rest: one equation for two unknowns; were u free, two of them.
+#[test]
+fn outputs_that_are_zero_tie_signals_to_states() {
+    has_rank("system \"s\" state x param k unknown known u(t) drift f x' = k output 0 = x - u", 2);
+    has_rank(
+        "system \"s\" state x, y param w unknown known u(t) drift f x' = -w*y y' = w*x output 0 = u*x - y",
+        2,
+    );
+    has_rank(
+        "system \"s\" state x, y param a unknown known u(t), v(t) unknown w(t) order 0 drift f x' = w y' = a \
+         output 0 = u*x - 1, 0 = v + x*y",
+        4,
+    );
+    let at_rest = "system \"s\" state x param k unknown known u(t) drift f x' = 0";
+    has_rank(&format!("{at_rest} output 0 = x + k*u^2 - 1"), 1);
+    has_rank(&format!("{at_rest} output x + k*u^2"), 2);
+    // u = a x + b with x seen and at rest: one experiment tells the sum, two tell a and b
+    let line = "state x param a, b unknown known u(t) drift f x' = 0 output x output 0 = u - a*x - b";
+    has_rank(&format!("system \"s\" {line}"), 2);
+    has_rank(&format!("system \"s\" experiments 2 {line}"), 4);
+}
+
+/// Drawn states lie on the set, with all derivatives; and the checker, which knows nothing of it, confirms what is told.
+#[test]
+fn states_are_drawn_where_these_outputs_are_zero() {
+    let folder = folder();
+    let text = "system \"s\"\nstate x\nparam k unknown\nknown u(t)\ndrift f\n  x' = k\noutput 0 = 2*u - x\n";
+    let file = write(&folder, "tied.proof", text);
+    let verdicts = folder.path().join("v.json").display().to_string();
+    let arguments = ["rank", file.to_str().unwrap(), "--samples", "20", "--json", "--verdicts", &verdicts];
+    let found = json(&palmistry(&arguments));
+    assert_eq!(found["rank_histogram"], serde_json::json!({ "2": 20 }));
+    assert_eq!(found["conditions"], serde_json::json!(["0 = 2*u - x"]));
+    assert_eq!(found["longer_words_cannot_raise_it"], true);
+    let state = &found["worst_conditioned"]["state"];
+    let value = |name: &str| state[name]["value"].as_f64().unwrap_or_else(|| panic!("{name}: {state}"));
+    assert_eq!((2.0 * value("u"), 2.0 * value("u'")), (value("x"), value("k")));
+    assert_eq!((value("u''"), value("u'''")), (0.0, 0.0));
+    let checked = palmistry(&["recheck", &verdicts]);
+    assert_eq!(checked.status.code(), Some(0), "{}", String::from_utf8_lossy(&checked.stdout));
+}
+
+/// A set of several parts is not taken for one of them, and an input cannot be anything where an output is zero.
+#[test]
+fn ties_that_are_not_understood_decide_nothing() {
+    let several = "system \"s\" state x, y known u(t) drift f x' = 0 y' = 0 output 0 = u*(u - x) claim 1 expect undecided: rank = 1";
+    assert!(prove(&system(several)).iter().all(|outcome| outcome.ok));
+    let curved = "system \"s\" state x known u(t) drift f x' = 0 output 0 = u^2 + x^2 - 1 claim 1 expect undecided: rank = 1";
+    assert!(prove(&system(curved)).iter().all(|outcome| outcome.ok));
+    for text in [
+        "system \"s\" state x known u(t) drift f x' = 0 input g x' = 1 output 0 = u - x",
+        "system \"s\" state x known u(t) drift f x' = 0 output 0 = u - x, x",
+        "system \"s\" state x known u(t) drift f x' = 0 output 1 = u - x",
+    ] {
+        assert!(System::parse("s", text, Path::new("")).is_err(), "{text}");
+    }
+}

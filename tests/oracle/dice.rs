@@ -1,6 +1,6 @@
 //! Random numbers and random expressions, the same for the same seed and case on every machine.
 
-use super::expression::{Expression, Function, Symbol};
+use super::expression::{Binary, Expression, Function, Symbol};
 use super::number::Number;
 use super::point::{Coordinate, Point};
 use super::system::Model;
@@ -140,7 +140,15 @@ impl Dice {
     pub fn transcendental(&mut self, symbols: &[Symbol]) -> Expression {
         let inner = Expression::Symbol(self.one_of(symbols));
         let other = self.polynomial(symbols, 1, 2);
-        match self.below(8) {
+        match self.below(16) {
+            8 => other.of(Function::Tanh),
+            9 => inner.of(Function::Abs).plus(other),
+            10 => inner.with_other(Binary::Max, other),
+            11 => inner.with_other(Binary::Min, other),
+            12 => inner.with_other(Binary::Atan2, other),
+            13 => inner.with_other(Binary::RealPower, Expression::Symbol(self.one_of(symbols))),
+            14 => inner.with_other(Binary::RealPower, Expression::Number(RBig::from(1) / RBig::from(3))),
+            15 => inner.of(Function::Sinh),
             0 => inner.of(Function::Exp),
             1 => inner.of(Function::Log),
             2 => inner.of(Function::Sqrt),

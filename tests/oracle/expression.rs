@@ -18,6 +18,22 @@ pub enum Function {
     Sqrt,
     Exp,
     Log,
+    Abs,
+    Sign,
+    Sinh,
+    Cosh,
+    Tanh,
+}
+
+/// A function of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Binary {
+    Min,
+    Max,
+    /// The angle of a point: its second coordinate first.
+    Atan2,
+    /// A positive base to any exponent.
+    RealPower,
 }
 
 impl Function {
@@ -32,6 +48,11 @@ impl Function {
             Function::Sqrt => "sqrt",
             Function::Exp => "exp",
             Function::Log => "log",
+            Function::Abs => "abs",
+            Function::Sign => "sign",
+            Function::Sinh => "sinh",
+            Function::Cosh => "cosh",
+            Function::Tanh => "tanh",
         }
     }
 }
@@ -49,6 +70,7 @@ pub enum Expression {
     Negative(Box<Expression>),
     Power(Box<Expression>, i32),
     Apply(Function, Box<Expression>),
+    Two(Binary, Box<Expression>, Box<Expression>),
 }
 
 use Expression as E;
@@ -80,6 +102,10 @@ impl Expression {
 
     pub fn of(self, function: Function) -> E {
         E::Apply(function, self.into())
+    }
+
+    pub fn with_other(self, function: Binary, other: E) -> E {
+        E::Two(function, self.into(), other.into())
     }
 
     pub fn negated(self) -> E {
@@ -128,6 +154,10 @@ impl Expression {
             E::Negative(a) => format!("(-{})", a.text()),
             E::Power(a, n) => format!("(({})^({n}))", a.text()),
             E::Apply(f, a) => format!("{}({})", f.name(), a.text()),
+            E::Two(Binary::Min, a, b) => format!("min({}, {})", a.text(), b.text()),
+            E::Two(Binary::Max, a, b) => format!("max({}, {})", a.text(), b.text()),
+            E::Two(Binary::Atan2, a, b) => format!("atan2({}, {})", a.text(), b.text()),
+            E::Two(Binary::RealPower, a, b) => format!("(({})^({}))", a.text(), b.text()),
         }
     }
 
@@ -136,7 +166,7 @@ impl Expression {
         match self {
             E::Number(_) | E::Pi => Vec::new(),
             E::Symbol(name) => vec![name],
-            E::Sum(a, b) | E::Difference(a, b) | E::Product(a, b) | E::Quotient(a, b) => {
+            E::Sum(a, b) | E::Difference(a, b) | E::Product(a, b) | E::Quotient(a, b) | E::Two(_, a, b) => {
                 [a.symbols(), b.symbols()].concat()
             }
             E::Negative(a) | E::Power(a, _) | E::Apply(_, a) => a.symbols(),
@@ -166,6 +196,28 @@ impl Expression {
             E::Power(a, n) => {
                 E::integer(i64::from(*n)).times((**a).clone().power(n - 1)).times(a.derivative(by))
             }
+            E::Two(function, a, b) => {
+                let (da, db) = (a.derivative(by), b.derivative(by));
+                let (a, b) = ((**a).clone(), (**b).clone());
+                match function {
+                    Binary::Min | Binary::Max => {
+                        let above = a.minus(b).of(Function::Sign).times(da.clone().minus(db.clone()));
+                        let both = da.plus(db);
+                        let twice =
+                            if *function == Binary::Max { both.plus(above) } else { both.minus(above) };
+                        twice.over(E::integer(2))
+                    }
+                    Binary::Atan2 => {
+                        let turned = b.clone().times(da).minus(a.clone().times(db));
+                        turned.over(a.power(2).plus(b.power(2)))
+                    }
+                    Binary::RealPower => {
+                        let of_base = b.clone().times(da).over(a.clone());
+                        let of_exponent = db.times(a.clone().of(Function::Log));
+                        a.with_other(Binary::RealPower, b).times(of_base.plus(of_exponent))
+                    }
+                }
+            }
             E::Apply(function, a) => {
                 let inner = (**a).clone();
                 let square = || inner.clone().power(2);
@@ -180,6 +232,11 @@ impl Expression {
                     Function::Sqrt => one().over(E::integer(2).times(inner.of(Function::Sqrt))),
                     Function::Exp => inner.of(Function::Exp),
                     Function::Log => one().over(inner),
+                    Function::Abs => inner.of(Function::Sign),
+                    Function::Sign => zero(),
+                    Function::Sinh => inner.of(Function::Cosh),
+                    Function::Cosh => inner.of(Function::Sinh),
+                    Function::Tanh => one().over(inner.of(Function::Cosh).power(2)),
                 };
                 outer.times(a.derivative(by))
             }
@@ -190,7 +247,7 @@ impl Expression {
     pub fn count(&self) -> usize {
         1 + match self {
             E::Number(_) | E::Pi | E::Symbol(_) => 0,
-            E::Sum(a, b) | E::Difference(a, b) | E::Product(a, b) | E::Quotient(a, b) => {
+            E::Sum(a, b) | E::Difference(a, b) | E::Product(a, b) | E::Quotient(a, b) | E::Two(_, a, b) => {
                 a.count() + b.count()
             }
             E::Negative(a) | E::Power(a, _) | E::Apply(_, a) => a.count(),
@@ -228,6 +285,10 @@ impl Expression {
             E::Quotient(a, b) => {
                 let (a, b) = two(a, b);
                 E::Quotient(a, b)
+            }
+            E::Two(function, a, b) => {
+                let (a, b) = two(a, b);
+                E::Two(*function, a, b)
             }
             E::Negative(a) => E::Negative(a.with_part(rest, rule).into()),
             E::Power(a, n) => E::Power(a.with_part(rest, rule).into(), *n),

@@ -2,7 +2,7 @@
 //! part of their domain only; numbers within a tolerance; ranks of matrices.
 
 use super::dice::Dice;
-use super::expression::{Expression, Function, Symbol};
+use super::expression::{Binary, Expression, Function, Symbol};
 use super::findings::{Findings, seed};
 use super::library::{Said, Word, verdicts};
 use super::number::{Number, Trouble, float};
@@ -63,7 +63,32 @@ fn law(x: E, y: E, dice: &mut Dice) -> (E, E, bool) {
     let (cx, cy) = (x.clone(), y.clone());
     let square = x.clone().power(2);
     let quarter = || E::Pi.over(E::integer(2));
-    match dice.below(28) {
+    use Binary::{Atan2, Max, Min, RealPower};
+    use Function::{Abs, Cosh, Sign, Sinh, Tanh};
+    let n = || E::integer(2).over(E::integer(3)).plus(y.clone());
+    match dice.below(46) {
+        28 => (x.clone().of(Abs).power(2), square, true),
+        29 => (x.clone().of(Abs), x, false),
+        30 => (x.clone().times(y.clone()).of(Abs), x.of(Abs).times(y.of(Abs)), true),
+        31 => (x.clone().of(Sign).times(x.clone().of(Abs)), x, true),
+        32 => (cx.with_other(Min, cy).plus(x.clone().with_other(Max, y.clone())), x.plus(y), true),
+        33 => (cx.with_other(Max, cy), x, false),
+        34 => (x.clone().of(Tanh), x.clone().of(Sinh).over(x.of(Cosh)), true),
+        35 => (x.of(Cosh).power(2).minus(cx.of(Sinh).power(2)), one(), true),
+        36 => (x.clone().plus(x.clone()).of(Sinh), two().times(x.of(Sinh)).times(cx.of(Cosh)), true),
+        37 => (
+            cx.with_other(RealPower, n()).times(x.clone().with_other(RealPower, n())),
+            x.with_other(RealPower, n().plus(n())),
+            true,
+        ),
+        38 => (cx.with_other(RealPower, n()), x, false),
+        39 => (cx.with_other(RealPower, n()).of(Log), n().times(x.of(Log)), true),
+        40 => (cx.with_other(Atan2, cy).of(Tan), x.over(y), true),
+        41 => (cx.with_other(Atan2, cy).of(Cos), y.clone().over(square.plus(y.power(2)).of(Sqrt)), true),
+        42 => (cx.with_other(Atan2, cy), x.over(y).of(Atan), false),
+        43 => (x.clone().of(Sign).power(2), one(), true),
+        44 => (square.of(Log), two().times(x.of(Abs).of(Log)), true),
+        45 => (x.clone().of(Sinh), x.of(Tanh), false),
         0 => (square.of(Sqrt), x, false),
         1 => (x.clone().power(4).of(Sqrt), square, true),
         2 => (square.of(Log), two().times(x.of(Log)), true),

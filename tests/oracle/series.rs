@@ -3,7 +3,7 @@
 //! With a series of every rate and every output, a Lie derivative is a sum of products of series: no expression ever
 //! grows, and no rule of the library is shared.
 
-use super::expression::{Expression, Function, Symbol};
+use super::expression::{Binary, Expression, Function, Symbol};
 use super::number::{Number, Sign, Trouble, exact_root, float, pi};
 use super::point::{Coordinate, Point};
 use dashu::float::FBig;
@@ -140,12 +140,47 @@ pub fn series(expression: &Expression, point: &Point, space: &Space) -> Result<S
         }
         E::Apply(Function::Sin, a) => circular(a, point, space)?.0,
         E::Apply(Function::Cos, a) => circular(a, point, space)?.1,
+        E::Two(function, a, b) => two(*function, (&of(a)?, &of(b)?), space)?,
         E::Apply(function, a) => {
             let inner = of(a)?;
             let degree = if inner.is_constant() { 0 } else { space.degree };
             inner.composed(&taylor(*function, &inner.value(), degree)?, space)
         }
     })
+}
+
+/// A function of two series.
+fn two(function: Binary, (a, b): (&Series, &Series), space: &Space) -> Result<Series, Trouble> {
+    let of = |function: Function, inner: &Series| {
+        let degree = if inner.is_constant() { 0 } else { space.degree };
+        Ok(inner.composed(&taylor(function, &inner.value(), degree)?, space))
+    };
+    match function {
+        Binary::Min | Binary::Max => match a.value().subtract(&b.value()).sign() {
+            Sign::Positive => Ok(if function == Binary::Max { a.clone() } else { b.clone() }),
+            Sign::Negative => Ok(if function == Binary::Max { b.clone() } else { a.clone() }),
+            Sign::Zero if space.degree == 0 => Ok(a.clone()),
+            Sign::Zero => Err(Trouble::NotSmooth),
+            Sign::Unclear => Err(Trouble::Unclear),
+        },
+        Binary::RealPower => {
+            if a.value().sign() == Sign::Zero {
+                return Err(Trouble::Undefined);
+            }
+            of(Function::Exp, &of(Function::Log, a)?.multiply(b, space))
+        }
+        // a quarter turn less the angle from the other axis; on the first axis, where it points forward, by the tangent
+        Binary::Atan2 => match (a.value().sign(), b.value().sign()) {
+            (Sign::Unclear, _) | (_, Sign::Unclear) => Err(Trouble::Unclear),
+            (Sign::Zero, Sign::Positive) => of(Function::Atan, &a.multiply(&reciprocal(b, space)?, space)),
+            (Sign::Zero, _) => Err(Trouble::Undefined),
+            (sign, _) => {
+                let quarter = if sign == Sign::Positive { half_of_pi() } else { half_of_pi().negative() };
+                let rest = of(Function::Atan, &b.multiply(&reciprocal(a, space)?, space))?;
+                Ok(Series::constant(quarter).add(&rest.negative()))
+            }
+        },
+    }
 }
 
 /// The value of an expression at a state.
@@ -259,6 +294,7 @@ fn taylor(function: Function, at: &Number, degree: u32) -> Result<Vec<Number>, T
                 found.push(next);
             }
         }
+        Function::Abs | Function::Sign if at.is_exact_zero() => return Err(Trouble::NotSmooth),
         _ => {
             // the derivative is a rational function, or the root of one, of the variable: a series of its own
             let space = Space { variables: vec!["t"], degree: degree - 1 };
@@ -305,6 +341,30 @@ fn value_of(function: Function, at: &Number) -> Result<Number, Trouble> {
             Sign::Positive if is(1) => Ok(Number::ZERO),
             Sign::Positive => Ok(Number::Digits(at.digits().ln())),
         },
+        Function::Abs => match at.sign() {
+            Sign::Unclear => Err(Trouble::Unclear),
+            Sign::Negative => Ok(at.negative()),
+            _ => Ok(at.clone()),
+        },
+        Function::Sign => match at.sign() {
+            Sign::Unclear => Err(Trouble::Unclear),
+            Sign::Zero => Err(Trouble::Undefined),
+            Sign::Negative => Ok(Number::integer(-1)),
+            Sign::Positive => Ok(one),
+        },
+        Function::Sinh | Function::Tanh if is(0) => Ok(Number::ZERO),
+        Function::Cosh if is(0) => Ok(one),
+        Function::Sinh | Function::Cosh | Function::Tanh => {
+            let up = bounded(at)?.exp();
+            let down = float(&RBig::ONE) / up.clone();
+            let two = float(&RBig::from(2));
+            let (sine, cosine) = ((up.clone() - down.clone()) / two.clone(), (up + down) / two);
+            Ok(Number::Digits(match function {
+                Function::Sinh => sine,
+                Function::Cosh => cosine,
+                _ => sine / cosine,
+            }))
+        }
         Function::Exp if is(0) => Ok(one),
         Function::Exp => Ok(Number::Digits(bounded(at)?.exp())),
         Function::Atan if is(0) => Ok(Number::ZERO),

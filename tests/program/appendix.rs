@@ -175,7 +175,7 @@ fn the_expansion_is_the_determinant() {
             &[("s1", 1), ("sin(phi2)", 1), ("r2", 1), ("rho", 4), ("r1", 2), ("cos(phi2)", 2), ("omega0", 1)],
         ),
     ] {
-        let mut wanted = [0u8; 16];
+        let mut wanted = [0; _];
         factors.iter().for_each(|(name, power)| wanted[place(name)] = *power);
         let found = expansion.numerator.terms().find(|(exponents, _)| **exponents == wanted);
         assert_eq!(found.map(|(_, c)| c.clone()), Some(coefficient.into()), "{factors:?}");

@@ -28,12 +28,10 @@ fn rank(mut rows: Vec<Vec<i64>>) -> usize {
     for column in 0..columns {
         let Some(pivot) = (found..rows.len()).find(|row| rows[*row][column] != RBig::ZERO) else { continue };
         rows.swap(found, pivot);
-        for row in found + 1..rows.len() {
-            let factor = &rows[row][column] / &rows[found][column];
-            for place in column..columns {
-                let part = &factor * &rows[found][place];
-                rows[row][place] -= part;
-            }
+        let (above, below) = rows.split_at_mut(found + 1);
+        for row in below {
+            let factor = &row[column] / &above[found][column];
+            row.iter_mut().zip(&above[found]).for_each(|(entry, other)| *entry -= &factor * other);
         }
         found += 1;
     }

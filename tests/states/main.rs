@@ -9,6 +9,8 @@ mod accessible;
 mod certify;
 mod certify_domains;
 mod certify_verdicts;
+mod discrete;
+mod models;
 mod neighbours;
 mod observable;
 mod rank_edges;

@@ -16,6 +16,7 @@
 //! analysis*, Amer. J. Math. 101 (1979).
 
 mod circular;
+mod differentials;
 mod form;
 mod generators;
 mod independence;

@@ -18,11 +18,16 @@ impl Adjunction<'_> {
             return None;
         }
         let mut sum = self.graph.integer(0);
-        for (monomial, factor) in &form.0 {
+        for (monomial, factor) in form.0.iter().rev() {
             let product = self.original_monomial(monomial, depth)?;
-            let factor = self.graph.rational(factor.clone());
-            let term = self.graph.mul(factor, product);
-            sum = self.graph.add(sum, term);
+            // as somebody would write it
+            let size = if *factor < RBig::ZERO { -factor.clone() } else { factor.clone() };
+            let size = self.graph.rational(size);
+            let term = self.graph.mul(size, product);
+            sum = match *factor < RBig::ZERO {
+                true => self.graph.sub(sum, term),
+                false => self.graph.add(sum, term),
+            };
         }
         Some(sum)
     }

@@ -440,9 +440,12 @@ pub(crate) fn target(input: &mut Text<'_>) -> Read<Target> {
 }
 
 /// A target with one prime more: `x'` is how `x` moves, `u''` how the derivative `u'` of a signal does. The prime at the end
-/// may stand apart.
-pub(crate) fn moved(input: &mut Text<'_>) -> Read<Target> {
+/// may stand apart. Or a target and the sign of a step, `x+`: whether it is that.
+pub(crate) fn moved(input: &mut Text<'_>) -> Read<(Target, bool)> {
     let mut found = located_target(input)?;
+    if opt((blank, sign("+"))).parse_next(input)?.is_some() {
+        return Ok((found, true));
+    }
     let suffix = found.suffix.clone();
     let (primes, experiment) = suffix.split_at(suffix.find('@').unwrap_or(suffix.len()));
     match primes.strip_suffix('\'') {
@@ -459,7 +462,7 @@ pub(crate) fn moved(input: &mut Text<'_>) -> Read<Target> {
             cut_err(sign("'")).context("' after the state, as in r1' = ...").parse_next(input)?;
         }
     }
-    Ok(found)
+    Ok((found, false))
 }
 
 /// The names that a text stands for: one, or the components of a range. None where it is no such text.

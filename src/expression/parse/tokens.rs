@@ -136,7 +136,7 @@ pub(crate) const RESERVED: [&str; 31] = [
 ];
 
 /// Words with a meaning at some places; elsewhere they are names.
-pub(crate) const SPECIAL: [&str; 27] = [
+pub(crate) const SPECIAL: [&str; 30] = [
     "proved",
     "refuted",
     "restates",
@@ -148,6 +148,9 @@ pub(crate) const SPECIAL: [&str; 27] = [
     "as",
     "on",
     "carrying",
+    "everywhere",
+    "except",
+    "or",
     "digits",
     "others",
     "set",

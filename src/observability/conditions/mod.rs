@@ -9,6 +9,7 @@
 //! almost all states, and is named. Which condition is taken first is decided by what it says and not by where it stands.
 
 mod circular;
+mod implicit;
 mod single;
 mod turns;
 mod vanishing;

@@ -3,7 +3,8 @@
 
 use super::{Branch, all_vanish};
 use crate::expression::{Input, NodeId, Program, Symbol, expand_angles};
-use crate::system::{Assignment, System};
+use crate::number::Function;
+use crate::system::{Assignment, System, Time};
 
 impl Branch {
     /// Refuses a codistribution that tells apart what the conditions leave open; see [`Branch::put_in`].
@@ -43,10 +44,17 @@ fn ingredients(system: &mut System) -> Vec<NodeId> {
     for (_, output) in system.outputs.clone() {
         found.extend(system.differential(output));
     }
-    let moving = system.moving_fields();
-    found.extend(
-        moving.iter().flat_map(|field| system.fields[*field].components.iter().map(|(_, node)| *node)),
-    );
+    for field in system.moving_fields() {
+        for (moved, component) in system.fields[field].components.clone() {
+            // after a step an angle is met in its sine and cosine again; a rate stands for itself
+            match system.time == Time::Discrete && system.is_angle(moved) {
+                true => {
+                    found.extend([Function::Sin, Function::Cos].map(|of| system.graph.apply(of, component)))
+                }
+                false => found.push(component),
+            }
+        }
+    }
     found
 }
 

@@ -126,7 +126,10 @@ impl Equations {
         let driven: Vec<usize> = driven.collect();
         let starts = starts(&mut graph, &given, conditions, &angles);
         let (functions, measured) = measured(&mut graph, &components, &written, &angles);
-        let square_root = |node: &NodeId| matches!(graph.node(*node), Node::Apply(Function::Sqrt, _));
+        // the slope of an inverse sine has one too
+        let square_root = |node: &NodeId| {
+            matches!(graph.node(*node), Node::Apply(Function::Sqrt | Function::Asin | Function::Acos, _))
+        };
         Equations {
             states: system.states.len(),
             columns: places(system, &system.unknowns()),
@@ -274,10 +277,6 @@ fn related(
     let found_nodes = expand_angles(graph, &found.nodes, is_angle);
     let met = graph.reachable(found_nodes.iter().copied());
     let functions: Vec<NodeId> = met.into_iter().filter(|id| is_function(graph, id)).collect();
-    // a series of an inverse sine takes a root that is none of these
-    let followed = !functions
-        .iter()
-        .any(|id| matches!(graph.node(*id), Node::Apply(Function::Asin | Function::Acos, _)));
     // an angle has a sine and a cosine here, and no value of its own
     let bare = found_nodes.iter().chain(&functions).copied();
     let is_bare = graph.reachable(bare).into_iter().any(|id| match graph.node(id) {
@@ -288,7 +287,7 @@ fn related(
     let mentioned = graph.symbols_of(functions.iter().copied());
     let apart = mentioned.iter().all(|symbol| fixed.contains_key(symbol) || !conditions.contains_key(symbol));
     let known = found.independent && found.constants_known && found.open_signs.is_empty();
-    (found_nodes, known && followed && apart && !is_bare)
+    (found_nodes, known && apart && !is_bare)
 }
 
 /// The functions that are met, and all that a minor's degree depends on: rates, outputs, slopes of functions along the flow and

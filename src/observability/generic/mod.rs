@@ -17,6 +17,7 @@ mod covectors;
 mod echelon;
 mod equations;
 mod matrix;
+mod steps;
 #[cfg(test)]
 mod tests;
 
@@ -26,7 +27,7 @@ pub use matrix::{GenericRank, generic_rank};
 use crate::expression::Symbol;
 use crate::number::{PrimeField, Refusal};
 use crate::observability::State;
-use crate::system::{Assignment, System};
+use crate::system::{Assignment, System, Time};
 use bound::Rounds;
 use covectors::Covector;
 use echelon::Echelon;
@@ -300,6 +301,9 @@ pub enum Ceiling {
 /// What is seen at almost all states that satisfy the conditions.
 pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
     let rests = ceiling == Ceiling::Rests;
+    if system.time == Time::Discrete {
+        return answer_in_steps(system, conditions, ceiling);
+    }
     let probe = Probe::new(system, conditions);
     let columns = probe.equations.columns.clone();
     let dimension = columns.len();
@@ -352,6 +356,84 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
     answer.closed_at_most = if bounds.is_ok() { closed } else { all };
     conclude(&mut answer, &best, &bounds, known_functions, ceiling);
     answer
+}
+
+/// The same in discrete time.
+fn answer_in_steps(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
+    let rests = ceiling == Ceiling::Rests;
+    let mut answer = nothing_known(system, String::new());
+    let steps = match steps::Steps::new(system, conditions, rests) {
+        Ok(steps) => steps,
+        Err(why) => return nothing_known(system, why),
+    };
+    // any fixed seed: what is true almost everywhere does not depend on the user's
+    let mut rng = ChaCha8Rng::seed_from_u64(0x0073_7465_7073);
+    let bounds = steps.rounds();
+    let mut best: Option<(usize, Vec<bool>)> = None;
+    let mut refused = String::new();
+    for _ in 0..bounds.as_ref().map_or(1, |bounds| bounds.rounds) + ATTEMPTS {
+        let field = PrimeField::random(&mut rng);
+        let (echelon, order) = match steps.follow(field, &mut rng) {
+            Ok(found) => found,
+            Err(refusal) => {
+                refused = refusal.to_string();
+                continue;
+            }
+        };
+        answer.rounds += 1;
+        answer.order = answer.order.max(order);
+        let (rank, seen) = (echelon.rank(), echelon.seen());
+        best = Some(match best.take() {
+            Some(known) if known.0 > rank => known,
+            // seen is what the others do without at no point
+            Some(known) if known.0 == rank => {
+                (rank, known.1.iter().zip(&seen).map(|(known, here)| *known && *here).collect())
+            }
+            _ => (rank, seen),
+        });
+        let is_full = rank == answer.dimension;
+        if is_full || answer.rounds == bounds.as_ref().map_or(1, |bounds| bounds.rounds) {
+            break;
+        }
+    }
+    let Some(best) = best else {
+        return nothing_known(system, format!("{ATTEMPTS} random sequences met poles: {refused}"));
+    };
+    if bounds.as_ref().is_ok_and(|bounds| answer.rounds < bounds.rounds) && best.0 < answer.dimension {
+        return nothing_known(system, format!("too many of the random sequences met poles: {refused}"));
+    }
+    answer.open = None;
+    let all_are_unknown = system.closed_coordinates().len() == answer.dimension;
+    answer.closed_at_most = match ceiling {
+        Ceiling::Rests if bounds.is_ok() && all_are_unknown => best.0,
+        Ceiling::Rests => system.closed_coordinates().len(),
+        // what is known at the beginning is not followed: nothing is said to be spanned
+        Ceiling::Around { .. } => {
+            if all_are_unknown {
+                best.0
+            } else {
+                0
+            }
+        }
+    };
+    conclude(&mut answer, &[best], &bounds, true, ceiling);
+    answer
+}
+
+/// An answer that says why it says nothing.
+fn nothing_known(system: &System, why: String) -> GenericAnswer {
+    let unknowns: Vec<_> = system.unknowns().into_iter().map(|symbol| (symbol, Seen::Undecided)).collect();
+    GenericAnswer {
+        dimension: unknowns.len(),
+        at_least: 0,
+        at_most: unknowns.len(),
+        closed_at_most: system.closed_coordinates().len(),
+        log2_error: f64::NEG_INFINITY,
+        rounds: 0,
+        order: 0,
+        unknowns,
+        open: Some(why),
+    }
 }
 
 /// Whether values of functions are known by their relations, so that a random one shows what the true one does.

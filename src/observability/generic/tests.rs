@@ -140,3 +140,36 @@ fn known_coordinates_have_no_column() {
     let twice = "state x, z param a, b unknown experiments 2 drift f x' = a + b*z z' = 0 output x, z";
     assert_eq!(found(twice), (6, 6, vec![]));
 }
+
+/// In discrete time: the same ranks as by words, also where the images are a thin set, and of each unknown whether it is seen.
+#[test]
+fn sequences_are_followed_in_discrete_time() {
+    for (text, rank, seen) in [
+        ("state x param r unknown drift f x+ = r*x*(1 - x) output x", 2, "yy"),
+        ("state x, y drift f x+ = x/2 output x", 1, "yn"),
+        ("state x, y, z, w drift f x+ = 0 y+ = 1 z+ = x w+ = z/y output x*y, x*z, w", 4, "yyyy"),
+        ("state x, z known u(t) drift f x+ = x + u*z output x", 2, "yy"),
+        ("state x param a unknown, b unknown drift f x+ = a*b*x output x", 2, "ynn"),
+        ("state x, a, b angle a, b drift f x+ = x*cos(a) a+ = a + b output x", 3, "yyy"),
+        ("state x[1..60] drift f x[i]+ = x[i + 1] for i in 1..59 output x[1]", 60, ""),
+        ("state x, y drift f x+ = exp(y) output x", 0, "??"),
+        ("state x, y initial x known drift f x+ = x + y output y", 1, "y"),
+    ] {
+        let system: System =
+            format!("system \"s\" {text}").parse().unwrap_or_else(|why| panic!("{why:?}: {text}"));
+        let found = generic_answer(&system, &Assignment::new(), Ceiling::Rests);
+        assert_eq!(found.at_least, rank, "{text}: {found:?}");
+        assert_eq!(found.is_final(), !seen.starts_with('?'), "{text}: {found:?}");
+        let word = |seen: &Seen| match seen {
+            Seen::Yes => 'y',
+            Seen::No => 'n',
+            Seen::Undecided => '?',
+        };
+        if !seen.is_empty() {
+            assert_eq!(found.unknowns.iter().map(|(_, seen)| word(seen)).collect::<String>(), seen, "{text}");
+        }
+        if rank < found.dimension && found.is_final() {
+            assert!(found.log2_error < -100.0, "{text}: {found:?}");
+        }
+    }
+}

@@ -56,6 +56,9 @@ pub fn claim_json(outcome: &Outcome) -> Value {
     if let Some(special) = &outcome.at_files_values {
         object["at_the_files_values"] = special_json(special);
     }
+    if !outcome.beside.is_empty() {
+        object["beside"] = json!(outcome.beside);
+    }
     if !outcome.fields.is_empty() {
         object["fields"] = fields_json(&outcome.fields);
     }

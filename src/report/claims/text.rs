@@ -54,6 +54,9 @@ pub fn claims_text(
             lines.push(layout.paint(Tone::Strong, file));
         }
         lines.push(claim_text(outcome, layout));
+        for told in &outcome.beside {
+            lines.push(layout.wrap(&format!("{:LABEL$}", ""), TEXT, told));
+        }
         if let Some(formula) = form.latex.then(|| statement_latex(&outcome.statement)).flatten() {
             // on one line, however long: it is to be copied
             lines.push(format!("{:LABEL$}{:<10} {formula}", "", "latex"));

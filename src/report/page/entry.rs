@@ -32,6 +32,7 @@ pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>)
                     p { (engines.explain(&outcome.verdict)) (restated(outcome)) }
                 }
             }
+            @for told in &outcome.beside { p { (told) } }
             @if let Some(special) = &outcome.at_files_values { p { (special_text(special)) } }
             @if !outcome.fields.is_empty() { p { "fields: " (fields_text(&outcome.fields)) } }
             @if let Some(from) = &outcome.follows { p { "follows " (from) } }

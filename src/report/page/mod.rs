@@ -8,6 +8,7 @@ pub(super) mod findings;
 mod motions;
 mod regime;
 mod source;
+mod unknowns;
 pub(super) mod whole;
 
 pub use findings::{findings_json, findings_text, forget_seconds, forget_times};

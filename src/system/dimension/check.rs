@@ -64,7 +64,7 @@ pub(crate) fn check(system: &System, items: &[Item], imports: &[Import]) -> (Dim
         Item::State(list) | Item::Param(list) => list.iter().any(|one| one.dimension.is_some()),
         Item::Signals { list, .. } => list.iter().any(|one| one.dimension.is_some()),
         Item::Let { dimension, .. } => dimension.is_some(),
-        Item::Output(list) => list.iter().any(|one| one.dimension.is_some()),
+        Item::Output(list) | Item::Zero(list) => list.iter().any(|one| one.dimension.is_some()),
         _ => false,
     };
     let is_declared = items.iter().any(declares) || imports.iter().any(|(_, _, other)| other.is_declared);
@@ -239,8 +239,10 @@ impl Checker<'_> {
                 self.note_units(&found);
                 Arc::make_mut(&mut self.known.definitions).insert(name.text.clone(), found);
             }
-            Item::Field { role, name, components, .. } => self.field(*role, name, components),
-            Item::Output(list) => {
+            Item::Field { role, name, components, is_map, .. } => {
+                self.field(*role, name, components, *is_map);
+            }
+            Item::Output(list) | Item::Zero(list) => {
                 for OutputSyntax { value: expr, dimension, .. } in list {
                     let found = self.quantity(expr);
                     self.note_units(&found);
@@ -324,8 +326,10 @@ impl Checker<'_> {
         };
     }
 
-    fn field(&mut self, role: Role, name: &Name, components: &[(Name, Expr)]) {
+    fn field(&mut self, role: Role, name: &Name, components: &[(Name, Expr)], is_map: bool) {
         let factor = match role {
+            // a step leads from a state to one of its kind
+            _ if is_map => Form::number(),
             Role::Drift => Form::known(Dimension::of(Base::Time).power(&-RBig::ONE)),
             _ => self.known.solution.unknown(format!("the field '{}'", name.text)),
         };
@@ -351,6 +355,9 @@ impl Checker<'_> {
 
     fn statement(&mut self, statement: &Statement) {
         let at_numbers = self.conditions(&statement.conditions) || statement.on_sample;
+        statement.except.iter().flatten().for_each(|set| {
+            self.conditions(set);
+        });
         let mut left = self.quantity(&statement.equation.left);
         for equation in statement.relations() {
             let right = self.quantity(&equation.right);

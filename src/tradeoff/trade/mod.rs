@@ -54,6 +54,7 @@ pub struct TradeQuestion<'a> {
 /// # Errors
 /// In words: no states or outputs, an empty sample box, rows of which nothing is known for certain.
 pub fn trade(system: &System, question: &TradeQuestion<'_>) -> Result<Trade, String> {
+    system.require_continuous("'trade' compares ways to Lie derivatives along flows")?;
     let begin = Instant::now();
     let work = Work::new(system.clone(), question)?;
     let steps = (Number::ALL.len() + question.rounds) as u64;

@@ -63,7 +63,8 @@ fn words_that_may_be_names_are_told_by_what_follows() {
                 claim 1 restates 3 in \"other.proof\": a = a\nclaim 2 consequence: a = a\nclaim 4 example: a = a\n\
                 claim 5 expect refuted: a = 1\nclaim 6 expect proved: a = a\nerratum 7: printed \"a\" as a = 1 corrected a = a\n\
                 convention 8 follows 7: printed a = 1 meant a = a\ndamaged 9: reads a = 1 repaired a = a\n\
-                claim 10: a at {a = 2} = 2.0 carrying 2 digits\nclaim 11: a^2 >= 0 on sample\nset \"x\": a = 0\npole \"y\": a = 1\n\
+                claim 10: a at {a = 2} = 2.0 carrying 2 digits\nclaim 11: a^2 >= 0 on sample\n\
+                claim 12: rank = 2 except where a = 0, b = 0 or b = 1\nclaim 13: rank = 2 everywhere\nset \"x\": a = 0\npole \"y\": a = 1\n\
                 map \"m\": a in [0, 1], b in [0, 1] order 2\nline \"l\": a to infinity from {b = 1}\nreduction of o: b = 0\n\
                 experiments 2\ninitial a known\n";
     let folder = folder();
@@ -94,6 +95,26 @@ fn words_that_may_be_names_are_told_by_what_follows() {
         let word: String = text[at..].chars().take_while(char::is_ascii_alphanumeric).collect();
         let begins = !text[..at].ends_with(|c: char| c.is_ascii_alphanumeric());
         assert!(!(begins && SPECIAL.contains(&word.as_str()) && is_keyword(scope)), "{word}: {scope}");
+    }
+}
+
+/// Components, ranges and steps.
+#[test]
+fn vectors_and_steps_are_coloured() {
+    let grammar = grammar();
+    for (text, part, kind) in [
+        ("  x[i]' = 1", "'", "keyword.operator.derivative"),
+        ("  x[i + 1]+ = 1", "+ =", "keyword.operator"),
+        ("  x+ = 1", "x", "variable.other.state"),
+        ("state x[1..20]", "..", "keyword.operator.range"),
+        ("state x[1..20]", "20", "constant.numeric"),
+        ("  x[i]' = 1 for i in 2..3", "for", "keyword.other"),
+        ("let a = sum(i in 1..3, x[i])", "sum", "support.function"),
+        ("let a = 1.5", "1.5", "constant.numeric"),
+    ] {
+        let at = text.rfind(part).expect("it is a part");
+        let scope = &grammar.scopes(text)[at];
+        assert!(scope.contains(kind), "{part} in {text}: {scope}");
     }
 }
 

@@ -357,3 +357,38 @@ fn sessions_begin_and_end_as_the_protocol_says() {
     editor.input = None;
     assert_eq!(editor.server.wait().unwrap().code(), Some(2));
 }
+
+/// Vectors are one declaration as they are written, and each of their components has facts of its own.
+#[test]
+fn components_and_steps_are_told() {
+    let folder = folder();
+    let text = "system \"s\"\nstate x[1..3] : length\nlet w[i] = i*x[i] for i in 1..3\ndrift f\n  x[i]+ = x[i + 1]/2 for i in 1..2\n\
+                output x[1], w[2..3]\nsample\n  x[1..3] in [0, 1]\n";
+    let path = write(&folder, "v.proof", text);
+    assert_eq!(palmistry(&["check", path.to_str().unwrap()]).status.code(), Some(0));
+    let uri = uri(&path);
+    let mut editor = Editor::begin();
+    editor.open(&uri, text);
+    let outline = editor.ask("textDocument/documentSymbol", json!({ "textDocument": { "uri": uri } }));
+    let names: Vec<&str> =
+        outline.as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["s", "x[1..3]", "w[i]", "f", "x[1]", "w[2..3]"]);
+    for (cursor, told) in [
+        // the component that is meant, the vector where the index is not a number, a definition
+        ((5, 7), "**state** `x[1]`; dimension length (m); drawn from [0, 1]"),
+        ((4, 2), "**state** `x`; dimension length (m); drawn from [0, 1]"),
+        ((5, 13), "**let** `w`"),
+    ] {
+        let hover = editor.at("textDocument/hover", &uri, cursor);
+        let shown = hover["contents"]["value"].as_str().unwrap_or_else(|| panic!("{cursor:?}: {hover}"));
+        assert_eq!(shown.lines().next(), Some(told), "{cursor:?}");
+        let declared = editor.at("textDocument/definition", &uri, cursor);
+        assert_eq!(declared.as_array().unwrap().len(), 1, "{cursor:?}: {declared}");
+    }
+    let form = editor.ask(
+        "textDocument/formatting",
+        json!({ "textDocument": { "uri": uri }, "options": { "tabSize": 2, "insertSpaces": true } }),
+    );
+    assert_eq!(form, json!([]));
+    assert_eq!(editor.end(), Some(0));
+}

@@ -1,0 +1,179 @@
+//! Claims about a rank at all states, `rank = 6 except where g*omega0 = 0`, and what the checker needs of them.
+
+use super::verdict::{Verdict, Witness};
+use crate::checker::{CertifiedRank, Effort, Evidence, Finding, Missing, RankedState, Ratio, StatedIdentity};
+use crate::drops::{ClaimedEverywhere, Everywhere, MinorIdentity, decide_everywhere};
+use crate::evidence::{Lowering, StatementAt, exact_state, largest_minor};
+use crate::expression::{NodeId, Program, expand_angles};
+use crate::number::{PrimeField, Rationals};
+use crate::observability::{Coordinate, State, kernel};
+use crate::sweep::UNINTERRUPTED;
+use crate::system::System;
+use dashu::rational::RBig;
+use rand::{Rng, RngExt};
+
+/// What a proof rests on.
+const ENGINE: &str = "minors as products of factors that do not vanish";
+/// The work of the checker on a refutation.
+const WORK: u64 = 200_000_000;
+/// The length to which exact values may grow.
+const BITS: usize = 1 << 14;
+/// At so many states the two sides of a minor's identity are looked for.
+const STATES: usize = 20;
+
+/// What became of a claim about a rank at all states.
+pub(super) struct DecidedEverywhere {
+    pub verdict: Verdict,
+    /// What it rests on.
+    pub evidence: Vec<Evidence>,
+    /// What the rank is on the sets that are left out, in words.
+    pub beside: Vec<String>,
+}
+
+/// Decides a claim about a rank at all states, and notes what the verdict rests on.
+///
+/// # Errors
+/// In words, where it is out of reach.
+pub(super) fn decide(
+    system: &mut System,
+    claim: &ClaimedEverywhere,
+    rng: &mut impl Rng,
+) -> Result<DecidedEverywhere, String> {
+    let seed = rng.random::<u64>();
+    Ok(match decide_everywhere(system, claim, seed, &UNINTERRUPTED)? {
+        Everywhere::Proved { cases: (cases, empty), minors, beside, log2_error } => {
+            let engine = format!("{ENGINE}, in {cases} cases, {empty} of them empty");
+            let evidence = minors.iter().map(|minor| identity(system, minor, log2_error, rng)).collect();
+            DecidedEverywhere { verdict: Verdict::Proved { engine, log2_error }, evidence, beside }
+        }
+        Everywhere::Refuted { state, found, set, log2_error } => {
+            let certified = rank_at(system, claim, &state, rng).map_err(|why| why.to_string())?;
+            let finding = certified.check(&Effort::new(WORK), &UNINTERRUPTED);
+            if !matches!(finding, Finding::Confirmed { .. }) {
+                return Err(format!(
+                    "the rank is found to be {found} where {}, which the checker does not confirm",
+                    set.join(", ")
+                ));
+            }
+            let witness = Witness {
+                state: state.describe(system),
+                left: found.to_string(),
+                right: claim.rank.to_string(),
+                entry: None,
+                refutation: None,
+            };
+            let engine = match set.is_empty() {
+                true => "exact elimination".to_owned(),
+                false => format!("exact elimination; the rank is lower where {}", set.join(", ")),
+            };
+            let engine = match log2_error.is_finite() && claim.matrix.is_none() {
+                true => format!("{engine}, which no field leaves, so that longer words do not raise it"),
+                false => engine,
+            };
+            let evidence = vec![Evidence::Rank(certified)];
+            DecidedEverywhere { verdict: Verdict::Refuted { engine, witness }, evidence, beside: Vec::new() }
+        }
+        Everywhere::Open(why) => {
+            let verdict = Verdict::undecided(why);
+            DecidedEverywhere { verdict, evidence: Vec::new(), beside: Vec::new() }
+        }
+    })
+}
+
+/// A minor and its product of factors, as an identity that the checker tries.
+fn identity(system: &System, minor: &MinorIdentity, log2_error: f64, rng: &mut impl Rng) -> Evidence {
+    let graph = &system.graph;
+    let sides = [minor.minor, minor.product];
+    let mentioned = sides.iter().copied().chain(minor.guards.iter().map(|guard| guard.node));
+    let symbols = graph.symbols_of(mentioned);
+    let mut why = "no state was found at which all of it exists".to_owned();
+    for _ in 0..STATES {
+        let mut state = State::default();
+        for symbol in &symbols {
+            let value = RBig::from(rng.random_range(1..=12i64)) / RBig::from(rng.random_range(1..=5i64));
+            state.values.insert(*symbol, Coordinate::Number(value));
+        }
+        let stated: Result<StatedIdentity, Missing> = StatementAt {
+            graph,
+            sides: &sides,
+            relations: &[],
+            within: None,
+            conditions: &[],
+            guards: &minor.guards,
+            state: &state,
+            terms: &[],
+        }
+        .identity(ENGINE, log2_error, None);
+        match stated {
+            Ok(stated) => match stated.check(1, &Effort::new(WORK)) {
+                Finding::NotConfirmed(doubt) if doubt != crate::checker::Doubt::Differ => {
+                    why = format!("the checker cannot tell: {doubt}");
+                }
+                _ => return Evidence::Proved(stated),
+            },
+            Err(missing) => return Evidence::Unchecked(format!("it could not be written down: {missing}")),
+        }
+    }
+    Evidence::Unchecked(why)
+}
+
+/// The rank at a state, with its minor and its kernel.
+fn rank_at(
+    system: &mut System,
+    claim: &ClaimedEverywhere,
+    state: &State,
+    rng: &mut impl Rng,
+) -> Result<CertifiedRank, Missing> {
+    let (entries, width, words, columns) = rows(system, claim);
+    let is_angle = &system.angle_test();
+    let expanded = expand_angles(&mut system.graph, &entries, is_angle);
+    let program = Program::new(&system.graph, &expanded, is_angle);
+    let minor = largest_minor(&program, width, state, PrimeField::random(rng)).unwrap_or_default();
+    let exact = Rationals { bits: BITS };
+    let values = state
+        .inputs(&program, &exact)
+        .ok()
+        .and_then(|inputs| program.load(exact).ok()?.run(&inputs, &mut Vec::new()).ok())
+        .unwrap_or_default();
+    let matrix: Vec<Vec<RBig>> = values.chunks(width.max(1)).map(<[RBig]>::to_vec).collect();
+    let unseen = kernel(&Rationals { bits: BITS }, matrix, width).unwrap_or_default();
+    let graph = &system.graph;
+    let mut lowering = Lowering::new(graph);
+    let mut places = Vec::new();
+    for row in entries.chunks(width.max(1)) {
+        places.push(row.iter().map(|entry| lowering.place(*entry)).collect::<Result<Vec<_>, _>>()?);
+    }
+    let conditions = claim.conditions.iter().map(|condition| lowering.vanishing(*condition));
+    let conditions = conditions.collect::<Result<_, _>>()?;
+    let requirements = claim.guards.iter().map(|guard| lowering.requirement(*guard));
+    let requirements = requirements.collect::<Result<_, _>>()?;
+    Ok(CertifiedRank {
+        columns,
+        words,
+        rows: places,
+        conditions,
+        requirements,
+        listing: lowering.finish(),
+        states: vec![RankedState {
+            state: exact_state(graph, state),
+            rank: minor.rows.len(),
+            minor,
+            kernel: unseen.into_iter().map(|v| v.into_iter().map(Ratio).collect()).collect(),
+        }],
+    })
+}
+
+/// All rows of the matrix, or those of the words that were taken.
+fn rows(system: &mut System, claim: &ClaimedEverywhere) -> (Vec<NodeId>, usize, Vec<String>, Vec<String>) {
+    let numbered = |what: &str, count: usize| (1..=count).map(|n| format!("{what} {n}")).collect();
+    match &claim.matrix {
+        Some((entries, width)) => {
+            let height = entries.len() / (*width).max(1);
+            (entries.clone(), *width, numbered("row", height), numbered("column", *width))
+        }
+        None => {
+            let (names, entries) = crate::drops::rows_up_to(system, claim.rank);
+            (entries, system.unknown_count(), names, system.column_names())
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! That a rank is what is claimed at all states, but for some sets that are named.
+
+use super::algebra::{Algebra, Chart, Reach, with_angles};
+use super::case::Case;
+use super::explore::{Explored, FullCase, Search};
+use super::merge::{Shown, merged};
+use super::real::{exact_values, state_on};
+use super::rows::Rows;
+use super::sets::{Asked, mentioned_in_words, prepared};
+use crate::expression::{Guard, Need, NodeId};
+use crate::number::Rationals;
+use crate::observability::{Codistribution, Length, State, rank};
+use crate::system::{Matrix, System, determinant};
+use dashu::rational::RBig;
+use std::sync::atomic::AtomicBool;
+
+/// The claim, read.
+#[derive(Clone, Debug)]
+pub(crate) struct ClaimedEverywhere {
+    /// A matrix of the file by rows, and its columns; nothing for the observability codistribution.
+    pub matrix: Option<(Vec<NodeId>, usize)>,
+    pub rank: usize,
+    /// What has to hold for all terms to exist.
+    pub guards: Vec<Guard>,
+    /// What vanishes at all states that are spoken of.
+    pub conditions: Vec<NodeId>,
+    /// The sets that are left out, each by what vanishes on it.
+    pub except: Vec<Vec<NodeId>>,
+    /// The same as they are written.
+    pub written: Vec<String>,
+}
+
+/// A minor as a product, both in symbols of their own.
+#[derive(Clone, Debug)]
+pub(crate) struct MinorIdentity {
+    pub minor: NodeId,
+    pub product: NodeId,
+    /// What must not vanish for both to exist.
+    pub guards: Vec<Guard>,
+}
+
+/// What became of a claim.
+#[derive(Clone, Debug)]
+pub(crate) enum Everywhere {
+    /// The rank is what is claimed wherever it is claimed to be.
+    Proved {
+        /// In how many cases, and how many of them are empty.
+        cases: (usize, usize),
+        minors: Vec<MinorIdentity>,
+        /// What the rank is on the sets that are left out, in words.
+        beside: Vec<String>,
+        log2_error: f64,
+    },
+    /// At a state where it is claimed to be so the rank is another one.
+    Refuted { state: State, found: usize, set: Vec<String>, log2_error: f64 },
+    /// Neither, in words.
+    Open(String),
+}
+
+/// Decides a claim about a rank at all states.
+///
+/// # Errors
+/// In words, where it is out of reach.
+pub(crate) fn decide_everywhere(
+    system: &mut System,
+    claim: &ClaimedEverywhere,
+    seed: u64,
+    interrupt: &AtomicBool,
+) -> Result<Everywhere, String> {
+    let mut mentioned = match &claim.matrix {
+        Some((entries, _)) => entries.clone(),
+        None => mentioned_in_words(system),
+    };
+    mentioned.extend(claim.guards.iter().map(|guard| guard.node));
+    mentioned.extend(claim.conditions.iter().chain(claim.except.iter().flatten()));
+    with_angles(system, &mentioned, |system| decided(system, claim, seed, interrupt))
+}
+
+fn decided(
+    system: &mut System,
+    claim: &ClaimedEverywhere,
+    seed: u64,
+    interrupt: &AtomicBool,
+) -> Result<Everywhere, String> {
+    if claim.matrix.is_none() {
+        super::sets::on_all_states(system)?;
+    }
+    let columns = claim.matrix.as_ref().map_or(system.unknown_count(), |(_, columns)| *columns);
+    let height =
+        claim.matrix.as_ref().map_or(usize::MAX, |(entries, columns)| entries.len() / (*columns).max(1));
+    let mut log2_error = f64::NEG_INFINITY;
+    let mut greatest = columns.min(height);
+    if claim.rank > greatest {
+        return Err(format!("no rank there exceeds {greatest}"));
+    }
+    if claim.rank < greatest {
+        // no state has a higher rank than almost all have
+        greatest = match &claim.matrix {
+            None => {
+                let words = Codistribution::new(system, &Default::default(), Length::UntilItStops)?;
+                if !words.is_final() {
+                    return Err("it is not known that longer words do not raise the rank".to_owned());
+                }
+                log2_error = words.generic.log2_error;
+                words.generic_rank()
+            }
+            Some((entries, columns)) => {
+                use crate::observability::{GenericRank, generic_rank};
+                use rand::SeedableRng;
+                let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+                let is_angle = system.angle_test();
+                match generic_rank(&mut system.graph, entries, *columns, is_angle, &mut rng) {
+                    GenericRank::Rank { rank, log2_error: error, .. } => {
+                        log2_error = error;
+                        rank
+                    }
+                    GenericRank::Pole(_) => return Err("every state is a pole".to_owned()),
+                    GenericRank::Functions => {
+                        return Err("functions are met that are not rational".to_owned());
+                    }
+                    GenericRank::Unknown(why) => return Err(why),
+                }
+            }
+        };
+    }
+    let rows = |system: &mut System| match &claim.matrix {
+        None => Rows::of_words(system),
+        Some((entries, columns)) => Rows::of_matrix(&system.graph, entries, *columns),
+    };
+    let mentioned: Vec<NodeId> = claim.except.iter().flatten().copied().collect();
+    let asked = Asked {
+        rank: claim.rank,
+        guards: claim.guards.clone(),
+        conditions: claim.conditions.clone(),
+        // where one equation describes a set, its left side does not vanish off it
+        nonzero: claim.except.iter().filter(|set| set.len() == 1).map(|set| set[0]).collect(),
+        mentioned,
+    };
+    if greatest > claim.rank {
+        let all_rows = rows(system);
+        return prepared(system, all_rows, &asked, seed, interrupt, |algebra, search| {
+            Ok(greater(algebra, search, claim, greatest))
+        });
+    }
+    let all_rows = rows(system);
+    let mut first = prepared(system, all_rows, &asked, seed, interrupt, |algebra, search| {
+        let explored = search.run(algebra)?;
+        off_the_sets(algebra, search, &explored, claim)
+    })?;
+    if let Everywhere::Proved { beside, log2_error: error, .. } = &mut first {
+        *error = error.max(log2_error);
+        for (set, place) in claim.except.iter().zip(&claim.written) {
+            let asked = Asked {
+                nonzero: Vec::new(),
+                conditions: [claim.conditions.as_slice(), set.as_slice()].concat(),
+                ..asked.clone()
+            };
+            let all_rows = rows(system);
+            let told = prepared(system, all_rows, &asked, seed, interrupt, |algebra, search| {
+                let explored = search.run(algebra)?;
+                Ok(on_a_set(algebra, search, &explored))
+            });
+            beside.push(match told {
+                Ok(told) => format!("where {place} {told}"),
+                Err(why) => format!("where {place} the rank is not decided: {why}"),
+            });
+        }
+    }
+    Ok(first)
+}
+
+/// A state at which the rank is greater than claimed, as it is at almost all of them.
+fn greater(
+    algebra: &mut Algebra<'_>,
+    search: &mut Search<'_>,
+    claim: &ClaimedEverywhere,
+    greatest: usize,
+) -> Everywhere {
+    while search.rows.order < MOST_FIELDS && search.rows.extend(algebra) {}
+    let all = Case::of(&Chart::new());
+    let state = match claim.conditions.is_empty() {
+        true => state_on(algebra, search, &all, &claim.except),
+        false => None,
+    };
+    let found = state.and_then(|state| Some((rank_at(algebra, search, &state)?, state)));
+    match found {
+        Some((found, state)) if found > claim.rank => {
+            Everywhere::Refuted { state, found, set: Vec::new(), log2_error: f64::NEG_INFINITY }
+        }
+        _ => Everywhere::Open(format!("the rank is {greatest} at almost all states")),
+    }
+}
+
+/// Words of so many fields are looked at for a rank that is greater than claimed.
+const MOST_FIELDS: usize = 3;
+
+/// What the cases say of the states off the sets that are left out.
+fn off_the_sets(
+    algebra: &mut Algebra<'_>,
+    search: &mut Search<'_>,
+    explored: &Explored,
+    claim: &ClaimedEverywhere,
+) -> Reach<Everywhere> {
+    let mut open: Vec<String> = Vec::new();
+    for shown in merged(algebra, search, &explored.short) {
+        if claim.except.iter().any(|set| lies_in(algebra, &shown, set)) {
+            continue;
+        }
+        let texts = shown.texts(algebra);
+        let place =
+            if texts.is_empty() { "everywhere".to_owned() } else { format!("where {}", texts.join(", ")) };
+        match &shown.lower {
+            Err(why) => open.push(format!("{place} no minor was found that is not zero: {why}")),
+            Ok(log2_error) => match state_on(algebra, search, &shown.case, &claim.except) {
+                Some(state) => {
+                    let found = rank_at(algebra, search, &state).filter(|found| *found < claim.rank);
+                    match found {
+                        Some(found) => {
+                            let log2_error = *log2_error;
+                            return Ok(Everywhere::Refuted { state, found, set: texts, log2_error });
+                        }
+                        None => open.push(format!("{place} the rank is {}", shown.rank)),
+                    }
+                }
+                None => {
+                    open.push(format!("{place} the rank is {}, and no state of it was found", shown.rank))
+                }
+            },
+        }
+    }
+    if !open.is_empty() {
+        return Ok(Everywhere::Open(open.join("; ")));
+    }
+    if explored.full.is_empty() {
+        return Ok(Everywhere::Open("no state was found at which all of it exists".to_owned()));
+    }
+    let somewhere =
+        explored.full.iter().any(|full| state_on(algebra, search, &full.case, &claim.except).is_some());
+    if !somewhere {
+        return Ok(Everywhere::Open("no state was found at which all of it exists".to_owned()));
+    }
+    let minors = explored.full.iter().map(|full| identity(algebra, full)).collect();
+    let cases = (explored.cases, explored.empty);
+    Ok(Everywhere::Proved { cases, minors, beside: Vec::new(), log2_error: f64::NEG_INFINITY })
+}
+
+/// Whether all expressions of a set vanish on another one.
+fn lies_in(algebra: &mut Algebra<'_>, shown: &Shown, set: &[NodeId]) -> bool {
+    let nodes = algebra.in_chart(&shown.case.chart, set);
+    let nodes = algebra.system.graph.substitute(&nodes, &shown.case.values);
+    nodes.into_iter().all(|node| {
+        let top = algebra.numerator(node).and_then(|top| shown.case.reduced(&top));
+        top.is_ok_and(|top| top.is_empty())
+    })
+}
+
+/// The rank of all rows that were taken, at a state, by exact elimination.
+fn rank_at(algebra: &mut Algebra<'_>, search: &Search<'_>, state: &State) -> Option<usize> {
+    let written = search.rows.as_written();
+    let entries: Vec<NodeId> = written.iter().flatten().copied().collect();
+    let values = exact_values(algebra, &entries, state)?;
+    let rows: Vec<Vec<RBig>> = values.chunks(search.rows.columns.max(1)).map(<[RBig]>::to_vec).collect();
+    rank(&Rationals::default(), rows).ok()
+}
+
+/// What the rank is on a set that is left out, in words.
+fn on_a_set(algebra: &mut Algebra<'_>, search: &mut Search<'_>, explored: &Explored) -> String {
+    let shown = merged(algebra, search, &explored.short);
+    let open: Vec<&Shown> = shown.iter().filter(|shown| shown.lower.is_err()).collect();
+    let lower: Vec<&Shown> = shown.iter().filter(|shown| shown.lower.is_ok()).collect();
+    let text = |algebra: &mut Algebra<'_>, shown: &Shown| {
+        let texts = [shown.texts(algebra), shown.unless(algebra)].concat();
+        format!("{} where {}", shown.rank, texts.join(", "))
+    };
+    let mut lowered: Vec<String> = Vec::new();
+    for shown in lower {
+        lowered.push(text(algebra, shown));
+    }
+    let full = explored.full.iter().any(|full| state_on(algebra, search, &full.case, &[]).is_some());
+    match (lowered.is_empty(), full, open.is_empty()) {
+        (false, false, true) => format!("it is lower at all states: {}", lowered.join("; ")),
+        (false, _, _) => {
+            format!("it is not lower everywhere, or that is not decided; it is {}", lowered.join("; "))
+        }
+        (true, true, true) => "it is no lower".to_owned(),
+        (true, ..) if explored.full.is_empty() && open.is_empty() => "there are no states".to_owned(),
+        (true, ..) => "it is not decided whether it is lower".to_owned(),
+    }
+}
+
+/// A minor and its product of factors as two expressions that are equal.
+fn identity(algebra: &mut Algebra<'_>, full: &FullCase) -> MinorIdentity {
+    let n = full.chosen.rows.len();
+    let matrix = Matrix { rows: n, columns: n, entries: full.entries.clone() };
+    let minor = determinant(&mut algebra.system.graph, &matrix);
+    let mut product = algebra.system.graph.rational(full.minor.unit.clone());
+    let mut guards = Vec::new();
+    for (factor, power) in &full.minor.powers {
+        let node = algebra.exactly(factor);
+        let power = i32::try_from(*power).unwrap_or(0);
+        let raised = algebra.system.graph.power(node, power);
+        product = algebra.system.graph.mul(product, raised);
+        if algebra.system.graph.constant_value(node).is_none() {
+            guards.push(Guard { node, need: Need::NotZero });
+        }
+    }
+    MinorIdentity { minor, product, guards }
+}

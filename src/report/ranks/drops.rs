@@ -1,0 +1,133 @@
+//! Where a rank drops, as JSON and as text.
+
+use crate::drops::{DropAnswer, DropSet, UsedMinor};
+use crate::report::claims::outcomes::error_bound;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// Longer factors are not printed in a text.
+const LONGEST: usize = 160;
+
+fn set_json(set: &DropSet) -> Value {
+    let state = set.state.as_ref().map(|state| {
+        let named = |at: &crate::observability::NamedCoordinate| {
+            (at.name.clone(), json!({ "exact": at.exact, "value": at.value }))
+        };
+        state.iter().map(named).collect::<serde_json::Map<String, Value>>()
+    });
+    json!({
+        "equations": set.equations,
+        "unless": set.unless,
+        "rank": set.rank,
+        "open": set.open,
+        "error_bound": if set.open.is_none() { json!(error_bound(set.log2_error)) } else { Value::Null },
+        "state": state,
+    })
+}
+
+fn minor_json(minor: &UsedMinor) -> Value {
+    json!({
+        "equations": minor.equations,
+        "rows": minor.rows,
+        "columns": minor.columns,
+        "factors": minor.factors.iter().map(|(factor, power)| json!([factor, power])).collect::<Vec<_>>(),
+    })
+}
+
+/// The answer as one JSON object.
+pub fn drops_json(answer: &DropAnswer) -> Value {
+    json!({
+        "file": answer.file,
+        "title": answer.title,
+        "dimension": answer.dimension,
+        "rank": answer.rank,
+        "final": answer.is_final,
+        "exact": answer.is_exact(),
+        "domain": answer.domain,
+        "sets": answer.sets.iter().map(set_json).collect::<Vec<_>>(),
+        "open": answer.open.iter().map(set_json).collect::<Vec<_>>(),
+        "minors": answer.minors.iter().map(minor_json).collect::<Vec<_>>(),
+        "cases": answer.cases.0,
+        "empty": answer.cases.1,
+        "out_of_reach": answer.out_of_reach,
+        "seconds": answer.seconds,
+    })
+}
+
+fn short(text: &str) -> String {
+    if text.chars().count() <= LONGEST {
+        return text.to_owned();
+    }
+    text.chars().take(LONGEST).chain("...".chars()).collect()
+}
+
+fn place(equations: &[String], unless: &[String]) -> String {
+    let all: Vec<String> = equations.iter().chain(unless).map(|text| short(text)).collect();
+    if all.is_empty() { "at all states".to_owned() } else { format!("where {}", all.join(", ")) }
+}
+
+/// The answer as text.
+pub fn drops_text(answer: &DropAnswer) -> String {
+    let mut out = String::new();
+    let DropAnswer { title, file, rank, dimension, .. } = answer;
+    let _ = writeln!(out, "{title} ({file})");
+    let _ = writeln!(
+        out,
+        "rank {rank} of {dimension} at almost all states{}",
+        if answer.is_final { "" } else { ", as far as was looked; longer words may add to it" }
+    );
+    if !answer.domain.is_empty() {
+        let _ = writeln!(out, "all words exist where {}", answer.domain.join(", "));
+    }
+    for set in &answer.sets {
+        let _ = write!(out, "rank {} {}", set.rank, place(&set.equations, &set.unless));
+        match error_bound(set.log2_error).as_str() {
+            "0" => out.push_str(" (certain)"),
+            bound => {
+                let _ = write!(out, " (error below {bound})");
+            }
+        }
+        out.push('\n');
+        if let Some(state) = &set.state {
+            let named: Vec<String> = state.iter().map(|at| format!("{} = {}", at.name, at.exact)).collect();
+            let _ = writeln!(out, "  for example at {}", named.join(", "));
+        }
+    }
+    for set in &answer.open {
+        let why = set.open.as_deref().unwrap_or_default();
+        let _ = writeln!(out, "undecided {}: {why}", place(&set.equations, &set.unless));
+    }
+    match (&answer.out_of_reach, answer.is_exact()) {
+        (Some(why), _) => {
+            let _ = writeln!(out, "where the rank drops was not found: {why}");
+        }
+        (None, true) if answer.sets.is_empty() => {
+            let _ = writeln!(
+                out,
+                "it drops nowhere: proved, by minors as products of factors that do not vanish"
+            );
+        }
+        (None, true) => {
+            let _ = writeln!(
+                out,
+                "and nowhere else: proved, by minors as products of factors that do not vanish there"
+            );
+        }
+        (None, false) => {
+            let _ = writeln!(out, "off these sets the rank is no lower: proved");
+        }
+    }
+    for minor in &answer.minors {
+        let factor = |(factor, power): &(String, i64)| match power {
+            1 => format!("({})", short(factor)),
+            _ => format!("({})^{power}", short(factor)),
+        };
+        let factors: Vec<String> = minor.factors.iter().map(factor).collect();
+        let product = if factors.is_empty() { "a number".to_owned() } else { factors.join(" ") };
+        let _ = writeln!(out, "minor {}: of {}", place(&minor.equations, &[]), minor.rows.join(", "));
+        let _ = writeln!(out, "  {product}");
+    }
+    let _ =
+        writeln!(out, "{} cases, {} of them empty, {:.1} s", answer.cases.0, answer.cases.1, answer.seconds);
+    out
+}
