@@ -149,6 +149,8 @@ impl Attempt {
             };
             of_blocks.iter().flatten().map(at).collect::<Option<Vec<_>>>()
         });
+        // brackets are of motions along fields; of steps the words alone tell
+        let values = values.filter(|_| system.time == Time::Continuous);
         let together =
             values.and_then(|values| is_unseen_for_good(system, motion, &all, values, source.residues, rng));
         let mut vectors = all.into_iter();

@@ -7,7 +7,7 @@ use super::proof::{Motion, vanish};
 use super::section::sections;
 use crate::expression::{Derivation, NodeId, Program, Symbol, expand};
 use crate::number::{Floats, Function, rational_to_f64};
-use crate::system::{Assignment, Kind, SymbolInfo, System};
+use crate::system::{Assignment, Kind, SymbolInfo, System, Time};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeSet, HashMap};
@@ -32,6 +32,9 @@ pub enum NotReparametrised {
     /// Known signals would have to be declared in the new file as in the old one.
     #[error("a system with known signals is not written anew")]
     KnownSignals,
+    /// Steps are compositions, and no derivatives along a field.
+    #[error("a system in discrete time is not written anew")]
+    DiscreteTime,
     /// A rate would be longer than anybody reads.
     #[error("the rates are too long to be written")]
     TooLong,
@@ -66,6 +69,9 @@ pub fn reparametrise(
     if found.fields_missing + found.functions_missing > 0 {
         let (fields, functions) = (found.fields_missing, found.functions_missing);
         return Err(NotReparametrised::Incomplete { fields, functions });
+    }
+    if system.time == Time::Discrete {
+        return Err(NotReparametrised::DiscreteTime);
     }
     if !system.known.is_empty() {
         return Err(NotReparametrised::KnownSignals);
