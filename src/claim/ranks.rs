@@ -5,9 +5,9 @@ use super::identity::{OnOneBranch, RANDOM_PRIMES};
 use super::rank_bounds::by_bounds;
 use super::rank_witness::{Ranks, rank_witness};
 use super::terms::{OnBranch, Terms};
-use super::verdict::Verdict;
+use super::verdict::{Verdict, Witness};
 use crate::expression::NodeId;
-use crate::observability::{Branch, Codistribution, GenericRank, Length, Stop, generic_rank};
+use crate::observability::{Branch, Codistribution, Frame, GenericRank, Length, Stop, generic_rank};
 use crate::system::System;
 use rand::Rng;
 
@@ -52,7 +52,15 @@ pub(crate) fn decide_codistribution(
     if let Existence::Nowhere(guard) = exists {
         return Ok(OnOneBranch::Empty(guard));
     }
-    let words = Codistribution::new(system, &branch.values, Length::UntilItStops)?;
+    let frame = Frame::new(system, &branch.values)?;
+    if let Some(rank) = frame.generic.rank()
+        && !frame.words_are_short(system)
+    {
+        let log2_error = frame.generic.log2_error;
+        // the words are too long for a state of its own to be looked at
+        return Ok(on_one_branch(exists, || by_series(rank, claimed, log2_error, |_| None)));
+    }
+    let words = Codistribution::within(system, &branch.values, Length::UntilItStops, frame)?;
     let found = words.generic_rank();
     let columns = system.unknown_count();
     // the rows that give the rank at almost all states: no other row adds to it anywhere
@@ -63,7 +71,8 @@ pub(crate) fn decide_codistribution(
     {
         // no words were written down that show it, or it is not known of them: the series are
         let log2_error = words.generic.log2_error;
-        return Ok(on_one_branch(exists, || by_series(system, &needed, rank, claimed, log2_error, rng)));
+        let witness = |ranks| rank_witness(system, &needed, columns, ranks, rng);
+        return Ok(on_one_branch(exists, || by_series(rank, claimed, log2_error, witness)));
     }
     let entries = system.graph.substitute(&words.entries(), &branch.values);
     if !words.is_final() && !words.guessed && found <= claimed && found < columns {
@@ -120,20 +129,17 @@ fn on_one_branch(exists: Existence, verdict: impl FnOnce() -> Verdict) -> OnOneB
 
 /// What is known of the rank without words; where it is another one, a state at which the words show it, if they do.
 fn by_series(
-    system: &mut System,
-    needed: &OnBranch,
     rank: usize,
     claimed: usize,
     log2_error: f64,
-    rng: &mut impl Rng,
+    witness: impl FnOnce(Ranks) -> Option<Witness>,
 ) -> Verdict {
-    let engine = if log2_error == f64::NEG_INFINITY { MINOR_OF_SERIES } else { SERIES };
+    let engine = if log2_error == f64::NEG_INFINITY { MINOR_OF_SERIES } else { SERIES }.to_owned();
     if rank == claimed {
-        return Verdict::Proved { engine: engine.to_owned(), log2_error };
+        return Verdict::Proved { engine, log2_error };
     }
     let ranks = Ranks { generic: rank, claimed };
-    let witness = rank_witness(system, needed, system.unknown_count(), ranks, rng);
-    Verdict::Refuted { engine: engine.to_owned(), witness: witness.unwrap_or_else(|| ranks.nowhere()) }
+    Verdict::Refuted { engine, witness: witness(ranks).unwrap_or_else(|| ranks.nowhere()) }
 }
 
 fn decide(

@@ -35,16 +35,20 @@ pub(crate) fn assignments(system: &System, pairs: &[String]) -> miette::Result<H
                 "as in --at rho=1/2,g=0",
             ));
         };
-        let Some(symbol) = system.find_symbol(name.trim()) else {
+        let symbols = system.symbols_of(name.trim());
+        if symbols.is_empty() {
             let known: Vec<&str> = system.symbols().map(|(symbol, _)| system.symbol_name(symbol)).collect();
             return Err(Unusable::report(
                 format!("'{}' is no state or parameter of {}", name.trim(), system.name),
                 format!("these are: {}", known.join(", ")),
             ));
-        };
+        }
         let value = number(text)?;
-        if values.insert(symbol, value).is_some() {
-            return Err(Unusable::report(format!("'{}' is given twice", name.trim()), "give it once"));
+        for symbol in symbols {
+            if values.insert(symbol, value.clone()).is_some() {
+                let name = system.symbol_name(symbol);
+                return Err(Unusable::report(format!("'{name}' is given twice"), "give it once"));
+            }
         }
     }
     Ok(values)

@@ -20,6 +20,7 @@ mod output;
 mod prove;
 mod rank;
 mod recheck;
+mod reparametrise;
 mod stress;
 mod terminal;
 mod threads;

@@ -3,13 +3,15 @@
 use super::arguments::{Wanted, assignments};
 use super::interrupt::{INTERRUPTED, begin_to_tell};
 use super::output::{Files, Form, progress};
+use super::reparametrise::reparametrisation;
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::evidence::rank_records;
-use palmistry::report::{rank_json, rank_text};
+use palmistry::report::{accessibility_json, accessibility_text, rank_json, rank_text};
 use palmistry::sweep::{MOST_DIGITS, answer_rank_at_once};
-use palmistry::{RankQuestion, System, answer_rank};
+use palmistry::{RankQuestion, System, answer_accessibility, answer_rank};
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -25,7 +27,8 @@ use std::path::PathBuf;
   palmistry rank mysystem.proof --samples 100000
   palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
-  palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain")]
+  palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain
+  palmistry rank mysystem.proof --accessible               what the inputs can move, by brackets")]
 pub(crate) struct Rank {
     /// The proof file.
     file: PathBuf,
@@ -62,6 +65,15 @@ pub(crate) struct Rank {
     /// How many states that file holds at most; they are spread over the sweep, the worst conditioned one is among them.
     #[arg(long, default_value_t = 1000, value_name = "N", requires = "verdicts", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     verdict_states: u64,
+    /// Ask the dual question instead: whether the drift and the inputs can move the state in every direction. That is the rank of
+    /// the distribution that they and their brackets span (accessibility), and without the drift itself (strong
+    /// accessibility), at almost all states and at the sampled ones. Outputs play no part.
+    #[arg(long, conflicts_with_all = ["digits", "verdicts"])]
+    accessible: bool,
+    /// Write a proof file of the system without what is not seen: its states are the functions that are seen, its claims, which are
+    /// proved, that they move as this file says and that the outputs are the same.
+    #[arg(long, value_name = "FILE")]
+    reparametrise: Option<PathBuf>,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -73,23 +85,24 @@ impl Rank {
         let fixed: BTreeMap<_, _> = assignments(&system, &self.at)?.into_iter().collect();
         let samples = self.samples.unwrap_or(RankQuestion::default().samples);
         let bar = progress(samples, "sampling states");
+        let question = &RankQuestion {
+            samples,
+            seed: self.seed,
+            wanted: self.verdict.into(),
+            digits: self.digits.map(usize::from),
+            order: self.order.map(usize::from),
+            fixed,
+            conditions: self.conditions.clone(),
+            recorded: if self.verdicts.is_some() { self.verdict_states } else { 0 },
+            interrupt: &INTERRUPTED,
+            progress: &|done| bar.set_position(done),
+        };
+        if self.accessible {
+            return accessible(&mut system, question, &bar, self.json);
+        }
         let nothing_asked = self.samples.is_none() && self.order.is_none() && self.verdicts.is_none();
         let answer_rank = if nothing_asked { answer_rank_at_once } else { answer_rank };
-        let answer = answer_rank(
-            &mut system,
-            &RankQuestion {
-                samples,
-                seed: self.seed,
-                wanted: self.verdict.into(),
-                digits: self.digits.map(usize::from),
-                order: self.order.map(usize::from),
-                fixed,
-                conditions: self.conditions.clone(),
-                recorded: if self.verdicts.is_some() { self.verdict_states } else { 0 },
-                interrupt: &INTERRUPTED,
-                progress: &|done| bar.set_position(done),
-            },
-        );
+        let answer = answer_rank(&mut system, question);
         bar.finish_and_clear();
         let answer = answer.map_err(|why| Unusable::report(why.to_string(), ""))?;
         begin_to_tell();
@@ -101,8 +114,42 @@ impl Rank {
             });
             files.text_or(path, text);
         }
+        let written = self.reparametrise.as_ref().map(|path| {
+            let written = reparametrisation(&system, &answer, &self.file, path);
+            files.text_or(path, written.as_ref().map(|found| found.text.clone()).map_err(String::clone));
+            written
+        });
+        let mut object = rank_json(&answer);
+        if let Some(Ok(found)) = &written {
+            object["reparametrised"] = json!({ "claims": found.claims, "proved": found.proved });
+        }
+        let text = || match &written {
+            Some(Ok(found)) => format!("{}\n{}", rank_text(&answer), found.in_words()),
+            _ => rank_text(&answer),
+        };
         let status =
             if answer.interrupted() || answer.cut_off() { Status::CutOff } else { Status::AsExpected };
-        files.print(Form::of(self.json), rank_json(&answer), || rank_text(&answer), status)
+        files.print(Form::of(self.json), object, text, status)
     }
+}
+
+/// The answer to the dual question.
+fn accessible(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    bar: &indicatif::ProgressBar,
+    json: bool,
+) -> miette::Result<Status> {
+    let answer = answer_accessibility(system, question);
+    bar.finish_and_clear();
+    let answer = answer.map_err(|why| Unusable::report(why.to_string(), ""))?;
+    begin_to_tell();
+    let is_whole = answer.is_final() && !answer.interrupted();
+    let status = if is_whole { Status::AsExpected } else { Status::CutOff };
+    Files::default().print(
+        Form::of(json),
+        accessibility_json(&answer),
+        || accessibility_text(&answer),
+        status,
+    )
 }

@@ -30,9 +30,7 @@ mod zero_test;
 
 pub(crate) mod parse;
 
-pub(crate) use adjoin::{
-    GeneratorPoints, NormalForm, Related, normal_form, over_generators, without_signs, zero_by_relations,
-};
+pub(crate) use adjoin::{Related, normal_form, over_generators, without_signs, zero_by_relations};
 pub use angle::expand_angles;
 #[doc(hidden)]
 pub use block::BlockProgram;

@@ -53,6 +53,42 @@ pub enum ExprKind {
     Matrix(Vec<Vec<Expr>>),
     /// `e at {name = value, ...}`
     At(Box<Expr>, Vec<(Name, Expr)>),
+    /// What stands for others once its indices have values. It is put in their place where the last of them gets one, so
+    /// that in what was read it is met only where an index has none, or where a range stands by itself.
+    Indexed(Box<Indexed>),
+}
+
+/// The forms of an expression with indices.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Indexed {
+    /// `x[2*i - 1]`, or `x[1..3]`, which is three entries of a list; and what stands behind it, as in `x[1]'` and `x[1]@2`
+    Component { vector: String, place: Place, suffix: String },
+    /// `sum(i in 1..20, e)`, or `product(...)`
+    Fold { is_product: bool, over: Loop, body: Expr },
+}
+
+/// Which components of a vector are meant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    One(Whole),
+    Range(Whole, Whole),
+}
+
+/// A whole number that is made of indices: `2*i - 1`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Whole {
+    pub constant: i64,
+    /// How often each index is taken; none that falls out.
+    pub terms: Vec<(String, i64)>,
+    pub span: Span,
+}
+
+/// `i in 2..20`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loop {
+    pub index: Name,
+    pub from: Whole,
+    pub to: Whole,
 }
 
 /// How one side is said to stand to the other.

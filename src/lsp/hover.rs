@@ -34,8 +34,11 @@ fn facts(kind: DeclarationKind, name: &str, system: &System) -> Vec<String> {
     let mut facts = Vec::new();
     match kind {
         DeclarationKind::State | DeclarationKind::Parameter | DeclarationKind::Signal(_) => {
-            let Some((symbol, info)) =
-                system.find_symbol(name).and_then(|symbol| Some((symbol, system.symbol_info(symbol)?)))
+            let first = || system.first_component(name);
+            let Some((symbol, info)) = system
+                .find_symbol(name)
+                .or_else(first)
+                .and_then(|symbol| Some((symbol, system.symbol_info(symbol)?)))
             else {
                 return facts;
             };

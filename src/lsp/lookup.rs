@@ -71,9 +71,13 @@ pub(super) fn under(source: &Source, at: usize) -> Option<Under<'_>> {
     let begin = at - text[..at].chars().rev().take_while(|c| is_part(*c)).count();
     // as far as the part of the name that the cursor is on
     let end = at + text[at..].chars().take_while(|c| is_part(*c) && *c != '.').count();
-    let name = &text[begin..end];
-    let is_name = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') && !name.ends_with('.');
-    is_name.then_some(Under::Name(name, begin..end))
+    let is_name =
+        |name: &str| name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') && !name.ends_with('.');
+    // a component that is written with its number is one by itself
+    let component = text[end..].strip_prefix('[').and_then(|rest| rest.split_once(']'));
+    let number = component.map(|(number, _)| number).filter(|number| number.parse::<i64>().is_ok());
+    let whole = end + number.map_or(0, |number| number.len() + 2);
+    is_name(&text[begin..end]).then_some(Under::Name(&text[begin..whole], begin..whole))
 }
 
 /// The texts that are open, by the files that they are in; what is not open is read.

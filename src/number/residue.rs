@@ -71,6 +71,11 @@ impl PrimeField {
         self.product(u64::try_from(remainder).unwrap_or(0), self.square)
     }
 
+    /// The integer from zero to the prime that a residue is the class of.
+    pub fn representative(&self, a: u64) -> u64 {
+        self.product(a, 1)
+    }
+
     /// Montgomery's product `a * b / 2^64 mod p`.
     #[inline]
     pub(crate) fn product(&self, a: u64, b: u64) -> u64 {

@@ -397,7 +397,7 @@ fn rank_around(system: &mut System, conditions: &Assignment) -> Ceiling {
 }
 
 /// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
-fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
+pub(super) fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
     let mut solved: Vec<_> = conditions.iter().map(|(symbol, value)| (*symbol, *value)).collect();
     solved.sort_unstable();
     solved.into_iter().all(|(symbol, value)| {
@@ -445,7 +445,7 @@ fn cheaper(system: &mut System, word: &Word, derived: NodeId) -> NodeId {
 }
 
 /// The rows that raise the rank at a random point of the locus, and whether unknown functions took part.
-fn needed(
+pub(super) fn needed(
     system: &mut System,
     rows: &[Vec<NodeId>],
     conditions: &Assignment,

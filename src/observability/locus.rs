@@ -64,40 +64,18 @@ pub struct Locus {
     pub by_default: Vec<(String, Range)>,
 }
 
-/// What is done where the file says nothing of where a symbol is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MissingRange {
-    /// It is drawn from a default range, which the answer has to tell.
-    Default,
-    /// Nothing is drawn.
-    Refused,
-}
-
 impl Locus {
     /// The sample box of a system with some symbols held fixed and conditions met. `mentioned` are the expressions
-    /// that will be evaluated; parameters that they do not need are not drawn.
+    /// that will be evaluated; parameters that they do not need are not drawn. What the file gives neither a range nor a value
+    /// is drawn from [`System::default_range`].
     ///
     /// # Errors
-    /// Where a needed symbol has neither range nor value.
+    /// Where a needed symbol belongs to nobody.
     pub fn new(
         system: &mut System,
         branch: &Branch,
         fixed: &BTreeMap<Symbol, RBig>,
         mentioned: &[NodeId],
-    ) -> Result<Locus, LocusError> {
-        Locus::of(system, branch, fixed, mentioned, MissingRange::Refused)
-    }
-
-    /// The same, with a word on what is done with a symbol that the file gives neither range nor value.
-    ///
-    /// # Errors
-    /// Where such a symbol is needed, and refused.
-    pub fn of(
-        system: &mut System,
-        branch: &Branch,
-        fixed: &BTreeMap<Symbol, RBig>,
-        mentioned: &[NodeId],
-        missing: MissingRange,
     ) -> Result<Locus, LocusError> {
         let is_angle = &system.angle_test();
         let mut dependent: Vec<(Symbol, bool)> =
@@ -128,8 +106,7 @@ impl Locus {
             if branch.values.contains_key(&symbol) {
                 continue;
             }
-            if missing == MissingRange::Default
-                && !fixed.contains_key(&symbol)
+            if !fixed.contains_key(&symbol)
                 && let Some(range) = system.default_range(symbol)
             {
                 sources.insert(symbol, drawn_from(&range, is_angle(symbol)));

@@ -6,6 +6,7 @@
 //!
 //! This floor knows nothing of claims or palms.
 
+mod accessibility;
 mod codistribution;
 mod conditions;
 mod defined;
@@ -21,7 +22,9 @@ mod series;
 mod signs;
 mod singular;
 mod state;
+mod symmetry;
 
+pub use accessibility::{Accessibility, Minor, RankBounds};
 #[doc(hidden)]
 pub use codistribution::OWN_ROWS;
 pub use codistribution::{Codistribution, CodistributionError, Frame, Length, Stop, Word};
@@ -44,12 +47,12 @@ pub use generic::{Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, gen
 pub use generic::{Directions, Probe};
 pub(crate) use locus::AVOIDED;
 pub(crate) use locus::{ATTEMPTS, Source};
-pub use locus::{Locus, LocusError, MissingRange};
+pub use locus::{Locus, LocusError};
 #[doc(hidden)]
 pub use nested::{differential_by_duals, lie_derivative_by_duals};
 #[doc(hidden)]
 pub use reduction::Reduction;
-pub(crate) use related_rank::{RelatedRank, related_rank};
+pub(crate) use related_rank::related_rank;
 #[doc(hidden)]
 pub use series::lie_derivative_by_series;
 pub(crate) use signs::{Edges, SignCell, in_sign_cell, sign_cells};
@@ -60,3 +63,7 @@ pub use singular::{Spectrum, singular_values};
 #[doc(hidden)]
 pub use state::float_inputs;
 pub use state::{Coordinate, MissingInput, NamedCoordinate, State, StateInWords};
+pub use symmetry::{
+    FieldComponent, NotReparametrised, SeenFunction, UnseenField, UnseenMotions, reparametrise,
+    unseen_motions,
+};

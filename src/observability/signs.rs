@@ -56,7 +56,7 @@ pub fn sign_cells(
     let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, nodes, is_angle);
     // any fixed seed: the parts do not depend on the user's
-    let mut rng = ChaCha8Rng::seed_from_u64(0x7369_676e_73);
+    let mut rng = ChaCha8Rng::seed_from_u64(0x0073_6967_6e73);
     let need = match edges {
         Edges::LeftOut => Need::Positive,
         Edges::Counted => Need::NotNegative,

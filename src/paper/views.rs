@@ -89,7 +89,7 @@ pub struct LineFound {
 
 /// Whether there is a rank to ask for.
 pub(super) fn has_a_rank(system: &System) -> bool {
-    !system.unknown_count() == 0 && !system.outputs.is_empty() && system.require_motion().is_ok()
+    system.unknown_count() > 0 && !system.outputs.is_empty() && system.require_motion().is_ok()
 }
 
 /// The rank on the sample box, or on one set.

@@ -1,8 +1,8 @@
 //! Statements and expressions of the language as mathematics: MathML for a page, LaTeX for a paper.
 
-use crate::expression::notation::{Formula, FormulaLayout, FormulaSign, latex, mathml_in_pieces};
+use crate::expression::notation::{Fence, Formula, FormulaLayout, FormulaSign, latex, mathml_in_pieces};
 use crate::expression::parse_expression;
-use crate::expression::syntax::{Equation, Expr};
+use crate::expression::syntax::{Equation, Expr, ExprKind};
 use crate::system::{Statement, parse_statement};
 
 /// What lies deeper is shown as it is written: browsers give up before.
@@ -88,4 +88,43 @@ pub fn conditions_mathml(conditions: &[String]) -> Option<String> {
         }
     }
     shown(Formula::Row(row))
+}
+
+/// A vector field as a differential operator: a sum of rates before partial derivatives. Each part has a sign, what stands before the
+/// derivative, and the state by which it is; a rate that is `1` is left out.
+pub(crate) fn field_mathml(parts: &[SignedPart<'_>]) -> Option<String> {
+    let rows: Vec<String> = parts.iter().map(|part| format!("{}, {}", part.rate, part.state)).collect();
+    let text = format!("[{}]", rows.join("; "));
+    let matrix = parse_expression(&text).ok()?;
+    let layout = FormulaLayout::new(&text, [&matrix]);
+    let ExprKind::Matrix(rows) = &matrix.kind else { return None };
+    let mut row = Vec::new();
+    for (part, entries) in parts.iter().zip(rows) {
+        let [rate, state] = entries.as_slice() else { return None };
+        match (row.is_empty(), part.negative) {
+            (true, true) => row.push(Formula::Sign(FormulaSign::Negative)),
+            (true, false) => {}
+            (false, true) => row.push(Formula::Sign(FormulaSign::Minus)),
+            (false, false) => row.push(Formula::Sign(FormulaSign::Plus)),
+        }
+        if part.rate != "1" {
+            let formula = layout.expression(rate);
+            row.push(match &rate.kind {
+                ExprKind::Sum(_) => Formula::Fence(Fence::Round, Box::new(formula)),
+                _ => formula,
+            });
+            row.push(Formula::Sign(FormulaSign::Thin));
+        }
+        let by = Formula::Row(vec![Formula::Sign(FormulaSign::Partial), layout.expression(state)]);
+        row.push(Formula::Fraction(Box::new(Formula::Sign(FormulaSign::Partial)), Box::new(by)));
+    }
+    shown(Formula::Row(row))
+}
+
+/// A part of a vector field.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SignedPart<'a> {
+    pub negative: bool,
+    pub rate: &'a str,
+    pub state: &'a str,
 }

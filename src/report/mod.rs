@@ -39,7 +39,7 @@ pub use motion::{Observed, observe_json, observe_page, observe_text};
 pub use page::{findings_json, findings_text, page};
 #[doc(hidden)]
 pub use page::{forget_seconds, forget_times};
-pub use ranks::{rank_json, rank_text};
+pub use ranks::{accessibility_json, accessibility_text, rank_json, rank_text, unseen_field_text};
 #[doc(hidden)]
 pub use stress::{stress_json, stress_pictures, stress_text};
 #[doc(hidden)]

@@ -2,7 +2,7 @@
 
 use super::question::{RankQuestion, held_conditions};
 use crate::expression::{Guard, NodeId, add_guard};
-use crate::observability::{Branch, Edges, Locus, MissingRange, SignCell, sign_cells};
+use crate::observability::{Branch, Edges, Locus, SignCell, sign_cells};
 use crate::system::System;
 
 /// A part of a branch.
@@ -50,7 +50,7 @@ pub(super) fn by_signs(
             if several && question.samples > 0 {
                 let operands = smooth.iter().map(|guard| guard.node);
                 let mentioned: Vec<NodeId> = nodes.iter().copied().chain(operands).collect();
-                let drawn = Locus::of(system, &part, &question.fixed, &mentioned, MissingRange::Default)
+                let drawn = Locus::new(system, &part, &question.fixed, &mentioned)
                     .and_then(|locus| locus.draw(question.seed, 0));
                 if drawn.is_err() {
                     without_states = Some(cell.words.join(", "));

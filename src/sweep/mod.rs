@@ -7,6 +7,7 @@
 //!
 //! This floor knows nothing of claims or palms.
 
+mod accessible;
 mod cells;
 mod certainty;
 mod deviation;
@@ -18,6 +19,7 @@ mod states;
 mod stream;
 mod unseen;
 
+pub use accessible::{AccessibilityAnswer, AccessibilityBranch, answer_accessibility};
 pub use certainty::Certainty;
 #[doc(hidden)]
 pub use deviation::NEARLY_INVISIBLE;

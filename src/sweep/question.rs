@@ -6,8 +6,8 @@ use super::series::sweep_by_series;
 use super::states::{SweepOptions, SweepReport, UNINTERRUPTED, sweep};
 use crate::expression::{Guard, NodeId, Symbol};
 use crate::observability::{
-    Branch, Codistribution, CodistributionError, Frame, GenericAnswer, Length, Locus, LocusError,
-    MissingRange, OWN_ROWS, Probe, Stop, Unsolved, in_sign_cell, parse_condition, solve_conditions,
+    Branch, Codistribution, CodistributionError, Frame, GenericAnswer, Length, Locus, LocusError, OWN_ROWS,
+    Probe, Stop, UnseenMotions, Unsolved, in_sign_cell, parse_condition, solve_conditions, unseen_motions,
 };
 use crate::sweep::certainty::Certainty;
 use crate::system::{Assignment, FieldRole, Kind, Range, SymbolInfo, System, UnknownKind, Value};
@@ -90,6 +90,9 @@ pub struct BranchAnswer {
     pub is_final: bool,
     /// Whether the rank is not known because no longer words were looked at, though nobody asked for shorter ones.
     pub cut_off: bool,
+    /// What is not seen as fields, and what is seen of it as functions: where the rank is short of the dimension and no
+    /// condition is one on states.
+    pub motions: Option<UnseenMotions>,
     /// The rank of the full codistribution at the sampled states.
     pub full: SweepReport,
     /// How well each state is seen where what is measured has noise; none where the sweep was interrupted.
@@ -165,7 +168,7 @@ pub enum RankError {
 }
 
 /// Symbols that every drawn state has the same value of: parameters with a value and no range, and ranges of no width.
-fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol, RBig)> {
+pub(super) fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol, RBig)> {
     let held = |(symbol, info): (Symbol, &SymbolInfo)| {
         let value = match &info.range {
             Some(range) => (range.low == range.high).then(|| range.low.clone()),
@@ -179,7 +182,7 @@ fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol
 }
 
 /// The parameters with a value in the file, and no other from the question, that outputs, fields and own rows mention.
-fn held_parameters<'a>(
+pub(super) fn held_parameters<'a>(
     system: &System,
     question: &RankQuestion<'_>,
     solved: &Assignment,
@@ -200,7 +203,7 @@ fn held_parameters<'a>(
 
 /// What outputs and fields divide by, and take roots and logarithms of: a state has to have values for it too, also where no entry
 /// of the codistribution mentions it, as the mass in `v' = -x/m` where `x` and `v` are seen.
-fn guarded(system: &System) -> Vec<NodeId> {
+pub(super) fn guarded(system: &System) -> Vec<NodeId> {
     let guards = system.smooth_guards(&system.moving_fields());
     let open = guards.iter().filter(|guard| guard.is_obvious(&system.graph) != Some(true));
     open.map(|guard| guard.node).collect()
@@ -221,6 +224,27 @@ fn named_unknowns(system: &System) -> Vec<(String, UnknownKind)> {
         (system.symbol_name(symbol).to_owned(), kind)
     };
     system.unknowns().into_iter().map(named).collect()
+}
+
+/// The unseen fields, where something is unseen and all conditions are on parameters; `given` are those of the question.
+fn motions(
+    system: &mut System,
+    codistribution: &Codistribution,
+    conditions: &Assignment,
+    given: &[Symbol],
+) -> Option<UnseenMotions> {
+    let found = codistribution.generic.rank().unwrap_or(codistribution.generic_rank());
+    let unseen = found < system.unknown_count();
+    let of_states = |system: &System, symbol: &Symbol, value: NodeId| {
+        let mentioned = system.graph.symbols_of([value]);
+        [*symbol].iter().chain(&mentioned).any(|symbol| system.states.contains(symbol))
+    };
+    if !unseen || conditions.iter().any(|(symbol, value)| of_states(system, symbol, *value)) {
+        return None;
+    }
+    let given = given.iter().map(|symbol| (*symbol, conditions[symbol])).collect();
+    let found = unseen_motions(system, Some(codistribution), conditions, &given)?;
+    (found.directions() > 0).then_some(found)
 }
 
 /// Answers a question about the rank of a system's observability codistribution.
@@ -334,6 +358,8 @@ fn answer_branch(
 ) -> Result<BranchAnswer, RankError> {
     branch.check_codistribution(system).map_err(RankError::Condition)?;
     let conditions = held_conditions(system, question, branch);
+    let given = |symbol: &Symbol| branch.values.contains_key(symbol) || question.fixed.contains_key(symbol);
+    let given: Vec<Symbol> = conditions.keys().copied().filter(given).collect();
     let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
     let frame = Frame::new(system, &conditions)?;
     let wanted = question.samples > 0 && (!only_if_short || frame.words_are_short(system));
@@ -346,7 +372,7 @@ fn answer_branch(
     let mut mentioned: Vec<NodeId> = all.clone();
     mentioned.extend(own.into_iter().flatten());
     mentioned.extend(guarded(system));
-    let locus = Locus::of(system, branch, &question.fixed, &mentioned, MissingRange::Default)?;
+    let locus = Locus::new(system, branch, &question.fixed, &mentioned)?;
     let options = SweepOptions {
         samples,
         seed: question.seed,
@@ -379,6 +405,7 @@ fn answer_branch(
     let mut codistribution = codistribution;
     codistribution.generic.seen_at_states(&full);
     let known = codistribution.generic.is_final() && question.order.is_none();
+    let motions = motions(system, &codistribution, &conditions, &given);
     let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
         word: word.text(system),
         entries: entries.clone(),
@@ -403,7 +430,10 @@ fn answer_branch(
             .rank()
             .filter(|_| known)
             .unwrap_or(codistribution.generic_rank()),
-        is_final: codistribution.is_final() || known,
+        is_final: codistribution.is_final()
+            || known
+            || motions.as_ref().is_some_and(|found| found.settles_the_rank),
+        motions,
         cut_off: question.order.is_none()
             && !known
             && !codistribution.is_final()

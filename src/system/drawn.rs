@@ -31,6 +31,12 @@ impl System {
         }
     }
 
+    /// The ranges that are taken for these, by name.
+    pub(crate) fn ranges_by_default(&self) -> Vec<(String, Range)> {
+        let range = |symbol: Symbol| Some((self.symbol_name(symbol).to_owned(), self.default_range(symbol)?));
+        self.without_range().into_iter().filter_map(range).collect()
+    }
+
     /// Whether a symbol is met in what outputs and fields need to exist.
     fn is_guarded(&self, symbol: Symbol) -> bool {
         let guards = self.smooth_guards(&self.moving_fields());

@@ -13,7 +13,7 @@ use dashu::rational::RBig;
 pub(super) const LARGEST_GRAPH: usize = 4_000_000;
 
 /// The functions of the language beside [`Function::ALL`].
-pub(super) const OTHER_FUNCTIONS: [&str; 14] = [
+pub(super) const OTHER_FUNCTIONS: [&str; 16] = [
     "tan",
     "cot",
     "sec",
@@ -28,6 +28,8 @@ pub(super) const OTHER_FUNCTIONS: [&str; 14] = [
     "inverse",
     "dot",
     "cross",
+    "sum",
+    "product",
 ];
 
 /// What a name should have been.
@@ -99,6 +101,7 @@ impl System {
                 self.need_all(guards);
                 Ok(self.substitute(value, &assignment))
             }
+            ExprKind::Indexed(indexed) => Err(self.without_index(indexed, &expr.span)),
         }
     }
 
@@ -191,6 +194,9 @@ impl System {
             Wanted::Symbol => "state or parameter",
             Wanted::Name => "name",
         };
+        if let Some(problem) = self.unknown_component(name, span) {
+            return problem;
+        }
         let problem = if self.find_symbol(name).is_some() || self.definitions.contains_key(name) {
             Problem::new(span, format!("'{name}' is no {what}"), "declared above as something else")
         } else {

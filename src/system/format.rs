@@ -140,7 +140,9 @@ fn row(line: &str, sign: &str) -> Option<usize> {
     if end == 0 {
         return None;
     }
-    // a derivative of a signal, or what something is in another experiment
+    // a component, a derivative of a signal, or what something is in another experiment
+    let component = if line[end..].starts_with('[') { line[end..].find(']')? + 1 } else { 0 };
+    let end = end + component;
     let end = end + line[end..].find(|c: char| !(c.is_ascii_digit() || matches!(c, '@' | '\'')))?;
     let (name, mut rest) = (&line[..end], line[end..].trim_start());
     if sign == "=" && !name.ends_with('\'') {
@@ -189,6 +191,8 @@ fn align(lines: &mut [Line]) {
                     line.text = format!("{}{pad}{}", line.text[..place].trim_end(), &line.text[place..]);
                     shift = (widest + 1) as isize - before as isize;
                 }
+                // what is avoided goes on with no row
+                LineKind::Rest if line.text.starts_with("avoid") => shift = 0,
                 LineKind::Rest => {
                     line.indent = line.indent.saturating_add_signed(shift).max(INDENT);
                 }
@@ -238,6 +242,17 @@ mod tests {
         let wanted = "system \"s\"\nstate x, long\n\nparam set\ndrift f\n  x'    = long\n         + 1  # why\n  long' =x\nsample\n  \
                       x    in [0, 1]\n  long in [0, 1]\n  avoid x\nclaim 1: x\n  = x\n  \"two  \n   lines\"\n  # note\n\
                       set \"a\": x = 0\n";
+        assert_eq!(formatted(text), wanted);
+        assert_eq!(formatted(wanted), wanted);
+    }
+
+    /// By hand: components and ranges are names of rows, and what is avoided stays where it is.
+    #[test]
+    fn components_are_rows() {
+        let text = "system \"s\"\nstate x[1..3]\ndrift f\nx[1]' = x[2]\n  x[i+1]' = -x[i]\n for i in 1..2\nsample\n \
+                    x[1..2] in [0, 1]\n  x[3] in [0, 2]\n  avoid x[1]\n";
+        let wanted = "system \"s\"\nstate x[1..3]\ndrift f\n  x[1]'   = x[2]\n  x[i+1]' = -x[i]\n  for i in 1..2\nsample\n  \
+                      x[1..2] in [0, 1]\n  x[3]    in [0, 2]\n  avoid x[1]\n";
         assert_eq!(formatted(text), wanted);
         assert_eq!(formatted(wanted), wanted);
     }

@@ -8,8 +8,8 @@ use super::standing::{Basis, Flaw, Reference, basis, fault};
 use super::views::{View, begins, view};
 use crate::expression::Expected;
 use crate::expression::parse::{
-    Depth, Read, Text, blank, ends_a_line, equations, keyword, moved, name, range, read_all, reference, sign,
-    stop, sum,
+    Depth, Read, Text, blank, conditions, ends_a_line, equations, keyword, loops, moved, name, range,
+    read_all, repeat, sign, stop, sum, target, written_out,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};
@@ -45,7 +45,7 @@ pub(crate) enum Item {
         components: Vec<(Name, Expr)>,
         others_are_zero: bool,
     },
-    Output(Vec<(Expr, Option<DeclaredDimension>)>),
+    Output(Vec<OutputSyntax>),
     /// Signals that somebody knows, or nobody.
     Signals {
         knowledge: Knowledge,
@@ -64,6 +64,15 @@ pub(crate) enum Item {
     },
     Claim(Box<ClaimSyntax>),
     View(Box<View>),
+}
+
+/// An output as it stands in the file.
+#[derive(Clone, Debug)]
+pub(crate) struct OutputSyntax {
+    pub value: Expr,
+    pub dimension: Option<DeclaredDimension>,
+    /// Whether the text stands for several outputs, so that it is no name of this one.
+    pub is_repeated: bool,
 }
 
 /// Equations or other relations, and the conditions under which they are claimed.
@@ -172,7 +181,24 @@ pub(super) fn quoted(input: &mut Text<'_>) -> Read<String> {
 }
 
 fn names(input: &mut Text<'_>) -> Read<Vec<Name>> {
-    cut_err(separated(1.., name, sign(","))).context("a list of names").parse_next(input)
+    let one = |input: &mut Text<'_>| -> Read<Vec<Name>> {
+        let target = target(input)?;
+        repeat(input, &[], |indices| target.names(indices))
+    };
+    let list: Vec<Vec<Name>> =
+        cut_err(separated(1.., one, sign(","))).context("a list of names").parse_next(input)?;
+    Ok(list.concat())
+}
+
+/// Expressions between commas, each perhaps for several values of an index.
+fn expressions(input: &mut Text<'_>) -> Read<Vec<Expr>> {
+    let one = |input: &mut Text<'_>| -> Read<Vec<Expr>> {
+        let expr = sum(input)?;
+        let loops = loops(input)?;
+        repeat(input, &loops, |indices| Ok(written_out(indices.bind(&expr)?)))
+    };
+    let list: Vec<Vec<Expr>> = separated(1.., one, sign(",")).parse_next(input)?;
+    Ok(list.concat())
 }
 
 fn system(input: &mut Text<'_>) -> Read<Item> {
@@ -196,9 +222,19 @@ fn states(input: &mut Text<'_>) -> Read<Item> {
 }
 
 fn outputs(input: &mut Text<'_>) -> Read<Item> {
-    let one = |input: &mut Text<'_>| Ok((sum(input)?, annotation(input)?));
+    let one = |input: &mut Text<'_>| -> Read<Vec<OutputSyntax>> {
+        let (expr, dimension) = (sum(input)?, annotation(input)?);
+        let loops = loops(input)?;
+        repeat(input, &loops, |indices| {
+            let entries = written_out(indices.bind(&expr)?);
+            let is_repeated = !loops.is_empty() || entries.len() > 1;
+            let one = |value| OutputSyntax { value, dimension: dimension.clone(), is_repeated };
+            Ok(entries.into_iter().map(one).collect())
+        })
+    };
     keyword("output").parse_next(input)?;
-    cut_err(separated(1.., one, sign(","))).map(Item::Output).parse_next(input)
+    let list: Vec<Vec<_>> = cut_err(separated(1.., one, sign(","))).parse_next(input)?;
+    Ok(Item::Output(list.concat()))
 }
 
 fn params(input: &mut Text<'_>) -> Read<Item> {
@@ -207,12 +243,19 @@ fn params(input: &mut Text<'_>) -> Read<Item> {
     Ok(Item::Param(list))
 }
 
-fn definition(input: &mut Text<'_>) -> Read<Item> {
+/// One definition, or one for each component of a vector.
+fn definitions(input: &mut Text<'_>) -> Read<Vec<Item>> {
     keyword("let").parse_next(input)?;
-    let name = cut_err(name).context("the name to define").parse_next(input)?;
+    let target = cut_err(target).context("the name to define").parse_next(input)?;
     let dimension = annotation(input)?;
     cut_err(sign("=")).context("'=' and an expression").parse_next(input)?;
-    Ok(Item::Let { name, dimension, value: cut_err(sum).parse_next(input)? })
+    let value = cut_err(sum).parse_next(input)?;
+    let loops = loops(input)?;
+    repeat(input, &loops, |indices| {
+        let value = indices.bind(&value)?;
+        let one = |name| Item::Let { name, dimension: dimension.clone(), value: value.clone() };
+        Ok(target.names(indices)?.into_iter().map(one).collect())
+    })
 }
 
 fn field(input: &mut Text<'_>) -> Read<Item> {
@@ -223,50 +266,53 @@ fn field(input: &mut Text<'_>) -> Read<Item> {
     ))
     .parse_next(input)?;
     let title = cut_err(name).context("the field's name").parse_next(input)?;
-    let component = |input: &mut Text<'_>| -> Read<(Name, Expr)> {
-        let name = moved(input)?;
+    let component = |input: &mut Text<'_>| -> Read<Vec<(Name, Expr)>> {
+        let state = moved(input)?;
         cut_err(sign("=")).context("'=' and the rate of change").parse_next(input)?;
-        Ok((name, cut_err(sum).parse_next(input)?))
+        let rate = cut_err(sum).parse_next(input)?;
+        let loops = loops(input)?;
+        repeat(input, &loops, |indices| {
+            let rate = indices.bind(&rate)?;
+            Ok(state.names(indices)?.into_iter().map(|name| (name, rate.clone())).collect())
+        })
     };
-    let mut components = Vec::new();
-    let mut others_are_zero = false;
+    let mut components: Vec<(Name, Expr)> = Vec::new();
     while !begins(input)
-        && let Some((state, value)) = opt(component).parse_next(input)?
+        && let Some(found) = opt(component).parse_next(input)?
     {
-        if state.text == "others" {
-            match value.kind {
-                ExprKind::Number(ref zero) if zero.is_zero() => others_are_zero = true,
-                _ => {
-                    return stop(
-                        value.span.start,
-                        "0: the components that are not named can only be zero",
-                        None,
-                    );
-                }
-            }
-        } else {
-            components.push((state, value));
-        }
+        components.extend(found);
     }
+    let is_zero = |value: &Expr| matches!(&value.kind, ExprKind::Number(zero) if zero.is_zero());
+    let (others, components): (Vec<_>, Vec<_>) =
+        components.into_iter().partition(|(state, _)| state.text == "others");
+    if let Some((_, value)) = others.iter().find(|(_, value)| !is_zero(value)) {
+        return stop(value.span.start, "0: the components that are not named can only be zero", None);
+    }
+    let others_are_zero = !others.is_empty();
     Ok(Item::Field { role, name: title, components, others_are_zero })
 }
 
 fn sample(input: &mut Text<'_>) -> Read<Item> {
     keyword("sample").parse_next(input)?;
-    let ranged = |input: &mut Text<'_>| -> Read<(Name, Expr, Expr)> {
-        let name = reference(input)?;
+    let ranged = |input: &mut Text<'_>| -> Read<Vec<(Name, Expr, Expr)>> {
+        let target = target(input)?;
         cut_err(keyword("in")).context("'in' and a range [low, high]").parse_next(input)?;
         let (low, high, _) = cut_err(range).parse_next(input)?;
+        let loops = loops(input)?;
         opt(sign(",")).parse_next(input)?;
-        Ok((name, low, high))
+        repeat(input, &loops, |indices| {
+            let (low, high) = (indices.bind(&low)?, indices.bind(&high)?);
+            let one = |name| (name, low.clone(), high.clone());
+            Ok(target.names(indices)?.into_iter().map(one).collect())
+        })
     };
     let mut ranges = Vec::new();
     while !begins(input)
         && let Some(found) = opt(ranged).parse_next(input)?
     {
-        ranges.push(found);
+        ranges.extend(found);
     }
-    let avoid = opt(preceded(keyword("avoid"), cut_err(separated(1.., sum, sign(","))))).parse_next(input)?;
+    let avoid = opt(preceded(keyword("avoid"), cut_err(expressions))).parse_next(input)?;
     Ok(Item::Sample { ranges, avoid: avoid.unwrap_or_default() })
 }
 
@@ -320,9 +366,8 @@ pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
             true
         }
     };
-    let conditions: Option<Vec<Vec<Equation>>> =
-        opt(preceded(keyword("where"), cut_err(separated(1.., equations, sign(","))))).parse_next(input)?;
-    let conditions: Vec<Equation> = conditions.unwrap_or_default().into_iter().flatten().collect();
+    let given = opt(preceded(keyword("where"), conditions)).parse_next(input)?;
+    let conditions: Vec<Equation> = given.unwrap_or_default();
     end = conditions.last().map_or(end, |last| last.span.end);
     Ok(Box::new(Statement { equation, further, carried, on_sample, conditions, span: begin..end }))
 }
@@ -387,19 +432,18 @@ fn remark_only(input: &mut Text<'_>) -> Read<Item> {
 const ENTRY: &str = "one of: system, use, state, param, angle, let, drift, input, field, output, sample, claim, erratum, \
                      damaged, scan, convention, loose, definition, undecided, set, pole, map, line, reduction, known, unknown, initial, experiments";
 
-fn item(input: &mut Text<'_>) -> Read<Item> {
-    alt((
+fn item(input: &mut Text<'_>) -> Read<Vec<Item>> {
+    let one = alt((
         system,
         import,
         states,
         params,
         preceded(keyword("angle"), names).map(Item::Angle),
-        definition,
         field,
         outputs,
         alt((sample, claim, faulty, remark_only, view, entry)),
-    ))
-    .parse_next(input)
+    ));
+    alt((definitions, one.map(|item| vec![item]))).parse_next(input)
 }
 
 /// The words that begin an entry.
@@ -473,6 +517,8 @@ pub(super) struct Entries {
     pub spans: Vec<Span>,
     /// What is no entry.
     pub damage: Vec<Damage>,
+    /// The indices in it, wherever one gets its range.
+    pub indices: Vec<Name>,
 }
 
 /// Reads what can be read of a file: its entries, and up to `most` parts of it that are none. Behind the last of those
@@ -487,8 +533,8 @@ pub(super) fn parse_entries(text: &str, most: usize) -> Entries {
             let (start, begin) = (input.checkpoint(), input.current_token_start());
             let expected = match item.parse_next(input) {
                 Ok(found) => {
-                    items.push(found);
-                    spans.push(begin..input.current_token_start());
+                    spans.extend(found.iter().map(|_| begin..input.current_token_start()));
+                    items.extend(found);
                     before = (start, begin);
                     continue;
                 }
@@ -515,8 +561,11 @@ pub(super) fn parse_entries(text: &str, most: usize) -> Entries {
         }
         Ok(items)
     };
-    match read_all(text, &Depth::default(), ENTRY, all) {
-        Ok(items) => Entries { items, spans, damage },
+    let depth = Depth::default();
+    let items = read_all(text, &depth, ENTRY, all);
+    let indices = depth.indices.take();
+    match items {
+        Ok(items) => Entries { items, spans, damage, indices },
         Err(expected) => {
             let damage = vec![Damage { expected, left_out: 0..text.len() }];
             Entries { damage, ..Entries::default() }

@@ -109,6 +109,7 @@ impl System {
                 }
             }
         }
+        self.import_vectors(&alias.text, &other);
         self.imported_dimensions.push((alias.text.clone(), span.clone(), other.dimensions.clone()));
         for field in other.fields.iter().chain(&other.imported_fields) {
             let name = format!("{}.{}", alias.text, field.name);

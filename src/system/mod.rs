@@ -6,6 +6,7 @@
 //!
 //! This floor knows nothing of ranks, verdicts or palms.
 
+mod components;
 mod declare;
 mod determinant;
 mod dimension;

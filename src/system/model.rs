@@ -257,6 +257,8 @@ pub struct System {
     pub(crate) calculated: HashSet<String>,
     /// What is known of dimensions.
     pub(crate) dimensions: Arc<Dimensions>,
+    /// The vectors, by their names: those whose components are symbols or definitions.
+    pub(crate) vectors: BTreeSet<String>,
     /// The dimensions of the files that this one imports, while it is read.
     pub(crate) imported_dimensions: Vec<Import>,
 }

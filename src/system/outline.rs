@@ -1,13 +1,13 @@
 //! What a text declares and where, for editors: read by the one grammar, also where some of it cannot be read, and without
 //! the meaning of names.
 
-use super::grammar::{ClaimBody, Entries, Item, parse_entries};
+use super::grammar::{ClaimBody, Entries, Item, OutputSyntax, parse_entries};
 use super::model::Role;
 use super::signals::Knowledge;
 use super::standing::{Basis, Reference};
 use super::views::View;
 use crate::expression::parse::ends_a_line;
-use crate::expression::syntax::Span;
+use crate::expression::syntax::{Name, Span};
 
 /// What a declaration is one of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,9 +101,14 @@ impl Outline {
         outline
     }
 
-    /// What names stand for: the declarations of a name that expressions and fields refer to.
+    /// What names stand for: the declarations of a name that expressions and fields refer to; of a component or a vector,
+    /// those of the vector's components.
     pub fn named<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Declaration> {
-        self.declarations.iter().filter(move |one| one.kind.has_a_name() && one.name == name)
+        let is_meant = move |one: &Declaration| match one.name.split_once('[') {
+            Some((vector, _)) => vector == name.split('[').next().unwrap_or_default(),
+            None => one.name == name,
+        };
+        self.declarations.iter().filter(move |one| one.kind.has_a_name() && is_meant(one))
     }
 
     /// The claim or erratum of an id.
@@ -113,6 +118,23 @@ impl Outline {
     }
 
     fn enter(&mut self, text: &str, item: &Item, entry: &Span) {
+        let named: Vec<(DeclarationKind, &Name)> = match item {
+            Item::State(list) => list.iter().map(|one| (DeclarationKind::State, &one.name)).collect(),
+            Item::Param(list) => list.iter().map(|one| (DeclarationKind::Parameter, &one.name)).collect(),
+            Item::Let { name, .. } => vec![(DeclarationKind::Definition, name)],
+            Item::Signals { knowledge, list } => {
+                let kind = DeclarationKind::Signal(*knowledge == Knowledge::Known);
+                list.iter().map(|one| (kind, &one.name)).collect()
+            }
+            _ => Vec::new(),
+        };
+        for (kind, Name { span, .. }) in named {
+            // the components of a range are declared once, as they are written
+            if self.declarations.last().is_none_or(|last| last.span != *span) {
+                let (name, span, entry) = (super::in_one_line(text, span), span.clone(), entry.clone());
+                self.declarations.push(Declaration { kind, name, span, entry });
+            }
+        }
         let mut add = |kind: DeclarationKind, name: &str, span: &Span| {
             let (name, span, entry) = (name.to_owned(), span.clone(), entry.clone());
             self.declarations.push(Declaration { kind, name, span, entry });
@@ -124,17 +146,14 @@ impl Outline {
                 let (alias, path, entry) = (alias.text.clone(), path.clone(), entry.clone());
                 self.imports.push(ImportedFile { alias, path, entry });
             }
-            Item::State(list) => {
-                list.iter().for_each(|one| add(DeclarationKind::State, &one.name.text, &one.name.span));
-            }
-            Item::Param(list) => {
-                list.iter().for_each(|one| add(DeclarationKind::Parameter, &one.name.text, &one.name.span));
-            }
-            Item::Let { name, .. } => add(DeclarationKind::Definition, &name.text, &name.span),
             Item::Field { role, name, .. } => add(DeclarationKind::Field(*role), &name.text, &name.span),
             Item::Output(list) => {
-                for (expr, _) in list {
-                    add(DeclarationKind::Output, &super::in_one_line(text, &expr.span), &expr.span);
+                // what stands for several is listed once
+                let mut last = None;
+                for OutputSyntax { value, .. } in list {
+                    if last.replace(&value.span) != Some(&value.span) {
+                        add(DeclarationKind::Output, &super::in_one_line(text, &value.span), &value.span);
+                    }
                 }
             }
             Item::Claim(claim) => {
@@ -158,10 +177,7 @@ impl Outline {
                 View::Line { title, span, .. } => add(DeclarationKind::View("line"), title, span),
                 View::Reduction { alias, .. } => add(DeclarationKind::Reduction, &alias.text, &alias.span),
             },
-            Item::Signals { knowledge, list } => {
-                let kind = DeclarationKind::Signal(*knowledge == Knowledge::Known);
-                list.iter().for_each(|one| add(kind, &one.name.text, &one.name.span));
-            }
+            Item::Signals { .. } | Item::State(_) | Item::Param(_) | Item::Let { .. } => {}
             Item::Angle(_) | Item::Initial(_) | Item::Experiments { .. } | Item::Sample { .. } => {}
         }
     }

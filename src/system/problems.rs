@@ -89,7 +89,7 @@ impl Problems {
             Cause::Itself => false,
             // what is imported has the name of its system before a dot
             Cause::Unknown(name) => {
-                let parts = name.match_indices('.').map(|(at, _)| &name[..at]);
+                let parts = name.match_indices(['.', '[']).map(|(at, _)| &name[..at]);
                 parts.chain([name.as_str()]).any(|part| self.broken.contains(part))
             }
             Cause::Motion => failed(&["drift", "input", "field"]),
@@ -227,7 +227,7 @@ impl Item {
         match self {
             Item::Let { value, .. } => vec![value.clone()],
             Item::Field { components, .. } => components.iter().map(|(_, expr)| expr.clone()).collect(),
-            Item::Output(list) => list.iter().map(|(expr, _)| expr.clone()).collect(),
+            Item::Output(list) => list.iter().map(|one| one.value.clone()).collect(),
             Item::View(view) => {
                 view.equations().into_iter().flat_map(|e| [e.left.clone(), e.right.clone()]).collect()
             }
@@ -300,7 +300,7 @@ impl System {
     /// The names in an expression that nobody has declared.
     fn unknown_names(&self, expr: &Expr, found: &mut Vec<Problem>) {
         match &expr.kind {
-            ExprKind::Number(_) => {}
+            ExprKind::Number(_) | ExprKind::Indexed(_) => {}
             ExprKind::Name(name) => {
                 let is_known = self.find_symbol(name).is_some() || self.definition(name).is_some();
                 if !is_known && !["pi", "rank"].contains(&name.as_str()) {

@@ -1,10 +1,11 @@
 //! From a file to a system.
 
+use super::components::is_component;
 use super::declare::in_words;
 use super::dimension::{self, Declared};
 use super::elaborate::Wanted;
 use super::error::{Problem, ReadError};
-use super::grammar::{ClaimSyntax, Entries, Item, Statement, parse_entries};
+use super::grammar::{ClaimSyntax, Entries, Item, OutputSyntax, Statement, parse_entries};
 use super::imports::Reading;
 use super::model::{Field, FieldPlace, Kind, Range, Role, System, Value};
 use super::problems::{Cause, Full, Problems, Remnant, names_of_text};
@@ -12,7 +13,7 @@ use super::signals::{Derivatives, Knowledge};
 use super::source_text::{load, refuse_reordering, with_plain_line_ends};
 use super::unknowns::UnknownKind;
 use super::written::{Scope, Written, in_one_line, places_in};
-use crate::expression::syntax::{Expr, Name, Relation, Span};
+use crate::expression::syntax::{Expr, ExprKind, Name, Relation, Span};
 use crate::expression::{Derivation, Graph, Guard, NodeId, Symbol, parse_expression};
 use crate::file;
 use miette::NamedSource;
@@ -152,6 +153,7 @@ impl System {
             calculated: HashSet::new(),
             dimensions: Default::default(),
             imported_dimensions: Vec::new(),
+            vectors: BTreeSet::new(),
         };
         match system.fill(folder, reading, problems) {
             Ok(()) => Ok(system),
@@ -165,7 +167,7 @@ impl System {
         if let Err(problem) = refuse_reordering(&text) {
             problems.add(problem)?;
         }
-        let Entries { items, damage, .. } = parse_entries(&text, problems.room());
+        let Entries { items, damage, indices, .. } = parse_entries(&text, problems.room());
         for part in damage {
             problems.add(expected(part.expected))?;
             if let Some((word, names)) = names_of_text(&text[part.left_out]) {
@@ -193,6 +195,11 @@ impl System {
                     let remnant = Remnant::of_statement(statement, problems);
                     self.entry_failed(problem, remnant, problems)?;
                 }
+            }
+        }
+        for index in &indices {
+            if let Err(problem) = self.refuse_taken_index(index) {
+                problems.add(problem)?;
             }
         }
         self.domain = Default::default();
@@ -281,7 +288,13 @@ impl System {
                         "claim it as it is",
                     ));
                 }
-                self.written.insert(name.text.clone(), self.written_as(&expr.span, [expr]));
+                self.note_component(&name.text);
+                let written = match (&value, is_component(&name.text)) {
+                    // the text speaks of all components
+                    (Value::Scalar(value), true) => Written::plain(self.graph.text(*value)),
+                    _ => self.written_as(&expr.span, [expr]),
+                };
+                self.written.insert(name.text.clone(), written);
                 self.definition_domains.insert(name.text.clone(), domain);
                 self.definitions.insert(name.text.clone(), value);
             }
@@ -290,10 +303,14 @@ impl System {
             }
             Item::Output(list) => {
                 let mut further = Vec::new();
-                for (expr, _) in list {
+                for OutputSyntax { value: expr, is_repeated, .. } in list {
                     let (value, domain) = self.apart(|system| system.scalar(expr))?;
                     let guards = self.guards_of(&domain);
-                    let text = in_one_line(&self.source, &expr.span);
+                    let text = match (&expr.kind, is_repeated) {
+                        (_, false) => in_one_line(&self.source, &expr.span),
+                        (ExprKind::Name(name), true) => name.clone(),
+                        (_, true) => self.graph.text(value),
+                    };
                     for (experiment, copies) in self.further_experiments() {
                         let there = self.graph.substitute(&[value], &copies)[0];
                         let guards = self.substitute_guards(&guards, &copies);
@@ -413,11 +430,12 @@ impl System {
             let message = "a name with a dot belongs to an imported system";
             return Err(Problem::new(&name.span, message, "choose one without"));
         }
-        Ok(())
+        self.refuse_mixed(name)
     }
 
     pub(super) fn declare(&mut self, name: &Name, kind: Kind) -> Result<Symbol, Problem> {
         self.refuse_taken(name)?;
+        self.note_component(&name.text);
         let symbol = self.graph.intern(&name.text);
         let info = self.fresh_info(symbol, kind);
         self.symbols.insert(symbol, info);

@@ -49,7 +49,7 @@ impl System {
                 self.calculates_nothing(base) && self.calculates_nothing(exponent)
             }
             ExprKind::Matrix(rows) => rows.iter().flatten().all(|entry| self.calculates_nothing(entry)),
-            ExprKind::At(..) => false,
+            ExprKind::At(..) | ExprKind::Indexed(_) => false,
             ExprKind::Call(name, arguments) => match (name.as_str(), arguments.as_slice()) {
                 // the components of a field are looked up, those of a bracket are calculated
                 ("L", [field, of]) => matches!(field.kind, ExprKind::Name(_)) && self.are_states(of),
@@ -69,7 +69,7 @@ impl System {
     /// Whether an expression mentions something whose meaning stands elsewhere in the file.
     fn looks_up(&self, expr: &Expr) -> bool {
         match &expr.kind {
-            ExprKind::Number(_) => false,
+            ExprKind::Number(_) | ExprKind::Indexed(_) => false,
             ExprKind::Name(name) => self.definition(name).is_some(),
             ExprKind::Sum(parts) | ExprKind::Product(parts) => {
                 parts.iter().any(|(_, part)| self.looks_up(part))

@@ -3,10 +3,10 @@
 //!
 //! The words that begin these entries are names too, where nothing follows that makes an entry of them.
 
-use super::dimension::{Declared, DeclaredDimension, annotation};
+use super::dimension::{DeclaredDimension, DeclaredTarget, annotation};
 use super::grammar::{Item, Statement};
 use super::views::View;
-use crate::expression::parse::{Read, Text, keyword, name, sign, stop, sum};
+use crate::expression::parse::{Read, Text, keyword, loops, name, repeat, sign, stop, sum, target};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use std::collections::HashMap;
 use winnow::combinator::{alt, cut_err, opt, peek, preceded, separated};
@@ -41,8 +41,8 @@ pub(super) const WORDS: [&str; 4] = ["known", "unknown", "initial", "experiments
 
 /// Whether one of these entries begins here, and not a name that is one of their words.
 pub(super) fn begins(input: &mut Text<'_>) -> bool {
-    let signal = (alt((keyword("known"), keyword("unknown"))), name, sign("(")).void();
-    let initial = (keyword("initial"), name, alt((sign("="), sign(","), keyword("known").void()))).void();
+    let signal = (alt((keyword("known"), keyword("unknown"))), target, sign("(")).void();
+    let initial = (keyword("initial"), target, alt((sign("="), sign(","), keyword("known").void()))).void();
     let experiments = (keyword("experiments"), winnow::token::one_of(|c: char| c.is_ascii_digit())).void();
     peek(alt((signal, initial, experiments))).parse_next(input).is_ok()
 }
@@ -52,7 +52,8 @@ pub(super) fn begins(input: &mut Text<'_>) -> bool {
 pub(super) fn goes_on(word: &str, rest: &str) -> bool {
     let rest = rest.trim_start();
     let end = rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(rest.len());
-    let (next, behind) = (&rest[..end], rest[end..].trim_start());
+    let component = rest[end..].strip_prefix('[').and_then(|behind| behind.split_once(']'));
+    let (next, behind) = (&rest[..end], component.map_or(&rest[end..], |(_, behind)| behind).trim_start());
     match word {
         "experiments" => next.starts_with(|c: char| c.is_ascii_digit()),
         "initial" => {
@@ -73,7 +74,7 @@ pub(crate) fn knowledge(input: &mut Text<'_>) -> Read<Option<Knowledge>> {
 }
 
 /// The word of a parameter holds for the names before it that have neither this word nor a value, as a dimension does.
-pub(crate) fn spread_knowledge(list: &mut [Declared]) {
+pub(crate) fn spread_knowledge(list: &mut [DeclaredTarget]) {
     let mut last = None;
     for one in list.iter_mut().rev() {
         match one.knowledge {
@@ -88,8 +89,8 @@ fn signals(input: &mut Text<'_>) -> Read<Item> {
     let knowledge =
         alt((keyword("known").value(Knowledge::Known), keyword("unknown").value(Knowledge::Unknown)))
             .parse_next(input)?;
-    let one = |input: &mut Text<'_>| -> Read<DeclaredSignal> {
-        let name = name.context("the name of a signal, as in u(t)").parse_next(input)?;
+    let one = |input: &mut Text<'_>| -> Read<Vec<DeclaredSignal>> {
+        let target = target.context("the name of a signal, as in u(t)").parse_next(input)?;
         cut_err(sign("(")).context("'(t)' behind the name of a signal").parse_next(input)?;
         let at = input.current_token_start();
         let time = cut_err(name_of_time).parse_next(input)?;
@@ -104,11 +105,15 @@ fn signals(input: &mut Text<'_>) -> Read<Item> {
             let help = "of a known signal as many derivatives are taken as the file mentions";
             return stop(at, "no order behind a known signal", Some(help.to_owned()));
         }
-        Ok(DeclaredSignal { name, dimension, order })
+        repeat(input, &[], |indices| {
+            let one = |name| DeclaredSignal { name, dimension: dimension.clone(), order: order.clone() };
+            Ok(target.names(indices)?.into_iter().map(one).collect())
+        })
     };
-    let mut list: Vec<DeclaredSignal> = cut_err(separated(1.., one, sign(",")))
+    let list: Vec<Vec<DeclaredSignal>> = cut_err(separated(1.., one, sign(",")))
         .context("a list of signals, as in u(t), v(t)")
         .parse_next(input)?;
+    let mut list = list.concat();
     let (mut dimension, mut order) = (None, None);
     for one in list.iter_mut().rev() {
         match &one.dimension {
@@ -129,15 +134,21 @@ fn name_of_time(input: &mut Text<'_>) -> Read<String> {
 
 fn initial(input: &mut Text<'_>) -> Read<Item> {
     keyword("initial").parse_next(input)?;
-    let one = |input: &mut Text<'_>| -> Read<(DeclaredInitial, bool)> {
-        let name = name.context("a state").parse_next(input)?;
+    let one = |input: &mut Text<'_>| -> Read<Vec<(DeclaredInitial, bool)>> {
+        let target = target.context("a state").parse_next(input)?;
         let value = opt(preceded(sign("="), cut_err(sum))).parse_next(input)?;
         let known = value.is_none() && !begins(input) && opt(keyword("known")).parse_next(input)?.is_some();
-        Ok((DeclaredInitial { name, value }, known))
+        let loops = loops(input)?;
+        repeat(input, &loops, |indices| {
+            let value = value.as_ref().map(|value| indices.bind(value)).transpose()?;
+            let one = |name| (DeclaredInitial { name, value: value.clone() }, known);
+            Ok(target.names(indices)?.into_iter().map(one).collect())
+        })
     };
-    let list: Vec<(DeclaredInitial, bool)> = cut_err(separated(1.., one, sign(",")))
+    let list: Vec<Vec<(DeclaredInitial, bool)>> = cut_err(separated(1.., one, sign(",")))
         .context("a list of states, as in 'initial x known' or 'initial x = 0'")
         .parse_next(input)?;
+    let list = list.concat();
     let mut said = false;
     for (one, known) in list.iter().rev() {
         said = one.value.is_none() && (said || *known);
@@ -198,7 +209,7 @@ impl Derivatives {
             Item::Let { value, .. } => self.expression(value),
             // what moves is no mention: (w')' = e is written w'' = e
             Item::Field { components, .. } => components.iter().for_each(|(_, expr)| self.expression(expr)),
-            Item::Output(list) => list.iter().for_each(|(expr, _)| self.expression(expr)),
+            Item::Output(list) => list.iter().for_each(|one| self.expression(&one.value)),
             Item::Sample { ranges, avoid } => {
                 ranges.iter().for_each(|(name, ..)| self.name(&name.text));
                 avoid.iter().for_each(|expr| self.expression(expr));
@@ -236,6 +247,7 @@ impl Derivatives {
 
     fn expression(&mut self, expr: &Expr) {
         match &expr.kind {
+            ExprKind::Indexed(_) => {}
             ExprKind::Name(name) => self.name(name),
             ExprKind::Call(function, arguments) => {
                 // fields that drive signals have the names of derivatives, and are none

@@ -8,7 +8,7 @@ use super::model::System;
 use super::signals;
 use super::written::in_one_line;
 use crate::expression::parse::{
-    Read, Text, assignments, equations, keyword, name, range, reference, sign, stop, sum,
+    Read, Text, assignments, conditions, equations, keyword, name, range, repeat, sign, stop, sum, target,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
 use crate::expression::{NodeId, Symbol};
@@ -182,9 +182,14 @@ fn title(input: &mut Text<'_>) -> Read<(String, Span)> {
     Ok((title, span))
 }
 
-fn conditions(input: &mut Text<'_>) -> Read<Vec<Equation>> {
-    let list: Vec<Vec<Equation>> = cut_err(separated(1.., equations, sign(","))).parse_next(input)?;
-    Ok(list.concat())
+/// A name, or one component of a vector.
+fn coordinate(input: &mut Text<'_>) -> Read<Name> {
+    let target = target(input)?;
+    let mut names = repeat(input, &[], |indices| target.names(indices))?;
+    match names.len() {
+        1 => Ok(names.remove(0)),
+        _ => stop(target.span.start, "one coordinate", None),
+    }
 }
 
 fn set(input: &mut Text<'_>) -> Read<View> {
@@ -197,7 +202,7 @@ fn map(input: &mut Text<'_>) -> Read<View> {
     keyword("map").parse_next(input)?;
     let (title, span) = title(input)?;
     let axis = |input: &mut Text<'_>| -> Read<Axis> {
-        let name = reference.context("a coordinate and its range, as in x in [0, 1]").parse_next(input)?;
+        let name = coordinate.context("a coordinate and its range, as in x in [0, 1]").parse_next(input)?;
         cut_err(keyword("in")).context("'in' and a range [low, high]").parse_next(input)?;
         let (low, high, _) = cut_err(range).parse_next(input)?;
         Ok(Axis { name, low, high })
@@ -216,7 +221,7 @@ fn map(input: &mut Text<'_>) -> Read<View> {
 fn line(input: &mut Text<'_>) -> Read<View> {
     keyword("line").parse_next(input)?;
     let (title, span) = title(input)?;
-    let moving = cut_err(reference).context("the coordinate that moves").parse_next(input)?;
+    let moving = cut_err(coordinate).context("the coordinate that moves").parse_next(input)?;
     cut_err(keyword("to")).context("'to', as in x to 2, x to y = 3, x to infinity").parse_next(input)?;
     let end = match opt(keyword("infinity")).parse_next(input)? {
         Some(_) => End::Infinity,

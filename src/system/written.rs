@@ -12,8 +12,8 @@ use crate::expression::syntax::{Equation, Expr, ExprKind, Span};
 enum Piece {
     /// Signs, numbers, symbols, functions.
     Plain(String),
-    /// The name of a definition.
-    Definition(String),
+    /// The name of a definition, and how it is written: a component may be so by an index.
+    Definition { name: String, written: String },
     /// The name of a field, in `L(f, e)`.
     Field(String),
     /// Behind the argument of `d(e)`: the states of its file, which another file has to name.
@@ -79,10 +79,17 @@ impl Written {
             }
         };
         for (place, mention) in places {
+            // a text that is repeated for values of an index stands there once
+            if place.start < begin {
+                continue;
+            }
             plain(&mut written, source.get(begin..place.start).unwrap_or_default());
             begin = place.end;
             written.pieces.push(match mention {
-                Insert::Mention(Mention::Definition(name)) => Piece::Definition(name),
+                Insert::Mention(Mention::Definition(name)) => {
+                    let written = source.get(place).unwrap_or_default().to_owned();
+                    Piece::Definition { name, written }
+                }
                 Insert::Mention(Mention::Field(name)) => Piece::Field(name),
                 Insert::States(names) => Piece::States(names),
             });
@@ -94,12 +101,19 @@ impl Written {
         written
     }
 
+    /// A text that holds no names that stand for something longer.
+    pub fn plain(text: String) -> Written {
+        Written { pieces: vec![Piece::Plain(text)] }
+    }
+
     /// The formula in one line.
     pub fn text(&self) -> String {
         let mut text = String::new();
         for piece in &self.pieces {
             match piece {
-                Piece::Plain(part) | Piece::Definition(part) | Piece::Field(part) => text.push_str(part),
+                Piece::Plain(part) | Piece::Definition { written: part, .. } | Piece::Field(part) => {
+                    text.push_str(part);
+                }
                 Piece::States(_) => {}
             }
         }
@@ -110,7 +124,9 @@ impl Written {
     pub fn under(&self, alias: &str) -> Written {
         let piece = |piece: &Piece| match piece {
             Piece::Plain(text) => Piece::Plain(text.clone()),
-            Piece::Definition(name) => Piece::Definition(format!("{alias}.{name}")),
+            Piece::Definition { name, written } => {
+                Piece::Definition { name: format!("{alias}.{name}"), written: format!("{alias}.{written}") }
+            }
             Piece::Field(name) => Piece::Field(format!("{alias}.{name}")),
             // the states of a file are symbols, and those have one name everywhere
             Piece::States(names) => Piece::Plain(names.iter().map(|name| format!(", {name}")).collect()),
@@ -129,7 +145,7 @@ impl Written {
     pub fn mentions(&self) -> impl Iterator<Item = Mention> {
         self.pieces.iter().filter_map(|piece| match piece {
             Piece::Plain(_) | Piece::States(_) => None,
-            Piece::Definition(name) => Some(Mention::Definition(name.clone())),
+            Piece::Definition { name, .. } => Some(Mention::Definition(name.clone())),
             Piece::Field(name) => Some(Mention::Field(name.clone())),
         })
     }
@@ -144,7 +160,7 @@ pub(crate) fn in_one_line(source: &str, span: &Span) -> String {
 pub(crate) fn places_in(scope: &Scope<'_>, expr: &Expr, found: &mut Vec<Place>) {
     let mut inner = |expr: &Expr| places_in(scope, expr, found);
     match &expr.kind {
-        ExprKind::Number(_) => {}
+        ExprKind::Number(_) | ExprKind::Indexed(_) => {}
         ExprKind::Name(name) => {
             if (scope.is_definition)(name) {
                 let mention = Insert::Mention(Mention::Definition(name.clone()));
@@ -198,15 +214,21 @@ pub(crate) fn places_in_equation(scope: &Scope<'_>, equation: &Equation, found: 
     }
 }
 
-/// Where a name stands in an expression that is nothing but it, perhaps with brackets and signs around.
+/// Where a name stands in an expression that is nothing but it, perhaps with brackets and signs around. Of a component the
+/// index may be written in another way.
 fn name_within(source: &str, expr: &Expr, name: &str) -> Span {
     let text = source.get(expr.span.clone()).unwrap_or_default();
+    let vector = name.split('[').next().unwrap_or_default();
     let mut comment = false;
     for (place, c) in text.char_indices() {
         comment = (comment || c == '#') && !ends_a_line(c);
-        if !comment && text[place..].starts_with(name) {
+        if !comment && text[place..].starts_with(vector) {
             let start = expr.span.start + place;
-            return start..start + name.len();
+            let index = match name.len() > vector.len() {
+                true => text[place..].find(']').map_or(vector.len(), |end| end + 1),
+                false => vector.len(),
+            };
+            return start..start + index;
         }
     }
     expr.span.clone()

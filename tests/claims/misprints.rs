@@ -57,7 +57,7 @@ fn misprint(
         is_it
     };
     match &mut expr.kind {
-        ExprKind::Number(_) => false,
+        ExprKind::Number(_) | ExprKind::Indexed(_) => false,
         ExprKind::Name(name) => {
             if kind != Misprint::OtherName {
                 return false;

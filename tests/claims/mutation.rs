@@ -11,7 +11,7 @@ use std::path::Path;
 /// Turns round the sign of the term of a number, counted through the expression; true when it was found.
 fn flip(expr: &mut Expr, number: &mut usize) -> bool {
     match &mut expr.kind {
-        ExprKind::Number(_) | ExprKind::Name(_) => false,
+        ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Indexed(_) => false,
         ExprKind::Sum(terms) => {
             for (negative, term) in terms {
                 if *number == 0 {

@@ -5,9 +5,11 @@ mod common;
 #[path = "../common/picture.rs"]
 mod picture;
 
+mod accessible;
 mod certify;
 mod certify_domains;
 mod certify_verdicts;
+mod models;
 mod neighbours;
 mod observable;
 mod rank_edges;
@@ -15,3 +17,4 @@ mod region_edges;
 mod stream;
 mod stress;
 mod trade;
+mod unseen_fields;

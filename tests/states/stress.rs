@@ -327,10 +327,6 @@ fn a_file_that_cannot_be_used_is_said_to_be_so() {
     let folder = folder();
     for (text, expected) in [
         ("system \"nothing is seen\"\nstate x\ndrift f\n  x' = 1\n", "no states or no outputs"),
-        (
-            "system \"nowhere\"\nstate x, y\ndrift f\n  x' = y^2\n  others' = 0\noutput x*y\n",
-            "nothing says where",
-        ),
         ("sistem", "line 1"),
     ] {
         let file = write(&folder, "bad.proof", text);

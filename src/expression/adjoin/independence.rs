@@ -20,12 +20,12 @@
 //! Reference: J. Ax, *On Schanuel's conjectures*, Ann. of Math. 93 (1971).
 
 use super::Adjunction;
-use super::form::{Form, Monomial};
-use super::generators::{Key, Measure};
+use super::form::Form;
+use super::generators::Key;
 use crate::expression::{Input, NodeId, Program};
-use crate::number::{Arithmetic, Function, PrimeField};
+use crate::number::{Arithmetic, PrimeField};
 use dashu::rational::RBig;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 /// What is known of the generators of some expressions.
 pub(super) struct Standing {

@@ -102,6 +102,10 @@ impl Accent {
 impl FormulaName {
     /// The look of a name as it is written; none for one that has no parts, such as `_2` and `a__b`.
     pub fn of(text: &str) -> Option<FormulaName> {
+        let (text, component) = match text.strip_suffix(']').and_then(|text| text.split_once('[')) {
+            Some((vector, component)) => (vector, Some(component)),
+            None => (text, None),
+        };
         let mut from: Vec<String> = text.split('.').map(str::to_owned).collect();
         let own = from.pop()?;
         let mut parts = own.split('_');
@@ -123,6 +127,7 @@ impl FormulaName {
                 None => name.index.push(part.to_owned()),
             }
         }
+        name.index.extend(component.map(str::to_owned));
         Some(name)
     }
 

@@ -1,14 +1,16 @@
 //! Reading expressions. The parser combinators are winnow's; the error is ours, because it has to say what was
 //! expected, and where.
 
+mod indices;
 mod tokens;
 
 use super::syntax::{Equation, Expr, ExprKind, Name, Relation};
+pub(crate) use indices::{Target, loops, moved, names_of_range, repeat, target, written_out};
+use indices::{fold, spread};
 pub use tokens::Expected;
 use tokens::{DEEPEST, closing, number};
 pub(crate) use tokens::{
-    Depth, RESERVED, Read, SPECIAL, Text, blank, ends_a_line, keyword, moved, name, reference, sign, stop,
-    within, word,
+    Depth, RESERVED, Read, SPECIAL, Text, blank, ends_a_line, keyword, name, sign, stop, within, word,
 };
 use winnow::combinator::{alt, cut_err, not, opt, preceded, separated};
 use winnow::error::ErrMode;
@@ -30,7 +32,9 @@ fn bracketed(input: &mut Text<'_>) -> Read<Expr> {
 fn matrix(input: &mut Text<'_>) -> Read<Expr> {
     let begin = input.current_token_start();
     sign("[").parse_next(input)?;
-    let row = |input: &mut Text<'_>| -> Read<Vec<Expr>> { separated(1.., sum, sign(",")).parse_next(input) };
+    let row = |input: &mut Text<'_>| -> Read<Vec<Expr>> {
+        separated(1.., sum, sign(",")).map(spread).parse_next(input)
+    };
     let rows: Vec<Vec<Expr>> = within(input, cut_err(separated(1.., row, sign(";"))))?;
     let end = cut_err(closing("]"))
         .context("']', ',' between the entries of a row, or ';' between rows")
@@ -38,28 +42,37 @@ fn matrix(input: &mut Text<'_>) -> Read<Expr> {
     Ok(Expr { kind: ExprKind::Matrix(rows), span: begin..end })
 }
 
-/// A name, or a call where a bracket follows at once.
+/// A name, a call where a bracket follows at once, or a component of a vector where a square one does.
 fn name_or_call(input: &mut Text<'_>) -> Read<Expr> {
-    let name = reference(input)?;
-    if opt(sign("(")).parse_next(input)?.is_none() {
-        return Ok(Expr { kind: ExprKind::Name(name.text), span: name.span });
+    let name = target(input)?;
+    if !name.is_plain() || opt(sign("(")).parse_next(input)?.is_none() {
+        return Ok(name.expression());
+    }
+    let Target { name, span, .. } = name;
+    if ["sum", "product"].contains(&name.as_str()) {
+        return fold(input, &name, span.start);
     }
     let arguments: Vec<Expr> = within(input, cut_err(separated(1.., sum, sign(","))))?;
     let end = cut_err(closing(")")).context("')' or ',' in the list of arguments").parse_next(input)?;
-    Ok(Expr { kind: ExprKind::Call(name.text, arguments), span: name.span.start..end })
+    Ok(Expr { kind: ExprKind::Call(name, spread(arguments)), span: span.start..end })
 }
 
 /// `name = value, ...` in braces, and where they end
 pub(crate) fn assignments(input: &mut Text<'_>) -> Read<(Vec<(Name, Expr)>, usize)> {
-    let one = |input: &mut Text<'_>| -> Read<(Name, Expr)> {
-        let name = reference.context("a name to give a value to").parse_next(input)?;
+    let one = |input: &mut Text<'_>| -> Read<Vec<(Name, Expr)>> {
+        let target = target.context("a name to give a value to").parse_next(input)?;
         cut_err(sign("=")).context("'=' and a value").parse_next(input)?;
-        Ok((name, cut_err(sum).parse_next(input)?))
+        let value = cut_err(sum).parse_next(input)?;
+        let loops = loops(input)?;
+        repeat(input, &loops, |indices| {
+            let value = indices.bind(&value)?;
+            Ok(target.names(indices)?.into_iter().map(|name| (name, value.clone())).collect())
+        })
     };
     cut_err(sign("{")).context("'{' and a list of name = value").parse_next(input)?;
-    let list = within(input, cut_err(separated(1.., one, sign(","))))?;
+    let list: Vec<Vec<(Name, Expr)>> = within(input, cut_err(separated(1.., one, sign(","))))?;
     let end = cut_err(closing("}")).context("'}' or ','").parse_next(input)?;
-    Ok((list, end))
+    Ok((list.concat(), end))
 }
 
 fn primary(input: &mut Text<'_>) -> Read<Expr> {
@@ -73,7 +86,7 @@ fn factor(input: &mut Text<'_>) -> Read<Expr> {
         let (list, end) = assignments(input)?;
         let span = value.span.start..end;
         value = Expr { kind: ExprKind::At(Box::new(value), list), span };
-        if input.state.0.get() + at_depth(&value) > DEEPEST {
+        if input.state.open.get() + at_depth(&value) > DEEPEST {
             return stop(input.current_token_start(), "fewer 'at' after one another", None);
         }
     }
@@ -254,6 +267,26 @@ fn chain(input: &mut Text<'_>, found: &mut Vec<Equation>) -> Read<()> {
     let end = found[found.len() - 1].span.end;
     found.iter_mut().for_each(|link| link.span.end = end);
     Ok(())
+}
+
+/// Relations between commas, each perhaps for several components or values of an index: `x[i] = 0 for i in 1..3`,
+/// `x[1..3] > 0`.
+pub(crate) fn conditions(input: &mut Text<'_>) -> Read<Vec<Equation>> {
+    let one = |input: &mut Text<'_>| -> Read<Vec<Equation>> {
+        let found = cut_err(equations).parse_next(input)?;
+        let loops = loops(input)?;
+        repeat(input, &loops, |indices| {
+            let mut all = Vec::new();
+            for one in &found {
+                let one = indices.bind_relation(one)?;
+                let lefts = written_out(one.left.clone());
+                all.extend(lefts.into_iter().map(|left| Equation { left, ..one.clone() }));
+            }
+            Ok(all)
+        })
+    };
+    let list: Vec<Vec<Equation>> = separated(1.., one, sign(",")).parse_next(input)?;
+    Ok(list.concat())
 }
 
 /// `[low, high]`, and where it ends.

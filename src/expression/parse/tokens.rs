@@ -3,7 +3,7 @@
 
 use crate::expression::syntax::{Expr, ExprKind, Name, Span};
 use crate::number::parse_decimal;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use winnow::combinator::{alt, opt};
 use winnow::error::{AddContext, ErrMode, ModalResult, ParserError};
 use winnow::prelude::*;
@@ -13,9 +13,16 @@ use winnow::token::{literal, one_of, take_till, take_while};
 /// Text with the place in it, and how deep in brackets we are.
 pub(crate) type Text<'a> = Stateful<LocatingSlice<&'a str>, &'a Depth>;
 
-/// How many brackets are open, and how many may be.
+/// What is counted while a text is read.
 #[derive(Debug, Default)]
-pub(crate) struct Depth(pub(super) Cell<usize>);
+pub(crate) struct Depth {
+    /// How many brackets are open.
+    pub(super) open: Cell<usize>,
+    /// How many parts of expressions were written out for values of indices.
+    pub(super) written_out: Cell<usize>,
+    /// The indices that were met, where each gets its range.
+    pub(crate) indices: RefCell<Vec<Name>>,
+}
 
 /// More brackets within brackets than this are refused: nobody means them.
 pub(super) const DEEPEST: usize = 120;
@@ -94,7 +101,7 @@ pub(crate) fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<
 }
 
 /// Words that begin something and so cannot be names.
-pub(crate) const RESERVED: [&str; 30] = [
+pub(crate) const RESERVED: [&str; 31] = [
     "system",
     "cite",
     "use",
@@ -125,6 +132,7 @@ pub(crate) const RESERVED: [&str; 30] = [
     "at",
     "within",
     "expect",
+    "for",
 ];
 
 /// Words with a meaning at some places; elsewhere they are names.
@@ -203,59 +211,23 @@ pub(crate) fn name(input: &mut Text<'_>) -> Read<Name> {
     Ok(name)
 }
 
-/// The same where something is meant that has been declared: `u'` is a derivative of the signal `u`, `x@2` what `x` is in the
-/// second experiment, `u'@2` both.
-pub(crate) fn reference(input: &mut Text<'_>) -> Read<Name> {
-    let name = located_reference(input)?;
-    blank(input)?;
-    Ok(name)
-}
-
-/// A reference with one prime more: `x'` is how `x` moves, `u''` how the derivative `u'` of a signal does. The prime at the
-/// end may stand apart.
-pub(crate) fn moved(input: &mut Text<'_>) -> Read<Name> {
-    let mut name = located_reference(input)?;
-    let (base, experiment) = match name.text.split_once('@') {
-        Some((base, experiment)) => (base, Some(experiment)),
-        None => (name.text.as_str(), None),
-    };
-    match base.strip_suffix('\'') {
-        Some(base) => {
-            name.text = experiment.map_or(base.to_owned(), |experiment| format!("{base}@{experiment}"));
-            blank(input)?;
-        }
-        None => {
-            blank(input)?;
-            alt((sign("'"), fail_to_move)).parse_next(input)?;
-        }
-    }
-    Ok(name)
-}
-
-fn fail_to_move(input: &mut Text<'_>) -> Read<()> {
-    stop(input.current_token_start(), "' after the state, as in r1' = ...", None)
-}
-
-fn located_reference(input: &mut Text<'_>) -> Read<Name> {
-    let Name { mut text, mut span } = bare_name(input)?;
-    let primes = take_while(0.., '\'').parse_next(input)?;
-    text.push_str(primes);
+/// Right behind a name that has been declared: `'` for a derivative of a signal, `@2` for the second experiment, or both. As it is
+/// written in names: the primes first, and of the first experiment nothing.
+pub(super) fn suffix(input: &mut Text<'_>) -> Read<String> {
+    let before = take_while(0.., '\'').parse_next(input)?;
     let experiment =
         opt((literal("@"), take_while(1.., |c: char| c.is_ascii_digit())).take()).parse_next(input)?;
-    // the first experiment has the names of the file
-    let experiment = experiment.filter(|experiment| *experiment != "@1");
-    text.push_str(experiment.unwrap_or_default());
     // the primes may stand behind the experiment too
-    let primes = take_while(0.., '\'').parse_next(input)?;
-    if experiment.is_some() && !primes.is_empty() {
-        let at = text.find('@').unwrap_or(text.len());
-        text.insert_str(at, primes);
-    }
-    span.end = input.current_token_start();
-    Ok(Name { text, span })
+    let behind = match experiment {
+        Some(_) => take_while(0.., '\'').parse_next(input)?,
+        None => "",
+    };
+    let experiment = experiment.filter(|experiment| *experiment != "@1").unwrap_or_default();
+    Ok(format!("{before}{behind}{experiment}"))
 }
 
-fn bare_name(input: &mut Text<'_>) -> Read<Name> {
+/// A name without the blank after it.
+pub(super) fn bare_name(input: &mut Text<'_>) -> Read<Name> {
     let start = input.checkpoint();
     let ((first, _), span) = (word, winnow::combinator::repeat::<_, _, (), _, _>(0.., (literal("."), word)))
         .map(|((text, span), ())| (text, span))
@@ -296,7 +268,7 @@ pub(crate) fn within<'a, T>(
     inner: impl Parser<Text<'a>, T, ErrMode<Expected>>,
 ) -> Read<T> {
     let depth = input.state;
-    if depth.0.get() >= DEEPEST {
+    if depth.open.get() >= DEEPEST {
         let at = input.current_token_start();
         return stop(
             at,
@@ -304,9 +276,9 @@ pub(crate) fn within<'a, T>(
             Some("name the inner part with 'let'".into()),
         );
     }
-    depth.0.set(depth.0.get() + 1);
+    depth.open.set(depth.open.get() + 1);
     let mut inner = inner;
     let result = inner.parse_next(input);
-    depth.0.set(depth.0.get() - 1);
+    depth.open.set(depth.open.get() - 1);
     result
 }

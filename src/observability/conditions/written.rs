@@ -1,20 +1,14 @@
 //! Conditions as they are written outside of a file, on a command line.
 
-use crate::expression::parse::{Depth, Read, Text, equations, read_all, sign};
+use crate::expression::parse::{Depth, conditions, read_all};
 use crate::expression::syntax::Equation;
-use winnow::combinator::{cut_err, separated};
-use winnow::prelude::*;
 
 /// Reads conditions such as `sin(phi1) = 0`, `0 < x < 1`, which is two, or several between commas: `x = 0, y > 0`.
 ///
 /// # Errors
 /// In words: what was expected, and where.
 pub fn parse_condition(text: &str) -> Result<Vec<Equation>, String> {
-    let list = |input: &mut Text<'_>| -> Read<Vec<Equation>> {
-        let found: Vec<Vec<Equation>> = separated(1.., cut_err(equations), sign(",")).parse_next(input)?;
-        Ok(found.concat())
-    };
-    read_all(text, &Depth::default(), "an operator, ',' and another condition, or the end", list)
+    read_all(text, &Depth::default(), "an operator, ',' and another condition, or the end", conditions)
         .map_err(|e| format!("in the condition '{text}', at column {}: {e}", e.at + 1))
 }
 
@@ -30,6 +24,7 @@ mod tests {
             ("x = 0, y > 0", 2),
             (" 0 < x < 1 , y = x # both\n, z in [0, 1]", 5),
             ("dot([x, y], [1, 0]) = 0, x at {x = 1, y = 2} = 1", 2),
+            ("x[i] = x[i + 1] for i in 1..4, y > 0", 5),
         ] {
             assert_eq!(parse_condition(text).map(|found| found.len()), Ok(count), "{text}");
         }

@@ -51,9 +51,34 @@ pub fn generic_rank(
     if program.unknown_function(graph).is_some() {
         return GenericRank::Functions;
     }
-    let rows = entries.len() / columns.max(1);
+    rank_of(&program, entries.len(), columns, rng)
+}
+
+/// The same with every other function taken for an unknown of its own, and whether there is one: then the rank may be less where
+/// the functions are related, and is certainly no more.
+pub(crate) fn formal_rank(
+    graph: &mut Graph,
+    entries: &[NodeId],
+    columns: usize,
+    is_angle: impl Fn(Symbol) -> bool,
+    rng: &mut impl Rng,
+) -> (GenericRank, bool) {
+    let expanded = expand_angles(graph, entries, &is_angle);
+    let program = Program::with_unknown_functions(graph, &expanded, &is_angle);
+    if let Some(angle) = program.bare_angle() {
+        let name = graph.symbol_name(angle);
+        let why = format!("'{name}' is declared as an angle but stands outside sin, cos and tan");
+        return (GenericRank::Unknown(why), true);
+    }
+    let is_formal = program.unknown_function(graph).is_some();
+    (rank_of(&program, entries.len(), columns, rng), is_formal)
+}
+
+/// The rank of a program's values at random points.
+fn rank_of(program: &Program, entries: usize, columns: usize, rng: &mut impl Rng) -> GenericRank {
+    let rows = entries / columns.max(1);
     let full = rows.min(columns);
-    let size = match minor_size(&program, columns) {
+    let size = match minor_size(program, columns) {
         Ok(size) => size,
         Err(why) => return GenericRank::Unknown(why),
     };
@@ -64,7 +89,7 @@ pub fn generic_rank(
     for _ in 0..rounds + ATTEMPTS {
         let field = PrimeField::random(rng);
         let Ok(loaded) = program.load(field) else { continue };
-        let inputs = draw_residues(&program, &field, rng);
+        let inputs = draw_residues(program, &field, rng);
         match loaded.run(&inputs, &mut registers) {
             Ok(values) => {
                 let matrix = values.chunks(columns.max(1)).map(<[u64]>::to_vec).collect();

@@ -20,6 +20,7 @@ mod matrix;
 #[cfg(test)]
 mod tests;
 
+pub(super) use matrix::formal_rank;
 pub use matrix::{GenericRank, generic_rank};
 
 use crate::expression::Symbol;
@@ -134,24 +135,31 @@ impl Probe {
             let integers: Vec<u64> =
                 std::iter::successors(Some(0), |k| Some(draw.field.sum(*k, one))).take(length + 1).collect();
             let mut echelon = Echelon::new(draw.field, full);
-            let mut closed = Echelon::new(draw.field, equations.closed.len());
+            // where all that moves is unknown the two are one
+            let all = equations.closed.len();
+            let mut closed = (all > full).then(|| Echelon::new(draw.field, all));
             let mut open: Vec<Covector> = trajectory.covectors;
-            let mut order = 0;
+            let (mut order, mut spanned) = (0, 0);
             for k in 0..length {
                 let mut further = Vec::new();
                 for covector in open {
                     let value = covector.value();
                     let part = |places: &[usize]| places.iter().map(|place| value[*place]).collect();
-                    let raised = closed.insert(part(&equations.closed));
-                    if raised && echelon.insert(part(&equations.columns)) {
+                    let raised = echelon.insert(part(&equations.columns));
+                    if raised {
                         order = k;
                     }
-                    if raised || !rests {
+                    let goes_on = match &mut closed {
+                        Some(closed) => closed.insert(part(&equations.closed)),
+                        None => raised,
+                    };
+                    if goes_on || !rests {
                         further.push(covector);
                     }
                 }
                 open = further;
-                if closed.rank() == equations.closed.len() || open.is_empty() {
+                spanned = closed.as_ref().unwrap_or(&echelon).rank();
+                if spanned == all || open.is_empty() {
                     break;
                 }
                 if k + 1 < length {
@@ -160,9 +168,8 @@ impl Probe {
                     open = open.iter().map(next).collect();
                 }
             }
-            let done = open.is_empty() || closed.rank() == equations.closed.len();
-            if done || length >= most {
-                return Ok(Evaluated { echelon, closed: closed.rank(), order });
+            if open.is_empty() || spanned == all || length >= most {
+                return Ok(Evaluated { echelon, closed: spanned, order });
             }
             length = (2 * length).min(most);
         }
@@ -223,6 +230,30 @@ impl Probe {
             }
         }
         Err(format!("{ATTEMPTS} random points were poles: {refused}"))
+    }
+
+    /// What the equations are given at a point, in the order of [`Probe::directions_at`].
+    pub fn inputs(&self) -> &[crate::expression::Input] {
+        self.equations.inputs()
+    }
+
+    /// Whether functions other than sines and cosines of angles are met.
+    pub fn has_functions(&self) -> bool {
+        !self.equations.functions.is_empty()
+    }
+
+    /// A basis of the vectors that nothing sees at one point, by unknowns in the order of the file; all else is drawn from the seed.
+    ///
+    /// # Errors
+    /// Where the point is a pole.
+    pub fn directions_at(
+        &self,
+        field: PrimeField,
+        point: &[u64],
+        seed: u64,
+    ) -> Result<Vec<Vec<u64>>, Refusal> {
+        let evaluated = self.evaluate(point, Draw { field, seed, signs: None }, true)?;
+        Ok(evaluated.echelon.kernel())
     }
 
     /// The same modulo a prime of one's own choice.

@@ -124,3 +124,19 @@ fn long_sums_are_reduced_in_time() {
         }
     }
 }
+
+/// By hand, see `tests/claims/inputs.rs`: signals that are known have no column, and what is known at the beginning alone has
+/// none and yet leads to what is not.
+#[test]
+fn known_coordinates_have_no_column() {
+    let signal = "state x param a, b unknown known u(t) drift f x' = a*u + b*u^2 output x";
+    assert_eq!(found(signal), (3, 3, vec![]));
+    assert_eq!(found("param k unknown known u(t) output k*u'"), (1, 1, vec![]));
+    let late = "state x1, x2 param k unknown drift f x1' = x2 x2' = k output x1 initial x1, x2 known";
+    assert_eq!(found(late), (1, 1, vec![]));
+    let scaled = "state x param k, c unknown drift f x' = -k*x output c*x";
+    assert_eq!(found(scaled), (2, 2, vec!["x".into(), "c".into()]));
+    assert_eq!(found(&format!("{scaled} initial x known")), (2, 2, vec![]));
+    let twice = "state x, z param a, b unknown experiments 2 drift f x' = a + b*z z' = 0 output x, z";
+    assert_eq!(found(twice), (6, 6, vec![]));
+}

@@ -5,8 +5,10 @@ mod claims;
 mod entry;
 pub(super) mod extremes;
 pub(super) mod findings;
+mod motions;
 mod regime;
 mod source;
+mod unknowns;
 pub(super) mod whole;
 
 pub use findings::{findings_json, findings_text, forget_seconds, forget_times};

@@ -2,6 +2,8 @@
 
 use super::entry::{explain, formula};
 use super::findings::ranks_in_words;
+use super::motions::unseen_motions;
+use super::unknowns::unknowns;
 use crate::claim::Outcome;
 use crate::paper::{DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank};
 use crate::report::formula::{conditions_mathml, formula_mathml};
@@ -31,7 +33,7 @@ pub(super) fn file_section(anchor: &str, file: &FileFindings, units: Units<'_>) 
             @for found in &file.reductions { (reduction(found)) }
             @for left in &file.left_out { p.bad { "Not done: " (left.what) ": " (left.why) } }
             @for line in granted(file) { p { (line) "." } }
-            @if !file.ranks.is_empty() { (ranks(&file.ranks)) }
+            @if !file.ranks.is_empty() { (unknowns(&file.ranks)) (ranks(&file.ranks)) (unseen_motions(&file.ranks)) }
             @for map in &file.maps { (maps(map, units)) }
             @if !file.lines.is_empty() { (lines(&file.lines, units)) }
             @for found in &file.printed { (printed(found, &file.outcomes)) }

@@ -1,6 +1,7 @@
 //! Answers about ranks, as JSON and as text.
 
 use super::generic::{add_generic_json, generic_text};
+use super::motions::{motions_json, motions_text};
 use super::seen::{deviations_json, deviations_text, direction_text, place_text};
 use crate::number::rational_to_f64;
 use crate::observability::{NamedCoordinate, Spectrum, Stop};
@@ -65,7 +66,7 @@ fn digits_json(found: &Result<Digits, NoDigits>) -> Value {
     }
 }
 
-fn sweep_json(report: &SweepReport) -> Value {
+pub(super) fn sweep_json(report: &SweepReport) -> Value {
     let worst = report.worst.as_ref().map(|(state, spectrum)| {
         let (values_of_worst, condition) = nearest_doubles(report, spectrum);
         let values: serde_json::Map<String, Value> = state
@@ -137,6 +138,7 @@ fn branch_json(branch: &BranchAnswer) -> Value {
     object["generic_rank"] = json!(branch.generic_rank);
     object["longer_words_cannot_raise_it"] = json!(branch.is_final);
     add_generic_json(branch, &mut object);
+    object["unseen_fields"] = branch.motions.as_ref().map_or(Value::Null, motions_json);
     object["standard_deviations"] = branch.deviations.as_ref().map_or(Value::Null, deviations_json);
     object["own_rows"] = branch.rows.as_ref().map_or(Value::Null, sweep_json);
     object
@@ -303,6 +305,7 @@ pub fn rank_text(answer: &RankAnswer) -> String {
             let _ =
                 writeln!(out, "longer words may still raise the rank: nothing here says that they cannot");
         }
+        branch.motions.iter().for_each(|found| motions_text(found, &mut out));
         sweep_text("the full codistribution", &branch.full, &mut out);
         branch.deviations.iter().for_each(|found| deviations_text(found, &mut out));
         if let Some(rows) = &branch.rows {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// What is said of an unknown.
-fn verdict(kind: UnknownKind, seen: Seen) -> &'static str {
+pub(in crate::report) fn unknown_verdict(kind: UnknownKind, seen: Seen) -> &'static str {
     match (kind, seen) {
         (UnknownKind::Parameter, Seen::Yes) => "locally identifiable",
         (_, Seen::Yes) => "locally observable",
@@ -30,7 +30,7 @@ pub(super) fn add_generic_json(branch: &BranchAnswer, object: &mut Value) {
         "derivatives": generic.order,
         "open": generic.open,
     });
-    let unknown = |((name, kind), (_, seen)): (&(String, UnknownKind), &(_, Seen))| json!({ "name": name, "kind": kind.name(), "verdict": verdict(*kind, *seen) });
+    let unknown = |((name, kind), (_, seen)): (&(String, UnknownKind), &(_, Seen))| json!({ "name": name, "kind": kind.name(), "verdict": unknown_verdict(*kind, *seen) });
     let unknowns = branch.unknowns.iter().zip(&generic.unknowns).map(unknown);
     object["unknowns"] = unknowns.collect();
     object["degrees_of_freedom_left"] = json!(generic.rank().map(|rank| generic.dimension - rank));
@@ -47,37 +47,41 @@ fn certainty(generic: &GenericAnswer) -> String {
     }
 }
 
-/// The answer and the table of unknowns, in words.
-pub(super) fn generic_text(branch: &BranchAnswer, out: &mut String) {
-    let generic = &branch.generic;
+/// The answer in one sentence.
+pub(in crate::report) fn generic_sentence(generic: &GenericAnswer) -> String {
     let dimension = generic.dimension;
-    let _ = match generic.rank() {
+    match generic.rank() {
         Some(rank) if rank == dimension => {
-            writeln!(
-                out,
+            format!(
                 "at almost all states the rank is {rank} of {dimension}: all is seen ({})",
                 certainty(generic)
             )
         }
-        Some(rank) => writeln!(
-            out,
-            "at almost all states the rank is {rank} of {dimension}: {} left ({})",
-            match dimension - rank {
+        Some(rank) => {
+            let free = match dimension - rank {
                 1 => "1 degree of freedom is".to_owned(),
                 free => format!("{free} degrees of freedom are"),
-            },
-            certainty(generic)
-        ),
-        None => writeln!(
-            out,
+            };
+            format!(
+                "at almost all states the rank is {rank} of {dimension}: {free} left ({})",
+                certainty(generic)
+            )
+        }
+        None => format!(
             "at almost all states the rank is at least {} and at most {} of {dimension}: {}",
             generic.at_least,
             generic.at_most,
             generic.open.as_deref().unwrap_or("nothing more is known")
         ),
-    };
+    }
+}
+
+/// The answer and the table of unknowns, in words.
+pub(super) fn generic_text(branch: &BranchAnswer, out: &mut String) {
+    let generic = &branch.generic;
+    let _ = writeln!(out, "{}", generic_sentence(generic));
     let width = branch.unknowns.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     for ((name, kind), (_, seen)) in branch.unknowns.iter().zip(&generic.unknowns) {
-        let _ = writeln!(out, "  {name:<width$}  {:<9}  {}", kind.name(), verdict(*kind, *seen));
+        let _ = writeln!(out, "  {name:<width$}  {:<9}  {}", kind.name(), unknown_verdict(*kind, *seen));
     }
 }

@@ -44,7 +44,7 @@ pub(super) fn direction_text(direction: &UnseenDirection) -> String {
     }
 }
 
-fn part_text(part: &RBig) -> String {
+pub(super) fn part_text(part: &RBig) -> String {
     let (exact, near) = (plain_number(part), rational_to_f64(part));
     match exact.len() <= LONGEST {
         true => exact,

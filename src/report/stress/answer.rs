@@ -1,5 +1,6 @@
 //! The extremes, as JSON and as tables.
 
+use crate::report::names::{by_default_text, ranges_json};
 use crate::report::stress::plot::{conditioning_picture, lines_picture, ranks_text, scalings_picture};
 use crate::tradeoff::stress::{
     Conditioning, First, Line, LineLimit, OnTheSet, Scaling, StressStudy, UnitsRow, Way,
@@ -111,6 +112,7 @@ fn study_json(study: &StressStudy) -> Value {
         "title": study.title,
         "rows": study.rows,
         "dimension": study.dimension,
+        "drawn_by_default": ranges_json(&study.by_default),
         "remaining": [study.remaining.0, study.remaining.1],
         "lines": study.lines.iter().map(line_json).collect::<Vec<_>>(),
         "skipped": study.skipped.iter().map(|(title, why)| json!({ "title": title, "why": why })).collect::<Vec<_>>(),
@@ -303,6 +305,9 @@ pub fn stress_text(studies: &[StressStudy]) -> String {
             "\n{} ({}): {} states, {}, {rows} by {columns} without unit rows",
             study.title, study.file, study.dimension, study.rows
         );
+        if !study.by_default.is_empty() {
+            let _ = writeln!(out, "  {}", by_default_text(&study.by_default));
+        }
         lines_text(study, &mut out);
         out.push('\n');
         scalings_text(study, &mut out);

@@ -1,6 +1,6 @@
 //! Speed against accuracy, as JSON and as text; the picture is in `trade_plot`.
 
-use crate::report::names::{fields_json, fields_text};
+use crate::report::names::{by_default_text, fields_json, fields_text, ranges_json};
 use crate::tradeoff::{
     Combination, CombinationLeftOut, CorrectDigits, DIGITS_TOLERANCE, DerivativeResult, TIME_TOLERANCE, Trade,
 };
@@ -66,6 +66,7 @@ pub fn trade_json(trade: &Trade) -> Value {
         "file": trade.file,
         "title": trade.title,
         "fields": fields_json(&trade.fields),
+        "drawn_by_default": ranges_json(&trade.by_default),
         "rows_from": trade.rows,
         "words": trade.words,
         "rows": trade.size.0,
@@ -144,6 +145,9 @@ pub fn trade_text(trade: &Trade) -> String {
     let ranks: Vec<String> =
         trade.certified_ranks.iter().map(|(rank, count)| format!("{rank} at {count} states")).collect();
     let _ = writeln!(out, "{}\nfields: {}", trade.title, fields_text(&trade.fields));
+    if !trade.by_default.is_empty() {
+        let _ = writeln!(out, "{}", by_default_text(&trade.by_default));
+    }
     let _ = writeln!(
         out,
         "rows: {}, {} by {}, {} entries vary; {} states of the sample box, seed {}",

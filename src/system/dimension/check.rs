@@ -10,7 +10,7 @@ use crate::expression::Symbol;
 use crate::expression::syntax::{Equation, Expr, Name, Span};
 use crate::system::Problem;
 use crate::system::declare::in_words;
-use crate::system::grammar::{ClaimBody, Expectation, Item, Statement};
+use crate::system::grammar::{ClaimBody, Expectation, Item, OutputSyntax, Statement};
 use crate::system::model::{Role, System};
 use crate::system::signals::DeclaredInitial;
 use crate::system::views::{End, View};
@@ -64,7 +64,7 @@ pub(crate) fn check(system: &System, items: &[Item], imports: &[Import]) -> (Dim
         Item::State(list) | Item::Param(list) => list.iter().any(|one| one.dimension.is_some()),
         Item::Signals { list, .. } => list.iter().any(|one| one.dimension.is_some()),
         Item::Let { dimension, .. } => dimension.is_some(),
-        Item::Output(list) => list.iter().any(|(_, dimension)| dimension.is_some()),
+        Item::Output(list) => list.iter().any(|one| one.dimension.is_some()),
         _ => false,
     };
     let is_declared = items.iter().any(declares) || imports.iter().any(|(_, _, other)| other.is_declared);
@@ -241,7 +241,7 @@ impl Checker<'_> {
             }
             Item::Field { role, name, components, .. } => self.field(*role, name, components),
             Item::Output(list) => {
-                for (expr, dimension) in list {
+                for OutputSyntax { value: expr, dimension, .. } in list {
                     let found = self.quantity(expr);
                     self.note_units(&found);
                     if let Some(dimension) = dimension {

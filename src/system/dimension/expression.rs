@@ -33,6 +33,8 @@ impl Checker<'_> {
             ExprKind::RealPower(base, exponent) => self.real_power(base, exponent),
             ExprKind::Matrix(rows) => self.blocks(rows),
             ExprKind::At(inner, list) => self.at(inner, list),
+            // an index without a value is told where names are
+            ExprKind::Indexed(_) => Quantity::Open,
         };
         match found {
             Quantity::Table(table) if table.entries.len() > MOST_ENTRIES || !self.spend(table.size()) => {

@@ -30,6 +30,6 @@ mod words;
 pub(super) use check::check;
 pub(crate) use check::{Dimensions, Import};
 pub use exponents::{Base, Dimension};
-pub(crate) use reading::{Declared, DeclaredDimension};
+pub(crate) use reading::{Declared, DeclaredDimension, DeclaredTarget};
 pub(super) use reading::{annotation, declared};
 pub(super) use words::all as words;

@@ -4,8 +4,10 @@
 
 use super::exponents::Dimension;
 use super::words::{Meaning, all, meaning};
-use crate::expression::parse::{Read, Text, blank, ends_a_line, name, sign, stop, sum, within, word};
-use crate::expression::syntax::{Expr, Name, Span};
+use crate::expression::parse::{
+    Read, Target, Text, blank, ends_a_line, loops, repeat, sign, stop, sum, target, within, word,
+};
+use crate::expression::syntax::{Expr, Loop, Name, Span};
 use crate::system::nearest;
 use crate::system::signals::{Knowledge, knowledge, spread_knowledge};
 use dashu::rational::RBig;
@@ -56,12 +58,21 @@ fn length_without_blanks(text: &str) -> usize {
     end
 }
 
-/// A list of names, each perhaps with a dimension, and where `with_values` with a value before or behind it and whether that
-/// is known.
+/// Names as they are declared in one place of a list, before they are written out.
+pub(crate) struct DeclaredTarget {
+    target: Target,
+    pub value: Option<Expr>,
+    dimension: Option<DeclaredDimension>,
+    pub knowledge: Option<Knowledge>,
+    loops: Vec<Loop>,
+}
+
+/// A list of names, components and ranges of them, each perhaps with a dimension, and where `with_values` with a value before
+/// or behind it and whether that is known.
 pub(crate) fn declared<'a>(with_values: bool) -> impl FnMut(&mut Text<'a>) -> Read<Vec<Declared>> {
     move |input: &mut Text<'a>| {
-        let one = |input: &mut Text<'a>| -> Read<Declared> {
-            let name = name(input)?;
+        let one = |input: &mut Text<'a>| -> Read<DeclaredTarget> {
+            let target = target(input)?;
             let mut dimension = annotation(input)?;
             let value =
                 if with_values { opt(preceded(sign("="), cut_err(sum))).parse_next(input)? } else { None };
@@ -69,18 +80,28 @@ pub(crate) fn declared<'a>(with_values: bool) -> impl FnMut(&mut Text<'a>) -> Re
                 dimension = annotation(input)?;
             }
             let knowledge = if with_values { knowledge(input)? } else { None };
-            Ok(Declared { name, value, dimension, knowledge })
+            Ok(DeclaredTarget { target, value, dimension, knowledge, loops: loops(input)? })
         };
-        let mut list: Vec<Declared> = separated(1.., one, sign(",")).parse_next(input)?;
+        let mut list: Vec<DeclaredTarget> = separated(1.., one, sign(",")).parse_next(input)?;
         spread(&mut list);
         spread_knowledge(&mut list);
-        Ok(list)
+        let mut found = Vec::new();
+        for DeclaredTarget { target, value, dimension, knowledge, loops } in &list {
+            let knowledge = *knowledge;
+            found.extend(repeat(input, loops, |indices| {
+                let value = value.as_ref().map(|value| indices.bind(value)).transpose()?;
+                let one =
+                    |name| Declared { name, value: value.clone(), dimension: dimension.clone(), knowledge };
+                Ok(target.names(indices)?.into_iter().map(one).collect())
+            })?);
+        }
+        Ok(found)
     }
 }
 
 /// A dimension holds for the names before it that have none yet, as in `x, y : length, v : velocity`. A name with a value
 /// of its own is complete without: in `m = 1, g : acceleration` the first is no acceleration.
-fn spread(list: &mut [Declared]) {
+fn spread(list: &mut [DeclaredTarget]) {
     let mut last: Option<DeclaredDimension> = None;
     for one in list.iter_mut().rev() {
         match &one.dimension {

@@ -9,7 +9,7 @@ use super::subject::Subject;
 use super::units::{Conditioning, Rescaling, Seen, UnitsRow, conditioning, in_units};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{Branch, Codistribution, Length, Locus, OWN_ROWS, State};
-use crate::system::{Assignment, System, Value};
+use crate::system::{Assignment, Range, System, Value};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -51,6 +51,8 @@ pub struct StressStudy {
     /// Which rows were taken, in words.
     pub rows: String,
     pub dimension: usize,
+    /// What is drawn from a range that the file does not give, and this range.
+    pub by_default: Vec<(String, Range)>,
     /// Rows and columns that remain without unit rows.
     pub remaining: (usize, usize),
     pub lines: Vec<Line>,
@@ -246,6 +248,7 @@ impl Stress {
             title: subject.system.title.clone(),
             rows: self.rows.clone(),
             dimension: subject.system.unknown_count(),
+            by_default: subject.system.ranges_by_default(),
             remaining: subject.remaining(),
             lines,
             skipped: self.skipped.clone(),

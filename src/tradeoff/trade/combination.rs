@@ -1,6 +1,6 @@
 //! What is combined, and what came of it.
 
-use crate::system::FieldRole;
+use crate::system::{FieldRole, Range};
 use std::collections::BTreeMap;
 
 /// A kind of number.
@@ -237,6 +237,8 @@ pub struct Trade {
     pub title: String,
     /// The fields of which words are made.
     pub fields: Vec<FieldRole>,
+    /// What is drawn from a range that the file does not give, and this range.
+    pub by_default: Vec<(String, Range)>,
     /// Where the rows come from.
     pub rows: String,
     /// The words whose differentials the rows are, where that is known.

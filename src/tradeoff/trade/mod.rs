@@ -93,6 +93,7 @@ pub fn trade(system: &System, question: &TradeQuestion<'_>) -> Result<Trade, Str
         file: work.system.name.clone(),
         title: work.system.title.clone(),
         fields: work.system.roles(),
+        by_default: work.system.ranges_by_default(),
         rows: work.origin.clone(),
         words: work.words.clone(),
         size: (work.rows, work.columns),

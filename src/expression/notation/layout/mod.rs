@@ -144,6 +144,8 @@ impl<'a> FormulaLayout<'a> {
                 let inner = Formula::Row(vec![round(self.expression(value)), Formula::Sign(FormulaSign::At)]);
                 (scripts(inner, Some(Formula::Row(values)), None), Binding::Power)
             }
+            // what was read has none
+            ExprKind::Indexed(_) => (Formula::Text("?"), Binding::Atom),
         }
     }
 
@@ -235,7 +237,7 @@ impl<'a> FormulaLayout<'a> {
 /// The names in an expression, and whether something is differentiated along a field in it.
 fn collect(expr: &Expr, names: &mut BTreeSet<String>, derives: &mut bool) {
     match &expr.kind {
-        ExprKind::Number(_) => {}
+        ExprKind::Number(_) | ExprKind::Indexed(_) => {}
         ExprKind::Name(name) => {
             names.insert(name.clone());
         }

@@ -78,7 +78,7 @@ fn value(expr: &Expr, values: &Values) -> f64 {
             .fold(1.0, |all, (by, f)| if *by { all / value(f, values) } else { all * value(f, values) }),
         ExprKind::Power(base, exponent) => value(base, values).powi(*exponent),
         ExprKind::RealPower(base, exponent) => value(base, values).powf(value(exponent, values)),
-        ExprKind::Matrix(_) | ExprKind::At(..) => panic!("not drawn"),
+        ExprKind::Matrix(_) | ExprKind::At(..) | ExprKind::Indexed(_) => panic!("not drawn"),
     }
 }
 

@@ -1,0 +1,195 @@
+//! The whole question of accessibility, from a system and some conditions to sweeps of every branch.
+
+use super::certainty::Certainty;
+use super::question::{RankError, RankQuestion, guarded, held_by_the_file, held_parameters};
+use super::states::{SweepOptions, SweepReport, sweep};
+use crate::expression::{NodeId, Symbol};
+use crate::observability::{
+    Accessibility, CodistributionError, Locus, RankBounds, Stop, parse_condition, solve_conditions,
+};
+use crate::system::{FieldRole, System};
+use dashu::rational::RBig;
+use std::sync::atomic::Ordering;
+
+/// At so many states at the most a rank is shown that rests on functions.
+const STATES_OF_A_MINOR: u64 = 5;
+
+/// What was found on one branch of the conditions.
+pub struct AccessibilityBranch {
+    /// The conditions, solved, in words.
+    pub conditions: Vec<String>,
+    /// The parameters that the file gives a value to: they were held at it.
+    pub held: Vec<(String, RBig)>,
+    /// The brackets that raised the rank.
+    pub brackets: Vec<String>,
+    /// The most fields in a bracket that was taken.
+    pub order: usize,
+    /// Why no longer ones were.
+    pub stop: Stop,
+    /// The rank of the accessibility distribution at almost all states of the branch.
+    pub whole: RankBounds,
+    /// That of the strong accessibility distribution.
+    pub strong: RankBounds,
+    /// The rank of the brackets that were taken at the sampled states, the drift among them.
+    pub sampled: SweepReport,
+}
+
+/// What was found.
+pub struct AccessibilityAnswer {
+    /// The file.
+    pub file: String,
+    /// The title of the system.
+    pub title: String,
+    /// The fields of which brackets are made.
+    pub fields: Vec<FieldRole>,
+    /// The seed of the drawn states.
+    pub seed: u64,
+    /// The coordinates that can be moved at all: their number is the rank that allows all directions.
+    pub coordinates: Vec<String>,
+    /// An answer for each branch of the conditions; one where there are none.
+    pub branches: Vec<AccessibilityBranch>,
+}
+
+impl AccessibilityAnswer {
+    /// Whether a sweep was stopped early.
+    pub fn interrupted(&self) -> bool {
+        self.branches.iter().any(|branch| branch.sampled.interrupted)
+    }
+
+    /// Whether the ranks at almost all states are known on every branch.
+    pub fn is_final(&self) -> bool {
+        self.branches.iter().all(|branch| branch.whole.rank().is_some() && branch.strong.rank().is_some())
+    }
+}
+
+/// Answers a question about the rank of a system's accessibility distribution. Of the question's options those that concern
+/// outputs and singular values mean nothing here.
+///
+/// ```
+/// use palmistry::{RankQuestion, System, answer_accessibility};
+/// let mut system: System = r#"
+///     system "A point that is moved sideways by turning alone"
+///     state x, y, z
+///     input g  x' = 1  z' = -y  others' = 0
+///     input h  y' = 1  z' = x   others' = 0
+///     sample x in [-1, 1] y in [-1, 1] z in [-1, 1]
+/// "#.parse()?;
+/// let answer = answer_accessibility(&mut system, &RankQuestion::default())?;
+/// let branch = &answer.branches[0];
+/// assert_eq!(branch.strong.rank(), Some(3));
+/// assert_eq!(branch.brackets, ["g", "h", "[g, h]"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// No drift or input, conditions that cannot be solved, a pole everywhere, an empty sample box.
+pub fn answer_accessibility(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+) -> Result<AccessibilityAnswer, RankError> {
+    if system.states.is_empty() {
+        return Err(RankError::NothingToSee(system.name.clone()));
+    }
+    system.require_motion().map_err(CodistributionError::NoMotion)?;
+    let system = &mut without_outputs(system);
+    let mut equations = Vec::new();
+    for text in &question.conditions {
+        equations.extend(parse_condition(text).map_err(RankError::Condition)?);
+    }
+    let branches = solve_conditions(system, &equations)?;
+    let (mut answers, known) = (Vec::new(), system.known.clone());
+    for branch in branches {
+        for symbol in question.fixed.keys() {
+            if branch.values.contains_key(symbol) {
+                return Err(RankError::HeldAndSolved(system.symbol_name(*symbol).to_owned()));
+            }
+        }
+        branch.check_codistribution(system).map_err(RankError::Condition)?;
+        let mut conditions = branch.values.clone();
+        for (symbol, value) in &question.fixed {
+            if !system.is_angle(*symbol) || value.is_zero() {
+                conditions.insert(*symbol, system.graph.rational(value.clone()));
+            }
+        }
+        for (symbol, value) in held_by_the_file(system, question) {
+            let value = system.graph.rational(value);
+            conditions.entry(symbol).or_insert(value);
+        }
+        for known in conditions.clone().keys() {
+            let value = system.graph.substitute(&[conditions[known]], &conditions)[0];
+            conditions.insert(*known, value);
+        }
+        let found = Accessibility::new(system, &conditions, question.order)?;
+        let leave = |system: &mut System, columns: &[Symbol]| {
+            system.known = system.states.iter().copied().filter(|state| !columns.contains(state)).collect();
+        };
+        // the rows have a column for each of these, as those of codistributions have for unknowns
+        leave(system, &found.columns);
+        let (quick, all) = (found.needed_entries(), found.entries());
+        let mut mentioned: Vec<NodeId> = all.clone();
+        mentioned.extend(guarded(system));
+        let locus = Locus::new(system, &branch, &question.fixed, &mentioned)?;
+        let options = SweepOptions {
+            samples: question.samples,
+            seed: question.seed,
+            most: None,
+            guards: &[],
+            wanted: question.wanted,
+            digits: None,
+            recorded: 0,
+            interrupt: question.interrupt,
+            progress: question.progress,
+        };
+        let sampled = sweep(system, &locus, &quick, &all, options)?;
+        // where functions are met, a true state has to show that the rank is no less
+        let shown =
+            |system: &mut System, bounds: RankBounds, strong: bool| -> Result<RankBounds, RankError> {
+                if bounds.at_least > 0 || bounds.at_most == 0 || question.interrupt.load(Ordering::Relaxed) {
+                    return Ok(bounds);
+                }
+                system.known = known.clone();
+                let minor = found.minor(system, &conditions, strong)?;
+                leave(system, &minor.columns);
+                let few = SweepOptions {
+                    samples: question.samples.min(STATES_OF_A_MINOR),
+                    wanted: Certainty::Certified,
+                    progress: &|_| (),
+                    ..options
+                };
+                let report = sweep(system, &locus, &minor.entries, &minor.entries, few)?;
+                let sure = report.certified == report.samples;
+                let rank =
+                    if sure { report.rank_histogram.keys().next_back().copied().unwrap_or(0) } else { 0 };
+                Ok(RankBounds { at_least: rank.min(bounds.at_most), from_a_state: true, ..bounds })
+            };
+        let (whole, strong) = (shown(system, found.whole, false)?, shown(system, found.strong, true)?);
+        system.known = known.clone();
+        answers.push(AccessibilityBranch {
+            conditions: locus.conditions.clone(),
+            held: held_parameters(system, question, &branch.values, std::iter::empty()),
+            brackets: found.needed.iter().map(|place| found.names[*place].clone()).collect(),
+            order: found.order,
+            stop: found.stop,
+            whole,
+            strong,
+            sampled,
+        });
+    }
+    let columns = Accessibility::columns_of(system);
+    Ok(AccessibilityAnswer {
+        file: system.name.clone(),
+        title: system.title.clone(),
+        fields: system.roles(),
+        seed: question.seed,
+        coordinates: columns.into_iter().map(|symbol| system.symbol_name(symbol).to_owned()).collect(),
+        branches: answers,
+    })
+}
+
+/// The system as far as its motion goes: what its outputs need to exist is nothing that matters here.
+fn without_outputs(system: &System) -> System {
+    let mut system = system.clone();
+    system.outputs.clear();
+    system.output_guards.clear();
+    system
+}

@@ -1,0 +1,244 @@
+//! Inputs as users have them: constants to be identified, signals known and unknown, values at the beginning, several
+//! experiments. All ranks are found by hand; the calculation stands with each.
+
+use crate::common::{folder, json, palmistry, write};
+use palmistry::system::UnknownKind;
+use palmistry::{System, prove};
+use std::path::Path;
+
+fn system(text: &str) -> System {
+    System::parse("test.proof", text, Path::new("")).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+/// Each rank below and above is refuted, so that the claim is no accident.
+fn has_rank(text: &str, rank: usize) {
+    let claims = format!(
+        "{text}\nclaim less expect refuted: rank = {}\nclaim right: rank = {rank}\nclaim more expect refuted: rank = {}\n",
+        rank.wrapping_sub(1).min(1000),
+        rank + 1
+    );
+    for outcome in prove(&system(&claims)) {
+        assert!(outcome.ok, "{} is {}: {claims}", outcome.statement, outcome.word());
+    }
+}
+
+/// `y = x`, `x' = a u + b u^2`: along the field that drives u, `x'` has the derivatives `a + 2 b u` and `2 b`, so that `a`
+/// and `b` are seen. Were u a constant to be identified, only `a u + b u^2` would be.
+#[test]
+fn a_known_signal_may_enter_in_any_way() {
+    let text = |declared: &str| {
+        format!("system \"s\" state x param a, b unknown {declared} drift f x' = a*u + b*u^2 output x")
+    };
+    has_rank(&text("known u(t)"), 3);
+    has_rank(&text("param u"), 2);
+    // x, and the one combination: a, b and u are three unknowns more
+    has_rank(&text("param u unknown"), 2);
+    let found = system(&text("known u(t)"));
+    assert_eq!((found.states.len(), found.unknown_count(), found.known.len()), (4, 3, 1));
+    let kinds: Vec<_> =
+        found.states.iter().map(|state| (found.symbol_name(*state), found.unknown_kind(*state))).collect();
+    let parameter = Some(UnknownKind::Parameter);
+    assert_eq!(kinds, [("x", Some(UnknownKind::State)), ("a", parameter), ("b", parameter), ("u", None)]);
+}
+
+/// `y = k u'`: `k` is seen where `u'` is not zero, and `u` itself says nothing. With `y = x + k u'`, `x' = 0` the derivative by
+/// `u'`, along the field `u''`, is `k`, and `x` follows.
+#[test]
+fn derivatives_of_known_signals() {
+    let k = "system \"s\" param k unknown known u(t) output k*u'";
+    has_rank(k, 1);
+    let found =
+        system(&format!("{k} claim 1: L(signals, u) = u' claim 2: L(u'', k*u') = k claim 3: L(u'', u) = 0"));
+    assert_eq!(found.known.len(), 2);
+    assert!(prove(&found).iter().all(|outcome| outcome.ok));
+    let roles: Vec<String> =
+        found.roles().iter().map(|field| format!("{} {}", field.role.name(), field.name)).collect();
+    assert_eq!(roles, ["drift signals", "input u''"]);
+    has_rank("system \"s\" state x param k unknown known u(t) drift f x' = 0 output x + k*u'", 2);
+    // as a set says: where u' is zero, and stays so for a while, k is not seen; the fields leave it, and so it is seen
+    let at_rest = "system \"s\" state x param k unknown known u(t) drift f x' = 0 output x + k*u' claim 1: rank = 2 where u' = 0";
+    assert_eq!(prove(&system(at_rest))[0].word(), "proved");
+}
+
+/// `y = x`, `x' = w`: with `w^(n+1) = 0` the derivatives of y are x, w, w', ..., all of them seen. With `y = x + z`, `z' = w`,
+/// `x' = 0` only the sum and the signal's derivatives are.
+#[test]
+fn unknown_signals_have_an_order() {
+    for (order, unknown) in [("order 0", 1), ("", 2), ("order 1", 2), ("order 3", 4)] {
+        let text = format!("system \"s\" state x unknown w(t) {order} drift f x' = w output x");
+        has_rank(&text, 1 + unknown);
+        let found = system(&text);
+        let last = format!("w{} = 0", "'".repeat(unknown));
+        assert_eq!(found.assumed_of_signals(), [last]);
+        let w = found.find_symbol("w").unwrap();
+        assert_eq!(found.unknown_kind(w), Some(UnknownKind::Signal));
+    }
+    has_rank("system \"s\" state x, z unknown w(t) order 1 drift f x' = 0 z' = w output x + z", 3);
+    // what the file mentions is there without being asked for
+    let mentioned = system("system \"s\" state x unknown w(t) drift f x' = w''' output x");
+    assert_eq!(mentioned.unknown_count(), 5);
+}
+
+/// `y = c x`, `x' = -k x`: c and x are seen as a product, but where x is known at the beginning.
+#[test]
+fn values_that_are_known_at_the_beginning() {
+    let text = "system \"s\" state x param k, c unknown drift f x' = -k*x output c*x";
+    has_rank(text, 2);
+    has_rank(&format!("{text} initial x known"), 2);
+    assert_eq!(system(&format!("{text} initial x known")).unknown_count(), 2);
+    // where it is zero it stays zero, and nothing is seen
+    has_rank(&format!("{text} initial x = 0"), 0);
+    // y = x1, x1' = x2, x2' = k: seen in the second derivative, although the first adds nothing
+    let late =
+        "system \"s\" state x1, x2 param k unknown drift f x1' = x2 x2' = k output x1 initial x1, x2 known";
+    has_rank(late, 1);
+    // y = c x, x' = k - x from x = 0: y' = c k there, and y^(n+1) = -y^(n); off that set c is seen too
+    let start = "system \"s\" state x param k, c unknown drift f x' = k - x output c*x";
+    has_rank(&format!("{start} initial x = 0"), 1);
+    has_rank(&format!("{start} initial x = 1/2"), 2);
+    has_rank(&format!("{start} param p initial x = p"), 2);
+    has_rank(&format!("{start} initial x known"), 2);
+}
+
+/// The claim is about the beginning, and so is what the program says of ranks.
+#[test]
+fn ranks_are_asked_at_the_beginning() {
+    let folder = folder();
+    let start =
+        "system \"s\"\nstate x\nparam k, c unknown\ndrift f\n  x' = k - x\noutput c*x\ninitial x = 0\n";
+    let file = write(&folder, "start.proof", start);
+    let found = json(&palmistry(&["rank", file.to_str().unwrap(), "--samples", "20", "--json"]));
+    assert_eq!(found["rank_histogram"], serde_json::json!({ "1": 20 }));
+    assert_eq!(found["longer_words_cannot_raise_it"], true);
+    assert_eq!(found["conditions"], serde_json::json!(["x = 0"]));
+    assert_eq!(found["known"], serde_json::json!(["x"]));
+    assert_eq!(found["dimension"], 2);
+}
+
+/// `x' = a + b z` with z at rest, both seen: one experiment tells `a + b z`, two with other values of z tell a and b. The
+/// unknowns are x, z, a, b, and x and z once more.
+#[test]
+fn what_two_experiments_tell_and_one_does_not() {
+    let text = |experiments: &str| {
+        format!(
+            "system \"s\" {experiments} state x, z param a, b unknown drift f x' = a + b*z z' = 0 output x, z"
+        )
+    };
+    has_rank(&text(""), 3);
+    has_rank(&text("experiments 1"), 3);
+    has_rank(&text("experiments 2"), 6);
+    has_rank(&text("experiments 3"), 8);
+    let found = system(&text("experiments 2"));
+    let names: Vec<&str> = found.states.iter().map(|state| found.symbol_name(*state)).collect();
+    assert_eq!(names, ["x", "z", "a", "b", "x@2", "z@2"]);
+    let outputs: Vec<&str> = found.outputs.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(outputs, ["x", "z", "x@2", "z@2"]);
+    // said at the end it is the same
+    has_rank(
+        "system \"s\" state x, z param a, b unknown drift f x' = a + b*z z' = 0 output x, z experiments 2",
+        6,
+    );
+    let claims = "let v = a + b*z claim 1: L(f, x@2) = v@2 claim 2: v@2 - v = b*(z@2 - z) claim 3: d(v@2, z@2) = b \
+                  claim 4: rank = 5 where z@2 = z";
+    let outcomes = prove(&system(&format!("{} {claims}", text("experiments 2"))));
+    assert!(
+        outcomes.iter().all(|outcome| outcome.ok),
+        "{:?}",
+        outcomes.iter().map(|o| o.word()).collect::<Vec<_>>()
+    );
+}
+
+/// Inputs and signals are those of their experiment: what drives the second one does not move the first.
+#[test]
+fn each_experiment_has_inputs_and_signals_of_its_own() {
+    let text = "system \"s\" experiments 2 state x param c unknown known u(t) drift f x' = c*u^2 input g x' = 1 output x \
+                claim 1: L(g@2, x@2) = 1 claim 2: L(g@2, x) = 0 claim 3: L(u'@2, f) = 0";
+    let error = System::parse("s", text, Path::new("")).unwrap_err();
+    assert!(error.message.contains("'f'"), "{error}");
+    let text = text.replace("L(u'@2, f) = 0", "L(u'@2, f, x@2) = 2*c*u@2 claim 4: L(u', f, x@2) = 0");
+    let found = system(&text);
+    assert!(prove(&found).iter().all(|outcome| outcome.ok), "{text}");
+    let roles: Vec<String> = found.roles().into_iter().map(|field| field.name).collect();
+    assert_eq!(roles, ["f", "g", "g@2", "u'", "u'@2"]);
+    assert_eq!((found.unknown_count(), found.known.len()), (3, 2));
+}
+
+/// A derivative of a signal has its dimension by time; a copy has that of what it is a copy of.
+#[test]
+fn dimensions_go_along() {
+    let text = |rate: &str| {
+        format!(
+            "system \"s\" experiments 2 state x : length, v : velocity param m = 2 : mass unknown known u(t) : force \
+             unknown w(t) : velocity order 1 drift f x' = v + w v' = {rate} output x output x"
+        )
+    };
+    let found = system(&format!(
+        "{} claim 1: L(u''@2, u'@2*x@2) = x@2 claim 2: L(f, v@2)*m = u@2 + m*L(f, f, x)*0",
+        text("u/m + u'*0")
+    ));
+    let dimension = |name: &str| found.dimension_of(found.find_symbol(name).unwrap()).unwrap().to_string();
+    assert_eq!((dimension("w'"), dimension("u@2")), (dimension("w'@2"), dimension("u")));
+    assert_eq!(dimension("w'@2"), "length/time^2");
+    for wrong in ["u'/m", "u", "u/m + w"] {
+        let error = System::parse("s", &text(wrong), Path::new("")).unwrap_err();
+        assert!(error.message.contains("has to be") || error.message.contains("two dimensions"), "{error}");
+    }
+}
+
+/// Words that begin these entries are names elsewhere.
+#[test]
+fn the_new_words_are_names_too() {
+    let text = "system \"s\" state known, unknown, initial, experiments param t = 2 drift f known' = unknown unknown' = initial \
+                initial' = experiments + t experiments' = 0 output known sample known in [0, 1] unknown in [0, 1] initial in [0, 1] \
+                experiments in [0, 1] claim 1: rank = 4";
+    assert!(prove(&system(text)).iter().all(|outcome| outcome.ok));
+}
+
+/// Where it stands, and what is said.
+#[test]
+fn mistakes_are_refused_where_they_stand() {
+    for (text, place, message) in [
+        ("param k unknown\ndrift f\n  k' = 1", (5, 3), "'k' is a constant"),
+        ("known u(t)\ndrift f\n  u' = 1", (5, 3), "is a signal"),
+        ("drift f\n  x' = 1\nparam k unknown", (5, 7), "does not know of this state"),
+        ("drift f\n  x' = u'", (4, 8), "unknown name 'u''"),
+        ("unknown w(t) order 1\ndrift f\n  x' = w''", (3, 20), "zero by this order"),
+        ("unknown w(t) order 1/2", (3, 20), "whole number"),
+        ("known u(s)", (3, 9), "'t'"),
+        ("known u", (3, 7), "'(t)'"),
+        ("known u(t) order 2", (3, 12), "no order behind a known signal"),
+        ("initial x", (3, 10), "'known' or a value"),
+        ("param k unknown\ninitial k known", (4, 9), "a constant"),
+        ("param k unknown\ninitial x = k", (4, 13), "'k' is not known"),
+        ("initial y known", (3, 9), "unknown state 'y'"),
+        ("initial x known\ninitial x = 0", (4, 9), "said already"),
+        ("experiments 0", (3, 13), "from 1 to 20"),
+        ("experiments 2\nexperiments 3", (4, 1), "says already"),
+        ("experiments 2\ndrift f\n  x@2' = 1", (5, 3), "in the first experiment"),
+        ("experiments 2\nlet v = x\noutput v@3", (5, 8), "no experiment 3"),
+        ("state x@2", (3, 8), "an operator, or the next entry"),
+    ] {
+        let text = format!("system \"s\"\nstate x\n{text}\n");
+        let error = System::parse("test.proof", &text, Path::new("")).expect_err(&text);
+        assert!(error.message.contains(message), "{error}: {text}");
+        assert_eq!(error.line_and_column(), place, "{error}: {text}");
+    }
+}
+
+/// Ranges that the file does not give: half of a hint to both sides of it, what is divided by or has a root taken of from one
+/// half to two, angles on almost a whole turn, all else from -1 to 1.
+#[test]
+fn what_has_no_range_is_drawn_by_default() {
+    let folder = folder();
+    let text = "system \"s\"\nstate x, phi\nparam k = 4, c = -2, z = 0 unknown\nparam j = -2, l = 4 unknown\nparam m unknown\n\
+                known u(t)\nangle phi\ndrift f\n  x' = sqrt(u)/m + sin(phi) + j\n  phi' = l\noutput x, k + z\n";
+    let file = write(&folder, "s.proof", text);
+    let found = json(&palmistry(&["rank", file.to_str().unwrap(), "--samples", "20", "--json"]));
+    let told = serde_json::json!({
+        "x": ["-1", "1"], "phi": ["-3", "3"], "z": ["-1", "1"], "l": ["2", "6"], "m": ["0.5", "2"], "u": ["0.5", "2"]
+    });
+    assert_eq!(found["drawn_by_default"], told);
+    let text =
+        String::from_utf8(palmistry(&["rank", file.to_str().unwrap(), "--samples", "20"]).stdout).unwrap();
+    assert!(text.contains("drawn by default"), "{text}");
+}
