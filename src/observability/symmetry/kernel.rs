@@ -13,7 +13,7 @@ pub(super) enum Evaluation {
     /// From the differentials of words, row after row.
     Words(Program),
     /// From power series along a trajectory: no words are needed.
-    Series(Probe),
+    Series(Box<Probe>),
 }
 
 /// Where kernels come from: a codistribution that can be evaluated at any point modulo one prime.
@@ -85,7 +85,7 @@ impl KernelSource {
         coordinates: &[Symbol],
         rng: &mut ChaCha8Rng,
     ) -> KernelSource {
-        KernelSource::new(system, Evaluation::Series(Probe::new(system, values)), coordinates, rng)
+        KernelSource::new(system, Evaluation::Series(Box::new(Probe::new(system, values))), coordinates, rng)
     }
 
     fn new(
