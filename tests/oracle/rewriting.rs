@@ -163,7 +163,7 @@ fn is_linear(part: &E) -> bool {
         E::Number(_) | E::Pi | E::Symbol(_) => true,
         E::Sum(a, b) | E::Difference(a, b) | E::Product(a, b) => is_linear(a) && is_linear(b),
         E::Negative(a) => is_linear(a),
-        E::Quotient(..) | E::Power(..) | E::Apply(..) => false,
+        E::Quotient(..) | E::Power(..) | E::Apply(..) | E::Two(..) => false,
     }
 }
 
