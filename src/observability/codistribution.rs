@@ -153,15 +153,21 @@ impl Frame {
         Ok(Frame { around, generic })
     }
 
-    /// Whether the words that show what is seen are short enough to be written down in a moment: along one field the k-th has of
-    /// the order of `k^2` operations for each of the system's, and so has its differential.
+    /// Whether the words that show what is seen are short enough, and few enough, to be written down in a moment: along one field the
+    /// k-th has of the order of `k^2` operations for each of the system's, and so has its differential.
     pub fn words_are_short(&self, system: &System) -> bool {
         let mut nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
-        for field in system.moving_fields() {
-            nodes.extend(system.fields[field].components.iter().map(|(_, rate)| *rate));
+        let fields = system.moving_fields();
+        for field in &fields {
+            nodes.extend(system.fields[*field].components.iter().map(|(_, rate)| *rate));
         }
         let operations = system.graph.reachable(nodes).len();
-        operations * (self.generic.order + 1).pow(3) <= MOST_NODES
+        let order = self.generic.order + 1;
+        let mut words = system.outputs.len();
+        for _ in 0..order {
+            words = (words * fields.len() + system.outputs.len()).min(MOST_WORDS);
+        }
+        operations * order * order * words <= MOST_NODES
     }
 }
 
