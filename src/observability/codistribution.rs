@@ -7,8 +7,8 @@ use super::elimination::independent_rows;
 use super::generic::{Ceiling, GenericAnswer, generic_answer};
 use super::related_rank::related_rank;
 use super::series::lie_derivative_by_series;
-use crate::expression::{NodeId, Program, Symbol, draw_residues, expand_angles, gradient};
-use crate::number::PrimeField;
+use crate::expression::{Node, NodeId, Program, Symbol, draw_residues, expand_angles, gradient};
+use crate::number::{Function, PrimeField};
 use crate::system::{Assignment, System, Time};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -161,16 +161,22 @@ impl Frame {
         for field in &fields {
             nodes.extend(system.fields[*field].components.iter().map(|(_, rate)| *rate));
         }
-        let operations = system.graph.reachable(nodes).len();
+        let met = system.graph.reachable(nodes);
+        let operations = met.len();
         let order = self.generic.order + 1;
         let mut words = system.outputs.len();
         for _ in 0..order {
             words = (words * fields.len() + system.outputs.len()).min(MOST_WORDS);
         }
-        operations * order * order * words <= MOST_NODES
+        // of functions that are not rational each row is looked at through all that they satisfy
+        let is_function = |id: &NodeId| matches!(system.graph.node(*id), Node::Apply(function, _) if !matches!(function, Function::Sin | Function::Cos));
+        let costs = if met.iter().any(is_function) { 10 } else { 1 };
+        operations * order * order * words * costs <= MOST_SHORT
     }
 }
 
+/// Words of no more operations are written down in a moment.
+const MOST_SHORT: usize = 1_000_000;
 /// No more words than this are taken.
 const MOST_WORDS: usize = 1500;
 const ATTEMPTS: usize = 40;

@@ -390,14 +390,17 @@ fn answer_branch(
         interrupt: question.interrupt,
         progress: question.progress,
     };
-    let full = if codistribution.is_cut_off() && system.time == Time::Continuous {
-        let probe = Probe::new(system, &conditions);
+    // words that somebody asked for are looked at as they are; functions have no residues at a state
+    let by_series =
+        codistribution.is_cut_off() && question.order.is_none() && system.time == Time::Continuous;
+    let probe = by_series.then(|| Probe::new(system, &conditions)).filter(|probe| !probe.has_functions());
+    let full = if let Some(probe) = &probe {
         let options = SweepOptions { most: Some(codistribution.most()), ..options };
-        sweep_by_series(system, &locus, &probe, &options)?
+        sweep_by_series(system, &locus, probe, &options)?
     } else {
         codistribution.sweep(system, &locus, options)?
     };
-    let deviations = match full.interrupted || codistribution.is_cut_off() || !wanted {
+    let deviations = match full.interrupted || probe.is_some() || !wanted {
         true => None,
         false => standard_deviations(system, &locus, &codistribution, &full, question.seed, samples)?,
     };

@@ -5,6 +5,7 @@
 //! less: all up to `K` cost `K^3/6` products for each entry of `A` that varies, and memory for one row of series.
 
 use crate::number::PrimeField;
+use rayon::prelude::*;
 
 /// An entry of `A`: row, column, coefficients.
 pub(super) struct Entry {
@@ -27,37 +28,45 @@ impl Covector {
         self.series.iter().map(|series| series.first().copied().unwrap_or(0)).collect()
     }
 
-    /// The same of the next derivative; `integers` are 0, 1, 2, ... in the field.
+    /// The same of the next derivative; `integers` are 0, 1, 2, ... in the field, the entries are in the order of their columns.
     pub fn next(&self, field: &PrimeField, entries: &[Entry], integers: &[u64]) -> Covector {
         let length = self.length.saturating_sub(1);
-        let derivative = |series: &Vec<u64>| -> Vec<u64> {
-            let terms = series.iter().zip(integers).skip(1).take(length);
-            terms.map(|(coefficient, k)| field.product(*coefficient, *k)).collect()
+        let column = |column: usize| {
+            let terms = self.series[column].iter().zip(integers).skip(1).take(length);
+            let mut sum: Vec<u64> = terms.map(|(coefficient, k)| field.product(*coefficient, *k)).collect();
+            let begin = entries.partition_point(|entry| entry.column < column);
+            for entry in entries[begin..].iter().take_while(|entry| entry.column == column) {
+                add_product(field, &mut sum, &self.series[entry.row], &entry.series, length);
+            }
+            let end = sum.iter().rposition(|coefficient| *coefficient != 0).map_or(0, |last| last + 1);
+            sum.truncate(end);
+            sum
         };
-        let mut next: Vec<Vec<u64>> = self.series.iter().map(derivative).collect();
-        for entry in entries {
-            let factor = &self.series[entry.row];
-            if factor.is_empty() || entry.series.is_empty() {
-                continue;
-            }
-            let target = &mut next[entry.column];
-            let most = (factor.len() + entry.series.len() - 1).min(length);
-            if target.len() < most {
-                target.resize(most, 0);
-            }
-            for (k, sum) in target.iter_mut().enumerate().take(most) {
-                let from = (k + 1).saturating_sub(entry.series.len());
-                let to = k.min(factor.len() - 1);
-                if from <= to {
-                    let product = field.dot_reversed(&factor[from..=to], &entry.series[k - to..=k - from]);
-                    *sum = field.sum(*sum, product);
-                }
-            }
+        let columns = 0..self.series.len();
+        let series = match length * entries.len() > WORTH_SHARING {
+            true => columns.into_par_iter().map(column).collect(),
+            false => columns.map(column).collect(),
+        };
+        Covector { series, length }
+    }
+}
+
+/// So many coefficients of all entries are worth more than one thread.
+const WORTH_SHARING: usize = 4000;
+
+/// Adds the product of two series, to so many coefficients.
+fn add_product(field: &PrimeField, sum: &mut Vec<u64>, left: &[u64], right: &[u64], length: usize) {
+    if left.is_empty() || right.is_empty() {
+        return;
+    }
+    let most = (left.len() + right.len() - 1).min(length);
+    if sum.len() < most {
+        sum.resize(most, 0);
+    }
+    for (k, sum) in sum.iter_mut().enumerate().take(most) {
+        let (from, to) = ((k + 1).saturating_sub(right.len()), k.min(left.len() - 1));
+        if from <= to {
+            *sum = field.sum(*sum, field.dot_reversed(&left[from..=to], &right[k - to..=k - from]));
         }
-        for series in &mut next {
-            let end = series.iter().rposition(|coefficient| *coefficient != 0).map_or(0, |last| last + 1);
-            series.truncate(end);
-        }
-        Covector { series: next, length }
     }
 }

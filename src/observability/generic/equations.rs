@@ -207,7 +207,8 @@ impl Equations {
             column: *column,
             series,
         };
-        let entries = self.entries.iter().zip(series).map(entry).collect();
+        let mut entries: Vec<Entry> = self.entries.iter().zip(series).map(entry).collect();
+        entries.sort_by_key(|entry| (entry.column, entry.row));
         Ok(Trajectory { covectors, entries })
     }
 }
