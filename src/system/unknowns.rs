@@ -108,6 +108,7 @@ impl System {
     }
 
     /// What a symbol stands for, in words, where it is no plain state and no plain parameter.
+    #[cfg_attr(not(feature = "cli"), allow(dead_code))] // editors ask for it
     pub(crate) fn stands_for(&self, symbol: Symbol) -> Option<String> {
         let kind = self.coordinates.kinds.get(&symbol);
         let words = match kind {
