@@ -1,12 +1,34 @@
 //! Ranks of rows in which functions are met: no more than what the functions are known to satisfy leaves, no less than at a state.
 
 use super::rank_witness::best_state;
-use super::ranks::{Limits, Rows};
+use super::terms::OnBranch;
 use super::verdict::{Verdict, Witness};
+use crate::expression::NodeId;
 use crate::expression::{Guard, Need, expand};
 use crate::observability::related_rank;
 use crate::system::System;
 use rand::Rng;
+
+/// Rows of expressions, one after the other.
+pub(super) struct Rows<'a> {
+    pub entries: &'a [NodeId],
+    pub columns: usize,
+    /// What is said of them beside their rank.
+    pub scope: &'a str,
+    /// Those of them that give the rank, as terms that a state can be put into.
+    pub on: &'a OnBranch,
+}
+
+/// What is known of a rank beside the rows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// It is no more at any state.
+    pub most: usize,
+    /// But for an error of this probability, as a power of two.
+    pub log2_error: f64,
+    /// Whether the rows without those that give the rank hold all that comes next: where these add nothing, nothing does.
+    pub settled: bool,
+}
 
 /// The two halves of the proof.
 const BOUNDS: &str = "a minor at a state, by enclosures, and exact arithmetic at random points of random prime fields with what is \

@@ -2,11 +2,10 @@
 
 use super::existence::{Existence, existence};
 use super::identity::{OnOneBranch, RANDOM_PRIMES};
-use super::rank_bounds::by_bounds;
+use super::rank_bounds::{Limits, Rows, by_bounds};
 use super::rank_witness::{Ranks, rank_witness};
 use super::terms::{OnBranch, Terms};
 use super::verdict::{Verdict, Witness};
-use crate::expression::NodeId;
 use crate::observability::{Branch, Codistribution, Frame, GenericRank, Length, Stop, generic_rank};
 use crate::system::System;
 use rand::Rng;
@@ -93,27 +92,6 @@ pub(crate) fn decide_codistribution(
         settled: words.stop == Stop::NoGrowth && words.invariant,
     };
     Ok(on_one_branch(exists, || decide(system, &rows, limits, claimed, rng)))
-}
-
-/// Rows of expressions, one after the other.
-pub(super) struct Rows<'a> {
-    pub entries: &'a [NodeId],
-    pub columns: usize,
-    /// What is said of them beside their rank.
-    pub scope: &'a str,
-    /// Those of them that give the rank, as terms that a state can be put into.
-    pub on: &'a OnBranch,
-}
-
-/// What is known of a rank beside the rows.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
-    /// It is no more at any state.
-    pub most: usize,
-    /// But for an error of this probability, as a power of two.
-    pub log2_error: f64,
-    /// Whether the rows without those that give the rank hold all that comes next: where these add nothing, nothing does.
-    pub settled: bool,
 }
 
 fn on_one_branch(exists: Existence, verdict: impl FnOnce() -> Verdict) -> OnOneBranch {

@@ -11,8 +11,9 @@
 //! References: H. J. Sussmann and V. Jurdjevic, *Controllability of nonlinear systems*, J. Differential Equations 12 (1972);
 //! H. Nijmeijer and A. J. van der Schaft, *Nonlinear Dynamical Control Systems* (1990), propositions 3.22 and 3.47.
 
-use super::codistribution::{CodistributionError, Stop, is_invariant, needed};
+use super::codistribution::{Stop, is_invariant};
 use super::generic::{GenericRank, formal_rank};
+use super::needed::{CodistributionError, needed};
 use crate::expression::{NodeId, Symbol, gradient};
 use crate::system::{Assignment, Role, System, UnknownKind};
 use rand::SeedableRng;
@@ -52,7 +53,7 @@ impl RankBounds {
 
 /// A part of the rows with as many columns as it can have of them.
 #[derive(Clone, Debug)]
-pub struct Minor {
+pub struct BracketMinor {
     /// The coordinates of its columns.
     pub columns: Vec<Symbol>,
     /// Its entries, by rows.
@@ -204,7 +205,7 @@ impl Accessibility {
         system: &mut System,
         conditions: &Assignment,
         strong: bool,
-    ) -> Result<Minor, CodistributionError> {
+    ) -> Result<BracketMinor, CodistributionError> {
         let has_drift = system.drift().is_some() && strong;
         let kept = self.needed.iter().filter(|place| !has_drift || **place + 1 < self.rows.len());
         let rows: Vec<&Vec<NodeId>> = kept.map(|place| &self.rows[*place]).collect();
@@ -213,7 +214,7 @@ impl Accessibility {
         let columns = raising(system, &turned, conditions)?;
         let entries = rows.iter().flat_map(|row| columns.iter().map(|column| row[*column])).collect();
         let columns = columns.iter().map(|column| self.columns[*column]).collect();
-        Ok(Minor { columns, entries })
+        Ok(BracketMinor { columns, entries })
     }
 
     /// The rows that raised the rank, one after the other.

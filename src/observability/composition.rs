@@ -13,7 +13,7 @@
 //! Reference: J. Nijmeijer, *Observability of autonomous discrete time non-linear systems*, Int. J. Control 36 (1982), for the
 //! spans; the argument on images is that of dimensions of irreducible sets.
 
-use super::codistribution::{CodistributionError, needed};
+use super::needed::{CodistributionError, needed};
 use crate::expression::{NodeId, gradient};
 use crate::system::{Assignment, System, Time};
 

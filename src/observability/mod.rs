@@ -16,6 +16,7 @@ mod equilibrate;
 mod flow;
 mod generic;
 mod locus;
+mod needed;
 mod nested;
 mod reduction;
 mod related_rank;
@@ -25,10 +26,10 @@ mod singular;
 mod state;
 mod symmetry;
 
-pub use accessibility::{Accessibility, Minor, RankBounds};
+pub use accessibility::{Accessibility, BracketMinor, RankBounds};
 #[doc(hidden)]
 pub use codistribution::OWN_ROWS;
-pub use codistribution::{Codistribution, CodistributionError, Frame, Length, Stop, Word};
+pub use codistribution::{Codistribution, Frame, Length, Stop, Word};
 pub(crate) use conditions::vanishes;
 pub use conditions::{Branch, Unsolved, parse_condition, solve_conditions};
 pub(crate) use conditions::{also_met_otherwise, assumed, linear_solution, solve};
@@ -49,6 +50,7 @@ pub use generic::{Directions, Probe};
 pub(crate) use locus::AVOIDED;
 pub(crate) use locus::{ATTEMPTS, Source};
 pub use locus::{Locus, LocusError};
+pub use needed::CodistributionError;
 #[doc(hidden)]
 pub use nested::{differential_by_duals, lie_derivative_by_duals};
 #[doc(hidden)]

@@ -1,7 +1,8 @@
 //! The whole question of accessibility, from a system and some conditions to sweeps of every branch.
 
+use super::asked::{RankQuestion, held_by_the_file};
 use super::certainty::Certainty;
-use super::question::{RankError, RankQuestion, guarded, held_by_the_file, held_parameters};
+use super::question::{RankError, guarded, held_parameters};
 use super::states::{SweepOptions, SweepReport, sweep};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{

@@ -1,6 +1,6 @@
 //! The branches of a question, taken apart by the signs on which roots of squares depend.
 
-use super::question::{RankQuestion, held_conditions};
+use super::asked::{RankQuestion, held_conditions};
 use crate::expression::{Guard, NodeId, add_guard};
 use crate::observability::{Branch, Edges, Locus, SignCell, sign_cells};
 use crate::system::System;

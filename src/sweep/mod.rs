@@ -8,6 +8,7 @@
 //! This floor knows nothing of claims or palms.
 
 mod accessible;
+mod asked;
 mod cells;
 mod certainty;
 mod deviation;
@@ -20,6 +21,7 @@ mod stream;
 mod unseen;
 
 pub use accessible::{AccessibilityAnswer, AccessibilityBranch, answer_accessibility};
+pub use asked::RankQuestion;
 pub use certainty::Certainty;
 #[doc(hidden)]
 pub use deviation::NEARLY_INVISIBLE;
@@ -29,9 +31,7 @@ pub use digits::MOST_DIGITS;
 pub use digits::{Digits, NoDigits};
 #[doc(hidden)]
 pub use ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
-pub use question::{
-    BranchAnswer, RankAnswer, RankError, RankQuestion, TakenRow, answer_rank, answer_rank_at_once,
-};
+pub use question::{BranchAnswer, RankAnswer, RankError, TakenRow, answer_rank, answer_rank_at_once};
 pub(crate) use states::UNINTERRUPTED;
 pub use states::{RecordedState, SweepOptions, SweepReport, sweep};
 pub(crate) use stream::{Elimination, Jacobi};

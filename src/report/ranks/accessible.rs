@@ -1,6 +1,7 @@
 //! Answers about accessibility, as JSON and as text.
 
-use super::answer::{finite, stop_text, sweep_json};
+use super::answer::{stop_text, sweep_json};
+use super::generic::finite;
 use super::seen::{part_text, place_text};
 use crate::observability::RankBounds;
 use crate::report::names::{fields_json, fields_text, values_json, values_text};

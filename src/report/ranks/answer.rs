@@ -1,6 +1,6 @@
 //! Answers about ranks, as JSON and as text.
 
-use super::generic::{add_generic_json, generic_text};
+use super::generic::{add_generic_json, finite, generic_text};
 use super::motions::{motions_json, motions_text};
 use super::seen::{deviations_json, deviations_text, direction_text, place_text};
 use crate::number::rational_to_f64;
@@ -20,11 +20,6 @@ fn histogram_json(histogram: &BTreeMap<usize, u64>) -> Value {
         .map(|(rank, count)| (rank.to_string(), json!(count)))
         .collect::<serde_json::Map<_, _>>()
         .into()
-}
-
-/// JSON has no infinity; a gap without bound is null.
-pub(super) fn finite(value: f64) -> Value {
-    if value.is_finite() { json!(value) } else { Value::Null }
 }
 
 /// How many states each rung of the ladder decided.

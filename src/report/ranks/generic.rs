@@ -1,11 +1,15 @@
 //! What is seen at almost all states, and of each unknown whether it is.
 
-use super::answer::finite;
 use crate::observability::{GenericAnswer, Seen};
 use crate::sweep::BranchAnswer;
 use crate::system::UnknownKind;
 use serde_json::{Value, json};
 use std::fmt::Write;
+
+/// JSON has no infinity; a gap without bound is null.
+pub(super) fn finite(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { Value::Null }
+}
 
 /// What is said of an unknown.
 pub(in crate::report) fn unknown_verdict(kind: UnknownKind, seen: Seen) -> &'static str {
