@@ -191,10 +191,12 @@ fn ranges_of(system: &mut System, given: &BTreeMap<Symbol, (RBig, RBig)>) -> Res
         ));
     }
     let without = system.without_range();
+    // sides are taken by default, and no box of which nobody has said anything
+    let somebody_said = !given.is_empty() || system.symbols().any(|(_, info)| info.range.is_some());
     for (symbol, info) in system.symbols().filter(|(_, info)| info.kind != Kind::Imported) {
         let range = info.range.as_ref().map(|range| (range.low.clone(), range.high.clone()));
         let value = info.default.as_ref().map(|value| (value.clone(), value.clone()));
-        let default = match without.contains(&symbol) && !given.contains_key(&symbol) {
+        let default = match somebody_said && without.contains(&symbol) && !given.contains_key(&symbol) {
             true => system.default_range(symbol),
             false => None,
         };

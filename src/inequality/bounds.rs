@@ -85,6 +85,10 @@ pub fn bounds(graph: &mut Graph, assumed: &[Guard]) -> Bounds {
 
 impl Bound {
     fn new(graph: &Graph, value: NodeId, strict: bool) -> Option<Bound> {
+        // what cancels as numbers may be there as symbols, as in tan(atan(k)) - k
+        if !graph.symbols_of([value]).is_empty() {
+            return None;
+        }
         let exact = graph.constant_value(value).cloned();
         let enclosed = match &exact {
             Some(exact) => around(&Enclosures::new(BITS), exact)?,

@@ -138,9 +138,20 @@ impl Dice {
 
     /// An expression of plain symbols with functions, that exists on a good part of all states.
     pub fn transcendental(&mut self, symbols: &[Symbol]) -> Expression {
+        let which = self.below(16);
+        self.of_functions(symbols, which)
+    }
+
+    /// The same of one formula on all states: a rank may be another one where an extreme is another one.
+    pub fn of_one_part(&mut self, symbols: &[Symbol]) -> Expression {
+        let which = self.one_of(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 13, 15]);
+        self.of_functions(symbols, which)
+    }
+
+    fn of_functions(&mut self, symbols: &[Symbol], which: usize) -> Expression {
         let inner = Expression::Symbol(self.one_of(symbols));
         let other = self.polynomial(symbols, 1, 2);
-        match self.below(16) {
+        match which {
             8 => other.of(Function::Tanh),
             9 => inner.of(Function::Abs).plus(other),
             10 => inner.with_other(Binary::Max, other),

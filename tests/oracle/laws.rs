@@ -74,7 +74,8 @@ fn law(x: E, y: E, dice: &mut Dice) -> (E, E, bool) {
         32 => (cx.with_other(Min, cy).plus(x.clone().with_other(Max, y.clone())), x.plus(y), true),
         33 => (cx.with_other(Max, cy), x, false),
         34 => (x.clone().of(Tanh), x.clone().of(Sinh).over(x.of(Cosh)), true),
-        35 => (x.of(Cosh).power(2).minus(cx.of(Sinh).power(2)), one(), true),
+        // of large arguments the oracle has not the digits to tell it
+        35 => (x.of(Sin).of(Cosh).power(2).minus(cx.of(Sin).of(Sinh).power(2)), one(), true),
         36 => (x.clone().plus(x.clone()).of(Sinh), two().times(x.of(Sinh)).times(cx.of(Cosh)), true),
         37 => (
             cx.with_other(RealPower, n()).times(x.clone().with_other(RealPower, n())),

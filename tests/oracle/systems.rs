@@ -133,7 +133,7 @@ fn term(class: &str, model: &Model, dice: &mut Dice) -> Expression {
             }
         }
         "transcendental" => {
-            let function = dice.transcendental(&plain);
+            let function = dice.of_one_part(&plain);
             match dice.below(3) {
                 0 => function.times(dice.polynomial(&plain, 1, 2)),
                 1 => function,

@@ -23,7 +23,7 @@ use super::Adjunction;
 use super::form::Form;
 use super::generators::Key;
 use crate::expression::{Input, NodeId, Program};
-use crate::number::{Arithmetic, PrimeField};
+use crate::number::{Arithmetic, Function, PrimeField};
 use dashu::rational::RBig;
 use std::collections::BTreeSet;
 
@@ -90,7 +90,16 @@ impl Adjunction<'_> {
         if !apart {
             open = self.undecided_factors(&radicands);
         }
-        let independent = known && apart && self.differentials_are_independent(&varying) == Some(true);
+        // the principal value of an inverse function of functions is another one from part to part, and asin(2 t/(1 + t^2)) is 2 atan(t) on one
+        let has_parts = varying.iter().any(|v| match self.generators.key(*v) {
+            Key::Value(Function::Asin | Function::Acos, _) => true,
+            Key::Value(_, form) => {
+                form.variables().iter().any(|inner| !matches!(self.generators.key(*inner), Key::Symbol(_)))
+            }
+            _ => false,
+        });
+        let independent =
+            known && apart && !has_parts && self.differentials_are_independent(&varying) == Some(true);
         Standing { independent, constants_known, open }
     }
 
