@@ -200,13 +200,13 @@ impl Codistribution {
         };
         let invariant = frame.around == Ceiling::Rests;
         let steps = composition::steps(system, conditions)?;
-        let (at_least, longest, most) = match length {
-            Length::UntilItStops if invariant && let Some(steps) = steps => {
+        let (at_least, longest, most) = match (length, steps) {
+            (Length::UntilItStops, Some(steps)) if invariant => {
                 (steps.at_least, steps.most.max(LONGEST), MOST_WORDS)
             }
-            Length::UntilItStops if invariant => (0, LONGEST, MOST_WORDS),
-            Length::UntilItStops => (closed.len(), closed.len(), PATIENCE),
-            Length::Exactly(order) => (order, order, MOST_WORDS),
+            (Length::UntilItStops, _) if invariant => (0, LONGEST, MOST_WORDS),
+            (Length::UntilItStops, _) => (closed.len(), closed.len(), PATIENCE),
+            (Length::Exactly(order), _) => (order, order, MOST_WORDS),
         };
         // known signals that outputs tie have derivatives up to there
         let longest = system.longest_word().map_or(longest, |limit| longest.min(limit));

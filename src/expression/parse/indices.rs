@@ -212,11 +212,13 @@ impl Place {
 }
 
 fn component_of(vector: &str, place: Place, suffix: &str) -> ExprKind {
-    match &place {
-        Place::One(one) if let Some(value) = one.value() => {
-            ExprKind::Name(component_name(vector, value, suffix))
-        }
-        _ => {
+    let value = match &place {
+        Place::One(one) => one.value(),
+        Place::Range(..) => None,
+    };
+    match value {
+        Some(value) => ExprKind::Name(component_name(vector, value, suffix)),
+        None => {
             let (vector, suffix) = (vector.to_owned(), suffix.to_owned());
             ExprKind::Indexed(Box::new(Indexed::Component { vector, place, suffix }))
         }

@@ -100,12 +100,11 @@ impl FormulaLayout<'_> {
             (name, [inner]) if FUNCTIONS.iter().any(|(known, _)| *known == name) => {
                 self.applied(Formula::Word(function_word(name)), inner, closed)
             }
-            (name, [_, _, ..])
-                if let Some((_, word)) = OF_SEVERAL.iter().find(|(known, _)| *known == name) =>
-            {
-                (Formula::Row(vec![Formula::Word(word), round(all())]), Binding::Prefix)
+            (name, list) => {
+                let of_several = OF_SEVERAL.iter().find(|(known, _)| list.len() > 1 && *known == name);
+                let word = of_several.map_or_else(|| self.name(name), |(_, word)| Formula::Word(word));
+                (Formula::Row(vec![word, round(all())]), Binding::Prefix)
             }
-            _ => (Formula::Row(vec![self.name(name), round(all())]), Binding::Prefix),
         }
     }
 
