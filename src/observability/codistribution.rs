@@ -303,16 +303,18 @@ impl Codistribution {
                     return Ok(());
                 }
                 let output = system.outputs[word.output].1;
-                let Ok(value) = lie_derivative_by_series(system, &word.fields, output) else { continue };
+                let Ok(value) = lie_derivative_by_series(system, &word.fields, output) else {
+                    self.stop = Stop::TooMany; // what was taken before stays
+                    return Ok(());
+                };
                 taken.rows.push(system.differential(value));
                 taken.words.push(word);
                 taken.values.push(value);
             }
             let (needed, guessed) = needed(system, &taken.rows, conditions)?;
-            let keep = |list: &[usize]| list.to_vec();
-            taken.rows = keep(&needed).into_iter().map(|place| taken.rows[place].clone()).collect();
-            taken.words = keep(&needed).into_iter().map(|place| taken.words[place].clone()).collect();
-            taken.values = keep(&needed).into_iter().map(|place| taken.values[place]).collect();
+            taken.rows = needed.iter().map(|place| taken.rows[*place].clone()).collect();
+            taken.words = needed.iter().map(|place| taken.words[*place].clone()).collect();
+            taken.values = needed.iter().map(|place| taken.values[*place]).collect();
             taken.needed = (0..needed.len()).collect();
             taken.guessed = guessed;
             taken.order = taken.words.iter().map(|word| word.fields.len()).max().unwrap_or(0);

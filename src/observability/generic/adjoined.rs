@@ -28,6 +28,12 @@ pub(super) struct Adjoined {
     signs: Option<u64>,
 }
 
+/// Pi is transcendental: no polynomial with rational coefficients tells it from an unknown. It has one value in a field, so
+/// that a state that is told by pi is where its equations have it.
+pub(super) fn pi_in(field: PrimeField) -> u64 {
+    field.draw(&mut ChaCha8Rng::seed_from_u64(field.modulus()))
+}
+
 impl Adjoined {
     pub fn new(field: PrimeField, seed: u64, signs: Option<u64>) -> Self {
         let drawn = Drawn { rng: ChaCha8Rng::seed_from_u64(seed), cosine: None, roots: 0 };
@@ -41,9 +47,8 @@ impl Arithmetic for Adjoined {
     fn rational(&self, value: &RBig) -> Result<u64, Refusal> {
         self.field.rational(value)
     }
-    /// Pi is transcendental: no polynomial with rational coefficients tells it from an unknown.
     fn pi(&self) -> Result<u64, Refusal> {
-        Ok(self.field.draw(&mut self.drawn.borrow_mut().rng))
+        Ok(pi_in(self.field))
     }
     fn add(&self, a: &u64, b: &u64) -> Result<u64, Refusal> {
         self.field.add(a, b)

@@ -1,6 +1,6 @@
 //! A system as one flow: drift and inputs together, with its outputs' differentials and the Jacobian of its rates.
 
-use super::adjoined::Adjoined;
+use super::adjoined::{Adjoined, pi_in};
 use super::covectors::{Covector, Entry};
 use crate::expression::{
     Derivation, Graph, Guard, Input, Node, NodeId, Program, Symbol, draw_residues, expand_angles, gradient,
@@ -125,6 +125,8 @@ impl Equations {
         });
         let driven: Vec<usize> = driven.collect();
         let starts = starts(&mut graph, &given, conditions, &angles);
+        // a state that is told by functions has other values of them than its equations have
+        let related = related && starts.unknown_function(&graph).is_none();
         let (functions, measured) = measured(&mut graph, &components, &written, &angles);
         // the slope of an inverse sine has one too
         let square_root = |node: &NodeId| {
@@ -164,7 +166,12 @@ impl Equations {
     /// # Errors
     /// Where the random point is a pole, or the prime divides a denominator.
     pub fn draw(&self, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<Vec<u64>, Refusal> {
-        let inputs = draw_residues(&self.starts, &field, rng);
+        let mut inputs = draw_residues(&self.starts, &field, rng);
+        for (input, value) in self.starts.inputs().iter().zip(&mut inputs) {
+            if matches!(input, Input::Opaque(node) if self.graph.node(*node) == Node::Pi) {
+                *value = pi_in(field);
+            }
+        }
         self.start(field, &inputs, rng.random())
     }
 
@@ -247,6 +254,17 @@ fn starts(graph: &mut Graph, given: &[Input], conditions: &Assignment, angles: &
     Program::with_unknown_functions(graph, &expanded, is_angle)
 }
 
+/// Whether a node is a function, sines and cosines of an angle aside.
+fn is_function(graph: &Graph, id: NodeId, angles: &HashSet<Symbol>) -> bool {
+    match graph.node(id) {
+        Node::Apply(Function::Sin | Function::Cos, a) => {
+            !graph.as_symbol(a).is_some_and(|symbol| angles.contains(&symbol))
+        }
+        Node::Apply(..) => true,
+        _ => false,
+    }
+}
+
 /// Rates and outputs with equal functions under one name; and whether those functions are shown to satisfy no relation but those
 /// that define them, nowhere on the set of the conditions.
 fn related(
@@ -258,12 +276,7 @@ fn related(
     angles: &HashSet<Symbol>,
 ) -> (Vec<NodeId>, bool) {
     let is_angle = |symbol: Symbol| angles.contains(&symbol);
-    let is_function = |graph: &Graph, id: &NodeId| match graph.node(*id) {
-        Node::Apply(Function::Sin | Function::Cos, a) => !graph.as_symbol(a).is_some_and(is_angle),
-        Node::Apply(..) => true,
-        _ => false,
-    };
-    if !graph.reachable(written.iter().copied()).iter().any(|id| is_function(graph, id)) {
+    if !graph.reachable(written.iter().copied()).iter().any(|id| is_function(graph, *id, angles)) {
         return (written.to_vec(), true);
     }
     let guards = substitute_guards(graph, &system.smooth_guards(&system.moving_fields()), fixed);
@@ -277,7 +290,7 @@ fn related(
     };
     let found_nodes = expand_angles(graph, &found.nodes, is_angle);
     let met = graph.reachable(found_nodes.iter().copied());
-    let functions: Vec<NodeId> = met.into_iter().filter(|id| is_function(graph, id)).collect();
+    let functions: Vec<NodeId> = met.into_iter().filter(|id| is_function(graph, *id, angles)).collect();
     // an angle has a sine and a cosine here, and no value of its own
     let bare = found_nodes.iter().chain(&functions).copied();
     let is_bare = graph.reachable(bare).into_iter().any(|id| match graph.node(id) {
@@ -299,15 +312,8 @@ fn measured(
     written: &[NodeId],
     angles: &HashSet<Symbol>,
 ) -> (Vec<NodeId>, Vec<NodeId>) {
-    let is_function = |graph: &Graph, id: NodeId| match graph.node(id) {
-        Node::Apply(Function::Sin | Function::Cos, a) => {
-            !graph.as_symbol(a).is_some_and(|symbol| angles.contains(&symbol))
-        }
-        Node::Apply(..) => true,
-        _ => false,
-    };
     let met = graph.reachable(written.iter().copied());
-    let functions: Vec<NodeId> = met.into_iter().filter(|id| is_function(graph, *id)).collect();
+    let functions: Vec<NodeId> = met.into_iter().filter(|id| is_function(graph, *id, angles)).collect();
     let mut measured = written.to_vec();
     if !functions.is_empty() {
         let mut flow = Derivation::new(components.iter().copied().collect());

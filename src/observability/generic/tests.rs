@@ -173,3 +173,22 @@ fn sequences_are_followed_in_discrete_time() {
         }
     }
 }
+
+/// On the set `x = pi` the second factor of the output is zero, and so is every derivative of it: `x` is seen, and `z` not. Of a set
+/// that is told by another function no more is said than holds around it.
+#[test]
+fn states_that_are_told_by_pi_or_by_functions() {
+    for (value, expected) in [("pi", Some(1)), ("3", Some(1)), ("sqrt(2)", None), ("exp(1)", None)] {
+        let text = format!("system \"s\" state x, z drift f x' = 0 z' = 0 output (x - {value})*z");
+        let mut system: System = text.parse().unwrap();
+        let conditions = crate::observability::parse_condition(&format!("x = {value}")).unwrap();
+        let branch = crate::observability::solve_conditions(&mut system, &conditions).unwrap().remove(0);
+        let answer = generic_answer(&system, &branch.values, Ceiling::Rests);
+        assert_eq!(answer.rank(), expected, "{value}: {answer:?}");
+        let seen: Vec<Seen> = answer.unknowns.iter().map(|(_, seen)| *seen).collect();
+        match expected {
+            Some(_) => assert_eq!(seen, [Seen::Yes, Seen::No], "{value}"),
+            None => assert_eq!(seen, [Seen::Undecided; 2], "{value}"),
+        }
+    }
+}
