@@ -89,7 +89,7 @@ pub(super) fn read(text: &str, roles: &PrintedRoles) -> Result<ForeignModel, Pro
     let header = |name: &str| headers.get(name).map(|span| text[span.clone()].trim().to_owned());
     model.title = header("title");
     let begin = words.first().map_or(0, |word| word.span.start);
-    model.source = header("source").or_else(|| super::heading(&comments, begin));
+    model.source = header("source").or_else(|| super::heading(text, &comments, begin));
     Ok(model)
 }
 

@@ -27,8 +27,10 @@ pub(super) fn read(text: &str, which: Option<&str>) -> Result<ForeignModel, Prob
     let equations = parser.bracketed()?;
     let is_discrete = words[one.at + 1].text == "DDSmodel";
     let mut model = of_equations(&equations, is_discrete, &one.span)?;
-    model.title = one.name.clone();
-    model.source = super::heading(&comments, one.span.start);
+    // what a name in the source says of a model is often no more than that it is one
+    let says = |name: &&String| !["ode", "odes", "model", "sys", "system", "eqs"].contains(&name.as_str());
+    model.title = one.name.as_ref().filter(says).cloned();
+    model.source = super::heading(text, &comments, one.span.start);
     Ok(model)
 }
 

@@ -180,19 +180,31 @@ pub fn import(name: &str, text: &str, question: &ImportQuestion) -> Result<Impor
     Ok(ImportedModel { format, text, model, renamed: written.renamed })
 }
 
-/// What the comments at the head of a file say, in one line that is not too long.
-fn heading(comments: &[(usize, String)], before: usize) -> Option<String> {
-    let is_word = |text: &&str| text.chars().filter(|c| c.is_alphabetic()).count() > 3;
-    let lines = comments.iter().filter(|(at, _)| *at < before).map(|(_, text)| text.as_str()).filter(is_word);
-    let mut out = String::new();
-    for line in lines {
-        if out.len() + line.len() > 400 {
-            break;
+/// What the first comments of a file say, in one line that is not too long: the first ones that stand together and are more than a
+/// title of a part.
+fn heading(text: &str, comments: &[(usize, String)], before: usize) -> Option<String> {
+    let line = |at: usize| text.get(..at).unwrap_or(text).matches('\n').count();
+    let mut blocks: Vec<(usize, Vec<&str>)> = Vec::new();
+    for (at, comment) in comments.iter().filter(|(at, _)| *at < before).take(200) {
+        let own = line(*at);
+        match blocks.last_mut() {
+            Some((last, block)) if own <= *last + 1 => {
+                *last = own;
+                block.push(comment);
+            }
+            _ => blocks.push((own, vec![comment])),
         }
-        if !out.is_empty() {
-            out.push(' ');
-        }
-        out.push_str(line);
     }
-    (!out.is_empty()).then_some(out)
+    let says = |block: Vec<&str>| {
+        let has_letters = |line: &&str| line.chars().any(char::is_alphabetic);
+        let words: Vec<&str> = block.into_iter().filter(has_letters).flat_map(str::split_whitespace).collect();
+        (words.len() >= 4).then(|| words.join(" "))
+    };
+    let mut found = blocks.into_iter().find_map(|(_, block)| says(block))?;
+    if found.len() > 400 {
+        let end = found.char_indices().map(|(at, _)| at).take_while(|at| *at <= 400).last().unwrap_or(0);
+        found.truncate(end);
+        found.push_str("...");
+    }
+    Some(found)
 }

@@ -96,10 +96,11 @@ fn spelled(name: &str) -> String {
     }
 }
 
-/// Whether a name means something else in our language, at some place or other.
+/// Whether a name means something else in our language, at some place or other. The name of a function is one where a bracket
+/// follows, and a symbol elsewhere.
 fn has_a_meaning(name: &str) -> bool {
     let lists = [vocabulary::ENTRIES, vocabulary::VIEWS, vocabulary::RESERVED, vocabulary::SPECIAL, vocabulary::CONSTANTS];
-    lists.iter().any(|list| list.contains(&name)) || vocabulary::functions().any(|own| own == name)
+    lists.iter().any(|list| list.contains(&name))
 }
 
 impl ForeignNames {

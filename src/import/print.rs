@@ -37,7 +37,8 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
                 // a minus in front of a term is the sign of the term
                 let (text, negative) = match text.strip_prefix('-') {
                     Some(rest) if binding >= Binding::Product => (rest.to_owned(), !*subtracted),
-                    _ if binding == Binding::Sum => (format!("({text})"), *subtracted),
+                    // adding to a sum changes nothing in it
+                    _ if binding == Binding::Sum && (at > 0 || *subtracted) => (format!("({text})"), *subtracted),
                     _ => (text, *subtracted),
                 };
                 match (at, negative) {
@@ -54,7 +55,14 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
         }
         ForeignKind::Product(factors) => {
             let (mut out, mut negative) = (String::new(), false);
-            for (at, (divided, factor)) in factors.iter().enumerate() {
+            let is_one = |factor: &ForeignExpr| factor.as_number().is_some_and(|n| *n == RBig::ONE || *n == RBig::from(-1));
+            for (divided, factor) in factors {
+                // a factor of minus one is a sign
+                if is_one(factor) && factors.iter().any(|(divided, other)| !divided && !is_one(other)) {
+                    negative ^= factor.as_number().is_some_and(|n| *n != RBig::ONE);
+                    continue;
+                }
+                let at = out.len();
                 let (text, binding) = written(factor, names)?;
                 let (text, binding) = match text.strip_prefix('-') {
                     Some(rest) if binding == Binding::Product => {
@@ -218,9 +226,13 @@ fn without_case(
     // then where high > low: (then + otherwise)/2 + sign(high - low)*(then - otherwise)/2
     let two = || ForeignExpr::integer(2, span);
     let distance = if zero(low) { high.clone() } else { high.clone().minus(low.clone()) };
-    let middle = then.clone().plus(otherwise.clone()).over(two());
-    let half = then.clone().minus(otherwise.clone()).over(two());
-    Ok(middle.plus(distance.under("sign").times(half)))
+    let sign = distance.under("sign");
+    let (middle, half) = match (zero(then), zero(otherwise)) {
+        (true, _) => (otherwise.clone(), otherwise.clone().negative()),
+        (_, true) => (then.clone(), then.clone()),
+        _ => (then.clone().plus(otherwise.clone()), then.clone().minus(otherwise.clone())),
+    };
+    Ok(middle.over(two()).plus(sign.times(half).over(two())))
 }
 
 /// Whether an expression has a case that is written by `sign`, which has no value where the sides are equal.

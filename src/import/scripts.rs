@@ -28,11 +28,12 @@ const CONTROL: [&str; 17] = [
 /// Reads a model file.
 pub(super) fn read(text: &str, dialect: Dialect) -> Result<ForeignModel, Problem> {
     let (words, comments) = tokens(text, dialect)?;
-    let mut script = Script { workspace: ScriptWorkspace::default(), dialect, saved: None, begin: None };
+    let mut script = Script { workspace: ScriptWorkspace::default(), dialect, saved: None, title: None, begin: None };
     script.workspace.plain.extend(VARIABLES.map(str::to_owned));
     script.all(&words)?;
     let mut model = script.model(text)?;
-    model.source = super::heading(&comments, script.begin.unwrap_or(text.len()));
+    model.title = script.title.clone();
+    model.source = super::heading(text, &comments, script.begin.unwrap_or(text.len()));
     Ok(model)
 }
 
@@ -41,6 +42,7 @@ struct Script {
     dialect: Dialect,
     /// The variables that `save` names, and what the file is called.
     saved: Option<BTreeSet<String>>,
+    title: Option<String>,
     /// Where the first assignment stands.
     begin: Option<usize>,
 }
@@ -161,6 +163,7 @@ impl Script {
                 _ => {}
             }
         }
+        self.title = names.first().cloned();
         let names: BTreeSet<String> = names.into_iter().skip(1).filter(|name| !name.starts_with('-')).collect();
         if !names.is_empty() {
             self.saved.get_or_insert_default().extend(names);
@@ -235,7 +238,10 @@ impl Script {
         let mut model = ForeignModel { definitions: self.workspace.definitions.clone(), ..ForeignModel::default() };
         let mut seen = BTreeSet::new();
         let mut new = |name: &str, span: &Span| {
-            let twice = || Problem::new(span, format!("'{name}' is listed twice"), "this").help("x, p, u and w share no name");
+            let twice = || {
+                Problem::new(span, format!("x, p, u and w have the symbol '{name}' twice"), "this symbol")
+                    .help("two variables of the script may be one symbol: give each a symbol of its own")
+            };
             if seen.insert(name.to_owned()) { Ok(()) } else { Err(twice()) }
         };
         for ((name, span), rate) in states.iter().zip(rates) {

@@ -41,7 +41,7 @@ pub(super) fn read(
     refuse_steps(words)?;
     let mut model = ForeignModel::default();
     let begin = words.iter().find(|word| word.is("@")).map_or(0, |word| word.span.start);
-    model.source = super::heading(comments, begin);
+    model.source = super::heading(text, comments, begin);
     let mut defined: BTreeMap<String, ForeignExpr> = BTreeMap::new();
     let mut order = Vec::new();
     for equation in lists.iter().filter(|list| !list.measured).flat_map(|list| &list.list) {

@@ -84,6 +84,10 @@ impl ScriptWorkspace {
             ScriptValue::One(one)
                 if !matches!(one.kind, ForeignKind::Name(_)) && !self.plain.contains(name) =>
             {
+                // a symbol that nothing has used yet makes way for its value
+                if self.symbols.contains(name) && !self.uses(name) && !one_uses(&one, name) {
+                    self.symbols.remove(name);
+                }
                 let taken = |wanted: &str| {
                     self.symbols.contains(wanted) || self.definitions.iter().any(|(own, _)| own == wanted)
                 };
@@ -100,6 +104,17 @@ impl ScriptWorkspace {
             other => other,
         };
         self.bind(name, value);
+    }
+
+    /// Whether a value of another name, or a definition, is made of a symbol.
+    fn uses(&self, symbol: &str) -> bool {
+        let values = self.bound.iter().filter(|(name, _)| *name != symbol).filter_map(|(_, value)| value.as_ref().ok());
+        let mut entries = values.flat_map(|value| match value {
+            ScriptValue::One(one) => std::slice::from_ref(one),
+            ScriptValue::Many { entries, .. } => entries.as_slice(),
+            ScriptValue::Else => &[],
+        });
+        entries.any(|one| one_uses(one, symbol)) || self.definitions.iter().any(|(_, one)| one_uses(one, symbol))
     }
 
     /// The value of an expression.
@@ -265,6 +280,12 @@ impl ScriptWorkspace {
         }
         Err(Problem::new(&syntax.span, "this call cannot be read", "this"))
     }
+}
+
+fn one_uses(one: &ForeignExpr, symbol: &str) -> bool {
+    let mut found = false;
+    one.names(&mut |name, _| found |= name == symbol);
+    found
 }
 
 /// The names of `symbols('x y, z1:4')`.
