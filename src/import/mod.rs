@@ -89,8 +89,12 @@ impl ForeignFormat {
             "py" => ForeignFormat::StrikePy,
             "m" => ForeignFormat::StrikeGoldd,
             _ if text.contains("@parameters") && text.contains('~') => ForeignFormat::Julia,
-            _ if text.contains("variables_locales") || text.contains("import sympy") => ForeignFormat::StrikePy,
-            _ if text.lines().any(|line| line.trim_start().starts_with("syms ")) => ForeignFormat::StrikeGoldd,
+            _ if text.contains("variables_locales") || text.contains("import sympy") => {
+                ForeignFormat::StrikePy
+            }
+            _ if text.lines().any(|line| line.trim_start().starts_with("syms ")) => {
+                ForeignFormat::StrikeGoldd
+            }
             _ => ForeignFormat::Formulas,
         }
     }
@@ -133,6 +137,23 @@ pub struct ImportedModel {
 /// # Errors
 /// What cannot be read, where, and what to do.
 pub fn import(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedModel, ReadError> {
+    // programs nest brackets deeper than people do, and a thread that asks may have a small stack
+    let read = std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK);
+        let running = thread.spawn_scoped(scope, || read(name, text, question));
+        // a panic goes on where it was asked for
+        running.ok().map(|running| running.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    });
+    read.unwrap_or_else(|| {
+        let problem = Problem::new(&(0..text.len().min(1)), "there is no room to read this file", "the file");
+        Err(problem.help("free some memory, and report the file if that does not help").locate(name, text))
+    })
+}
+
+/// The stack on which a file is read.
+const STACK: usize = 64 << 20;
+
+fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedModel, ReadError> {
     let text = with_plain_line_ends(text);
     let format = question.format.unwrap_or_else(|| ForeignFormat::of(name, &text));
     let located = |problem: Problem| problem.locate(name, &text);
@@ -146,7 +167,9 @@ pub fn import(name: &str, text: &str, question: &ImportQuestion) -> Result<Impor
         ForeignFormat::Formulas => formulas::read(&text, &roles),
     }
     .map_err(located)?;
-    let asked = |why: String| located(Problem::new(&(0..text.len().min(1)), why, "the file").help("name what the file has"));
+    let asked = |why: String| {
+        located(Problem::new(&(0..text.len().min(1)), why, "the file").help("name what the file has"))
+    };
     if format != ForeignFormat::Formulas {
         model.choose_outputs(&question.outputs).map_err(asked)?;
     }
@@ -158,13 +181,17 @@ pub fn import(name: &str, text: &str, question: &ImportQuestion) -> Result<Impor
     }
     model.order_definitions().map_err(located)?;
     if model.outputs.is_empty() {
-        model.remarks.push("no outputs are known: write 'output ...' below, or import again with --output NAME,...".to_owned());
+        model.remarks.push(
+            "no outputs are known: write 'output ...' below, or import again with --output NAME,..."
+                .to_owned(),
+        );
     }
     if let Some(clock) = &model.clock {
         let value = ForeignExpr::name(clock, &(0..0));
         model.outputs.push(ForeignOutput { name: None, value });
     }
-    let file = Path::new(name).file_name().map_or(name.to_owned(), |file| file.to_string_lossy().into_owned());
+    let file =
+        Path::new(name).file_name().map_or(name.to_owned(), |file| file.to_string_lossy().into_owned());
     let origin = format!("{}: {file}", format.in_words(&text));
     let written = write::proof_text(&model, &origin).map_err(located)?;
     // what cannot be read back is no proof file, whoever is to blame
@@ -197,7 +224,8 @@ fn heading(text: &str, comments: &[(usize, String)], before: usize) -> Option<St
     }
     let says = |block: Vec<&str>| {
         let has_letters = |line: &&str| line.chars().any(char::is_alphabetic);
-        let words: Vec<&str> = block.into_iter().filter(has_letters).flat_map(str::split_whitespace).collect();
+        let words: Vec<&str> =
+            block.into_iter().filter(has_letters).flat_map(str::split_whitespace).collect();
         (words.len() >= 4).then(|| words.join(" "))
     };
     let mut found = blocks.into_iter().find_map(|(_, block)| says(block))?;

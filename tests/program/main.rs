@@ -6,6 +6,7 @@ mod common;
 mod appendix;
 mod damaged;
 mod editors;
+mod import;
 mod page;
 mod paper;
 mod papers;

@@ -25,7 +25,8 @@ pub(super) struct Species {
 }
 
 impl Species {
-    pub fn read(node: Node<'_, '_>) -> Result<Species, Problem> {
+    /// Reads a species; `factor` is what the model multiplies all changes by that name no factor of their own.
+    pub fn read(node: Node<'_, '_>, factor: Option<&str>) -> Result<Species, Problem> {
         Ok(Species {
             id: required(node, "id")?.to_owned(),
             compartment: required(node, "compartment")?.to_owned(),
@@ -33,7 +34,7 @@ impl Species {
             concentration: value_of(node, "initialConcentration")?,
             is_amount: says(node, "hasOnlySubstanceUnits", false),
             is_held: says(node, "boundaryCondition", false) || says(node, "constant", false),
-            factor: node.attribute("conversionFactor").map(str::to_owned),
+            factor: node.attribute("conversionFactor").or(factor).map(str::to_owned),
             span: place(node),
         })
     }
@@ -76,13 +77,12 @@ pub(super) fn shared_local_names(model: Node<'_, '_>) -> BTreeSet<String> {
 impl Reaction {
     pub fn read(
         node: Node<'_, '_>,
-        at: usize,
         formulas: &Formulas,
         is_level_3: bool,
         shared: &BTreeSet<String>,
         taken: &mut BTreeSet<String>,
     ) -> Result<Reaction, Problem> {
-        let id = node.attribute("id").map_or_else(|| format!("reaction_{}", at + 1), str::to_owned);
+        let id = required(node, "id")?.to_owned();
         let mut makes = Vec::new();
         for (list, sign) in [("listOfReactants", -1), ("listOfProducts", 1)] {
             for reference in listed(node, list) {
@@ -122,7 +122,10 @@ fn stoichiometry(node: Node<'_, '_>, formulas: &Formulas, is_level_3: bool) -> R
     if let Some(math) = elements(node).find(|one| is(*one, "stoichiometryMath")) {
         return match child(math, "math") {
             Some(math) => formulas.meaning(math),
-            None => Err(Problem::new(&place(math), "a stoichiometry without a formula", "this").help("write <math>")),
+            None => {
+                Err(Problem::new(&place(math), "a stoichiometry without a formula", "this")
+                    .help("write <math>"))
+            }
         };
     }
     let span = place(node);
@@ -143,15 +146,20 @@ impl Reading {
                 Some(law) => model.definitions.push((reaction.id.clone(), law.clone())),
                 None if changes => {
                     let message = format!("the reaction '{}' has no kinetic law", reaction.id);
-                    return Err(Problem::new(&reaction.span, message, "this").help("a model of rates has one for each reaction"));
+                    return Err(Problem::new(&reaction.span, message, "this")
+                        .help("a model of rates has one for each reaction"));
                 }
                 None => {}
             }
             if let Some((species, place)) =
                 reaction.makes.iter().find(|(species, _)| !self.species.iter().any(|one| one.id == *species))
             {
-                return Err(Problem::new(&place.span, format!("nothing says what the species '{species}' is"), "this")
-                    .help("list it under listOfSpecies"));
+                return Err(Problem::new(
+                    &place.span,
+                    format!("nothing says what the species '{species}' is"),
+                    "this",
+                )
+                .help("list it under listOfSpecies"));
             }
         }
         for species in self.species.iter().filter(|one| self.moves_by_reactions(&one.id)) {
@@ -213,7 +221,8 @@ impl Reading {
             return Ok(None);
         };
         if !rule.is_rate {
-            let message = format!("'{}' is a concentration in a compartment whose size is assigned", species.id);
+            let message =
+                format!("'{}' is a concentration in a compartment whose size is assigned", species.id);
             return Err(Problem::new(&species.span, message, "this species")
                 .help("write the rate of the size as a rate rule, or the species as an amount"));
         }
