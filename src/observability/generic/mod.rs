@@ -65,6 +65,8 @@ pub struct GenericAnswer {
     pub order: usize,
     /// The unknowns in the order of the file, and whether each is seen.
     pub unknowns: Vec<(Symbol, Seen)>,
+    /// Of each of them whether it is seen wherever the rank is `at_most`, with the same error.
+    pub(crate) seen_at_most: Vec<bool>,
     /// Why the two bounds differ, or nothing more is known.
     pub open: Option<String>,
 }
@@ -316,6 +318,7 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
         rounds: 0,
         order: 0,
         unknowns: columns.iter().map(|column| (system.states[*column], Seen::Undecided)).collect(),
+        seen_at_most: vec![false; dimension],
         open: None,
     };
     // any fixed seed: what is true almost everywhere does not depend on the user's
@@ -430,6 +433,7 @@ fn nothing_known(system: &System, why: String) -> GenericAnswer {
         log2_error: f64::NEG_INFINITY,
         rounds: 0,
         order: 0,
+        seen_at_most: vec![false; unknowns.len()],
         unknowns,
         open: Some(why),
     }
@@ -483,6 +487,12 @@ fn conclude(
     if least < most && answer.open.is_none() {
         answer.open =
             Some(format!("the rank is {least} with some signs of the square roots and {most} with others"));
+    }
+    // without its column the rank is less at all random points, and so at every state; the signs that have the highest rank count
+    if bounds.is_ok() && answer.at_most == most {
+        let highest = || best.iter().filter(|(rank, _)| *rank == most);
+        answer.seen_at_most =
+            (0..answer.dimension).map(|place| highest().all(|(_, seen)| seen[place])).collect();
     }
     let known = answer.is_final();
     for (place, (_, seen)) in answer.unknowns.iter_mut().enumerate() {
