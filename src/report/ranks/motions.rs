@@ -87,11 +87,11 @@ pub(super) fn motions_text(found: &UnseenMotions, sampled: bool, out: &mut Strin
             writeln!(out, "seen together: {}  (proved, {})", function.text, certainty(function.log2_error));
     }
     if found.functions_missing > 0 {
-        let _ = writeln!(
-            out,
-            "{} more functions are seen, which are not found in low degree{degree}",
-            found.functions_missing
-        );
+        let more = match found.functions_missing {
+            1 => "1 more function is seen, which is not found in low degree".to_owned(),
+            missing => format!("{missing} more functions are seen, which are not found in low degree"),
+        };
+        let _ = writeln!(out, "{more}{degree}");
     }
 }
 
