@@ -575,7 +575,8 @@ fn together(question: &Question, found: Vec<(Size, Branch, OnOneBranch)>, unsolv
                 verdicts.push(match verdict {
                     // of a rank at almost all states this is no counterexample
                     Verdict::Refuted { witness, .. } if size == Size::Smaller && of_rank => {
-                        let the_rank = if matches!(question, Question::Visible { .. }) { "it" } else { "the rank" };
+                        let the_rank =
+                            if matches!(question, Question::Visible { .. }) { "it" } else { "the rank" };
                         Verdict::undecided(format!(
                             "{place}{the_rank} is {} there, on a branch of fewer dimensions than the set",
                             witness.left

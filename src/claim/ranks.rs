@@ -14,7 +14,8 @@ use rand::Rng;
 const MINOR: &str = "a minor that is not zero modulo a prime";
 
 /// The same of the differentials of derivatives along a trajectory, and the other half.
-pub(super) const MINOR_OF_SERIES: &str = "a minor of the differentials of power series that is not zero modulo a prime";
+pub(super) const MINOR_OF_SERIES: &str =
+    "a minor of the differentials of power series that is not zero modulo a prime";
 pub(super) const SERIES: &str = "power series at random points of random prime fields";
 
 /// Decides `rank(M) = claimed` on a branch; the entries are the sides of the terms.

@@ -15,9 +15,7 @@ use super::terms::{OnBranch, Point, Terms, Values};
 use super::verdict::{Verdict, Witness};
 use crate::checker::{CertifiedRank, Effort, Evidence, Finding, Ratio};
 use crate::evidence::{StatementAt, largest_minor};
-use crate::expression::{
-    Guard, Need, NodeId, Program, ZeroTest, add_guard, expand_angles, identically_zero,
-};
+use crate::expression::{Guard, Need, NodeId, Program, ZeroTest, add_guard, expand_angles, identically_zero};
 use crate::number::{PrimeField, Rationals};
 use crate::observability::{
     Branch, Codistribution, Frame, Length, Seen, UnseenField, kernel, rank, unseen_motions,
@@ -104,9 +102,9 @@ pub(super) fn decide_visible(
             if kept == Kept::Evidence {
                 // random numbers of its own: what is kept changes no verdict
                 evidence = proof(system, on, (is_seen, frame), &verdict, &mut rng.clone());
-                evidence.extend(fields.iter().flatten().map(|field| {
-                    kept_outputs(system, on, field, &mut rng.clone())
-                }));
+                evidence.extend(
+                    fields.iter().flatten().map(|field| kept_outputs(system, on, field, &mut rng.clone())),
+                );
             }
             verdict
         }
@@ -115,11 +113,7 @@ pub(super) fn decide_visible(
 }
 
 /// What is known of each function, and of the set.
-fn known(
-    system: &mut System,
-    on: &OnBranch,
-    rng: &mut ChaCha8Rng,
-) -> Result<(Vec<Known>, Frame), String> {
+fn known(system: &mut System, on: &OnBranch, rng: &mut ChaCha8Rng) -> Result<(Vec<Known>, Frame), String> {
     let values = &on.branch.values;
     let functions = &on.statement.sides;
     let frame = Frame::new(system, values)?;
@@ -194,7 +188,8 @@ fn fields_that_move(
     functions: &[NodeId],
     rng: &mut ChaCha8Rng,
 ) -> Option<Vec<UnseenField>> {
-    let on_a_set = !branch.values.is_empty() || !branch.guards.iter().all(|guard| guard.need == Need::NotZero);
+    let on_a_set =
+        !branch.values.is_empty() || !branch.guards.iter().all(|guard| guard.need == Need::NotZero);
     if on_a_set || system.time == Time::Discrete || system.unknown_count() > MOST_FOR_FIELDS {
         return None;
     }
@@ -372,11 +367,7 @@ impl Refuted<'_> {
         let rank = words.claimed;
         let with_it = rank + usize::from(self.is_seen);
         let all = with_functions(system, words, &[self.function], with_it);
-        let terms = Terms {
-            sides: all.entries.clone(),
-            relations: Vec::new(),
-            ..self.on.statement.clone()
-        };
+        let terms = Terms { sides: all.entries.clone(), relations: Vec::new(), ..self.on.statement.clone() };
         let on = OnBranch::new(system, &self.on.branch, &terms).ok()?;
         for attempt in 0..ATTEMPTS {
             let point = on.draw(system, attempt, rng);
@@ -392,7 +383,11 @@ impl Refuted<'_> {
             };
             let both = [certified(system, words), certified(system, &all)];
             let [Some(without), Some(with)] = both else { continue };
-            return Some((rank, on.describe(system, &point), vec![Evidence::Rank(without), Evidence::Rank(with)]));
+            return Some((
+                rank,
+                on.describe(system, &point),
+                vec![Evidence::Rank(without), Evidence::Rank(with)],
+            ));
         }
         None
     }

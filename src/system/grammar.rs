@@ -163,9 +163,9 @@ impl ClaimBody {
     /// Whether a statement is about `rank`, the rank of the observability codistribution, or about what it spans.
     pub fn is_about_the_codistribution(&self) -> bool {
         let is_rank = |side: &Expr| matches!(&side.kind, ExprKind::Name(name) if name == "rank");
-        self.statements().iter().any(|s| {
-            is_rank(&s.equation.left) || is_rank(&s.equation.right) || s.is_about_what_is_seen()
-        })
+        self.statements()
+            .iter()
+            .any(|s| is_rank(&s.equation.left) || is_rank(&s.equation.right) || s.is_about_what_is_seen())
     }
 }
 

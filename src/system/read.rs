@@ -380,8 +380,10 @@ impl System {
             (Value::Visible { .. }, _) | (_, Value::Visible { .. }) => statement.is_about_what_is_seen(),
             (left, right) => matches!(left, Value::Scalar(_)) || matches!(right, Value::Scalar(_)),
         };
-        let of_codistribution =
-            matches!(values, (Value::CodistributionRank | Value::Visible { .. }, _) | (_, Value::CodistributionRank));
+        let of_codistribution = matches!(
+            values,
+            (Value::CodistributionRank | Value::Visible { .. }, _) | (_, Value::CodistributionRank)
+        );
         if of_codistribution
             && !self.states.is_empty()
             && !self.outputs.is_empty()

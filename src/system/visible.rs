@@ -71,14 +71,13 @@ impl System {
                 Value::Scalar(one) => vec![one],
                 Value::Matrix(matrix) => matrix.entries,
                 other => {
-                    let message = format!("'{word}' is said of unknowns and functions, not of {}", other.describe());
+                    let message =
+                        format!("'{word}' is said of unknowns and functions, not of {}", other.describe());
                     return Err(Problem::new(&argument.span, message, "this"));
                 }
             };
             let mentioned = self.graph.symbols_of(found.iter().copied());
-            if of_constants
-                && let Some(moves) = mentioned.into_iter().find(|symbol| self.is_moved(*symbol))
-            {
+            if of_constants && let Some(moves) = mentioned.into_iter().find(|symbol| self.is_moved(*symbol)) {
                 let moves = self.symbol_name(moves).to_owned();
                 let other = if is_seen { "observable" } else { "unobservable" };
                 let message = format!("'{word}' is said of constants, and '{moves}' moves");
