@@ -44,7 +44,9 @@ pub(crate) use equilibrate::WEIGHT_OF_ERRORS;
 pub(crate) use equilibrate::equilibrate;
 #[doc(hidden)]
 pub use flow::Flow;
-pub use generic::{Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, generic_rank};
+pub use generic::{
+    Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, generic_answer_of, generic_rank,
+};
 #[doc(hidden)]
 pub use generic::{Directions, Probe};
 pub(crate) use locus::AVOIDED;

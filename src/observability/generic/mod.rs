@@ -24,7 +24,7 @@ mod tests;
 pub(super) use matrix::formal_rank;
 pub use matrix::{GenericRank, generic_rank};
 
-use crate::expression::Symbol;
+use crate::expression::{NodeId, Symbol};
 use crate::number::{PrimeField, Refusal};
 use crate::observability::State;
 use crate::system::{Assignment, System, Time};
@@ -94,6 +94,8 @@ const MOST_ROOTS: usize = 5;
 struct Evaluated {
     /// Of the unknowns.
     echelon: Echelon,
+    /// The differentials of the functions that are asked for, by unknowns.
+    asked: Vec<Vec<u64>>,
     /// The rank where what is known at the beginning counts as unknown.
     closed: usize,
     order: usize,
@@ -104,6 +106,18 @@ impl Evaluated {
     fn rank(&self) -> usize {
         self.echelon.rank()
     }
+
+    /// Of each unknown, and then of each function that is asked for, whether it is seen here.
+    fn seen(&self) -> Vec<bool> {
+        seen_in(&self.echelon, &self.asked)
+    }
+}
+
+/// Of each unknown whether its unit row lies in the span, then of each of these rows.
+fn seen_in(echelon: &Echelon, asked: &[Vec<u64>]) -> Vec<bool> {
+    let mut seen = echelon.seen();
+    seen.extend(asked.iter().map(|row| echelon.contains(row.clone())));
+    seen
 }
 
 /// The equations of a system, to be evaluated at random points modulo random primes.
@@ -122,7 +136,12 @@ struct Draw {
 impl Probe {
     /// The system on the set of these conditions, solved for symbols.
     pub fn new(system: &System, conditions: &Assignment) -> Probe {
-        Probe { equations: Equations::new(system, conditions) }
+        Probe::asking(system, conditions, &[])
+    }
+
+    /// The same, which asks of functions besides whether they are seen.
+    fn asking(system: &System, conditions: &Assignment, asked: &[NodeId]) -> Probe {
+        Probe { equations: Equations::new(system, conditions, asked) }
     }
 
     /// The rank by order, at one start: outputs are differentiated while a derivative adds to the span.
@@ -142,6 +161,11 @@ impl Probe {
             let all = equations.closed.len();
             let mut closed = (all > full).then(|| Echelon::new(draw.field, all));
             let mut open: Vec<Covector> = trajectory.covectors;
+            let of_unknowns = |covector: &Covector| -> Vec<u64> {
+                let value = covector.value();
+                equations.columns.iter().map(|place| value[*place]).collect()
+            };
+            let asked: Vec<Vec<u64>> = open.split_off(equations.outputs).iter().map(of_unknowns).collect();
             let (mut order, mut spanned) = (0, 0);
             for k in 0..length {
                 let mut further = Vec::new();
@@ -172,7 +196,7 @@ impl Probe {
                 }
             }
             if open.is_empty() || spanned == all || length >= most {
-                return Ok(Evaluated { echelon, closed: spanned, order });
+                return Ok(Evaluated { echelon, asked, closed: spanned, order });
             }
             length = (2 * length).min(most);
         }
@@ -302,11 +326,23 @@ pub enum Ceiling {
 
 /// What is seen at almost all states that satisfy the conditions.
 pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
+    generic_answer_of(system, conditions, ceiling, &[]).0
+}
+
+/// The same, and of each of some functions whether it is seen: whether its differential lies in the span of those of what is
+/// measured. That it does not is as certain as the rank; that it does, as what else is said to be seen.
+pub fn generic_answer_of(
+    system: &System,
+    conditions: &Assignment,
+    ceiling: Ceiling,
+    asked: &[NodeId],
+) -> (GenericAnswer, Vec<Seen>) {
     if system.time == Time::Discrete {
-        return answer_in_steps(system, conditions, ceiling);
+        return answer_in_steps(system, conditions, ceiling, asked);
     }
+    let unknown = || vec![Seen::Undecided; asked.len()];
     let rests = ceiling == Ceiling::Rests;
-    let probe = Probe::new(system, conditions);
+    let probe = Probe::asking(system, conditions, asked);
     let columns = probe.equations.columns.clone();
     let dimension = columns.len();
     let mut answer = GenericAnswer {
@@ -334,15 +370,15 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
             Ok(found) => found,
             Err(why) => {
                 answer.open = Some(why);
-                return answer;
+                return (answer, unknown());
             }
         };
         answer.rounds += 1;
-        best.resize(found.len(), (0, vec![false; dimension]));
+        best.resize(found.len(), (0, vec![false; dimension + asked.len()]));
         answer.order = found.iter().map(|here| here.order).fold(answer.order, usize::max);
         closed = found.iter().map(|here| here.closed).fold(closed, usize::max);
         // which choice of signs is which is another matter at every point
-        let mut found: Vec<_> = found.iter().map(|here| (here.rank(), here.echelon.seen())).collect();
+        let mut found: Vec<_> = found.iter().map(|here| (here.rank(), here.seen())).collect();
         found.sort_unstable();
         for (best, here) in best.iter_mut().zip(found) {
             if here.0 > best.0 {
@@ -357,16 +393,22 @@ pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling
         }
     }
     answer.closed_at_most = if bounds.is_ok() { closed } else { all };
-    conclude(&mut answer, &best, &bounds, known_functions, ceiling);
-    answer
+    let seen = conclude(&mut answer, &best, &bounds, known_functions, ceiling);
+    (answer, seen)
 }
 
 /// The same in discrete time.
-fn answer_in_steps(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
-    let mut answer = nothing_known(system, String::new());
-    let steps = match steps::Steps::new(system, conditions, ceiling == Ceiling::Rests) {
+fn answer_in_steps(
+    system: &System,
+    conditions: &Assignment,
+    ceiling: Ceiling,
+    asked: &[NodeId],
+) -> (GenericAnswer, Vec<Seen>) {
+    let nothing_known = |why| (nothing_known(system, why), vec![Seen::Undecided; asked.len()]);
+    let (mut answer, _) = nothing_known(String::new());
+    let steps = match steps::Steps::new(system, conditions, ceiling == Ceiling::Rests, asked) {
         Ok(steps) => steps,
-        Err(why) => return nothing_known(system, why),
+        Err(why) => return nothing_known(why),
     };
     // any fixed seed: what is true almost everywhere does not depend on the user's
     let mut rng = ChaCha8Rng::seed_from_u64(0x0073_7465_7073);
@@ -375,7 +417,7 @@ fn answer_in_steps(system: &System, conditions: &Assignment, ceiling: Ceiling) -
     let mut refused = String::new();
     for _ in 0..bounds.as_ref().map_or(1, |bounds| bounds.rounds) + ATTEMPTS {
         let field = PrimeField::random(&mut rng);
-        let (echelon, order) = match steps.follow(field, &mut rng) {
+        let (echelon, rows, order) = match steps.follow(field, &mut rng) {
             Ok(found) => found,
             Err(refusal) => {
                 refused = refusal.to_string();
@@ -384,7 +426,7 @@ fn answer_in_steps(system: &System, conditions: &Assignment, ceiling: Ceiling) -
         };
         answer.rounds += 1;
         answer.order = answer.order.max(order);
-        let (rank, seen) = (echelon.rank(), echelon.seen());
+        let (rank, seen) = (echelon.rank(), seen_in(&echelon, &rows));
         best = Some(match best.take() {
             Some(known) if known.0 > rank => known,
             // seen is what the others do without at no point
@@ -399,10 +441,10 @@ fn answer_in_steps(system: &System, conditions: &Assignment, ceiling: Ceiling) -
         }
     }
     let Some(best) = best else {
-        return nothing_known(system, format!("{ATTEMPTS} random sequences met poles: {refused}"));
+        return nothing_known(format!("{ATTEMPTS} random sequences met poles: {refused}"));
     };
     if bounds.as_ref().is_ok_and(|bounds| answer.rounds < bounds.rounds) && best.0 < answer.dimension {
-        return nothing_known(system, format!("too many of the random sequences met poles: {refused}"));
+        return nothing_known(format!("too many of the random sequences met poles: {refused}"));
     }
     answer.open = None;
     let closed = system.closed_coordinates();
@@ -412,14 +454,14 @@ fn answer_in_steps(system: &System, conditions: &Assignment, ceiling: Ceiling) -
             // what is known at the beginning counts as unknown
             let mut all = system.clone();
             all.known.retain(|symbol| !closed.contains(symbol));
-            answer.closed_at_most = match answer_in_steps(&all, conditions, ceiling) {
+            answer.closed_at_most = match answer_in_steps(&all, conditions, ceiling, &[]).0 {
                 found if found.open.is_none() || ceiling != Ceiling::Rests => found.at_least,
                 _ => closed.len(),
             };
         }
     }
-    conclude(&mut answer, &[best], &bounds, true, ceiling);
-    answer
+    let seen = conclude(&mut answer, &[best], &bounds, true, ceiling);
+    (answer, seen)
 }
 
 /// An answer that says why it says nothing.
@@ -444,14 +486,14 @@ fn functions_are_known(equations: &Equations) -> bool {
     equations.related && (equations.roots == 0 || equations.roots <= MOST_ROOTS)
 }
 
-/// What follows from the ranks of each choice of signs.
+/// What follows from the ranks of each choice of signs; of the functions that are asked for, whether each is seen.
 fn conclude(
     answer: &mut GenericAnswer,
     best: &[(usize, Vec<bool>)],
     bounds: &Result<Rounds, String>,
     known_functions: bool,
     ceiling: Ceiling,
-) {
+) -> Vec<Seen> {
     let ranks = || best.iter().map(|(rank, _)| *rank);
     let (least, most) = (ranks().min().unwrap_or(0), ranks().max().unwrap_or(0));
     if known_functions {
@@ -495,13 +537,18 @@ fn conclude(
             (0..answer.dimension).map(|place| highest().all(|(_, seen)| seen[place])).collect();
     }
     let known = answer.is_final();
-    for (place, (_, seen)) in answer.unknowns.iter_mut().enumerate() {
+    let told = |place: usize| {
         let by = || best.iter().map(|(_, seen)| seen[place]);
-        *seen = match known {
+        match known {
             _ if answer.at_least == answer.dimension => Seen::Yes,
             true if by().all(|seen| seen) => Seen::Yes,
             true if !by().any(|seen| seen) => Seen::No,
             _ => Seen::Undecided,
-        };
-    }
+        }
+    };
+    let all = best.first().map_or(0, |(_, seen)| seen.len());
+    let mut found: Vec<Seen> = (0..all).map(told).collect();
+    let asked = found.split_off(answer.dimension.min(all));
+    answer.unknowns.iter_mut().zip(found).for_each(|((_, seen), found)| *seen = found);
+    asked
 }
