@@ -17,11 +17,13 @@ mod covectors;
 mod echelon;
 mod equations;
 mod matrix;
+mod orders;
 mod steps;
 #[cfg(test)]
 mod tests;
 
 pub(super) use matrix::formal_rank;
+pub(crate) use orders::Orders;
 pub use matrix::{GenericRank, generic_rank};
 
 use crate::expression::{NodeId, Symbol};
