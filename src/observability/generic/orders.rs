@@ -5,7 +5,7 @@
 //! derivatives of all outputs up to their `h`. The field that these generate is therefore that of all derivatives.
 
 use super::echelon::Echelon;
-use super::{ATTEMPTS, Draw, Probe};
+use super::probe::{ATTEMPTS, Draw, Probe};
 use crate::number::{PrimeField, Refusal};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -80,7 +80,8 @@ impl Probe {
                 }
             }
             if open.is_empty() || length >= most {
-                let free = (0..equations.columns.len()).filter(|column| !columns.begins_at(*column)).collect();
+                let free =
+                    (0..equations.columns.len()).filter(|column| !columns.begins_at(*column)).collect();
                 let last = last.into_iter().map(|order| order.unwrap_or(most)).collect();
                 return Ok(Orders { last, raised, free });
             }
