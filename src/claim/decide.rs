@@ -12,6 +12,7 @@ use super::question::{Question, claimed_integer, guards_of_conditions, sample_bo
 use super::ranks::{decide_codistribution, decide_rank};
 use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict, Witness};
+use super::visible::{decide_visible, smooth};
 use crate::checker::{Evidence, VerdictRecord};
 use crate::drops::ClaimedEverywhere;
 use crate::expression::syntax::{Equation, Expr, Relation};
@@ -247,7 +248,13 @@ fn attempt(
     for guard in before.into_iter().chain(after) {
         add_guard(&system.graph, &mut guards, guard);
     }
-    let of_rank = [&left, &right].iter().any(|value| matches!(value, Value::CodistributionRank));
+    let of_what_is_seen = matches!(left, Value::Visible { .. });
+    let of_rank =
+        of_what_is_seen || [&left, &right].iter().any(|value| matches!(value, Value::CodistributionRank));
+    if of_what_is_seen {
+        // a function has a differential where it is smooth
+        smooth(&mut guards);
+    }
     if of_rank {
         // every Lie derivative of the outputs has to exist
         guards.extend(system.smooth_guards(&system.moving_fields()));
@@ -369,7 +376,7 @@ struct Asked<'a> {
 }
 
 /// A branch, or a part of one, with its verdict and what that rests on.
-type DecidedBranch = (Branch, OnOneBranch, Option<Evidence>);
+type DecidedBranch = (Branch, OnOneBranch, Vec<Evidence>);
 
 impl Asked<'_> {
     /// The verdict on a branch: of a rank on each part on which the signs under roots of squares are known, of anything else only
@@ -444,7 +451,7 @@ impl Asked<'_> {
         cell: &SignCell,
         kept: Kept,
         rng: &mut ChaCha8Rng,
-    ) -> Result<(OnOneBranch, Option<Evidence>), String> {
+    ) -> Result<(OnOneBranch, Vec<Evidence>), String> {
         let question = self.question;
         let all = self.all_guards(system, branch);
         let is_assumed: Vec<bool> =
@@ -470,11 +477,15 @@ impl Asked<'_> {
             Question::Codistribution { claimed } => {
                 decide_codistribution(system, &on, branch, *claimed, rng)?
             }
+            Question::Visible { is_seen, .. } => {
+                let resolved = on_resolved(system, &on, cell, rng)?;
+                return decide_visible(system, resolved.as_ref().unwrap_or(&on), *is_seen, kept, rng);
+            }
         };
-        let mut evidence = None;
+        let mut evidence = Vec::new();
         if let (OnOneBranch::Verdict(verdict, _), Kept::Evidence) = (&verdict, kept) {
             // random numbers of its own: what is kept changes no verdict
-            evidence = question.evidence(system, &on, verdict, &mut rng.clone());
+            evidence.extend(question.evidence(system, &on, verdict, &mut rng.clone()));
         }
         Ok((verdict, evidence))
     }
@@ -564,8 +575,10 @@ fn together(question: &Question, found: Vec<(Size, Branch, OnOneBranch)>, unsolv
                 verdicts.push(match verdict {
                     // of a rank at almost all states this is no counterexample
                     Verdict::Refuted { witness, .. } if size == Size::Smaller && of_rank => {
+                        let the_rank =
+                            if matches!(question, Question::Visible { .. }) { "it" } else { "the rank" };
                         Verdict::undecided(format!(
-                            "{place}the rank is {} there, on a branch of fewer dimensions than the set",
+                            "{place}{the_rank} is {} there, on a branch of fewer dimensions than the set",
                             witness.left
                         ))
                     }

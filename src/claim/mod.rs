@@ -23,6 +23,7 @@ mod selection;
 mod terms;
 mod value;
 mod verdict;
+mod visible;
 mod witness;
 
 pub use decide::{decide, decide_all, decide_all_keeping, prove};

@@ -13,7 +13,7 @@ use dashu::rational::RBig;
 pub(super) const LARGEST_GRAPH: usize = 4_000_000;
 
 /// The functions of the language beside [`Function::ALL`].
-pub(super) const OTHER_FUNCTIONS: [&str; 16] = [
+pub(super) const OTHER_FUNCTIONS: [&str; 20] = [
     "tan",
     "cot",
     "sec",
@@ -30,6 +30,10 @@ pub(super) const OTHER_FUNCTIONS: [&str; 16] = [
     "cross",
     "sum",
     "product",
+    "observable",
+    "unobservable",
+    "identifiable",
+    "unidentifiable",
 ];
 
 /// What a name should have been.
@@ -90,7 +94,7 @@ impl System {
             ExprKind::Matrix(rows) => self.blocks(rows, &expr.span),
             ExprKind::At(inner, list) => {
                 let (value, domain) = self.apart(|system| system.elaborate(inner))?;
-                if matches!(value, Value::CodistributionRank | Value::Pole { .. }) {
+                if matches!(value, Value::CodistributionRank | Value::Pole { .. } | Value::Visible { .. }) {
                     let message = format!("{} is not taken at a point", value.describe());
                     return Err(Problem::new(&expr.span, message, "here")
                         .help("write 'where name = value' behind the claim"));
@@ -153,6 +157,9 @@ impl System {
             Value::Pole { expression, factor } => {
                 let both = graph.substitute(&[expression, factor], assignment);
                 Value::Pole { expression: both[0], factor: both[1] }
+            }
+            Value::Visible { functions, is_seen } => {
+                Value::Visible { functions: graph.substitute(&functions, assignment), is_seen }
             }
             Value::CodistributionRank => value,
         }
@@ -291,6 +298,9 @@ impl System {
                 )),
             },
             _ => {
+                if let Some(word) = super::visible::VISIBLE.into_iter().find(|(word, ..)| *word == name) {
+                    return self.visible(word, arguments, span);
+                }
                 if let Some(found) = self.composed(name, arguments, span) {
                     return found;
                 }

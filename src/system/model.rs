@@ -165,6 +165,13 @@ pub enum Value {
         /// What vanishes there.
         factor: NodeId,
     },
+    /// `observable(e, ...)` or `unobservable(e, ...)`: a statement by itself.
+    Visible {
+        /// What it is said of.
+        functions: Vec<NodeId>,
+        /// Whether they are seen.
+        is_seen: bool,
+    },
 }
 
 impl Value {
@@ -199,6 +206,7 @@ impl Value {
             Value::Matrix(m) => format!("a matrix of {} by {}", m.rows, m.columns),
             Value::Rank(_) | Value::CodistributionRank => "a rank".to_owned(),
             Value::Pole { .. } => "the order of a pole".to_owned(),
+            Value::Visible { .. } => "a statement about what is seen".to_owned(),
         }
     }
 }

@@ -77,6 +77,12 @@ fn unknowns_are_decided_where_the_states_decide_the_rank() {
     };
     let power = "system \"s\" state x, y param n unknown drift f x' = -x^n y' = y^n output x initial x = 1 sample y in [1, 2]";
     assert_eq!(seen(power), [Seen::No, Seen::Yes]);
+    // without states it is left undecided, and that is said
+    let unasked = |text: &str| {
+        let mut system: System = text.parse().unwrap();
+        answer_rank(&mut system, &RankQuestion { samples: 0, ..RankQuestion::default() }).unwrap().cut_off()
+    };
+    assert!(unasked(power) && !unasked(&power.replace("x^n", "n*x").replace("y^n", "y")));
     // asin(sin(x)) is x on a part of the states: their ranks are two
     let parts = |range: &str| {
         format!(
