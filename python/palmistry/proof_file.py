@@ -1,52 +1,92 @@
-"""Proof files, read by a parser of their own: what is not read is refused by name."""
+"""Proof files, read into functions of an environment: symbols with their values. What is not read is refused by name."""
 
 import os
 import re
 from fractions import Fraction
 
-from . import terms
-from .terms import add, apply, const, div, mul, neg, power, sub, value
+from .values import Dual, NotRead, Turn, apply, determinant, each, inverse, invert, matrix, number, raised, refuse, times, total
 
-NAME = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
+NAME = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*'*")
 SPACE = re.compile(r"(?:\s+|#[^\n]*)*")
-ENTRIES = set("system use state param angle known unknown initial experiments let drift input field output sample claim erratum "
-              "damaged scan convention loose definition undecided set pole map line reduction".split())
-PLAIN = {"sqrt", "exp", "log", "sin", "cos", "asin", "acos", "atan"}
-RELATION = re.compile(r"!=|<=|>=|=|<|>")
+RELATION = r"!=|<=|>=|=|<|>"
+ENTRIES = set("system use state param angle known unknown initial experiments let drift input field output sample claim erratum damaged"
+              " scan convention loose definition undecided set pole map line reduction".split())
+SIGNALS = 6  # derivatives of a known signal that are told apart
 
 
-class NotRead(Exception):
-    """Something that this program does not read."""
+class Environment:
+    """Values of symbols, each found when it is asked for; definitions are evaluated once."""
+
+    def __init__(self, values, level=0): self.values, self.level, self.kept = values, level, {}
+
+    def value(self, name):
+        if name not in self.values:
+            refuse(f"{name} has no value")
+        found = self.values[name]
+        if callable(found):
+            found = self.values[name] = found()
+        return found
+
+    def along(self, rates):
+        """The point moved along a field: symbols as dual numbers of a level of their own."""
+        def moved(name, rate):
+            slope = number(rate(self))
+            return self.value(name) if isinstance(slope, Fraction) and slope == 0 else Dual(self.level + 1, self.value(name), slope)
+        values = {name: lambda name=name: self.value(name) for name in self.values}
+        for name, rate in rates.items():
+            values[name] = lambda name=name, rate=rate: moved(name, rate)
+        return Environment(values, self.level + 1)
+
+    def slope(self, value):
+        """The derivative in what was evaluated where `along` has led."""
+        if isinstance(value, list):
+            return [[self.slope(x) for x in row] for row in value]
+        return value.slope if isinstance(value, Dual) and value.level == self.level else Fraction(0)
 
 
-class Text:
-    """A text, and how far it was read."""
+def lie(rates, of):
+    def derivative(at):
+        there = at.along(rates)
+        return there.slope(of(there))
+    return derivative
 
-    def __init__(self, text):
-        self.text, self.at = text, 0
+
+def slopes(of, columns):
+    """The row of derivatives by some symbols."""
+    return lambda at: [number(lie({column: lambda at: Fraction(1)}, of)(at)) for column in columns]
+
+
+class ProofFile:
+    """A system: its states, fields, outputs and definitions."""
+
+    def __init__(self, path, depth=0):
+        if depth > 8:
+            refuse("files that use one another")
+        with open(path, encoding="utf-8") as file:
+            self.text, self.at = file.read(), 0
+        self.path, self.depth, self.source = path, depth, re.sub(r"#[^\n]*|\s+", "", self.text)
+        self.states, self.unknown, self.known, self.symbols, self.angles = [], [], set(), set(), set()
+        self.lets, self.fields, self.moving, self.imports, self.outputs, self.signals = {}, {}, [], {}, [], []
         self.skip()
+        while self.at < len(self.text):
+            word = self.match(NAME.pattern)
+            if word not in ENTRIES or word == "experiments":
+                refuse(f"'{word or self.text[self.at:self.at + 20]}'")
+            getattr(self, "read_" + word, lambda: None)()
+            self.to_next_entry()
+        for name, order in self.signals:
+            rates = {name + "'" * k: (lambda at, next_=name + "'" * (k + 1): at.value(next_)) for k in range(order)}
+            for field in ([f for f, kind in self.moving if kind == "drift"] or [None]):
+                if field is None:
+                    field = "signals"
+                    self.moving.append((field, "drift"))
+                    self.fields[field] = {}
+                self.fields[field].update(rates)
+
+    # reading
 
     def skip(self):
         self.at = SPACE.match(self.text, self.at).end()
-
-    def word(self):
-        """The name that comes next, or an empty text."""
-        found = NAME.match(self.text, self.at)
-        return found.group() if found else ""
-
-    def take(self, wanted):
-        """Whether this sign or word comes next; it is read."""
-        end = self.at + len(wanted)
-        here = self.text.startswith(wanted, self.at)
-        if here and not (wanted[-1].isalnum() and re.match(r"\w", self.text[end:end + 1])):
-            self.at = end
-            self.skip()
-            return True
-        return False
-
-    def need(self, wanted):
-        if not self.take(wanted):
-            raise NotRead(f"'{self.text[self.at:self.at + 20]}' where '{wanted}' was awaited")
 
     def match(self, pattern):
         found = re.compile(pattern).match(self.text, self.at)
@@ -56,126 +96,127 @@ class Text:
         self.skip()
         return found.group()
 
-    def string(self):
-        return self.match(r'"[^"]*"')
+    def take(self, wanted):
+        return self.match(re.escape(wanted) + (r"\b" if wanted.isalpha() else "")) is not None
+
+    def need(self, wanted):
+        if not self.take(wanted):
+            refuse(f"'{self.text[self.at:self.at + 20]}' where '{wanted}' was awaited")
+
+    def name(self):
+        name = self.match(NAME.pattern)
+        if name is None or self.text[self.at:self.at + 1] in ("[", "@"):
+            refuse("a vector, or an experiment" if name else f"'{self.text[self.at:self.at + 20]}'")
+        return name
 
     def to_next_entry(self):
-        """Reads over what belongs to an entry."""
         depth = 0
         while self.at < len(self.text):
-            word = self.word()
-            if depth == 0 and word in ENTRIES:
+            mark = self.at
+            found = self.match(r'"[^"]*"') or self.match(NAME.pattern) or self.match(r"(?s).")
+            if depth == 0 and found in ENTRIES:
+                self.at = mark
                 return
-            found = self.string() or self.match(r"[\[{(\]})]") or (word and self.match(re.escape(word))) or self.match(r".")
             depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(found, 0)
 
+    def dimension(self):
+        if self.take(":"):
+            self.match(r"[^,=#\n]*?(?=\s*(?:[,=#\n]|\bunknown\b|\bknown\b|\border\b|$))")
 
-class ProofFile:
-    """A system: its states, fields, outputs and definitions, as terms."""
-
-    def __init__(self, text, path, depth=0):
-        self.path, self.source, self.depth = path, text, depth
-        self.states, self.unknown, self.angles, self.outputs = [], [], set(), []
-        self.symbols, self.lets, self.fields, self.imports, self.kinds = {}, {}, {}, {}, {}
-        self.indices, self.vectors = {}, set()
-        self.reader = Text(text)
-        while self.reader.at < len(text):
-            word = self.reader.word()
-            if word not in ENTRIES:
-                raise NotRead(f"'{text[self.reader.at:self.reader.at + 20]}' where an entry was awaited")
-            self.reader.need(word)
-            entry = getattr(self, "read_" + word, None)
-            if word in ("known", "unknown", "initial", "experiments"):
-                raise NotRead(f"a file with '{word}'")
-            if entry:
-                entry()
-            self.reader.to_next_entry()
-
-    @staticmethod
-    def read(path, depth=0):
-        if depth > 8:
-            raise NotRead("files that use one another")
-        with open(path, encoding="utf-8") as file:
-            return ProofFile(file.read(), path, depth)
-
-    # entries
-
-    def read_use(self):
-        name = self.reader.match(NAME.pattern)
-        self.reader.need("=")
-        other = ProofFile.read(os.path.join(os.path.dirname(self.path), self.reader.string()[1:-1]), self.depth + 1)
-        self.imports[name] = other
-        self.angles |= other.angles
-        for known in other.symbols:
-            self.symbols.setdefault(known, other.symbols[known])
-
-    def names(self):
-        """Names up to a word or sign that is no comma, each with what follows it up to the next comma."""
+    def commas(self, read):
         while True:
-            name = self.reader.match(NAME.pattern)
-            if name is None or self.reader.text[self.reader.at:self.reader.at + 1] == "[":
-                raise NotRead("a vector")
-            yield name
-            if self.reader.take(":"):
-                self.reader.match(r"[^,=#\n]*")
-            if not self.reader.take(","):
+            read()
+            if not self.take(","):
                 return
 
+    def read_use(self):
+        name = self.name()
+        self.need("=")
+        other = ProofFile(os.path.join(os.path.dirname(self.path), self.match(r'"[^"]*"')[1:-1]), self.depth + 1)
+        self.imports[name] = other
+        self.angles |= other.angles
+        self.symbols |= other.symbols
+
     def read_state(self):
-        for name in self.names():
-            self.symbols[name] = terms.symbol(name)
-            self.states.append(name)
+        def one():
+            self.states.append(self.name())
+            self.symbols.add(self.states[-1])
+            self.dimension()
+        self.commas(one)
 
     def read_param(self):
         waiting = []
-        for name in self.names_of_parameters():
-            self.symbols[name] = terms.symbol(name)
-            waiting.append(name)
-            if self.last == "unknown":
-                self.unknown.extend(waiting)
-            if self.last:
-                waiting = []
 
-    def names_of_parameters(self):
-        while True:
-            name, self.last = self.reader.match(NAME.pattern), ""
-            if name is None or self.reader.text[self.reader.at:self.reader.at + 1] == "[":
-                raise NotRead("a vector")
-            for _ in range(2):
-                if self.reader.take(":"):
-                    self.reader.match(r"[^,=#\n]*?(?=\s*(?:[,=#\n]|unknown|known))")
-                if self.reader.take("="):
-                    self.sum()
-                    self.last = "known"
-            for word in ("known", "unknown"):
-                self.last = word if self.reader.take(word) else self.last
-            yield name
-            if not self.reader.take(","):
-                return
+        def one():
+            waiting.append(self.name())
+            self.symbols.add(waiting[-1])
+            self.dimension()
+            valued = self.take("=") and bool(self.sum())
+            self.dimension()
+            if self.take("unknown"):
+                self.unknown.extend(waiting)
+                waiting.clear()
+            elif self.take("known") or valued:
+                waiting.clear()
+        self.commas(one)
 
     def read_angle(self):
-        self.angles |= set(self.names())
+        self.commas(lambda: self.angles.add(self.name()))
+
+    def signal(self, is_known):
+        name = self.name()
+        if not self.match(r"\(\s*t\s*\)"):
+            refuse("a signal that is no function of t")
+        self.dimension()
+        order = int(self.match(r"\d+")) if self.take("order") else None
+        if order is None and not is_known:
+            order = max([1] + [len(d) for d in re.findall(rf"\b{name}('+)", self.text)])
+        jet = [name + "'" * k for k in range((SIGNALS if is_known else order) + 1)]
+        self.symbols.update(jet)
+        self.signals.append((name, len(jet) - 1))
+        (self.known.update if is_known else self.unknown.extend)(jet)
+
+    def read_known(self):
+        self.commas(lambda: self.signal(True))
+
+    def read_unknown(self):
+        self.commas(lambda: self.signal(False))
+
+    def read_initial(self):
+        def one():
+            name = self.name()
+            if self.take("="):
+                refuse("a value at the beginning")
+            if self.take("known"):
+                waiting.append(name)
+                self.known.update(waiting)
+            else:
+                waiting.append(name)
+        waiting = []
+        self.commas(one)
 
     def read_let(self):
-        name = self.reader.match(NAME.pattern)
-        if self.reader.take(":"):
-            self.reader.match(r"[^=]*")
-        if not self.reader.take("="):
-            raise NotRead("a vector")
-        self.lets[name] = self.sum()
+        name = self.name()
+        if self.take(":"):
+            self.match(r"[^=]*")
+        self.need("=")
+        value = self.sum()
+        self.lets[name] = lambda at: at.kept[name] if name in at.kept else at.kept.setdefault(name, value(at))
 
     def read_field(self, kind="field"):
-        field, rates = self.reader.match(NAME.pattern), {}
-        while (found := re.compile(r"([A-Za-z_]\w*)\s*('|\+)\s*=").match(self.reader.text, self.reader.at)):
+        field, rates = self.name(), {}
+        while (found := re.compile(r"([A-Za-z_]\w*)\s*('|\+)\s*=").match(self.text, self.at)):
             if found.group(2) == "+":
-                raise NotRead("discrete time")
-            self.reader.at = found.end()
-            self.reader.skip()
-            rates[found.group(1)] = self.number(self.sum())
-        if rates.pop("others", const(0)) != const(0) or not set(rates) <= set(self.states):
-            raise NotRead("a field of something that is no state")
-        self.fields[field] = {name: rates.get(name, const(0)) for name in self.states}
-        self.kinds[field] = kind
+                refuse("discrete time")
+            self.at = found.end()
+            self.skip()
+            rates[found.group(1)] = self.sum()
+        rates.pop("others", None)
+        if not set(rates) <= set(self.states):
+            refuse("a field of something that is no state")
+        self.fields[field] = rates
+        if kind != "field":
+            self.moving.append((field, kind))
 
     def read_drift(self):
         self.read_field("drift")
@@ -184,315 +225,264 @@ class ProofFile:
         self.read_field("input")
 
     def read_output(self):
-        while True:
-            output = self.number(self.sum())
-            if self.reader.take("="):
-                raise NotRead("an output that is zero")
-            self.outputs.append(output)
-            if self.reader.take(":"):
-                self.reader.match(r"[^,#\n]*")
-            if not self.reader.take(","):
-                return
+        def one():
+            self.outputs.append(self.sum())
+            if self.text[self.at:self.at + 1] == "=":
+                refuse("an output that is zero")
+            self.dimension()
+        self.commas(one)
 
     # what is asked of a system
 
-    def unknowns(self):
-        return [terms.symbol(name) for name in self.states + self.unknown]
-
-    def moving(self):
-        return [name for name, kind in self.kinds.items() if kind != "field"]
-
-    def along(self, field, of):
-        """A Lie derivative; the field by name or by its rates."""
-        rates = self.fields[field] if isinstance(field, str) else field
-        total = const(0)
-        for name, rate in rates.items():
-            slope = terms.derivative(of, terms.symbol(name))
-            if const(0) not in (rate, slope):
-                total = add(total, mul(rate, slope))
-        return total
+    def columns(self):
+        return [name for name in self.states + self.unknown if name not in self.known]
 
     def word(self, text):
         """A word of Lie derivatives by its name: `Lf Lg y`."""
         first, _, rest = text.partition(" ")
-        if rest and first[0] == "L" and first[1:] in self.fields:
-            return self.along(first[1:], self.word(rest))
-        self.reader = Text(text)
-        return self.number(self.whole(self.sum))
+        if rest and first[1:] in self.fields and first[0] == "L":
+            return lie(self.fields[first[1:]], self.word(rest))
+        return self.whole(text, self.sum)
 
-    def whole(self, read):
+    def whole(self, text, read):
+        self.text, self.at = text, 0
+        self.skip()
         found = read()
-        if self.reader.at < len(self.reader.text):
-            raise NotRead(f"'{self.reader.text[self.reader.at:][:20]}'")
-        return found
+        return found if self.at == len(text) else refuse(f"'{text[self.at:self.at + 20]}'")
 
-    def statement(self, name, text):
-        """A statement that stands in the file: its kind, two sides and conditions; of a rank the matrix and the number."""
-        plain = lambda text: re.sub(r"#[^\n]*|\s+", "", text)
-        if plain(text) not in plain(self.source):
-            raise NotRead(f"'{name}' does not stand in the file in these words")
-        self.reader = Text(text)
-        return self.whole(self.read_statement)
+    def statement(self, text):
+        """A statement that stands in the file: what is asked, its sides and its conditions."""
+        if re.sub(r"#[^\n]*|\s+", "", text) not in self.source:
+            refuse("the statement does not stand in the file")
+        return self.whole(text, self.read_statement)
 
     def read_statement(self):
-        if self.reader.word() == "rank":
-            self.reader.take("rank")
-            matrix = None
-            if self.reader.take("("):
-                matrix = self.matrix(self.sum())
-                self.reader.need(")")
-            self.reader.need("=")
-            found = ["rank", matrix, int(self.reader.match(r"\d+") or -1)]
+        if re.match(r"rank\b", self.text[self.at:]):
+            self.take("rank")
+            of = self.bracketed() if self.text[self.at:self.at + 1] == "(" else None
+            self.need("=")
+            found = "rank", of, int(self.match(r"\d+") or refuse("a rank that is no number"))
         else:
             left = self.sum()
-            relation = self.reader.match(RELATION.pattern)
-            if relation is None:
-                raise NotRead(f"'{self.reader.text[self.reader.at:][:20]}'")
-            found = [relation, left, self.sum()]
+            relation = self.match(RELATION) or refuse(f"'{self.text[self.at:self.at + 20]}'")
+            found = relation, left, self.sum()
         conditions = []
-        if self.reader.take("where"):
-            while True:
-                left = self.number(self.sum())
-                conditions.append((left, self.reader.match(RELATION.pattern), self.number(self.sum())))
-                if not self.reader.take(","):
-                    break
+
+        def one():
+            start, left, middle = self.at, self.sum(), self.at
+            relation = self.match(RELATION) or refuse("a condition that is no relation")
+            conditions.append((self.text[start:middle].strip(), left, relation, self.sum()))
+        if self.take("where"):
+            self.commas(one)
         return (*found, conditions)
 
     # expressions
 
-    def number(self, found):
-        if isinstance(found, list):
-            if len(found) == len(found[0]) == 1:
-                return found[0][0]
-            raise NotRead("a matrix where a number is meant")
+    def bracketed(self):
+        self.need("(")
+        found = self.sum()
+        self.need(")")
         return found
-
-    def matrix(self, found):
-        return found if isinstance(found, list) else [[found]]
 
     def sum(self):
-        total = self.product()
-        while (sign := self.reader.match(r"[+-]")):
-            total = self.both(add if sign == "+" else sub, total, self.product())
-        return total
+        parts = [("+", self.product())]
+        while (sign := self.match(r"[+-]")):
+            parts.append((sign, self.product()))
+        if len(parts) == 1:
+            return parts[0][1]
 
-    def both(self, operation, a, b):
-        if not isinstance(a, list) and not isinstance(b, list):
-            return operation(a, b)
-        a, b = self.matrix(a), self.matrix(b)
-        if [len(row) for row in a] != [len(row) for row in b]:
-            raise NotRead("a sum of matrices of two shapes")
-        return [[operation(x, y) for x, y in zip(*rows)] for rows in zip(a, b)]
-
-    def times(self, a, b):
-        if isinstance(a, list) and isinstance(b, list) and len(a[0]) == len(b):
-            return [[self.total(mul(x, row[j]) for x, row in zip(line, b)) for j in range(len(b[0]))] for line in a]
-        if isinstance(a, list) and isinstance(b, list):
-            raise NotRead("a product of matrices of these shapes")
-        if isinstance(a, list) or isinstance(b, list):
-            one, other = (b, a) if isinstance(a, list) else (a, b)
-            return [[mul(one, entry) for entry in row] for row in other]
-        return mul(a, b)
-
-    @staticmethod
-    def total(parts):
-        found = const(0)
-        for part in parts:
-            found = add(found, part)
-        return found
+        def value(at):
+            found = parts[0][1](at)
+            for sign, part in parts[1:]:
+                found = each((lambda x, y: x + y) if sign == "+" else (lambda x, y: x - y), found, part(at))
+            return found
+        return value
 
     def product(self):
-        signs = self.reader.match(r"[+-](?:\s*[+-])*") or ""
-        found = self.factor()
-        while (sign := self.reader.match(r"[*/]")):
-            turned = self.reader.match(r"[+-](?:\s*[+-])*") or ""
-            other = self.factor()
-            other = other if sign == "*" else power(self.number(other), -1)
-            found = self.times(found, other)
-            signs += turned
-        return self.times(const(-1), found) if signs.count("-") % 2 else found
+        signs, factors = self.match(r"[+-](?:\s*[+-])*") or "", [("*", self.factor())]
+        while (sign := self.match(r"[*/]")):
+            signs += self.match(r"[+-](?:\s*[+-])*") or ""
+            factors.append((sign, self.factor()))
+        negative = signs.count("-") % 2
+        if len(factors) == 1 and not negative:
+            return factors[0][1]
+
+        def value(at):
+            found = factors[0][1](at)
+            for sign, factor in factors[1:]:
+                other = factor(at)
+                found = times(found, other if sign == "*" else invert(number(other)))
+            return times(Fraction(-1), found) if negative else found
+        return value
 
     def factor(self):
         base = self.primary()
-        if self.reader.take("^"):
-            turned = self.reader.take("-")
-            exponent = self.number(self.primary())
-            base = self.raised(self.number(base), neg(exponent) if turned else exponent)
-        while self.reader.take("at"):
-            self.reader.need("{")
-            given = {}
-            while not self.reader.take("}"):
-                name = self.reader.match(NAME.pattern)
-                self.reader.need("=")
-                given[name] = self.number(self.sum())
-                self.reader.take(",")
-            replace = lambda entry: terms.replaced(entry, given)
-            base = [[replace(x) for x in row] for row in base] if isinstance(base, list) else replace(base)
+        if self.take("^"):
+            negative, one, power = self.take("-"), base, self.primary()
+            base = lambda at: exponential(number(one(at)), -power(at) if negative else power(at))
+        while self.take("at"):
+            self.need("{")
+            given, of = {}, base
+
+            def one_value():
+                name = self.name()
+                self.need("=")
+                given[name] = self.sum()
+            self.commas(one_value)
+            self.need("}")
+            base = lambda at, of=of, given=given: of(
+                Environment({**at.values, **{name: lambda value=value: number(value(at)) for name, value in given.items()}}, at.level))
         return base
 
-    @staticmethod
-    def raised(base, exponent):
-        n = value(exponent)
-        if n is None:
-            return apply("exp", mul(exponent, apply("log", base)))
-        if n.denominator == 1:
-            return power(base, int(n))
-        if n.denominator == 2:
-            return power(apply("sqrt", base), int(2 * n))
-        return apply("exp", mul(exponent, apply("log", base)))
-
     def primary(self):
-        reader = self.reader
-        if (number := reader.match(r"\d+(?:\.\d+)?")):
-            return const(Fraction(number))
-        if reader.take("("):
-            found = self.sum()
-            reader.need(")")
-            return found
-        if reader.take("["):
+        if (found := self.match(r"\d+(?:\.\d+)?")):
+            value = Fraction(found)
+            return lambda at: value
+        if self.text[self.at:self.at + 1] == "(":
+            return self.bracketed()
+        if self.take("["):
             return self.blocks()
-        name = reader.match(NAME.pattern)
-        if name is None:
-            raise NotRead(f"'{reader.text[reader.at:][:20]}'")
-        if reader.text[reader.at:reader.at + 1] in ("[", "'", "@"):
-            raise NotRead("a vector or a signal")
-        if reader.take("("):
+        name = self.name()
+        if self.text[self.at:self.at + 1] == "(":
             return self.called(name)
-        if name == "pi":
-            return terms.term("pi")
         first, _, rest = name.partition(".")
-        if first in self.imports and rest:
-            other = self.imports[first]
-            if rest == "output":
-                return [[output] for output in other.outputs]
-            found = other.lets.get(rest, other.symbols.get(rest))
-        else:
-            found = self.lets.get(name, self.symbols.get(name))
-        if found is None:
-            raise NotRead(f"'{name}'")
-        return found
+        other = self.imports[first] if first in self.imports else self
+        plain = rest if first in self.imports else name
+        if other is not self and plain == "output":
+            return lambda at: [[number(output(at))] for output in other.outputs]
+        if name == "pi":
+            return lambda at: Turn(Fraction(1))
+        if plain in other.lets:
+            return other.lets[plain] if other is self else self.kept_apart(name, other.lets[plain])
+        if plain not in other.symbols:
+            refuse(f"'{name}'")
+        return lambda at: at.value(plain)
+
+    @staticmethod
+    def kept_apart(name, value):
+        """Definitions of another file have names of their own there."""
+        def evaluate(at):
+            inner = at.kept.setdefault((name.partition(".")[0],), Environment(at.values, at.level))
+            return value(inner)
+        return evaluate
 
     def blocks(self):
-        """A matrix whose entries may be matrices."""
         rows, row = [], []
         while True:
-            row.append(self.matrix(self.sum()))
-            if self.reader.take(","):
+            row.append(self.sum())
+            if self.take(","):
                 continue
-            if len({len(block) for block in row}) != 1:
-                raise NotRead("blocks of two heights")
-            rows.extend([entry for part in parts for entry in part] for parts in zip(*row))
+            rows.append(row)
             row = []
-            if self.reader.take("]"):
+            if self.take("]"):
                 break
-            self.reader.need(";")
-        if len({len(row) for row in rows}) != 1:
-            raise NotRead("rows of two lengths")
-        return rows
+            self.need(";")
 
-    def field_named(self):
-        """A field by its name, or a bracket of two: its rates."""
-        if self.reader.take("bracket"):
-            self.reader.need("(")
-            found = self.bracket()
-            self.reader.need(")")
-            return found
-        name = self.reader.match(NAME.pattern)
-        first, _, rest = (name or "").partition(".")
+        def value(at):
+            found = []
+            for row in rows:
+                blocks = [matrix(part(at)) for part in row]
+                if len({len(block) for block in blocks}) != 1:
+                    refuse("blocks of two heights")
+                found.extend([x for part in parts for x in part] for parts in zip(*blocks))
+            return found if len({len(row) for row in found}) == 1 else refuse("rows of two lengths")
+        return value
+
+    def field(self):
+        """A field, or a bracket of two: its rates."""
+        name = self.name()
+        if name == "bracket":
+            self.need("(")
+            rates = self.pair()
+            self.need(")")
+            return rates
+        first, _, rest = name.partition(".")
         fields = self.imports[first].fields if first in self.imports else self.fields
-        name = rest if first in self.imports else name
-        if name not in fields:
-            raise NotRead(f"'{name}' where a field was awaited")
-        return fields[name]
+        return fields.get(rest if first in self.imports else name) or refuse(f"'{name}' where a field was awaited")
 
-    def bracket(self):
-        f = self.field_named()
-        self.reader.need(",")
-        g = self.field_named()
-        return {name: sub(self.along(f, g.get(name, const(0))), self.along(g, f.get(name, const(0)))) for name in {**f, **g}}
+    def pair(self):
+        f = self.field()
+        self.need(",")
+        g, zero = self.field(), lambda at: Fraction(0)
+        minus = lambda a, b: lambda at: number(a(at)) - number(b(at))
+        return {name: minus(lie(f, g.get(name, zero)), lie(g, f.get(name, zero))) for name in {**f, **g}}
 
     def called(self, name):
-        reader = self.reader
+        self.need("(")
         if name == "L":
             fields = []
             while True:
-                mark = reader.at
+                mark = self.at
                 try:
-                    fields.append(self.field_named())
-                    reader.need(",")
+                    fields.append(self.field())
+                    self.need(",")
                 except NotRead:
-                    reader.at = mark
+                    self.at = mark
                     break
             found = self.sum()
-            reader.need(")")
-            for field in reversed(fields):
-                take = lambda entry: self.along(field, entry)
-                found = [[take(x) for x in row] for row in found] if isinstance(found, list) else take(found)
+            for rates in reversed(fields):
+                found = lie(rates, found)
+            self.need(")")
             return found
         if name == "bracket":
-            rates, columns = self.bracket(), self.rest_of_names()
-            return [[rates[TERM_NAME(column)]] for column in (columns or self.unknowns())]
-        if name == "d":
-            of = self.matrix(self.sum())
-            columns = self.rest_of_names() or self.unknowns()
-            if any(len(row) != 1 for row in of):
-                raise NotRead("a differential of a matrix")
-            return [[terms.derivative(row[0], column) for column in columns] for row in of]
+            rates = self.pair()
+            columns = self.by() or self.columns()
+            return lambda at: [[number(rates[column](at)) if column in rates else Fraction(0)] for column in columns]
         arguments = [self.sum()]
-        while reader.take(","):
-            arguments.append(self.sum())
-        reader.need(")")
-        return self.function(name, arguments)
+        if name == "d":
+            of, columns = arguments[0], self.by() or self.columns()
 
-    def rest_of_names(self):
+            def differential(at):
+                found = [matrix(lie({column: lambda at: Fraction(1)}, of)(at)) for column in columns]
+                return [[by[row][0] for by in found] for row in range(len(found[0]))]
+            return differential
+        while self.take(","):
+            arguments.append(self.sum())
+        self.need(")")
+        return lambda at: function(name, [argument(at) for argument in arguments])
+
+    def by(self):
         columns = []
-        while self.reader.take(","):
-            columns.append(self.number(self.sum()))
-        self.reader.need(")")
-        if any(terms.TERMS[column][0] != "symbol" for column in columns):
-            raise NotRead("a differential by something that is no symbol")
+        while self.take(","):
+            columns.append(self.name())
+        self.need(")")
         return columns
 
-    def function(self, name, arguments):
-        a, b = arguments[0], arguments[-1]
+
+def exponential(base, power):
+    power = number(power)
+    if isinstance(power, Fraction) and power.denominator == 1:
+        return raised(base, int(power))
+    if isinstance(power, Fraction) and power.denominator == 2:
+        return raised(apply("sqrt", base), int(2 * power))
+    return apply("exp", power * apply("log", base))
+
+
+def function(name, arguments):
+    a, b = arguments[0], arguments[-1]
+    if name in ("transpose", "det", "inverse", "dot", "cross"):
+        a, b = matrix(a), matrix(b)
         if name == "transpose":
-            return [list(column) for column in zip(*self.matrix(a))]
-        if name == "det":
-            return terms.determinant(self.matrix(a))
+            return [list(column) for column in zip(*a)]
+        if name in ("det", "inverse"):
+            return determinant(a) if name == "det" else inverse(a)
+        a, b = sum(a, []), sum(b, [])
         if name == "dot":
-            return self.total(mul(x, y) for x, y in zip(sum(self.matrix(a), []), sum(self.matrix(b), [])))
-        if name == "cross":
-            first, second = sum(self.matrix(a), []), sum(self.matrix(b), [])
-            if len(first) == len(second) == 2:
-                return sub(mul(first[0], second[1]), mul(first[1], second[0]))
-            (a, b, c), (x, y, z) = first, second
-            return [[sub(mul(b, z), mul(c, y))], [sub(mul(c, x), mul(a, z))], [sub(mul(a, y), mul(b, x))]]
-        if name == "inverse":
-            return terms.inverse(self.matrix(a))
-        if name == "rank":
-            raise NotRead(f"'{name}'")
-        arguments = [self.number(argument) for argument in arguments]
-        a, b = arguments[0], arguments[-1]
-        root = lambda x: apply("sqrt", power(x, 2))
-        exp = lambda x: apply("exp", x)
-        made = {
-            "tan": lambda: div(apply("sin", a), apply("cos", a)), "cot": lambda: div(apply("cos", a), apply("sin", a)),
-            "sec": lambda: power(apply("cos", a), -1), "csc": lambda: power(apply("sin", a), -1),
-            "sinh": lambda: mul(const(Fraction(1, 2)), sub(exp(a), exp(neg(a)))),
-            "cosh": lambda: mul(const(Fraction(1, 2)), add(exp(a), exp(neg(a)))),
-            "tanh": lambda: sub(const(1), div(const(2), add(exp(mul(const(2), a)), const(1)))),
-            "abs": lambda: root(a), "sign": lambda: div(a, root(a)),
-            "min": lambda: mul(const(Fraction(1, 2)), sub(add(a, b), root(sub(a, b)))),
-            "max": lambda: mul(const(Fraction(1, 2)), add(add(a, b), root(sub(a, b)))),
-            "atan2": lambda: mul(const(2), apply("atan", div(a, add(apply("sqrt", add(power(a, 2), power(b, 2))), b)))),
-        }
-        if name in PLAIN and len(arguments) == 1:
-            return apply(name, a)
-        if name not in made or len(arguments) > 2:
-            raise NotRead(f"'{name}'")
-        return made[name]()
-
-
-def TERM_NAME(at):
-    """The name of a symbol."""
-    return terms.TERMS[at][1]
+            return total(x * y for x, y in zip(a, b))
+        if len(a) == 2:
+            return a[0] * b[1] - a[1] * b[0]
+        return [[a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]] for i in range(3)]
+    a, b = number(a), number(b)
+    one, half = Fraction(1), Fraction(1, 2)
+    exp, root = lambda x: apply("exp", x), lambda x: apply("sqrt", x * x)
+    made = {
+        "tan": lambda: apply("sin", a) * invert(apply("cos", a)), "cot": lambda: apply("cos", a) * invert(apply("sin", a)),
+        "sec": lambda: invert(apply("cos", a)), "csc": lambda: invert(apply("sin", a)),
+        "sinh": lambda: half * (exp(a) - exp(-a)), "cosh": lambda: half * (exp(a) + exp(-a)),
+        "tanh": lambda: one - Fraction(2) * invert(exp(a + a) + one), "abs": lambda: root(a), "sign": lambda: a * invert(root(a)),
+        "min": lambda: half * (a + b - root(a - b)), "max": lambda: half * (a + b + root(a - b)),
+        "atan2": lambda: Fraction(2) * apply("atan", a * invert(apply("sqrt", a * a + b * b) + b)),
+    }
+    if name in ("sqrt", "exp", "log", "sin", "cos", "asin", "acos", "atan"):
+        return apply(name, a)
+    return made[name]() if name in made and len(arguments) <= 2 else refuse(f"'{name}'")

@@ -1,14 +1,12 @@
-"""A second checker of verdict files that shares no line with the program that wrote them.
+"""A second checker of verdict files, which shares no line with the program that wrote them.
 
     python -m palmistry.recheck VERDICTS.json [--proofs FOLDER]
 
-Of a verdict file (`palmistry prove --verdicts`, `palmistry rank --verdicts`) only the claim's verdict, witness and minors are
-taken. What they are about is read from the proof file anew: its text (`proof_file`), Lie derivatives and differentials
-(`terms`), values (`values`). A refutation is evaluated at its witness in fractions, or in intervals of fractions where there are
-functions; an identity is tried at primes and points of this program's own choice; a minor is computed at its state.
-
-`confirmed` needs no more to be believed than this program. `consistent` says that nothing was found that speaks against it. What
-the program does not read is `not checked`, and why. The exit status is 1 where a verdict is not confirmed.
+From a verdict file (`palmistry prove proofs/ --verdicts FILE`) only witnesses and minors are taken. What they are about is read from the
+proof file anew (`proof_file`), by a parser of its own that makes functions of the expressions; derivatives are dual numbers (`values`).
+Refutations are evaluated at their witness, in fractions, and in intervals where there are functions; identities and ranks at points
+modulo primes of this program's own choice; minors at their states. `confirmed` is so; `consistent`: nothing speaks against it; what is not
+read is `not checked`, and why. The exit status is 1 where something is not confirmed.
 """
 
 import json
@@ -17,189 +15,226 @@ import random
 import sys
 from fractions import Fraction
 
-from . import terms, values
-from .proof_file import NotRead, ProofFile
+from .proof_file import Environment, ProofFile, lie, slopes
+from .values import Arc, NotRead, Residue, apply, determinant, matrix, number, refuse
 
 PRIMES = [(1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1]
-POINTS = 6  # at which an identity or a rank is tried
-TRIES = 60  # points that are poles, or where a root has no residue, are drawn again
+POINTS, TRIES, WORDS = 4, 60, 150  # points that are compared; draws; words of a rank
+HOLDS = {"=": lambda s: s == 0, "!=": lambda s: s != 0, "<": lambda s: s < 0, "<=": lambda s: s <= 0, ">": lambda s: s > 0,
+         ">=": lambda s: s >= 0}
 
 
 class Doubt(Exception):
-    """A verdict that is not confirmed."""
+    """What speaks against a verdict."""
+
+
+def sign(x):
+    """The sign of a fraction or of an interval that tells it."""
+    low, high = (x.low, x.high) if hasattr(x, "low") else (x, x)
+    if low <= 0 <= high and low != high:
+        refuse("a value that is not told from zero")
+    return (low > 0) - (high < 0)
+
+
+def value_of(x):
+    """A value that is no turn and no angle any more."""
+    return x.value(Residue(0, PRIMES[0])) if type(x).__name__ == "Turn" else x
 
 
 def witness(system, state):
-    """A state of the file as assignments of this program's symbols."""
-    known = {}
+    """The values of a witness; what it does not name does not matter, and may have any."""
+    angle = Arc(Fraction(3, 5), Fraction(4, 5))
+    values = {name: angle if name in system.angles else Fraction(3 + k, 7) for k, name in enumerate(sorted(system.symbols))}
     for name, value in state.items():
         if "number" in value:
-            known[name] = Fraction(value["number"])
+            values[name] = Fraction(value["number"])
         elif "angle" in value:
             sine, cosine = Fraction(value["angle"]["sin"]), Fraction(value["angle"]["cos"])
             if sine**2 + cosine**2 != 1:
                 raise Doubt(f"{name} is no angle")
-            known[name] = values.Angle(sine, cosine)
+            values[name] = Arc(sine, cosine)
         else:
-            raise NotRead("a coordinate that is told by an operation")
-    return known
+            refuse("a coordinate that is told by an operation")
+    return Environment(values)
 
 
-def drawn(symbols, angles, conditions, rng, field):
-    """A random point modulo a prime, on the set of the conditions."""
-    point = {}
-    for name in symbols:
-        if name in angles:
-            half = rng.randrange(field.prime)
-            bottom = field.divide(1, 1 + half * half)
-            point[name] = values.Angle(2 * half * bottom % field.prime, (1 - half * half) * bottom % field.prime)
-        else:
-            point[name] = rng.randrange(field.prime)
-    return values.solved(conditions, point, field)
-
-
-def points(system, nodes, conditions, seed):
-    """Random points modulo primes at which some terms have values, and these."""
-    rng, found = random.Random(seed), 0
-    symbols = sorted(terms.symbols(nodes + [side for a, _, b in conditions for side in (a, b)]))
-    for _ in range(TRIES):
-        field = values.Residues(PRIMES[found % len(PRIMES)], rng)
+def points(system, conditions, seed):
+    """Random points modulo primes on the set of the conditions."""
+    rng = random.Random(seed)
+    for draw in range(TRIES):
+        prime, values = PRIMES[draw % len(PRIMES)], {}
+        for name in sorted(system.symbols):
+            value = Residue(rng.randrange(prime), prime)
+            values[name] = Arc.of_half(value) if name in system.angles else value
         try:
-            at = drawn(symbols, system.angles, conditions, rng, field)
-            yield field, values.evaluate(nodes, at, field)
-        except values.NoValue:
+            if all(relation == "=" for _, _, relation, _ in conditions) and solved(conditions, values, prime):
+                yield Environment(values)
+        except ZeroDivisionError:
             continue
-        found += 1
-        if found == POINTS:
-            return
-    if found == 0:
-        raise NotRead("no point was found at which it has values")
 
 
-def flat(left, right):
-    """Pairs of entries of two sides, which are numbers or matrices."""
-    if isinstance(left, list) != isinstance(right, list):
-        if isinstance(left, list) and len(left) == len(left[0]) == 1:
-            left = left[0][0]
-        elif isinstance(right, list) and len(right) == len(right[0]) == 1:
-            right = right[0][0]
+def solved(conditions, values, prime):
+    """Whether a symbol of each equation could be given a value with which all hold: it is linear in it, or an angle of a quarter turn."""
+    gap = lambda condition: value_of(number(condition[1](Environment(values))) - number(condition[3](Environment(values))))
+    is_zero = lambda x: (x.value if isinstance(x, Residue) else x) == 0
+    free = set(values)
+    for condition in conditions:
+        names = sorted(free, key=lambda name: (name != condition[0], name not in condition[0], name))
+        if isinstance(values.get(condition[0]), Arc):
+            turn = number(condition[3](Environment(values)))
+            values[condition[0]] = Arc(apply("sin", turn), apply("cos", turn))
+            free.discard(condition[0])
+            continue
+        for name in names:
+            kept, tried = values[name], []
+            if isinstance(kept, Arc):
+                tried = [Arc(Fraction(s), Fraction(c)) for s, c in ((0, 1), (1, 0), (0, -1), (-1, 0))]
+            else:
+                try:
+                    ends = []
+                    for end in (0, 1):
+                        values[name] = Residue(end, prime)
+                        ends.append(gap(condition))
+                    tried = [-(Residue(0, prime) + ends[0]) / (ends[1] - ends[0])]
+                except (ZeroDivisionError, AttributeError, NotRead):
+                    pass
+            for value in tried:
+                values[name] = value
+                try:
+                    if is_zero(gap(condition)):
+                        break
+                except ZeroDivisionError:
+                    pass
+            else:
+                values[name] = kept
+                continue
+            free.discard(name)
+            break
         else:
-            raise NotRead("a number beside a matrix")
-    if not isinstance(left, list):
-        return [(left, right)]
-    if [len(row) for row in left] != [len(row) for row in right]:
-        raise NotRead("matrices of two shapes")
-    return [pair for rows in zip(left, right) for pair in zip(*rows)]
+            return False
+    return all(is_zero(gap(condition)) for condition in conditions)
 
 
-def proved_identity(system, statement, seed):
-    """Tries an identity at random points modulo primes."""
-    kind, left, right, conditions = statement
-    if kind != "=":
-        raise NotRead("an inequality")
-    pairs = flat(left, right)
-    nodes = [side for pair in pairs for side in pair]
-    tried = 0
-    for field, found in points(system, nodes, conditions, seed):
-        tried += 1
-        for place in range(0, len(found), 2):
-            if (found[place] - found[place + 1]) % field.prime:
-                if field.guessed:
-                    raise NotRead("functions that were taken for unknowns")
-                raise Doubt(f"the two sides differ modulo {field.prime}")
-    return "consistent", f"{tried} points modulo primes"
+def pairs(left, right, at):
+    """Entries of two sides, which are numbers or matrices."""
+    a, b = matrix(left(at)), matrix(right(at))
+    if [len(row) for row in a] != [len(row) for row in b]:
+        refuse("sides of two shapes")
+    return [pair for rows in zip(a, b) for pair in zip(*rows)]
 
 
-RELATIONS = {
-    "=": lambda sign: sign == 0, "!=": lambda sign: sign != 0, "<": lambda sign: sign < 0,
-    "<=": lambda sign: sign <= 0, ">": lambda sign: sign > 0, ">=": lambda sign: sign >= 0,
-}
+def compared(system, conditions, seed, compare):
+    """What is found at random points, where there are values."""
+    found = []
+    for at in points(system, conditions, seed):
+        try:
+            found.append(compare(at))
+        except ZeroDivisionError:
+            continue
+        if len(found) == POINTS:
+            break
+    return found or refuse("no point was found at which it has values")
+
+
+def identity(system, statement, seed):
+    relation, left, right, conditions = statement
+    if relation != "=":
+        refuse("an inequality")
+    zero = lambda x: (x.value if isinstance(x, Residue) else x) == 0
+    Residue.guessed = False
+    same = compared(system, conditions, seed, lambda at: all(zero(value_of(a - b)) for a, b in pairs(left, right, at)))
+    if not all(same):
+        if Residue.guessed:
+            refuse("functions that were taken for unknowns")
+        raise Doubt("the two sides differ at a random point modulo a prime")
+    return "consistent", f"{len(same)} points modulo primes"
 
 
 def refuted(system, statement, evidence):
-    """Evaluates a refutation at its witness."""
-    kind, left, right, conditions = statement
-    if kind == "rank":
-        raise NotRead("a rank without a minor")
+    relation, left, right, conditions = statement
+    if relation == "rank":
+        refuse("a rank without a minor")
     at = witness(system, evidence["state"])
-    for a, relation, b in conditions:
-        if not RELATIONS[relation](values.sign(terms.sub(a, b), at)):
+    for _, a, stands, b in conditions:
+        if not HOLDS[stands](sign(number(a(at)) - number(b(at)))):
             raise Doubt("a condition does not hold at the witness")
-    for a, b in flat(left, right):
-        if not RELATIONS[kind](values.sign(terms.sub(a, b), at)):
-            return "confirmed", "at its witness"
-    raise Doubt("the two sides stand to each other as was claimed at the witness")
+    if all(HOLDS[relation](sign(a - b)) for a, b in pairs(left, right, at)):
+        raise Doubt("what was refuted holds at the witness")
+    return "confirmed", "at its witness"
+
+
+def rank_of(rows):
+    """The rank of a matrix of residues."""
+    rows, rank = [[x if isinstance(x, Residue) else x for x in row] for row in rows], 0
+    is_zero = lambda x: (x.value if isinstance(x, Residue) else x) == 0
+    for column in range(len(rows[0])):
+        pivot = next((r for r in range(rank, len(rows)) if not is_zero(rows[r][column])), None)
+        if pivot is not None:
+            rows[rank], rows[pivot] = rows[pivot], rows[rank]
+            for row in rows[rank + 1:]:
+                if not is_zero(row[column]):
+                    factor = row[column] / rows[rank][column]
+                    row[:] = [a - factor * b for a, b in zip(row, rows[rank])]
+            rank += 1
+    return rank
 
 
 def claimed_rank(system, statement, evidence, seed):
-    """Compares a rank at almost all states with that of this program's own words or matrix."""
-    kind, matrix, claimed, conditions = statement
+    kind, of, claimed, conditions = statement
     if kind != "rank":
-        raise NotRead("no rank")
-    ranks = []
-    if matrix is None:
-        columns = system.unknowns()
-        rows, tried = [], [(output, ()) for output in system.outputs]
+        refuse("no rank")
+
+    def rank_here(at):
+        if of is not None:
+            return rank_of(of(at))
+        rows, words, rank, columns = [], list(system.outputs), -1, system.columns()
         for order in range(len(columns) + 1):
-            kept = []
-            for word, fields in tried:
-                rows.append([terms.derivative(word, column) for column in columns])
-                if len(rows) > 400:
-                    raise NotRead("more than 400 words")
-                kept.append((word, fields))
-            before, ranks = max(ranks, default=-1), []
-            nodes = [entry for row in rows for entry in row]
-            for field, found in points(system, nodes, conditions, seed):
-                ranks.append(values.rank_modulo(found, len(columns), field.prime))
-            if max(ranks) == len(columns) or (max(ranks) == before and not conditions):
-                break
-            tried = [(system.along(name, word), (name, *fields)) for word, fields in kept for name in system.moving()]
-    else:
-        nodes = [entry for row in matrix for entry in row]
-        ranks = [values.rank_modulo(found, len(matrix[0]), field.prime)
-                 for field, found in points(system, nodes, conditions, seed)]
-    rank = max(ranks)
-    if (rank == claimed) != (evidence["word"] == "proved"):
-        raise Doubt(f"the rank is {rank} at random points, and {claimed} was claimed")
-    return "consistent", f"rank {rank} at {len(ranks)} points modulo primes"
+            rows += [slopes(word, columns)(at) for word in words]
+            before, rank = rank, rank_of(rows)
+            if rank == len(columns) or rank == before and (order > len(conditions) + 1 or not conditions):
+                return rank
+            words = [lie(system.fields[field], word) for word in words for field, _ in system.moving]
+            if len(words) + len(rows) > WORDS:
+                refuse(f"more than {WORDS} words")
+        return rank
+    ranks = compared(system, conditions, seed, rank_here)
+    if (max(ranks) == claimed) != (evidence["word"] == "proved"):
+        raise Doubt(f"the rank is {max(ranks)} at random points")
+    return "consistent", f"rank {max(ranks)} at {len(ranks)} points modulo primes"
 
 
 def certified_rank(system, evidence):
-    """Computes the minors of a certified rank at their states."""
-    columns = [terms.symbol(name) for name in evidence["columns"]]
     words = [system.word(text) for text in evidence["words"]]
-    for number, state in enumerate(evidence["states"]):
-        at, minor = witness(system, state["state"]), state["minor"]
-        if len(set(minor["rows"])) != state["rank"] or len(set(minor["columns"])) != state["rank"]:
-            raise Doubt(f"state {number} has no minor of its rank")
-        entries = [[terms.derivative(words[row], columns[column]) for column in minor["columns"]] for row in minor["rows"]]
-        if entries and values.sign(terms.determinant(entries), at) == 0:
-            raise Doubt(f"the minor of state {number} is zero")
-    return "confirmed", f"minors at {len(evidence['states'])} states: the rank is no less"
+    for place, state in enumerate(evidence["states"]):
+        at, rows, columns = witness(system, state["state"]), state["minor"]["rows"], state["minor"]["columns"]
+        if len(set(rows)) != state["rank"] or len(set(columns)) != state["rank"]:
+            raise Doubt(f"state {place} has no minor of its rank")
+        names = [evidence["columns"][column] for column in columns]
+        if rows and sign(determinant([slopes(words[row], names)(at) for row in rows])) == 0:
+            raise Doubt(f"the minor of state {place} is zero")
+    return "confirmed", f"the rank is no less at {len(evidence['states'])} states"
 
 
 def check(record, folder, systems, seed):
     """What comes of one verdict: a word, and why."""
     (kind, evidence), = record["evidence"].items()
     if kind in ("unchecked", "boxes"):
-        return "not checked", evidence if kind == "unchecked" else "boxes"
+        return "not checked", str(evidence) if kind == "unchecked" else "boxes"
     try:
         path = os.path.join(folder, record["file"])
         if path not in systems:
-            systems[path] = ProofFile.read(path)
+            systems[path] = ProofFile(path)
         system = systems[path]
         if kind == "rank":
             return certified_rank(system, evidence)
-        statement = system.statement(record["id"], record["statement"])
+        statement = system.statement(record["statement"])
         if kind == "refuted":
             return refuted(system, statement, evidence)
-        if kind == "claimed_rank":
-            return claimed_rank(system, statement, evidence, seed)
-        return proved_identity(system, statement, seed)
-    except NotRead as why:
-        return "not checked", str(why)
-    except values.NoValue as why:
-        return "not confirmed", f"no value: {why}"
+        return claimed_rank(system, statement, evidence, seed) if kind == "claimed_rank" else identity(system, statement, seed)
+    except (NotRead, RecursionError, OSError) as why:
+        return "not checked", str(why) or "it is nested too deeply"
+    except ZeroDivisionError:
+        return "not confirmed", "it has no value at the witness"
     except Doubt as why:
         return "not confirmed", str(why)
 
@@ -211,27 +246,29 @@ def main(arguments):
         first = arguments.pop(0)
         if first == "--proofs" and arguments:
             folder = arguments.pop(0)
-        elif first in ("-h", "--help") or first.startswith("-"):
+        elif first.startswith("-"):
             print(__doc__)
             return 0 if first in ("-h", "--help") else 2
         else:
             files.append(first)
     if not files:
-        print("which verdict file? palmistry prove proofs/ --verdicts verdicts.json writes one", file=sys.stderr)
+        print("which verdict file? 'palmistry prove proofs/ --verdicts FILE' writes one", file=sys.stderr)
         return 2
-    sys.setrecursionlimit(100_000)
-    counts, systems = {}, {}
+    sys.setrecursionlimit(20_000)
+    counts, systems, number_of = {}, {}, 0
     for path in files:
         try:
             with open(path, encoding="utf-8") as file:
                 verdicts = json.load(file)
+            if verdicts["schema"] != "palmistry-verdicts" or verdicts["version"] not in (1, 2):
+                raise ValueError("another schema")
             records = verdicts["verdicts"]
-            assert verdicts["schema"] == "palmistry-verdicts" and verdicts["version"] in (1, 2)
-        except (OSError, ValueError, KeyError, TypeError, AssertionError) as why:
-            print(f"{path}: no verdict file: {why!r}", file=sys.stderr)
+        except (OSError, ValueError, KeyError, TypeError) as why:
+            print(f"{path} is no verdict file: {why!r}", file=sys.stderr)
             return 2
-        for number, record in enumerate(records):
-            word, why = check(record, folder, systems, number)
+        for record in records:
+            number_of += 1
+            word, why = check(record, folder, systems, number_of)
             counts[word] = counts.get(word, 0) + 1
             print(f"{word:14}{record['file']} {record['id']}: {why}")
     print(", ".join(f"{count} {word}" for word, count in sorted(counts.items())))

@@ -1,342 +1,309 @@
-"""Values of terms: residues modulo a prime, fractions, and intervals of fractions where there are functions."""
+"""Numbers of the second checker: fractions, residues, intervals, angles by sine and cosine, and dual numbers over all of them."""
 
 import random
-from collections import namedtuple
 from fractions import Fraction
-from math import isqrt
 
-from .terms import TERMS, operands, reachable, symbols, sub, value as constant
-
-
-Angle = namedtuple("Angle", "sine cosine")
+BITS = 400  # of an interval
 
 
-class NoValue(Exception):
-    """A pole, a root of no square, a logarithm of what is not positive."""
+class NotRead(Exception):
+    """What this program does not read, or cannot evaluate."""
 
 
-class Residues:
-    """Numbers modulo a prime. Functions that are met are taken for unknowns: equal ones for one."""
+class Number:
+    """Operations by those of a class, which takes fractions too: `plus`, `times`, `inverse` and `function`."""
 
-    def __init__(self, prime, rng):
-        self.prime, self.rng, self.guessed = prime, rng, False
+    def __add__(self, other): return self.plus(other)
+    def __mul__(self, other): return self.times(other)
+    def __neg__(self): return self.times(Fraction(-1))
+    def __sub__(self, other): return self + -other
+    def __rsub__(self, other): return -self + other
+    def __truediv__(self, other): return self * invert(other)
+    def __rtruediv__(self, other): return invert(self) * other
+    __radd__, __rmul__ = __add__, __mul__
 
-    def number(self, value):
-        return self.divide(value.numerator, value.denominator)
 
-    def divide(self, a, b):
-        if b % self.prime == 0:
-            raise NoValue("a divisor that is zero")
-        return a * pow(b, -1, self.prime) % self.prime
+class Residue(Number):
+    """A number modulo a prime. A function's value is taken for an unknown, equal ones for one, and that is noted."""
+    guessed = False
 
-    def plus(self, a, b):
-        return (a + b) % self.prime
+    def __init__(self, value, prime): self.value, self.prime = value % prime, prime
 
-    def times(self, a, b):
-        return a * b % self.prime
+    def of(self, other):
+        if isinstance(other, Turn):
+            other = other.value(self)
+        return other.value if isinstance(other, Residue) else other.numerator * pow(other.denominator, -1, self.prime)
 
-    def function(self, name, argument):
+    def plus(self, other):
+        return NotImplemented if isinstance(other, Dual) else Residue(self.value + self.of(other), self.prime)
+
+    def times(self, other):
+        return NotImplemented if isinstance(other, Dual) else Residue(self.value * self.of(other), self.prime)
+
+    def inverse(self):
+        if self.value == 0:
+            raise ZeroDivisionError
+        return Residue(pow(self.value, -1, self.prime), self.prime)
+
+    def function(self, name):
+        Residue.guessed = True
         if name == "sqrt":
-            root = pow(argument, (self.prime + 1) // 4, self.prime)
-            self.guessed = True
-            if root * root % self.prime != argument:
-                raise NoValue("the root of no square")
-            return root
-        self.guessed = True
-        if name in ("sin", "cos"):
-            t = random.Random(f"angle {argument} {self.prime}").randrange(self.prime)
-            bottom = self.divide(1, 1 + t * t)
-            return (2 * t if name == "sin" else 1 - t * t) * bottom % self.prime
-        return random.Random(f"{name} {argument} {self.prime}").randrange(self.prime)
+            root = pow(self.value, (self.prime + 1) // 4, self.prime)
+            if root * root % self.prime != self.value:
+                raise ZeroDivisionError
+            return Residue(root, self.prime)
+        half = Residue(random.Random(f"{name.replace('cos', 'sin')} {self.value} {self.prime}").randrange(self.prime), self.prime)
+        return Arc.of_half(half).function(name) if name in ("sin", "cos") else half
 
 
-class Fractions:
-    """Exact numbers; functions are refused."""
+class Interval(Number):
+    """Two fractions between which a number lies, rounded outward."""
 
-    def number(self, value):
-        return value
+    def __init__(self, low, high):
+        self.low, self.high = Fraction((low * (1 << BITS)).__floor__(), 1 << BITS), Fraction((high * (1 << BITS)).__ceil__(), 1 << BITS)
 
-    def divide(self, a, b):
-        if b == 0:
-            raise NoValue("a divisor that is zero")
-        return a / b
+    @staticmethod
+    def of(other):
+        if isinstance(other, Turn):
+            other = other.value(Interval(0, 0))
+        return other if isinstance(other, Interval) else Interval(other, other)
 
-    def plus(self, a, b):
-        return a + b
+    def plus(self, other):
+        return NotImplemented if isinstance(other, Dual) else Interval(self.low + self.of(other).low, self.high + self.of(other).high)
 
-    def times(self, a, b):
-        return a * b
+    def times(self, other):
+        if isinstance(other, Dual):
+            return NotImplemented
+        products = [a * b for a in (self.low, self.high) for b in (self.of(other).low, self.of(other).high)]
+        return Interval(min(products), max(products))
 
-    def function(self, name, argument):
-        raise NotImplementedError
+    def inverse(self):
+        if self.low <= 0 <= self.high:
+            raise ZeroDivisionError
+        return Interval(1 / self.high, 1 / self.low)
 
-
-class Intervals:
-    """Pairs of fractions between which a number lies, rounded outward to so many bits."""
-
-    def __init__(self, bits):
-        self.unit = 1 << bits
-        self.small = Fraction(1, self.unit)
-
-    def outward(self, low, high):
-        return Fraction((low * self.unit).__floor__(), self.unit), Fraction((high * self.unit).__ceil__(), self.unit)
-
-    def number(self, value):
-        return self.outward(value, value)
-
-    def plus(self, a, b):
-        return a[0] + b[0], a[1] + b[1]
-
-    def times(self, a, b):
-        products = [x * y for x in a for y in b]
-        return self.outward(min(products), max(products))
-
-    def divide(self, a, b):
-        if b[0] <= 0 <= b[1]:
-            raise NoValue("a divisor that may be zero")
-        return self.times(a, self.outward(1 / b[1], 1 / b[0]))
-
-    def function(self, name, a):
-        if name == "pi":
-            return self.outward(*(4 * bound for bound in self.series_pi()))
-        low, high = self.image(name, a[0]), self.image(name, a[1])
-        if name in ("exp", "log", "sqrt", "atan", "asin"):
-            return low[0], high[1]
-        if name == "acos":
-            return high[0], low[1]
-        # sine and cosine: no further from an end than the width
-        width = a[1] - a[0]
-        return max(Fraction(-1), low[0] - width), min(Fraction(1), low[1] + width)
-
-    def alternating(self, terms):
-        """The sum of a series whose terms fall and change their sign."""
-        total = Fraction(0)
-        for part in terms:
-            total += part
-            if abs(part) < self.small:
-                return self.outward(total - abs(part), total + abs(part))
-
-    def atan_small(self, x):
-        return self.alternating(Fraction((-1) ** k, 2 * k + 1) * x ** (2 * k + 1) for k in range(10**6))
-
-    def series_pi(self):
-        fifth, other = self.atan_small(Fraction(1, 5)), self.atan_small(Fraction(1, 239))
-        return 4 * fifth[0] - other[1], 4 * fifth[1] - other[0]
-
-    def image(self, name, x):
-        if name == "sqrt":
-            if x < 0:
-                raise NoValue("a root of what may be negative")
-            root = isqrt((x * self.unit**2).__floor__())
-            return Fraction(root, self.unit), Fraction(root + 1, self.unit)
-        if name == "exp":
-            if abs(x) > Fraction(1, 2):
-                half = self.image("exp", x / 2)
-                return self.times(half, half)
-            total, part, k = Fraction(1), Fraction(1), 0
-            while abs(part) > self.small:
-                k += 1
-                part = part * x / k
-                total += part
-            return self.outward(total - 2 * abs(part), total + 2 * abs(part))
-        if name == "log":
-            if x <= 0:
-                raise NoValue("a logarithm of what may not be positive")
-            if not Fraction(1, 2) < x < 2:
-                root = self.image("sqrt", x)
-                return 2 * self.image("log", root[0])[0], 2 * self.image("log", root[1])[1]
-            # log x = 2 artanh((x - 1)/(x + 1)), whose terms fall ninefold
-            y, total, k = (x - 1) / (x + 1), Fraction(0), 0
-            while True:
-                part = y ** (2 * k + 1) / (2 * k + 1)
-                total, k = total + part, k + 1
-                if abs(part) < self.small:
-                    return self.outward(2 * total - abs(part), 2 * total + abs(part))
-        if name in ("sin", "cos"):
-            if abs(x) > 1:
-                sine, cosine = self.image("sin", x / 2), self.image("cos", x / 2)
-                if name == "sin":
-                    return self.times((Fraction(2), Fraction(2)), self.times(sine, cosine))
-                square = self.times(sine, sine)
-                return 1 - 2 * square[1], 1 - 2 * square[0]
-            odd = int(name == "sin")
-
-            def parts():
-                part, k = (x if odd else Fraction(1)), odd
-                while True:
-                    yield part
-                    part = -part * x * x / ((k + 1) * (k + 2))
-                    k += 2
-            return self.alternating(parts())
-        if name == "atan":
-            if abs(x) <= Fraction(1, 2):
-                return self.atan_small(x)
-            # atan x = 2 atan(x/(1 + sqrt(1 + x^2)))
-            root = self.image("sqrt", 1 + x * x)
-            ends = sorted(x / (1 + end) for end in root)
-            return 2 * self.image("atan", ends[0])[0], 2 * self.image("atan", ends[1])[1]
-        if abs(x) >= 1:
-            raise NoValue(f"{name} at an end of its range")
-        root = self.image("sqrt", 1 - x * x)
-        ends = sorted(x / end for end in root)
-        asin = self.image("atan", ends[0])[0], self.image("atan", ends[1])[1]
-        if name == "asin":
-            return asin
-        half = [bound / 2 for bound in self.function("pi", None)]
-        return half[0] - asin[1], half[1] - asin[0]
+    def function(self, name):
+        if name in ("sin", "cos"):  # no further from its value in the middle than half the width
+            middle, width = (self.low + self.high) / 2, (self.high - self.low) / 2
+            return image(name, middle) + Interval(-width, width)
+        ends = image(name, self.low), image(name, self.high)
+        return Interval(min(end.low for end in ends), max(end.high for end in ends))
 
 
-def circle(at, point, field):
-    """Sine and cosine of a sum of angles, halves of turns and multiples of these; nothing where it is something else."""
-    parts = TERMS[at]
-    if parts[0] == "symbol" and isinstance(point.get(parts[1]), Angle):
-        return point[parts[1]]
-    if parts[0] == "add":
-        a, b = (circle(below, point, field) for below in parts[1:])
-        if a and b:
-            plus, times = field.plus, field.times
-            minus = lambda x, y: plus(x, times(field.number(Fraction(-1)), y))
-            return plus(times(a[0], b[1]), times(a[1], b[0])), minus(times(a[1], b[1]), times(a[0], b[0]))
-        return None
-    if constant(at) == 0:
-        return field.number(Fraction(0)), field.number(Fraction(1))
-    if parts[0] == "mul" and constant(parts[1]) is not None:
-        factor, below = constant(parts[1]), parts[2]
-    elif parts[0] == "mul" and constant(parts[2]) is not None:
-        factor, below = constant(parts[2]), parts[1]
-    else:
-        factor, below = Fraction(1), at
-    if TERMS[below] == ("pi",) and (2 * factor).denominator == 1:
-        turn = int(2 * factor) % 4
-        return tuple(field.number(Fraction(v)) for v in ((0, 1), (1, 0), (0, -1), (-1, 0))[turn])
-    base = None if below == at else circle(below, point, field)
-    if base is None or factor.denominator != 1 or abs(factor) > 64:
-        return None
-    plus, times, minus_one = field.plus, field.times, field.number(Fraction(-1))
-    base = base if factor >= 0 else (times(minus_one, base[0]), base[1])
-    found = (field.number(Fraction(0)), field.number(Fraction(1)))
-    for _ in range(abs(int(factor))):
-        found = (plus(times(found[0], base[1]), times(found[1], base[0])),
-                 plus(times(found[1], base[1]), times(minus_one, times(found[0], base[0]))))
+def series(part, ratio):
+    """A sum whose parts fall at least by half from one to the next, from some on."""
+    total, k = Fraction(0), 0
+    while abs(part) * (1 << BITS) > 1 or k < 8:
+        total, part, k = total + part, part * ratio(k), k + 1
+        part = Fraction((part * (1 << 2 * BITS)).__floor__(), 1 << 2 * BITS)
+    slack = 2 * abs(part) + Fraction(4 * k, 1 << BITS)
+    return Interval(total - slack, total + slack)
+
+
+def image(name, x):
+    """The value of a function of a fraction."""
+    if name == "sqrt" and x >= 0:
+        scaled, root = (x * (1 << 2 * BITS)).__floor__(), 1
+        root = 1 << (scaled.bit_length() + 1) // 2
+        while (closer := (root + scaled // root) // 2) < root:
+            root = closer
+        return Interval(Fraction(root, 1 << BITS), Fraction(root + 1, 1 << BITS))
+    if name == "exp":
+        half = None if abs(x) <= 1 else image("exp", x / 2)
+        return half * half if half else series(Fraction(1), lambda k: x / (k + 1))
+    if name == "log" and x > 0:
+        if not Fraction(1, 2) <= x <= 2:
+            root = image("sqrt", x)
+            return Fraction(2) * Interval(image("log", root.low).low, image("log", root.high).high)
+        y = (x - 1) / (x + 1)
+        return series(2 * y, lambda k: y * y * (2 * k + 1) / (2 * k + 3))
+    if name in ("sin", "cos"):
+        if abs(x) > 1:
+            sine, cosine = image("sin", x / 2), image("cos", x / 2)
+            return Fraction(2) * sine * cosine if name == "sin" else Fraction(1) - Fraction(2) * sine * sine
+        odd = int(name == "sin")
+        return series(x if odd else Fraction(1), lambda k: -x * x / ((2 * k + 1 + odd) * (2 * k + 2 + odd)))
+    if name == "atan":
+        if abs(x) <= Fraction(1, 2):
+            return series(x, lambda k: -x * x * (2 * k + 1) / (2 * k + 3))
+        root = Fraction(1) + image("sqrt", 1 + x * x)
+        return Fraction(2) * (Interval(x, x) / root).function("atan")
+    if name in ("asin", "acos") and abs(x) < 1:
+        asin = (Interval(x, x) / image("sqrt", 1 - x * x)).function("atan")
+        return asin if name == "asin" else Turn(Fraction(1, 2)).value(asin) - asin
+    raise ZeroDivisionError
+
+
+class Turn(Number):
+    """A fraction of pi."""
+
+    def __init__(self, part): self.part = part
+
+    def value(self, like):
+        if isinstance(like, Residue):
+            return Residue(random.Random(f"pi {like.prime}").randrange(like.prime), like.prime) * self.part
+        return (Fraction(16) * image("atan", Fraction(1, 5)) - Fraction(4) * image("atan", Fraction(1, 239))) * self.part
+
+    def plus(self, other):
+        if isinstance(other, Fraction) and other == 0:
+            return self
+        return Turn(self.part + other.part) if isinstance(other, Turn) else self.value(Interval(0, 0)) + other if isinstance(
+            other, Fraction) else NotImplemented
+
+    def times(self, other):
+        return Turn(self.part * other) if isinstance(other, Fraction) else self.value(Interval(0, 0)) * other if isinstance(
+            other, (Turn, Interval)) else NotImplemented
+
+    def inverse(self): return self.value(Interval(0, 0)).inverse()
+
+    def function(self, name):
+        if name in ("sin", "cos") and (2 * self.part).denominator == 1:
+            return Fraction([0, 1, 0, -1][(int(2 * self.part) + (name == "cos")) % 4])
+        return self.value(Interval(0, 0)).function(name)
+
+
+class Arc(Number):
+    """An angle by its sine and cosine."""
+
+    def __init__(self, sine, cosine): self.sine, self.cosine = sine, cosine
+
+    @staticmethod
+    def of_half(half): return Arc(Fraction(2) * half / (half * half + Fraction(1)), (Fraction(1) - half * half) / (half * half + Fraction(1)))
+
+    def plus(self, other):
+        if isinstance(other, Fraction) and other == 0:
+            return self
+        if isinstance(other, Turn) and (2 * other.part).denominator == 1:
+            other = Arc(other.function("sin"), other.function("cos"))
+        if not isinstance(other, Arc):
+            return NotImplemented if isinstance(other, Dual) else refuse("an angle beside a number")
+        return Arc(self.sine * other.cosine + self.cosine * other.sine, self.cosine * other.cosine - self.sine * other.sine)
+
+    def times(self, other):
+        if isinstance(other, Dual):
+            return NotImplemented
+        if not isinstance(other, Fraction) or other.denominator != 1 or abs(other) > 64:
+            refuse("a part of an angle")
+        found, one = Arc(Fraction(0), Fraction(1)), self if other > 0 else Arc(-self.sine, self.cosine)
+        for _ in range(abs(int(other))):
+            found = found + one
+        return found
+
+    def inverse(self): refuse("one over an angle")
+    def function(self, name): return {"sin": self.sine, "cos": self.cosine}.get(name) or (
+        Fraction(0) if name in ("sin", "cos") else refuse("a function of an angle"))
+
+
+class Dual(Number):
+    """A number and its derivative, of a level: that of the higher level counts the other one for a constant."""
+
+    def __init__(self, level, value, slope): self.level, self.value, self.slope = level, value, slope
+
+    def parts(self, other):
+        if isinstance(other, Dual) and other.level > self.level:
+            return other.level, (self, Fraction(0)), (other.value, other.slope)
+        same = isinstance(other, Dual) and other.level == self.level
+        return self.level, (self.value, self.slope), (other.value, other.slope) if same else (other, Fraction(0))
+
+    def plus(self, other):
+        level, a, b = self.parts(other)
+        return Dual(level, a[0] + b[0], a[1] + b[1])
+
+    def times(self, other):
+        level, a, b = self.parts(other)
+        flat = lambda x: x if not (isinstance(x, Fraction) and x == 0) else None
+        rest = [y * x for x, y in ((a[0], flat(b[1])), (b[0], flat(a[1]))) if y is not None]
+        return Dual(level, a[0] * b[0], sum(rest[1:], rest[0]) if rest else Fraction(0))
+
+    def inverse(self):
+        one = invert(self.value)
+        return Dual(self.level, one, -(one * one) * self.slope)
+
+    def function(self, name):
+        x, one = self.value, Fraction(1)
+        own = apply(name, x)
+        slope = {"sin": lambda: apply("cos", x), "cos": lambda: -apply("sin", x), "exp": lambda: own, "log": lambda: invert(x),
+                 "sqrt": lambda: invert(Fraction(2) * own), "atan": lambda: invert(one + x * x),
+                 "asin": lambda: invert(apply("sqrt", one - x * x)), "acos": lambda: -invert(apply("sqrt", one - x * x))}[name]
+        return Dual(self.level, own, slope() * self.slope)
+
+
+def refuse(why):
+    raise NotRead(why)
+
+
+def invert(x):
+    return x.inverse() if isinstance(x, Number) else Fraction(1) / x
+
+
+def apply(name, x):
+    """A function; of a fraction exactly where that is simple, else in an interval."""
+    if isinstance(x, Number):
+        return x.function(name)
+    simple = {("exp", 0): 1, ("log", 1): 0, ("sin", 0): 0, ("cos", 0): 1, ("atan", 0): 0, ("asin", 0): 0, ("sqrt", 0): 0, ("sqrt", 1): 1}
+    return Fraction(simple[name, x]) if (name, x) in simple else EXACT["function"](name, x)
+
+
+EXACT = {"function": image}
+
+
+def total(parts):
+    parts = list(parts)
+    return sum(parts[1:], parts[0]) if parts else Fraction(0)
+
+
+def matrix(x):
+    return x if isinstance(x, list) else [[x]]
+
+
+def number(x):
+    if isinstance(x, list):
+        return x[0][0] if len(x) == len(x[0]) == 1 else refuse("a matrix where a number is meant")
+    return x
+
+
+def each(operation, a, b):
+    if not isinstance(a, list) and not isinstance(b, list):
+        return operation(a, b)
+    a, b = matrix(a), matrix(b)
+    if [len(row) for row in a] != [len(row) for row in b]:
+        refuse("matrices of two shapes")
+    return [[operation(x, y) for x, y in zip(*rows)] for rows in zip(a, b)]
+
+
+def times(a, b):
+    if isinstance(a, list) and isinstance(b, list):
+        if len(a[0]) == len(b):
+            return [[total(x * row[j] for x, row in zip(line, b)) for j in range(len(b[0]))] for line in a]
+        a, b = (number(a), b) if len(a) == len(a[0]) == 1 else (a, number(b))
+    if isinstance(b, list):
+        a, b = b, a
+    return [[x * b for x in row] for row in a] if isinstance(a, list) else a * b
+
+
+def raised(x, n):
+    if n < 0:
+        return invert(raised(x, -n))
+    found = Fraction(1)
+    for bit in bin(n)[2:]:
+        found = found * found * x if bit == "1" else found * found
     return found
 
 
-def evaluate(roots, point, field):
-    """The values of some terms. An angle's value is its sine and its cosine."""
-    found = {}
-    for at in reachable(roots):
-        parts = TERMS[at]
-        below = [found.get(operand) for operand in operands(parts)]
-        both = circle(parts[2], point, field) if parts[1:2] in (("sin",), ("cos",)) else None
-        if both:
-            found[at] = both[parts[1] == "cos"]
-        elif parts[0] in ("const", "pi"):
-            found[at] = field.number(parts[1]) if parts[0] == "const" else field.function("pi", None)
-        elif parts[0] == "symbol":
-            # an angle has a sine and a cosine, and no value of its own
-            found[at] = None if isinstance(point.get(parts[1]), Angle) else point.get(parts[1])
-        elif None in below:
-            found[at] = None
-        elif parts[0] == "power":
-            found[at] = raised(below[0], parts[2], field)
-        elif parts[0] == "apply":
-            found[at] = field.function(parts[1], below[0])
-        else:
-            found[at] = (field.plus if parts[0] == "add" else field.times)(*below)
-    if any(found[root] is None for root in roots):
-        raise NoValue("an angle outside of sines and cosines, or a symbol without a value")
-    return [found[root] for root in roots]
+def determinant(rows):
+    minors = {(): Fraction(1)}
+    for row in rows:
+        grown = {}
+        for columns, minor in minors.items():
+            for column in (c for c in range(len(rows)) if c not in columns and not (isinstance(row[c], Fraction) and row[c] == 0)):
+                part = row[column] * minor if sum(c > column for c in columns) % 2 == 0 else -(row[column] * minor)
+                key = tuple(sorted((*columns, column)))
+                grown[key] = grown[key] + part if key in grown else part
+        minors = grown
+    return next(iter(minors.values()), Fraction(0))
 
 
-def raised(base, n, field):
-    value, one = base, field.number(Fraction(1))
-    found = one
-    for bit in bin(abs(n))[2:]:
-        found = field.times(found, found)
-        if bit == "1":
-            found = field.times(found, value)
-    return found if n >= 0 else field.divide(one, found)
-
-
-def sign(root, point):
-    """The sign of a number, exactly."""
-    try:
-        value = evaluate([root], point, Fractions())[0]
-        return (value > 0) - (value < 0)
-    except NotImplementedError:
-        pass
-    for bits in (64, 256, 1024):
-        field = Intervals(bits)
-        enclosed = {name: Angle(*map(field.number, v)) if isinstance(v, Angle) else field.number(v) for name, v in point.items()}
-        low, high = evaluate([root], enclosed, field)[0]
-        if low > 0 or high < 0:
-            return 1 if low > 0 else -1
-    raise NoValue("it cannot be told from zero")
-
-
-def solved(conditions, point, field):
-    """The point moved onto the set of some equations: of each some symbol is solved for, or an angle put to a quarter of the turn."""
-    free = set(point)
-    gap = lambda: [evaluate([sub(left, right)], point, field)[0] for left, _, right in conditions]
-    for place, (left, relation, right) in enumerate(conditions):
-        if relation != "=":
-            raise NoValue("an inequality")
-        if TERMS[left][0] == "symbol" and isinstance(point.get(TERMS[left][1]), Angle):
-            both = circle(right, point, field)
-            if both is None:
-                raise NoValue("an angle that is told by a function")
-            point[TERMS[left][1]] = Angle(*both)
-            free.discard(TERMS[left][1])
-            continue
-        here = sorted(symbols([left, right]) & free, key=lambda name: (TERMS[left] != ("symbol", name), name))
-        if not any(solve_for(name, place, gap, point, field) and not free.discard(name) for name in here):
-            raise NoValue("a condition that is not solved")
-    if any(gap()):
-        raise NoValue("conditions that are not solved together")
-    return point
-
-
-def solve_for(name, place, gap, point, field):
-    """Whether an equation is met by another value of a symbol, which it is given."""
-    kept, minus = point[name], field.number(Fraction(-1))
-    if isinstance(kept, Angle):
-        for sine, cosine in ((0, 1), (1, 0), (0, -1), (-1, 0)):
-            point[name] = Angle(field.number(Fraction(sine)), field.number(Fraction(cosine)))
-            try:
-                if gap()[place] == 0:
-                    return True
-            except NoValue:
-                pass
-        point[name] = kept
-        return False
-    # linear in it: its value from those at zero and at one
-    try:
-        ends = []
-        for value in (0, 1):
-            point[name] = field.number(Fraction(value))
-            ends.append(gap()[place])
-        rise = field.plus(ends[1], field.times(minus, ends[0]))
-        point[name] = field.divide(field.times(minus, ends[0]), rise)
-        if gap()[place] == 0:
-            return True
-    except NoValue:
-        pass
-    point[name] = kept
-    return False
-
-
-def rank_modulo(entries, columns, prime):
-    """The rank of a matrix of residues, row by row."""
-    rows, rank = [entries[i:i + columns] for i in range(0, len(entries), columns)], 0
-    for column in range(columns):
-        pivot = next((r for r in range(rank, len(rows)) if rows[r][column] % prime), None)
-        if pivot is None:
-            continue
-        rows[rank], rows[pivot] = rows[pivot], rows[rank]
-        inverse = pow(rows[rank][column], -1, prime)
-        for row in rows[rank + 1:]:
-            factor = row[column] * inverse % prime
-            if factor:
-                row[:] = [(a - factor * b) % prime for a, b in zip(row, rows[rank])]
-        rank += 1
-    return rank
+def inverse(rows):
+    across, size = invert(determinant(rows)), range(len(rows))
+    part = lambda i, j: determinant([[rows[k][l] for l in size if l != i] for k in size if k != j]) * across
+    return [[part(i, j) if (i + j) % 2 == 0 else -part(i, j) for j in size] for i in size]
