@@ -201,7 +201,7 @@ fn off_the_sets(
     explored: &Explored,
     claim: &ClaimedEverywhere,
 ) -> Reach<Everywhere> {
-    let mut open: Vec<String> = Vec::new();
+    let mut open: Vec<String> = explored.stopped.iter().cloned().collect();
     for shown in merged(algebra, search, &explored.short) {
         if claim.except.iter().any(|set| lies_in(algebra, &shown, set)) {
             continue;

@@ -16,13 +16,18 @@ mod claim;
 mod coordinates;
 mod explore;
 mod factors;
+mod full;
+mod lower;
 mod merge;
 mod minor;
+mod on_box;
 mod point;
 mod real;
 mod rows;
 mod sets;
 
 pub(crate) use claim::{ClaimedEverywhere, Everywhere, MinorIdentity, decide_everywhere};
+pub use on_box::BoxShare;
+pub(crate) use on_box::share_of_the_box;
 pub(crate) use rows::rows_up_to;
 pub use sets::{DropAnswer, DropSet, UsedMinor, where_it_drops};

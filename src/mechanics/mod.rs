@@ -20,6 +20,7 @@
 
 mod body;
 mod contact;
+mod curved;
 mod derivative;
 mod dynamics;
 mod grip;
@@ -27,6 +28,7 @@ mod harmonics;
 pub mod linear;
 mod motion;
 pub mod moving;
+mod palm;
 mod precise;
 mod quasistatics;
 mod rest;
@@ -36,16 +38,20 @@ mod tumbling;
 #[doc(hidden)]
 pub use body::PlanarBody;
 #[doc(hidden)]
-pub use contact::{Placement, place};
+pub use contact::{Angles, Placement, place};
+#[doc(hidden)]
+pub use curved::place_on;
 #[doc(hidden)]
 pub use derivative::differentiate;
 pub(crate) use derivative::{Derivatives, Moving};
 #[doc(hidden)]
-pub use dynamics::{Inertia, PlanarDynamics, planar_dynamics};
+pub use dynamics::{Inertia, PlanarDynamics, planar_dynamics, planar_dynamics_on};
 #[doc(hidden)]
 pub use grip::palm_frame;
 #[doc(hidden)]
 pub use motion::{PalmMotion, PlanarMotion, Swing, radius_of_curvature};
+#[doc(hidden)]
+pub use palm::{Palm, PalmNumber, PalmPoint};
 #[doc(hidden)]
 pub use precise::Real;
 #[doc(hidden)]

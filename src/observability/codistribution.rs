@@ -349,9 +349,9 @@ impl Codistribution {
         self.needed.len() < self.generic.at_least && matches!(self.stop, Stop::TooMany | Stop::Order)
     }
 
-    /// Whether the search came to its own end, and was not cut off.
+    /// Whether the search came to its own end, and was neither cut off nor left out.
     pub fn has_rested(&self) -> bool {
-        !matches!(self.stop, Stop::TooMany | Stop::Order)
+        !matches!(self.stop, Stop::TooMany | Stop::Order | Stop::NotTaken)
     }
 
     /// What no rank can exceed at any state of the locus, for certain but for the error of the generic answer.

@@ -13,6 +13,7 @@ mod conditions;
 mod defined;
 mod elimination;
 mod equilibrate;
+mod fibre;
 mod flow;
 mod generic;
 mod locus;
@@ -42,6 +43,7 @@ pub(crate) use elimination::{certain_rank, kernel};
 pub(crate) use equilibrate::WEIGHT_OF_ERRORS;
 #[cfg(test)]
 pub(crate) use equilibrate::equilibrate;
+pub use fibre::{Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion, WORK as SOLUTIONS_WORK, solutions};
 #[doc(hidden)]
 pub use flow::Flow;
 pub use generic::{

@@ -51,6 +51,11 @@ impl Echelon {
         row.iter().all(|entry| *entry == 0)
     }
 
+    /// Whether a row begins at this column.
+    pub fn begins_at(&self, column: usize) -> bool {
+        self.pivots.contains(&column)
+    }
+
     /// A basis of the vectors that all rows annihilate: a one at a free column each.
     pub fn kernel(&self) -> Vec<Vec<u64>> {
         let one = self.field.one();
