@@ -118,6 +118,8 @@ fn known(system: &mut System, on: &OnBranch, rng: &mut ChaCha8Rng) -> Result<(Ve
     let functions = &on.statement.sides;
     let frame = Frame::new(system, values)?;
     let (answer, seen) = frame.functions(system, values, functions);
+    // one bound holds for all that the series tell together
+    let mut joint = Some(answer.log2_error);
     let mut found = Vec::new();
     for (function, seen) in functions.iter().zip(seen) {
         let row = system.differential(*function);
@@ -125,8 +127,8 @@ fn known(system: &mut System, on: &OnBranch, rng: &mut ChaCha8Rng) -> Result<(Ve
         let is_zero = |entry: &NodeId| system.graph.constant_value(*entry).is_some_and(|v| v.is_zero());
         found.push(match seen {
             _ if row.iter().all(is_zero) => Known::Seen(f64::NEG_INFINITY),
-            Seen::Yes => Known::Seen(answer.log2_error),
-            Seen::No => Known::Unseen(answer.log2_error),
+            Seen::Yes => Known::Seen(joint.take().unwrap_or(f64::NEG_INFINITY)),
+            Seen::No => Known::Unseen(joint.take().unwrap_or(f64::NEG_INFINITY)),
             Seen::Undecided => by_rows(system, on, &frame, *function, rng).unwrap_or_else(Known::Open),
         });
     }
