@@ -1,14 +1,16 @@
 //! Claims about a rank at all states, `rank = 6 except where g*omega0 = 0`, and what the checker needs of them.
 
+use super::question::{Question, guards_of_conditions};
 use super::verdict::{Verdict, Witness};
 use crate::checker::{CertifiedRank, Effort, Evidence, Finding, Missing, RankedState, Ratio, StatedIdentity};
-use crate::drops::{ClaimedEverywhere, Everywhere, MinorIdentity, decide_everywhere};
+use crate::drops::{ClaimedEverywhere, Everywhere, MinorIdentity, decide_everywhere, share_of_the_box};
 use crate::evidence::{Lowering, StatementAt, exact_state, largest_minor};
-use crate::expression::{NodeId, Program, expand_angles};
+use crate::expression::syntax::{Equation, Expr, Relation};
+use crate::expression::{Guard, NodeId, Program, add_guard, expand_angles};
 use crate::number::{PrimeField, Rationals};
-use crate::observability::{Coordinate, State, kernel};
+use crate::observability::{Coordinate, State, assumed, kernel};
 use crate::sweep::UNINTERRUPTED;
-use crate::system::System;
+use crate::system::{Statement, System, in_one_line};
 use dashu::rational::RBig;
 use rand::{Rng, RngExt};
 
@@ -30,6 +32,52 @@ pub(super) struct DecidedEverywhere {
     pub beside: Vec<String>,
 }
 
+/// Reads a claim about a rank at all states but those of some sets.
+///
+/// # Errors
+/// In words, where it is none.
+pub(super) fn read(
+    system: &mut System,
+    statement: &Statement,
+    question: &Question,
+    except: &[Vec<Equation>],
+    (mut guards, conditions): (Vec<Guard>, Vec<NodeId>),
+) -> Result<ClaimedEverywhere, String> {
+    let (matrix, rank) = match question {
+        Question::Rank { entries, columns, claimed } => (Some((entries.clone(), *columns)), *claimed),
+        Question::Codistribution { claimed } => (None, *claimed),
+        _ => return Err("'except where' is said of a rank".to_owned()),
+    };
+    for guard in guards_of_conditions(system, statement)? {
+        add_guard(&system.graph, &mut guards, guard);
+    }
+    for condition in statement.conditions.iter().filter(|one| one.relation != Relation::Equal) {
+        let left = system.scalar(&condition.left).map_err(|problem| problem.message)?;
+        let right = system.scalar(&condition.right).map_err(|problem| problem.message)?;
+        if let Some(guard) = assumed(&mut system.graph, condition.relation, left, right) {
+            add_guard(&system.graph, &mut guards, guard);
+        }
+    }
+    let (mut sets, mut written) = (Vec::new(), Vec::new());
+    for set in except {
+        let ends = set.first().zip(set.last()).map(|(first, last)| first.span.start..last.span.end);
+        written.push(in_one_line(&system.source, &ends.unwrap_or_default()));
+        let mut vanishing = Vec::new();
+        for equation in set {
+            let mut side = |expr: &Expr| -> Result<NodeId, String> {
+                let (value, needed) = system.elaborate_guarded(expr).map_err(|problem| problem.message)?;
+                needed.into_iter().for_each(|guard| add_guard(&system.graph, &mut guards, guard));
+                value.as_number().ok_or_else(|| "what is left out is said by numbers".to_owned())
+            };
+            let (left, right) = (side(&equation.left)?, side(&equation.right)?);
+            vanishing.push(system.graph.sub(left, right));
+        }
+        sets.push(vanishing);
+    }
+    guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
+    Ok(ClaimedEverywhere { matrix, rank, guards, conditions, except: sets, written })
+}
+
 /// Decides a claim about a rank at all states, and notes what the verdict rests on.
 ///
 /// # Errors
@@ -40,7 +88,8 @@ pub(super) fn decide(
     rng: &mut impl Rng,
 ) -> Result<DecidedEverywhere, String> {
     let seed = rng.random::<u64>();
-    Ok(match decide_everywhere(system, claim, seed, &UNINTERRUPTED)? {
+    let decided = decide_everywhere(system, claim, seed, &UNINTERRUPTED);
+    Ok(match decided.map_err(|why| why + &on_the_box(system, claim))? {
         Everywhere::Proved { cases: (cases, empty), minors, beside, log2_error } => {
             let engine = format!("{ENGINE}, in {cases} cases, {empty} of them empty");
             let evidence = minors.iter().map(|minor| identity(system, minor, log2_error, rng)).collect();
@@ -74,10 +123,25 @@ pub(super) fn decide(
             DecidedEverywhere { verdict: Verdict::Refuted { engine, witness }, evidence, beside: Vec::new() }
         }
         Everywhere::Open(why) => {
-            let verdict = Verdict::undecided(why);
+            let verdict = Verdict::undecided(why + &on_the_box(system, claim));
             DecidedEverywhere { verdict, evidence: Vec::new(), beside: Vec::new() }
         }
     })
+}
+
+/// What interval certificates say of the sample box where a rank at all states is open, as the end of a sentence.
+fn on_the_box(system: &mut System, claim: &ClaimedEverywhere) -> String {
+    let is_full = claim.matrix.is_none() && claim.rank == system.unknown_count();
+    if !is_full || !claim.conditions.is_empty() {
+        return String::new();
+    }
+    match share_of_the_box(system, &UNINTERRUPTED) {
+        Ok(share) if share.proved > 0.0 => {
+            let (percent, rank) = (share.percent(), claim.rank);
+            format!("; on {percent} % of the sample box the rank is {rank}, by interval certificates")
+        }
+        _ => String::new(),
+    }
 }
 
 /// A minor and its product of factors, as an identity that the checker tries.
