@@ -209,10 +209,10 @@ fn decide_statement(system: &mut System, statement: &Statement, kept: Kept, rng:
     let verdict = attempt(system, statement, rng, &mut notes).unwrap_or_else(Verdict::undecided);
     let Notes { domain, beside, mut evidence, .. } = notes;
     let word = verdict.word();
-    // at a state where a rank is lower than claimed it is certified
+    // at a state where a rank is lower than claimed it is certified, and at states of all cases where it is proved everywhere
     let is_of_it = |evidence: &Evidence| {
         [word, "unchecked"].contains(&evidence.word())
-            || word == "refuted" && matches!(evidence, Evidence::Rank(_))
+            || ["proved", "refuted"].contains(&word) && matches!(evidence, Evidence::Rank(_))
     };
     evidence.retain(is_of_it);
     match &verdict {
@@ -300,8 +300,9 @@ fn attempt(
         notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
     }
     if let Some(except) = &statement.except {
-        let claim = super::everywhere::read(system, statement, &question, except, (guards, conditions))?;
+        let mut claim = super::everywhere::read(system, statement, &question, except, (guards, conditions))?;
         notes.domain = claim.guards.iter().map(|guard| guard.text(&system.graph)).collect();
+        claim.with_examples = notes.kept == Kept::Evidence;
         let decided = super::everywhere::decide(system, &claim, rng)?;
         notes.evidence = decided.evidence;
         notes.beside = decided.beside;

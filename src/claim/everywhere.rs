@@ -3,7 +3,9 @@
 use super::question::{Question, guards_of_conditions};
 use super::verdict::{Verdict, Witness};
 use crate::checker::{CertifiedRank, Effort, Evidence, Finding, Missing, RankedState, Ratio, StatedIdentity};
-use crate::drops::{ClaimedEverywhere, Everywhere, MinorIdentity, decide_everywhere, share_of_the_box};
+use crate::drops::{
+    ClaimedEverywhere, Everywhere, MinorIdentity, StatesOfCases, decide_everywhere, share_of_the_box,
+};
 use crate::evidence::{Lowering, StatementAt, exact_state, largest_minor};
 use crate::expression::syntax::{Equation, Expr, Relation};
 use crate::expression::{Guard, NodeId, Program, add_guard, expand_angles};
@@ -75,7 +77,7 @@ pub(super) fn read(
         sets.push(vanishing);
     }
     guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
-    Ok(ClaimedEverywhere { matrix, rank, guards, conditions, except: sets, written })
+    Ok(ClaimedEverywhere { matrix, rank, guards, conditions, except: sets, written, with_examples: false })
 }
 
 /// Decides a claim about a rank at all states, and notes what the verdict rests on.
@@ -90,13 +92,19 @@ pub(super) fn decide(
     let seed = rng.random::<u64>();
     let decided = decide_everywhere(system, claim, seed, &UNINTERRUPTED);
     Ok(match decided.map_err(|why| why + &on_the_box(system, claim))? {
-        Everywhere::Proved { cases: (cases, empty), minors, beside, log2_error } => {
+        Everywhere::Proved { cases: (cases, empty), minors, examples, beside, log2_error } => {
             let engine = format!("{ENGINE}, in {cases} cases, {empty} of them empty");
-            let evidence = minors.iter().map(|minor| identity(system, minor, log2_error, rng)).collect();
+            let mut evidence = Vec::new();
+            if claim.with_examples {
+                evidence.extend(minors.iter().map(|minor| identity(system, minor, log2_error, rng)));
+                evidence.extend(on_the_cases(system, claim, examples, rng));
+            }
             DecidedEverywhere { verdict: Verdict::Proved { engine, log2_error }, evidence, beside }
         }
         Everywhere::Refuted { state, found, set, log2_error } => {
-            let certified = rank_at(system, claim, &state, rng).map_err(|why| why.to_string())?;
+            let rows = rows(system, claim);
+            let certified = ranks_at(system, claim, rows, std::slice::from_ref(&state), rng);
+            let certified = certified.map_err(|why| why.to_string())?;
             let finding = certified.check(&Effort::new(WORK), &UNINTERRUPTED);
             if !matches!(finding, Finding::Confirmed { .. }) {
                 return Err(format!(
@@ -181,26 +189,59 @@ fn identity(system: &System, minor: &MinorIdentity, log2_error: f64, rng: &mut i
     Evidence::Unchecked(why)
 }
 
-/// The rank at a state, with its minor and its kernel.
-fn rank_at(
+/// The rank at a state of each case, for the checker: small sets are where a mistake in a factor would show.
+fn on_the_cases(
     system: &mut System,
     claim: &ClaimedEverywhere,
-    state: &State,
+    examples: StatesOfCases,
+    rng: &mut impl Rng,
+) -> Option<Evidence> {
+    let (_, width, _, columns) = match &claim.matrix {
+        Some(_) => rows(system, claim),
+        None => (Vec::new(), system.unknown_count(), Vec::new(), system.column_names()),
+    };
+    let StatesOfCases { words, entries, states } = examples;
+    let mut found = match ranks_at(system, claim, (entries, width, words, columns), &states, rng) {
+        Ok(found) => found,
+        Err(missing) => return Some(Evidence::Unchecked(format!("it could not be written down: {missing}"))),
+    };
+    // a state that meets the equations of a case may lie in a smaller one, for which other rows are meant
+    found.states.retain(|state| state.rank == claim.rank);
+    (!found.states.is_empty()).then_some(Evidence::Rank(found))
+}
+
+/// Rows, their number of entries, what they are of, and what their columns are.
+type NamedRows = (Vec<NodeId>, usize, Vec<String>, Vec<String>);
+
+/// The rank at some states, with its minor and its kernel.
+fn ranks_at(
+    system: &mut System,
+    claim: &ClaimedEverywhere,
+    (entries, width, words, columns): NamedRows,
+    states: &[State],
     rng: &mut impl Rng,
 ) -> Result<CertifiedRank, Missing> {
-    let (entries, width, words, columns) = rows(system, claim);
     let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, &entries, is_angle);
     let program = Program::new(&system.graph, &expanded, is_angle);
-    let minor = largest_minor(&program, width, state, PrimeField::random(rng)).unwrap_or_default();
-    let exact = Rationals { bits: BITS };
-    let values = state
-        .inputs(&program, &exact)
-        .ok()
-        .and_then(|inputs| program.load(exact).ok()?.run(&inputs, &mut Vec::new()).ok())
-        .unwrap_or_default();
-    let matrix: Vec<Vec<RBig>> = values.chunks(width.max(1)).map(<[RBig]>::to_vec).collect();
-    let unseen = kernel(&Rationals { bits: BITS }, matrix, width).unwrap_or_default();
+    let mut ranked = Vec::new();
+    for state in states {
+        let minor = largest_minor(&program, width, state, PrimeField::random(rng)).unwrap_or_default();
+        let exact = Rationals { bits: BITS };
+        let values = state
+            .inputs(&program, &exact)
+            .ok()
+            .and_then(|inputs| program.load(exact).ok()?.run(&inputs, &mut Vec::new()).ok())
+            .unwrap_or_default();
+        let matrix: Vec<Vec<RBig>> = values.chunks(width.max(1)).map(<[RBig]>::to_vec).collect();
+        let unseen = kernel(&Rationals { bits: BITS }, matrix, width).unwrap_or_default();
+        ranked.push(RankedState {
+            state: exact_state(&system.graph, state),
+            rank: minor.rows.len(),
+            minor,
+            kernel: unseen.into_iter().map(|v| v.into_iter().map(Ratio).collect()).collect(),
+        });
+    }
     let graph = &system.graph;
     let mut lowering = Lowering::new(graph);
     let mut places = Vec::new();
@@ -218,17 +259,12 @@ fn rank_at(
         conditions,
         requirements,
         listing: lowering.finish(),
-        states: vec![RankedState {
-            state: exact_state(graph, state),
-            rank: minor.rows.len(),
-            minor,
-            kernel: unseen.into_iter().map(|v| v.into_iter().map(Ratio).collect()).collect(),
-        }],
+        states: ranked,
     })
 }
 
 /// All rows of the matrix, or those of the words that were taken.
-fn rows(system: &mut System, claim: &ClaimedEverywhere) -> (Vec<NodeId>, usize, Vec<String>, Vec<String>) {
+fn rows(system: &mut System, claim: &ClaimedEverywhere) -> NamedRows {
     let numbered = |what: &str, count: usize| (1..=count).map(|n| format!("{what} {n}")).collect();
     match &claim.matrix {
         Some((entries, width)) => {
