@@ -11,6 +11,7 @@ mod recorded;
 mod recovered;
 mod refused;
 mod witness;
+mod wrong;
 
 use crate::common::palmistry;
 use palmistry::experiment::{Answer, Experiment, Scene};
