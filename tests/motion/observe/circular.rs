@@ -37,7 +37,7 @@ fn a_body_between_arcs_is_recovered_and_flat_palms_do_not_explain_it() {
     println!("circular {found:e}");
     assert_eq!(converged, 2);
     assert!(found < 1e-11, "{found:e}");
-    let flat = with(&scene(), "circular_palms_motion.proof", "general.proof");
+    let flat = with(&scene(), "constraint/circular_palms.proof", "general.proof");
     let (missed, _) = worst(&flat);
     println!("flat {missed:e}");
     assert!(missed > 0.05, "{missed:e}");
