@@ -3,7 +3,7 @@
 //! An angle is a point of the circle: two variables, its cosine and its sine, which move by its rate.
 
 use super::exact::Exact;
-use crate::expression::{Graph, Input, Node, NodeId, Program, Symbol, expand_angles};
+use crate::expression::{Graph, Input, NodeId, Program, Symbol, expand_angles};
 use crate::number::{Arithmetic, Fraction, Fractions, Function, Refusal};
 use crate::system::{Assignment, System, Time};
 
@@ -197,16 +197,9 @@ impl Model {
         !self.given.is_empty()
     }
 
-    /// Whether a variable stands for the number pi.
-    pub fn is_pi(&self, place: usize) -> bool {
-        matches!(self.variables[place].input, Input::Opaque(node) if self.graph.node(node) == Node::Pi)
-    }
-
     /// The values that the file gives, as a program.
     pub fn given_program(&self) -> Program {
         let nodes: Vec<NodeId> = self.given.iter().map(|(_, node)| *node).collect();
         Program::with_unknown_functions(&self.graph, &nodes, |symbol| self.angles.contains(&symbol))
     }
-
 }
-
