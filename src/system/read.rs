@@ -288,6 +288,10 @@ impl System {
                 if !self.calculates_nothing(expr) {
                     self.calculated.insert(name.text.clone());
                 }
+                if matches!(value, Value::Solutions(_) | Value::Infinity) {
+                    let message = format!("{} has no name", value.describe());
+                    return Err(Problem::new(&expr.span, message, "claim it as it is"));
+                }
                 if value == Value::CodistributionRank {
                     return Err(Problem::new(
                         &expr.span,
@@ -375,10 +379,11 @@ impl System {
         let comparable = match &values {
             (Value::Matrix(l), Value::Matrix(r)) => (l.rows, l.columns) == (r.rows, r.columns),
             (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
-            (left, right) => matches!(left, Value::Scalar(_)) || matches!(right, Value::Scalar(_)),
+            (left, right) => left.are_comparable(right),
         };
         let of_codistribution =
-            matches!(values, (Value::CodistributionRank, _) | (_, Value::CodistributionRank));
+            matches!(values, (Value::CodistributionRank, _) | (_, Value::CodistributionRank))
+                || matches!(values, (Value::Solutions(_), _) | (_, Value::Solutions(_)));
         if of_codistribution
             && !self.states.is_empty()
             && !self.outputs.is_empty()

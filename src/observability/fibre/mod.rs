@@ -26,10 +26,10 @@ mod quotient;
 #[cfg(test)]
 mod tests;
 
-use super::generic::{Orders, Probe, Seen};
+use super::generic::{GenericAnswer, Orders, Probe, Seen};
 use super::needed::CodistributionError;
 use super::Frame;
-use crate::expression::NodeId;
+use crate::expression::{LOG2_ERROR, NodeId};
 use crate::number::PrimeField;
 use crate::system::{Assignment, System, UnknownKind};
 use basis::{Basis, Limits, Row, Stop};
@@ -67,6 +67,8 @@ pub struct SolutionsOf {
     pub kind: Option<UnknownKind>,
     /// Whether it is seen locally.
     pub local: Seen,
+    /// The probability of an error in that, as a power of two.
+    pub local_error: f64,
     /// What was found.
     pub solutions: Solutions,
     /// No more values than these, but for an error of probability below two to this power; nothing where there is no bound below `2^-100`.
@@ -166,15 +168,16 @@ pub fn solutions(system: &mut System, question: &SolutionsQuestion) -> Result<So
             name: system.symbol_name(*symbol).to_owned(),
             kind: system.unknown_kind(*symbol),
             local,
+            local_error: generic.log2_error,
             solutions: Solutions::Undecided(String::new()),
             at_most: None,
             at_least: None,
         });
     }
     for (name, expression) in &question.expressions {
-        let local = local_of(system, &question.conditions, *expression, generic.rank())?;
+        let (local, local_error) = local_of(system, &question.conditions, *expression, &generic)?;
         let solutions = Solutions::Undecided(String::new());
-        found.push(SolutionsOf { name: name.clone(), kind: None, local, solutions, at_most: None, at_least: None });
+        found.push(SolutionsOf { name: name.clone(), kind: None, local, local_error, solutions, at_most: None, at_least: None });
     }
     let mut answer =
         SolutionsAnswer { unknowns: found, rounds: 0, orders: Vec::new(), points: None, work: 0, second: None, orders_are_open: false };
@@ -207,22 +210,29 @@ pub fn solutions(system: &mut System, question: &SolutionsQuestion) -> Result<So
     Ok(answer)
 }
 
+/// The logarithm of the sum of two probabilities.
+fn sum_of_errors(a: f64, b: f64) -> f64 {
+    (a.exp2() + b.exp2()).log2()
+}
+
 /// Whether an expression is seen locally: where the rank stays what it is when it is an output.
 fn local_of(
     system: &System,
     conditions: &Assignment,
     expression: NodeId,
-    rank: Option<usize>,
-) -> Result<Seen, CodistributionError> {
+    generic: &GenericAnswer,
+) -> Result<(Seen, f64), CodistributionError> {
     let mut with_it = system.clone();
     with_it.outputs.push((String::new(), expression));
     with_it.output_guards.push(Vec::new());
     let all = Frame::new(&mut with_it, conditions)?.generic;
-    Ok(match (rank, all.rank()) {
+    let log2_error = sum_of_errors(generic.log2_error, all.log2_error);
+    let seen = match (generic.rank(), all.rank()) {
         (Some(rank), Some(with_it)) if rank == with_it => Seen::Yes,
         (Some(_), Some(_)) => Seen::No,
         _ => Seen::Undecided,
-    })
+    };
+    Ok((seen, log2_error))
 }
 
 fn expressions(question: &SolutionsQuestion) -> Vec<NodeId> {
@@ -294,7 +304,8 @@ fn count(
             let affordable = (question.work / 2 / cost).min(MOST_ROUNDS as u64) as usize;
             for (place, values) in best.values.iter().enumerate() {
                 if let Some(each) = of_a_round(model, &orders, place, *values) {
-                    let needed = (100.0 / -each).ceil() as usize;
+                    // what is known of the rank may fail as well
+                    let needed = ((1.0 - LOG2_ERROR) / -each).ceil() as usize;
                     if needed <= affordable {
                         wanted = wanted.max(needed);
                     }
@@ -307,8 +318,8 @@ fn count(
     for (place, (of_it, values)) in answer.unknowns.iter_mut().zip(&best.values).enumerate() {
         of_it.solutions = Solutions::Finite(*values);
         if let Some(each) = of_a_round(model, &orders, place, *values) {
-            let log2_error = answer.rounds as f64 * each;
-            if log2_error <= -100.0 {
+            let log2_error = sum_of_errors(answer.rounds as f64 * each, of_it.local_error);
+            if log2_error <= LOG2_ERROR {
                 of_it.at_most = Some((*values, log2_error));
             }
         }

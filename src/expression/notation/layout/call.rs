@@ -90,6 +90,10 @@ impl FormulaLayout<'_> {
             }
             ("det", [inner]) => self.applied(Formula::Word("det"), inner, closed),
             ("rank", [inner]) => self.applied(Formula::Word("rank"), inner, closed),
+            ("solutions", [inner]) => {
+                let word = Formula::Word("solutions");
+                (Formula::Row(vec![word, round(self.expression(inner))]), Binding::Prefix)
+            }
             ("pole", [inner, factor]) => {
                 let zero =
                     [Formula::Sign(FormulaSign::Relation(Relation::Equal)), Formula::Number("0".into())];
