@@ -70,7 +70,8 @@ fn values_for(system: &mut System, statement: &Statement) -> Vec<(Symbol, RBig)>
                     nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
                 }
             }
-            Err(_) => return Vec::new(),
+            // a number of solutions is that at almost all values
+            Ok(Value::Solutions(_) | Value::Infinity) | Err(_) => return Vec::new(),
         }
     }
     for condition in &statement.conditions {

@@ -21,6 +21,7 @@ mod rank_bounds;
 mod rank_witness;
 mod ranks;
 mod selection;
+mod solutions;
 mod terms;
 mod value;
 mod verdict;

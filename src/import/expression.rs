@@ -166,7 +166,9 @@ impl ForeignExpr {
     pub(super) fn parts(&self) -> Vec<&ForeignExpr> {
         match &self.kind {
             ForeignKind::Number(_) | ForeignKind::Pi | ForeignKind::Name(_) => Vec::new(),
-            ForeignKind::Sum(list) | ForeignKind::Product(list) => list.iter().map(|(_, part)| part).collect(),
+            ForeignKind::Sum(list) | ForeignKind::Product(list) => {
+                list.iter().map(|(_, part)| part).collect()
+            }
             ForeignKind::Power(base, exponent) => vec![base, exponent],
             ForeignKind::Call(_, arguments) => arguments.iter().collect(),
             ForeignKind::Case { sides, values, .. } => vec![&sides.0, &sides.1, &values.0, &values.1],
@@ -226,7 +228,10 @@ impl ForeignExpr {
                 exponent.as_number().is_some_and(|value| value.is_int() && *value >= RBig::ZERO)
             }
             ForeignKind::Call(name, _) => {
-                matches!(*name, "exp" | "sin" | "cos" | "atan" | "sinh" | "cosh" | "tanh" | "abs" | "min" | "max")
+                matches!(
+                    *name,
+                    "exp" | "sin" | "cos" | "atan" | "sinh" | "cosh" | "tanh" | "abs" | "min" | "max"
+                )
             }
             _ => true,
         };

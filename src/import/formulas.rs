@@ -64,10 +64,8 @@ pub(super) fn read(text: &str, roles: &PrintedRoles) -> Result<ForeignModel, Pro
         }
     }
     if let Some(span) = headers.get("outputs") {
-        reading.outputs = expressions_in(text, span)?
-            .iter()
-            .map(|one| reading.value(one))
-            .collect::<Result<_, _>>()?;
+        reading.outputs =
+            expressions_in(text, span)?.iter().map(|one| reading.value(one)).collect::<Result<_, _>>()?;
     }
     for wanted in &roles.outputs {
         let (words, _) = tokens(wanted, Dialect::Printed)?;
@@ -107,8 +105,12 @@ fn without_headers(text: &str) -> Result<(String, BTreeMap<&'static str, Span>),
             Some((name, from)) => {
                 let ours = line[from..].split('#').next().unwrap_or_default();
                 if headers.insert(name, at + from..at + from + ours.trim_end().len()).is_some() {
-                    return Err(Problem::new(&(at..at + line.trim_end().len()), format!("'{name}' is said twice"), "again here")
-                        .help("put all of it into one line"));
+                    return Err(Problem::new(
+                        &(at..at + line.trim_end().len()),
+                        format!("'{name}' is said twice"),
+                        "again here",
+                    )
+                    .help("put all of it into one line"));
                 }
                 body.extend(line.bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' }));
             }
@@ -139,7 +141,9 @@ fn names_in(text: &str, span: Option<&Span>) -> Result<Vec<String>, Problem> {
     let list = expressions_in(text, span)?;
     list.iter()
         .map(|one| {
-            symbol(one).ok_or_else(|| Problem::new(&one.span, "this is no name", "this").help("names with commas between them"))
+            symbol(one).ok_or_else(|| {
+                Problem::new(&one.span, "this is no name", "this").help("names with commas between them")
+            })
         })
         .collect()
 }
@@ -157,8 +161,10 @@ fn symbol(syntax: &Syntax) -> Option<String> {
             Some(format!("{inner}[{}]", index.collect::<Option<Vec<_>>>()?.join(",")))
         }
         SyntaxKind::Call(callee, arguments) => {
-            if let (Some("Symbol" | "Function" | "Dummy"), [Syntax { kind: SyntaxKind::Text(text), .. }, ..]) =
-                (callee.as_name(), arguments.as_slice())
+            if let (
+                Some("Symbol" | "Function" | "Dummy"),
+                [Syntax { kind: SyntaxKind::Text(text), .. }, ..],
+            ) = (callee.as_name(), arguments.as_slice())
             {
                 return Some(text.clone());
             }
@@ -180,13 +186,17 @@ fn differentiated(syntax: &Syntax) -> Option<String> {
         SyntaxKind::Prime(inner) => symbol(inner),
         // x'(t)
         SyntaxKind::Call(callee, arguments)
-            if matches!(callee.kind, SyntaxKind::Prime(_)) && arguments.len() == 1 && symbol(&arguments[0])? == TIME =>
+            if matches!(callee.kind, SyntaxKind::Prime(_))
+                && arguments.len() == 1
+                && symbol(&arguments[0])? == TIME =>
         {
             differentiated(callee)
         }
         SyntaxKind::Product(factors) => match factors.as_slice() {
             [(false, above), (true, below)] if below.as_name() == Some("dt") => match &above.kind {
-                SyntaxKind::Name(name) => name.strip_prefix('d').filter(|name| !name.is_empty()).map(str::to_owned),
+                SyntaxKind::Name(name) => {
+                    name.strip_prefix('d').filter(|name| !name.is_empty()).map(str::to_owned)
+                }
                 SyntaxKind::Index(..) => symbol(above)?.strip_prefix('d').map(str::to_owned),
                 _ => None,
             },
@@ -220,7 +230,16 @@ fn is_one(syntax: &Syntax) -> bool {
 /// The elements of a vector, however it is printed; none where it is no vector.
 fn vector(syntax: &Syntax) -> Option<Vec<&Syntax>> {
     let flat = |list: &'static [&'static str]| list;
-    let wrappers = flat(&["Matrix", "ImmutableMatrix", "ImmutableDenseMatrix", "MutableDenseMatrix", "SX", "MX", "DM", "array"]);
+    let wrappers = flat(&[
+        "Matrix",
+        "ImmutableMatrix",
+        "ImmutableDenseMatrix",
+        "MutableDenseMatrix",
+        "SX",
+        "MX",
+        "DM",
+        "array",
+    ]);
     match &syntax.kind {
         SyntaxKind::List(list) => {
             Some(list.iter().flat_map(|one| vector(one).unwrap_or_else(|| vec![one])).collect())
@@ -340,8 +359,10 @@ impl Reading {
                     self.states = names.collect::<Result<_, _>>()?;
                     Ok(())
                 }
-                _ => Err(Problem::new(&left.span, format!("nothing says what the vector '{name}' is"), "this")
-                    .help("a vector of rates is called f, one of outputs h, one of states x")),
+                _ => {
+                    Err(Problem::new(&left.span, format!("nothing says what the vector '{name}' is"), "this")
+                        .help("a vector of rates is called f, one of outputs h, one of states x"))
+                }
             };
         }
         let value = self.value(right)?;
@@ -369,7 +390,8 @@ impl Reading {
 
     fn rate(&mut self, name: &str, rate: ForeignExpr, span: &Span) -> Result<(), Problem> {
         if self.rates.iter().any(|own| own.name == name) {
-            return Err(Problem::new(span, format!("'{name}' has two rates"), "the second one").help("take one of them out"));
+            return Err(Problem::new(span, format!("'{name}' has two rates"), "the second one")
+                .help("take one of them out"));
         }
         self.rates.push(ForeignRate { name: name.to_owned(), rate, span: span.clone() });
         Ok(())
@@ -410,7 +432,8 @@ impl Reading {
             if let Some(shared) = self.shared.get(&name) {
                 return Some(Ok(ForeignExpr { span: span.clone(), ..shared.clone() }));
             }
-            let missing = |what: &str, help: &str| Some(Err(Problem::new(span, what.to_owned(), "this").help(help)));
+            let missing =
+                |what: &str, help: &str| Some(Err(Problem::new(span, what.to_owned(), "this").help(help)));
             return match name.as_str() {
                 _ if self.declared.contains(&name) => Some(Ok(ForeignExpr::name(name, span))),
                 "E" => missing(
@@ -420,7 +443,9 @@ impl Reading {
                 "oo" | "zoo" | "nan" | "inf" | "True" | "False" => {
                     missing(&format!("'{name}' is no number"), "write what is meant")
                 }
-                _ if name.starts_with('@') => missing(&format!("nothing says what '{name}' is"), "its line says it before"),
+                _ if name.starts_with('@') => {
+                    missing(&format!("nothing says what '{name}' is"), "its line says it before")
+                }
                 _ => Some(Ok(constant(&name, span).unwrap_or_else(|| ForeignExpr::name(name, span)))),
             };
         }
@@ -431,15 +456,20 @@ impl Reading {
                 ForeignExpr::new(ForeignKind::Sum(list.into_iter().map(|one| (false, one)).collect()), span)
             }),
             ("Mul", list) if !list.is_empty() => all(list).map(|list| {
-                ForeignExpr::new(ForeignKind::Product(list.into_iter().map(|one| (false, one)).collect()), span)
+                ForeignExpr::new(
+                    ForeignKind::Product(list.into_iter().map(|one| (false, one)).collect()),
+                    span,
+                )
             }),
-            ("Pow", [base, exponent]) => {
-                self.value(base).and_then(|base| Ok(base.to(self.value(exponent)?)))
+            ("Pow", [base, exponent]) => self.value(base).and_then(|base| Ok(base.to(self.value(exponent)?))),
+            ("Integer" | "Float", [Syntax { kind: SyntaxKind::Text(text), span }, ..]) => {
+                ForeignExpr::number(text, span)
             }
-            ("Integer" | "Float", [Syntax { kind: SyntaxKind::Text(text), span }, ..]) => ForeignExpr::number(text, span),
             ("Integer" | "Float", [value, ..]) => self.value(value),
-            ("Derivative" | "diff", _) => Err(Problem::new(span, "a derivative stands in an expression", "this")
-                .help("put its equation in its place: only states may be differentiated, on the left")),
+            ("Derivative" | "diff", _) => {
+                Err(Problem::new(span, "a derivative stands in an expression", "this")
+                    .help("put its equation in its place: only states may be differentiated, on the left"))
+            }
             _ => return None,
         })
     }
@@ -456,14 +486,24 @@ impl Reading {
             return Err(Problem::new(&(0..text.len().min(1)), "the file has no rates", "the file")
                 .help("a rate is x' = e, dx/dt = e or Eq(Derivative(x(t), t), e); a vector of rates needs 'states: x, y'"));
         }
-        if let Some(missing) = self.states.iter().find(|name| !model.states.iter().any(|state| state.name == **name)) {
-            return Err(Problem::new(&(0..text.len().min(1)), format!("the state '{missing}' has no rate"), "the file")
-                .help(format!("write {missing}' = ...")));
+        if let Some(missing) =
+            self.states.iter().find(|name| !model.states.iter().any(|state| state.name == **name))
+        {
+            return Err(Problem::new(
+                &(0..text.len().min(1)),
+                format!("the state '{missing}' has no rate"),
+                "the file",
+            )
+            .help(format!("write {missing}' = ...")));
         }
         let moved: BTreeSet<String> = model.states.iter().map(|state| state.name.clone()).collect();
         if let Some((name, value)) = model.definitions.iter().find(|(name, _)| moved.contains(name)) {
-            return Err(Problem::new(&value.span, format!("'{name}' is a state, and is defined here"), "this")
-                .help("take one of its two equations out"));
+            return Err(Problem::new(
+                &value.span,
+                format!("'{name}' is a state, and is defined here"),
+                "this",
+            )
+            .help("take one of its two equations out"));
         }
         let outputs = if self.asked_outputs.is_empty() { self.outputs } else { self.asked_outputs };
         model.outputs = outputs.into_iter().map(|value| ForeignOutput { name: None, value }).collect();
@@ -505,13 +545,16 @@ fn outputs_by_use(model: &mut ForeignModel) {
     model.definitions = others;
     if !free.is_empty() {
         let names: Vec<&str> = free.iter().map(|(name, _)| name.as_str()).collect();
-        model.remarks.push(format!("outputs are the definitions that nothing else uses: {}", names.join(", ")));
+        model
+            .remarks
+            .push(format!("outputs are the definitions that nothing else uses: {}", names.join(", ")));
     }
     model.outputs = free.into_iter().map(|(name, value)| ForeignOutput { name: Some(name), value }).collect();
 }
 
 fn is_equation(syntax: &Syntax) -> bool {
-    matches!(named_function(syntax), Some(("Eq" | "Equality", _))) || matches!(syntax.kind, SyntaxKind::Equation(..))
+    matches!(named_function(syntax), Some(("Eq" | "Equality", _)))
+        || matches!(syntax.kind, SyntaxKind::Equation(..))
 }
 
 fn no_left(syntax: &Syntax) -> Problem {

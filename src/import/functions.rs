@@ -46,9 +46,27 @@ const NAMES: &[(&str, Made)] = &[
     ("log10", Made::Of(|x| log_to(x, 10))),
     ("log2", Made::Of(|x| log_to(x, 2))),
     ("log1p", Made::Of(|x| one(&x).plus(x).under("log"))),
-    ("expm1", Made::Of(|x| { let below = one(&x); x.under("exp").minus(below) })),
-    ("sq", Made::Of(|x| { let two = ForeignExpr::integer(2, &x.span); x.to(two) })),
-    ("cbrt", Made::Of(|x| { let third = one(&x).over(ForeignExpr::integer(3, &x.span)); x.to(third) })),
+    (
+        "expm1",
+        Made::Of(|x| {
+            let below = one(&x);
+            x.under("exp").minus(below)
+        }),
+    ),
+    (
+        "sq",
+        Made::Of(|x| {
+            let two = ForeignExpr::integer(2, &x.span);
+            x.to(two)
+        }),
+    ),
+    (
+        "cbrt",
+        Made::Of(|x| {
+            let third = one(&x).over(ForeignExpr::integer(3, &x.span));
+            x.to(third)
+        }),
+    ),
     ("inv", Made::Of(inverted)),
     ("sech", Made::Of(|x| inverted(x.under("cosh")))),
     ("csch", Made::Of(|x| inverted(x.under("sinh")))),
@@ -65,14 +83,21 @@ const NAMES: &[(&str, Made)] = &[
     ("arccosh", Made::Of(|x| to_half(x, -1))),
     ("atanh", Made::Of(area_tangent)),
     ("arctanh", Made::Of(area_tangent)),
-    ("heaviside", Made::Of(|x| {
-        let (zero, high, low) = (ForeignExpr::integer(0, &x.span), one(&x), ForeignExpr::integer(0, &x.span));
-        case(x, ForeignOrder::Greater, zero, high, low)
-    })),
-    ("hypot", Made::OfTwo(|x, y| {
-        let two = ForeignExpr::integer(2, &x.span);
-        x.to(two.clone()).plus(y.to(two)).under("sqrt")
-    })),
+    (
+        "heaviside",
+        Made::Of(|x| {
+            let (zero, high, low) =
+                (ForeignExpr::integer(0, &x.span), one(&x), ForeignExpr::integer(0, &x.span));
+            case(x, ForeignOrder::Greater, zero, high, low)
+        }),
+    ),
+    (
+        "hypot",
+        Made::OfTwo(|x, y| {
+            let two = ForeignExpr::integer(2, &x.span);
+            x.to(two.clone()).plus(y.to(two)).under("sqrt")
+        }),
+    ),
     ("pow", Made::OfTwo(ForeignExpr::to)),
     ("power", Made::OfTwo(ForeignExpr::to)),
     ("times", Made::OfTwo(ForeignExpr::times)),
@@ -131,8 +156,10 @@ pub(super) fn call(name: &str, mut arguments: Vec<ForeignExpr>, span: &Span) -> 
     };
     let mut result = match (ours, made) {
         (Some(ours), _) => {
-            let (least, most) =
-                FUNCTIONS.iter().find(|(own, ..)| *own == ours).map_or((1, 1), |(_, least, most)| (*least, *most));
+            let (least, most) = FUNCTIONS
+                .iter()
+                .find(|(own, ..)| *own == ours)
+                .map_or((1, 1), |(_, least, most)| (*least, *most));
             match count {
                 // the greatest of one thing is that thing
                 1 if most > 2 => return arguments.pop().ok_or_else(|| wrong("an argument")),

@@ -112,13 +112,16 @@ fn of_equations(equations: &[Syntax], is_discrete: bool, span: &Span) -> Result<
     let mut sides = Vec::new();
     for equation in equations {
         let wrong = || {
-            Problem::new(&equation.span, "this is no equation of a model", "this").help(format!("a model has lines {form}"))
+            Problem::new(&equation.span, "this is no equation of a model", "this")
+                .help(format!("a model has lines {form}"))
         };
         let SyntaxKind::Equation("=", left, right) = &equation.kind else { return Err(wrong()) };
         sides.push((left_side(left, is_discrete).ok_or_else(wrong)?, left.as_ref(), right.as_ref()));
     }
     let Some(((_, time), ..)) = sides.first() else {
-        return Err(Problem::new(span, "the model has no equations", "this").help(format!("it has lines {form}")));
+        return Err(
+            Problem::new(span, "the model has no equations", "this").help(format!("it has lines {form}"))
+        );
     };
     let mut moved: BTreeSet<&str> = BTreeSet::new();
     let mut measured: BTreeSet<&str> = BTreeSet::new();
@@ -132,7 +135,11 @@ fn of_equations(equations: &[Syntax], is_discrete: bool, span: &Span) -> Result<
                 .help("take one of them out"));
         }
         if own_time != time {
-            return Err(Problem::new(&place.span, format!("time is '{time}' above"), format!("here it is '{own_time}'")));
+            return Err(Problem::new(
+                &place.span,
+                format!("time is '{time}' above"),
+                format!("here it is '{own_time}'"),
+            ));
         }
     }
     let mut model = ForeignModel { is_discrete, ..ForeignModel::default() };
@@ -141,7 +148,11 @@ fn of_equations(equations: &[Syntax], is_discrete: bool, span: &Span) -> Result<
         let value = right_side(right, time, &measured, &moved, &mut inputs)?;
         match left {
             Left::State(name) => {
-                model.states.push(ForeignRate { name: (*name).to_owned(), rate: value, span: place.span.clone() });
+                model.states.push(ForeignRate {
+                    name: (*name).to_owned(),
+                    rate: value,
+                    span: place.span.clone(),
+                });
             }
             Left::Output(name) => model.outputs.push(ForeignOutput { name: Some((*name).to_owned()), value }),
         }
@@ -159,12 +170,10 @@ fn right_side(
     inputs: &mut Vec<String>,
 ) -> Result<ForeignExpr, Problem> {
     meaning(syntax, &mut |part| match &part.kind {
-        SyntaxKind::Name(name) if name == time => Some(Err(Problem::new(
-            &part.span,
-            format!("time stands by itself: '{name}'"),
-            "this",
-        )
-        .help("make it a state: add the equations time'(t) = 1 and y_time(t) = time(t)"))),
+        SyntaxKind::Name(name) if name == time => {
+            Some(Err(Problem::new(&part.span, format!("time stands by itself: '{name}'"), "this")
+                .help("make it a state: add the equations time'(t) = 1 and y_time(t) = time(t)")))
+        }
         SyntaxKind::Name(name) if measured.contains(name.as_str()) => Some(Err(Problem::new(
             &part.span,
             format!("'{name}' is an output, and stands on a right side"),

@@ -89,8 +89,12 @@ impl ForeignFormat {
             "py" => ForeignFormat::StrikePy,
             "m" => ForeignFormat::StrikeGoldd,
             _ if text.contains("@parameters") && text.contains('~') => ForeignFormat::Julia,
-            _ if text.contains("variables_locales") || text.contains("import sympy") => ForeignFormat::StrikePy,
-            _ if text.lines().any(|line| line.trim_start().starts_with("syms ")) => ForeignFormat::StrikeGoldd,
+            _ if text.contains("variables_locales") || text.contains("import sympy") => {
+                ForeignFormat::StrikePy
+            }
+            _ if text.lines().any(|line| line.trim_start().starts_with("syms ")) => {
+                ForeignFormat::StrikeGoldd
+            }
             _ => ForeignFormat::Formulas,
         }
     }
@@ -146,7 +150,9 @@ pub fn import(name: &str, text: &str, question: &ImportQuestion) -> Result<Impor
         ForeignFormat::Formulas => formulas::read(&text, &roles),
     }
     .map_err(located)?;
-    let asked = |why: String| located(Problem::new(&(0..text.len().min(1)), why, "the file").help("name what the file has"));
+    let asked = |why: String| {
+        located(Problem::new(&(0..text.len().min(1)), why, "the file").help("name what the file has"))
+    };
     if format != ForeignFormat::Formulas {
         model.choose_outputs(&question.outputs).map_err(asked)?;
     }
@@ -158,13 +164,17 @@ pub fn import(name: &str, text: &str, question: &ImportQuestion) -> Result<Impor
     }
     model.order_definitions().map_err(located)?;
     if model.outputs.is_empty() {
-        model.remarks.push("no outputs are known: write 'output ...' below, or import again with --output NAME,...".to_owned());
+        model.remarks.push(
+            "no outputs are known: write 'output ...' below, or import again with --output NAME,..."
+                .to_owned(),
+        );
     }
     if let Some(clock) = &model.clock {
         let value = ForeignExpr::name(clock, &(0..0));
         model.outputs.push(ForeignOutput { name: None, value });
     }
-    let file = Path::new(name).file_name().map_or(name.to_owned(), |file| file.to_string_lossy().into_owned());
+    let file =
+        Path::new(name).file_name().map_or(name.to_owned(), |file| file.to_string_lossy().into_owned());
     let origin = format!("{}: {file}", format.in_words(&text));
     let written = write::proof_text(&model, &origin).map_err(located)?;
     // what cannot be read back is no proof file, whoever is to blame
@@ -197,7 +207,8 @@ fn heading(text: &str, comments: &[(usize, String)], before: usize) -> Option<St
     }
     let says = |block: Vec<&str>| {
         let has_letters = |line: &&str| line.chars().any(char::is_alphabetic);
-        let words: Vec<&str> = block.into_iter().filter(has_letters).flat_map(str::split_whitespace).collect();
+        let words: Vec<&str> =
+            block.into_iter().filter(has_letters).flat_map(str::split_whitespace).collect();
         (words.len() >= 4).then(|| words.join(" "))
     };
     let mut found = blocks.into_iter().find_map(|(_, block)| says(block))?;

@@ -108,7 +108,8 @@ impl ForeignModel {
             span: span.clone(),
         });
         self.clock = Some(name.to_owned());
-        self.remarks.push(format!("the equations name time: '{name}' is a state with the rate 1, and is measured"));
+        self.remarks
+            .push(format!("the equations name time: '{name}' is a state with the rate 1, and is measured"));
     }
 
     /// Leaves out definitions that nothing uses, and puts each below what it uses.
@@ -244,7 +245,12 @@ impl ForeignModel {
         let definitions = self.definitions.iter().map(|(name, _)| name.clone());
         let inputs = self.known_inputs.iter().chain(&self.unknown_inputs).cloned();
         let mut seen = BTreeSet::new();
-        states.chain(constants).chain(inputs).chain(definitions).filter(|name| seen.insert(name.clone())).collect()
+        states
+            .chain(constants)
+            .chain(inputs)
+            .chain(definitions)
+            .filter(|name| seen.insert(name.clone()))
+            .collect()
     }
 }
 

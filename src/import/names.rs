@@ -99,7 +99,13 @@ fn spelled(name: &str) -> String {
 /// Whether a name means something else in our language, at some place or other. The name of a function is one where a bracket
 /// follows, and a symbol elsewhere.
 fn has_a_meaning(name: &str) -> bool {
-    let lists = [vocabulary::ENTRIES, vocabulary::VIEWS, vocabulary::RESERVED, vocabulary::SPECIAL, vocabulary::CONSTANTS];
+    let lists = [
+        vocabulary::ENTRIES,
+        vocabulary::VIEWS,
+        vocabulary::RESERVED,
+        vocabulary::SPECIAL,
+        vocabulary::CONSTANTS,
+    ];
     lists.iter().any(|list| list.contains(&name))
 }
 
@@ -141,7 +147,10 @@ impl ForeignNames {
 
     /// Those that are called otherwise here: foreign name and ours.
     pub fn renamed(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.ours.iter().map(|(foreign, ours)| (foreign.as_str(), ours.as_str())).filter(|(foreign, ours)| foreign != ours)
+        self.ours
+            .iter()
+            .map(|(foreign, ours)| (foreign.as_str(), ours.as_str()))
+            .filter(|(foreign, ours)| foreign != ours)
     }
 }
 
@@ -151,7 +160,10 @@ mod tests {
 
     #[test]
     fn no_two_names_become_one_and_no_name_is_a_word_of_the_language() {
-        let foreign = ["β", "beta", "beta_", "x₁", "x1", "state", "state_", "rank", "pi", "_a", "1b", "a.b", "a-b", "é", "sin", "π"];
+        let foreign = [
+            "β", "beta", "beta_", "x₁", "x1", "state", "state_", "rank", "pi", "_a", "1b", "a.b", "a-b", "é",
+            "sin", "π",
+        ];
         let names = ForeignNames::of(foreign);
         let ours: BTreeSet<&str> = foreign.iter().map(|name| names.ours(name)).collect();
         assert_eq!(ours.len(), foreign.len(), "{ours:?}");
@@ -159,7 +171,11 @@ mod tests {
             assert!(!has_a_meaning(name) && name.starts_with(|c: char| c.is_ascii_alphabetic()), "{name}");
             assert!(name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'), "{name}");
         }
-        let said: Vec<(&str, &str)> = ["beta", "β", "x₁", "x1", "state"].iter().map(|name| (*name, names.ours(name))).collect();
-        assert_eq!(said, [("beta", "beta"), ("β", "beta_2"), ("x₁", "x1_2"), ("x1", "x1"), ("state", "state_2")]);
+        let said: Vec<(&str, &str)> =
+            ["beta", "β", "x₁", "x1", "state"].iter().map(|name| (*name, names.ours(name))).collect();
+        assert_eq!(
+            said,
+            [("beta", "beta"), ("β", "beta_2"), ("x₁", "x1_2"), ("x1", "x1"), ("state", "state_2")]
+        );
     }
 }

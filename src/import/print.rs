@@ -38,7 +38,9 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
                 let (text, negative) = match text.strip_prefix('-') {
                     Some(rest) if binding >= Binding::Product => (rest.to_owned(), !*subtracted),
                     // adding to a sum changes nothing in it
-                    _ if binding == Binding::Sum && (at > 0 || *subtracted) => (format!("({text})"), *subtracted),
+                    _ if binding == Binding::Sum && (at > 0 || *subtracted) => {
+                        (format!("({text})"), *subtracted)
+                    }
                     _ => (text, *subtracted),
                 };
                 match (at, negative) {
@@ -55,7 +57,9 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
         }
         ForeignKind::Product(factors) => {
             let (mut out, mut negative) = (String::new(), false);
-            let is_one = |factor: &ForeignExpr| factor.as_number().is_some_and(|n| *n == RBig::ONE || *n == RBig::from(-1));
+            let is_one = |factor: &ForeignExpr| {
+                factor.as_number().is_some_and(|n| *n == RBig::ONE || *n == RBig::from(-1))
+            };
             for (divided, factor) in factors {
                 // a factor of minus one is a sign
                 if is_one(factor) && factors.iter().any(|(divided, other)| !divided && !is_one(other)) {
@@ -92,8 +96,10 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
             (format!("{base}^{exponent}"), Binding::Power)
         }
         ForeignKind::Call(name, arguments) => {
-            let list =
-                arguments.iter().map(|one| Ok(written(one, names)?.0)).collect::<Result<Vec<_>, Problem>>()?;
+            let list = arguments
+                .iter()
+                .map(|one| Ok(written(one, names)?.0))
+                .collect::<Result<Vec<_>, Problem>>()?;
             (format!("{name}({})", list.join(", ")), Binding::Primary)
         }
         ForeignKind::Case { sides, order, values } => {
@@ -155,7 +161,9 @@ fn same(one: &ForeignExpr, other: &ForeignExpr) -> bool {
         list.len() == others.len() && list.iter().zip(others).all(|((a, x), (b, y))| a == b && same(x, y))
     };
     match (&one.kind, &other.kind) {
-        (ForeignKind::Sum(a), ForeignKind::Sum(b)) | (ForeignKind::Product(a), ForeignKind::Product(b)) => parts(a, b),
+        (ForeignKind::Sum(a), ForeignKind::Sum(b)) | (ForeignKind::Product(a), ForeignKind::Product(b)) => {
+            parts(a, b)
+        }
         (ForeignKind::Power(a, x), ForeignKind::Power(b, y)) => same(a, b) && same(x, y),
         (ForeignKind::Call(f, a), ForeignKind::Call(g, b)) => {
             f == g && a.len() == b.len() && a.iter().zip(b).all(|(x, y)| same(x, y))

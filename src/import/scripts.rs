@@ -4,7 +4,8 @@
 use super::expression::{ForeignExpr, ForeignKind, Span};
 use super::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
 use super::script::{
-    Dialect, Parser, ScriptValue, ScriptWorkspace, Syntax, SyntaxKind, Token, TokenKind, named_function, tokens,
+    Dialect, Parser, ScriptValue, ScriptWorkspace, Syntax, SyntaxKind, Token, TokenKind, named_function,
+    tokens,
 };
 use crate::system::Problem;
 use dashu::rational::RBig;
@@ -15,20 +16,33 @@ const VARIABLES: [&str; 8] = ["x", "p", "h", "f", "u", "w", "ics", "known_ics"];
 
 /// Commands that say nothing of the model.
 const IGNORED: [&str; 14] = [
-    "clear", "clc", "close", "clearvars", "format", "warning", "disp", "fprintf", "print", "addpath", "more", "tic",
-    "toc", "pretty",
+    "clear",
+    "clc",
+    "close",
+    "clearvars",
+    "format",
+    "warning",
+    "disp",
+    "fprintf",
+    "print",
+    "addpath",
+    "more",
+    "tic",
+    "toc",
+    "pretty",
 ];
 
 /// Words that begin what is more than assignments.
 const CONTROL: [&str; 17] = [
-    "for", "while", "if", "switch", "function", "try", "parfor", "def", "class", "with", "return", "lambda", "elif",
-    "else", "classdef", "global", "assume",
+    "for", "while", "if", "switch", "function", "try", "parfor", "def", "class", "with", "return", "lambda",
+    "elif", "else", "classdef", "global", "assume",
 ];
 
 /// Reads a model file.
 pub(super) fn read(text: &str, dialect: Dialect) -> Result<ForeignModel, Problem> {
     let (words, comments) = tokens(text, dialect)?;
-    let mut script = Script { workspace: ScriptWorkspace::default(), dialect, saved: None, title: None, begin: None };
+    let mut script =
+        Script { workspace: ScriptWorkspace::default(), dialect, saved: None, title: None, begin: None };
     script.workspace.plain.extend(VARIABLES.map(str::to_owned));
     script.all(&words)?;
     let mut model = script.model(text)?;
@@ -57,7 +71,9 @@ impl Script {
             let begin = parser.position();
             self.statement(&mut parser)?;
             let next = parser.peek();
-            if !(parser.at_end() || next.newline || next.is(";") || next.is(",")) || parser.position() == begin {
+            if !(parser.at_end() || next.newline || next.is(";") || next.is(","))
+                || parser.position() == begin
+            {
                 return Err(parser.unexpected("the end of the line"));
             }
         }
@@ -67,8 +83,12 @@ impl Script {
     fn statement(&mut self, parser: &mut Parser<'_>) -> Result<(), Problem> {
         let word = parser.peek();
         if let Some(control) = CONTROL.iter().find(|control| word.is_word(control)) {
-            return Err(Problem::new(&word.span, format!("'{control}' is not read: nothing of a script is run"), "this")
-                .help("write the model as plain assignments to x, p, h, f, u and w"));
+            return Err(Problem::new(
+                &word.span,
+                format!("'{control}' is not read: nothing of a script is run"),
+                "this",
+            )
+            .help("write the model as plain assignments to x, p, h, f, u and w"));
         }
         let ignored = IGNORED.iter().any(|name| word.is_word(name));
         if matches!(word.text.as_str(), "import" | "from") && self.dialect == Dialect::Python
@@ -142,8 +162,12 @@ impl Script {
                 continue;
             }
             if word.kind != TokenKind::Name {
-                return Err(Problem::new(&word.span, format!("'{}' is no name of a symbol", word.text), "this")
-                    .help("functions of time are plain symbols in such files: write their names"));
+                return Err(Problem::new(
+                    &word.span,
+                    format!("'{}' is no name of a symbol", word.text),
+                    "this",
+                )
+                .help("functions of time are plain symbols in such files: write their names"));
             }
             let value = self.workspace.symbol(&word.text, &word.span)?;
             self.workspace.bind(&word.text, value);
@@ -164,7 +188,8 @@ impl Script {
             }
         }
         self.title = names.first().cloned();
-        let names: BTreeSet<String> = names.into_iter().skip(1).filter(|name| !name.starts_with('-')).collect();
+        let names: BTreeSet<String> =
+            names.into_iter().skip(1).filter(|name| !name.starts_with('-')).collect();
         if !names.is_empty() {
             self.saved.get_or_insert_default().extend(names);
         }
@@ -195,7 +220,10 @@ impl Script {
             (Err(why), names) => {
                 // told where somebody needs it: many files compute what no model uses
                 for name in names {
-                    let why = Problem { help: why.help.clone(), ..Problem::new(&why.span, why.message.clone(), "this") };
+                    let why = Problem {
+                        help: why.help.clone(),
+                        ..Problem::new(&why.span, why.message.clone(), "this")
+                    };
                     self.workspace.break_name(name, why);
                 }
             }
@@ -235,7 +263,8 @@ impl Script {
             let span = rates.last().map_or(0..0, |rate| rate.span.clone());
             return Err(Problem::new(&span, message, "the last rate").help("x and f have as many elements"));
         }
-        let mut model = ForeignModel { definitions: self.workspace.definitions.clone(), ..ForeignModel::default() };
+        let mut model =
+            ForeignModel { definitions: self.workspace.definitions.clone(), ..ForeignModel::default() };
         let mut seen = BTreeSet::new();
         let mut new = |name: &str, span: &Span| {
             let twice = || {
@@ -257,19 +286,30 @@ impl Script {
         }
         for (name, span) in self.symbols_of("p")? {
             new(&name, &span)?;
-            model.constants.push(ForeignConstant { name, value: None, is_unknown: true, may_be_unknown: true });
+            model.constants.push(ForeignConstant {
+                name,
+                value: None,
+                is_unknown: true,
+                may_be_unknown: true,
+            });
         }
         let outputs = self.required("h", "the outputs", text)?;
         model.outputs = outputs.into_iter().map(|value| ForeignOutput { name: None, value }).collect();
         let before = model.constants.len();
         model.order_definitions()?;
         model.declare_others(false);
-        let others: Vec<&str> = model.constants[before..].iter().map(|constant| constant.name.as_str()).collect();
+        let others: Vec<&str> =
+            model.constants[before..].iter().map(|constant| constant.name.as_str()).collect();
         if !others.is_empty() {
-            model.remarks.push(format!("known constants, in neither x nor p nor u nor w: {}", others.join(", ")));
+            model
+                .remarks
+                .push(format!("known constants, in neither x nor p nor u nor w: {}", others.join(", ")));
         }
-        if self.saved.as_ref().is_some_and(|saved| !saved.contains("u")) && self.workspace.get("u").is_some() {
-            model.remarks.push("'u' is not among what the file saves, so it is no input of the model".to_owned());
+        if self.saved.as_ref().is_some_and(|saved| !saved.contains("u")) && self.workspace.get("u").is_some()
+        {
+            model
+                .remarks
+                .push("'u' is not among what the file saves, so it is no input of the model".to_owned());
         }
         self.beginnings(&mut model);
         Ok(model)

@@ -49,14 +49,22 @@ pub(super) fn read(
         let value = value(right, &declared)?;
         if let Some(state) = differentiated(left, &declared) {
             if model.states.iter().any(|own| own.name == state) {
-                return Err(Problem::new(&left.span, format!("'{state}' has two equations"), "the second one")
-                    .help("take one of them out"));
+                return Err(Problem::new(
+                    &left.span,
+                    format!("'{state}' has two equations"),
+                    "the second one",
+                )
+                .help("take one of them out"));
             }
             model.states.push(ForeignRate { name: state.to_owned(), rate: value, span: left.span.clone() });
         } else if let Some(name) = variable(left, &declared) {
             if defined.insert(name.to_owned(), value).is_some() {
-                return Err(Problem::new(&left.span, format!("'{name}' has two equations"), "the second one")
-                    .help("take one of them out"));
+                return Err(Problem::new(
+                    &left.span,
+                    format!("'{name}' has two equations"),
+                    "the second one",
+                )
+                .help("take one of them out"));
             }
             order.push(name.to_owned());
         } else {
@@ -87,7 +95,11 @@ pub(super) fn read(
 }
 
 /// What is only measured is an output, and everything else a definition.
-fn place_definitions(model: &mut ForeignModel, mut defined: BTreeMap<String, ForeignExpr>, order: Vec<String>) {
+fn place_definitions(
+    model: &mut ForeignModel,
+    mut defined: BTreeMap<String, ForeignExpr>,
+    order: Vec<String>,
+) {
     let mut used = used_names(model);
     for value in defined.values() {
         value.names(&mut |name, _| {
@@ -122,8 +134,10 @@ fn used_names(model: &ForeignModel) -> BTreeSet<String> {
 fn refuse_steps(words: &[Token]) -> Result<(), Problem> {
     let step = ["Difference", "ShiftIndex", "DiscreteSystem", "DiscreteProblem"];
     match words.iter().find(|word| step.iter().any(|name| word.is_word(name))) {
-        Some(word) => Err(Problem::new(&word.span, "models in steps are not read from ModelingToolkit", "this")
-            .help("write it as @DDSmodel(x(t + 1) = ..., y(t) = ...)")),
+        Some(word) => {
+            Err(Problem::new(&word.span, "models in steps are not read from ModelingToolkit", "this")
+                .help("write it as @DDSmodel(x(t + 1) = ..., y(t) = ...)"))
+        }
         None => Ok(()),
     }
 }
@@ -262,7 +276,10 @@ fn within_block(words: &[Token], at: usize) -> bool {
 fn sides(equation: &Syntax) -> Result<(&Syntax, &Syntax), Problem> {
     match &equation.kind {
         SyntaxKind::Equation("~", left, right) => Ok((left, right)),
-        _ => Err(Problem::new(&equation.span, "this is no equation", "this").help("an equation is left ~ right")),
+        _ => {
+            Err(Problem::new(&equation.span, "this is no equation", "this")
+                .help("an equation is left ~ right"))
+        }
     }
 }
 

@@ -19,7 +19,9 @@ pub(super) struct ProofText {
 /// One line without what ends lines, quotes texts or turns the direction of writing.
 fn plain(text: &str) -> String {
     let bad = |c: char| {
-        ends_a_line(c) || c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{61c}')
+        ends_a_line(c)
+            || c.is_control()
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{61c}')
     };
     let spaced: String = text.chars().map(|c| if bad(c) { ' ' } else { c }).collect();
     spaced.split_whitespace().collect::<Vec<_>>().join(" ")
@@ -64,7 +66,12 @@ fn broken(text: &str, begin: usize) -> String {
 }
 
 /// Constants in the order of the file, those without a value first, by what is known of them.
-fn constants(out: &mut String, list: &[&ForeignConstant], names: &ForeignNames, unknown: bool) -> Result<(), Problem> {
+fn constants(
+    out: &mut String,
+    list: &[&ForeignConstant],
+    names: &ForeignNames,
+    unknown: bool,
+) -> Result<(), Problem> {
     let of_kind = || list.iter().filter(|constant| constant.is_unknown == unknown);
     let without: Vec<String> =
         of_kind().filter(|c| c.value.is_none()).map(|c| names.ours(&c.name).to_owned()).collect();
@@ -104,7 +111,8 @@ pub(super) fn proof_text(model: &ForeignModel, origin: &str) -> Result<ProofText
     let renamed: Vec<(String, String)> =
         names.renamed().map(|(foreign, ours)| (foreign.to_owned(), ours.to_owned())).collect();
     if !renamed.is_empty() {
-        let list: Vec<String> = renamed.iter().map(|(foreign, ours)| format!("{} -> {ours}", plain(foreign))).collect();
+        let list: Vec<String> =
+            renamed.iter().map(|(foreign, ours)| format!("{} -> {ours}", plain(foreign))).collect();
         for line in list.chunks(8) {
             let _ = writeln!(out, "# renamed: {}", line.join(", "));
         }
@@ -114,20 +122,24 @@ pub(super) fn proof_text(model: &ForeignModel, origin: &str) -> Result<ProofText
         Some(source) if !plain(source).is_empty() => format!("{} ({origin})", plain(source)),
         _ => origin.to_owned(),
     };
-    let _ = writeln!(out, "system {}  cite {}\n", quoted(title.as_deref().unwrap_or(origin)), quoted(&source));
+    let _ =
+        writeln!(out, "system {}  cite {}\n", quoted(title.as_deref().unwrap_or(origin)), quoted(&source));
 
     let states: Vec<String> = model.states.iter().map(|state| names.ours(&state.name).to_owned()).collect();
     listed(&mut out, "state", &states);
     let list: Vec<&ForeignConstant> = model.constants.iter().collect();
     constants(&mut out, &list, &names, true)?;
     constants(&mut out, &list, &names, false)?;
-    let signals = |list: &[String]| list.iter().map(|name| format!("{}(t)", names.ours(name))).collect::<Vec<_>>();
+    let signals =
+        |list: &[String]| list.iter().map(|name| format!("{}(t)", names.ours(name))).collect::<Vec<_>>();
     listed(&mut out, "known", &signals(&model.known_inputs));
     listed(&mut out, "unknown", &signals(&model.unknown_inputs));
     let cases = model.states.iter().map(|state| &state.rate);
     let cases = cases.chain(model.definitions.iter().map(|(_, value)| value));
     if cases.chain(model.outputs.iter().map(|output| &output.value)).any(needs_sign) {
-        out.push_str("# cases are written by sign(x): where x is zero, on a thin set, they have no value here\n");
+        out.push_str(
+            "# cases are written by sign(x): where x is zero, on a thin set, they have no value here\n",
+        );
     }
     out.push('\n');
     for (name, value) in &model.definitions {
@@ -163,7 +175,9 @@ fn outputs(out: &mut String, model: &ForeignModel, names: &ForeignNames) -> Resu
     for output in &model.outputs {
         let value = text(&output.value, names)?;
         match &output.name {
-            Some(name) if !value.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !taken.contains(name) => {
+            Some(name)
+                if !value.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !taken.contains(name) =>
+            {
                 let ours = names.ours(name);
                 if !defined.contains(name) {
                     let _ = writeln!(out, "let {ours} = {}", broken(&value, ours.len() + 7));

@@ -13,7 +13,7 @@ use dashu::rational::RBig;
 pub(super) const LARGEST_GRAPH: usize = 4_000_000;
 
 /// The functions of the language beside [`Function::ALL`].
-pub(super) const OTHER_FUNCTIONS: [&str; 20] = [
+pub(super) const OTHER_FUNCTIONS: [&str; 21] = [
     "tan",
     "cot",
     "sec",
@@ -34,6 +34,7 @@ pub(super) const OTHER_FUNCTIONS: [&str; 20] = [
     "unobservable",
     "identifiable",
     "unidentifiable",
+    "solutions",
 ];
 
 /// What a name should have been.
@@ -94,7 +95,14 @@ impl System {
             ExprKind::Matrix(rows) => self.blocks(rows, &expr.span),
             ExprKind::At(inner, list) => {
                 let (value, domain) = self.apart(|system| system.elaborate(inner))?;
-                if matches!(value, Value::CodistributionRank | Value::Pole { .. } | Value::Visible { .. }) {
+                if matches!(
+                    value,
+                    Value::CodistributionRank
+                        | Value::Pole { .. }
+                        | Value::Visible { .. }
+                        | Value::Solutions(_)
+                        | Value::Infinity
+                ) {
                     let message = format!("{} is not taken at a point", value.describe());
                     return Err(Problem::new(&expr.span, message, "here")
                         .help("write 'where name = value' behind the claim"));
@@ -161,7 +169,8 @@ impl System {
             Value::Visible { functions, is_seen } => {
                 Value::Visible { functions: graph.substitute(&functions, assignment), is_seen }
             }
-            Value::CodistributionRank => value,
+            Value::Solutions(id) => Value::Solutions(graph.substitute(&[id], assignment)[0]),
+            Value::CodistributionRank | Value::Infinity => value,
         }
     }
 
@@ -179,6 +188,7 @@ impl System {
         match name {
             "pi" => Ok(Value::Scalar(self.graph.pi())),
             "rank" => Ok(Value::CodistributionRank),
+            "infinity" => Ok(Value::Infinity),
             _ => Err(self.unknown(name, span, Wanted::Name)),
         }
     }
@@ -284,6 +294,10 @@ impl System {
                     }
                 },
                 _ => Err(Problem::new(span, format!("'{name}' takes two vectors"), "here")),
+            },
+            "solutions" => match arguments {
+                [expression] => Ok(Value::Solutions(self.scalar(expression)?)),
+                _ => Err(Problem::new(span, "'solutions' takes one unknown, or one expression", "here")),
             },
             "pole" => match arguments {
                 [expression, factor] => {

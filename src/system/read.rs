@@ -289,8 +289,8 @@ impl System {
                     self.calculated.insert(name.text.clone());
                 }
                 let nameless = match &value {
-                    Value::CodistributionRank => Some("the rank of the codistribution"),
-                    Value::Visible { .. } => Some("a statement about what is seen"),
+                    Value::CodistributionRank => Some("the rank of the codistribution".to_owned()),
+                    Value::Visible { .. } | Value::Solutions(_) | Value::Infinity => Some(value.describe()),
                     _ => None,
                 };
                 if let Some(nameless) = nameless {
@@ -378,11 +378,12 @@ impl System {
             (Value::Matrix(l), Value::Matrix(r)) => (l.rows, l.columns) == (r.rows, r.columns),
             (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
             (Value::Visible { .. }, _) | (_, Value::Visible { .. }) => statement.is_about_what_is_seen(),
-            (left, right) => matches!(left, Value::Scalar(_)) || matches!(right, Value::Scalar(_)),
+            (left, right) => left.are_comparable(right),
         };
         let of_codistribution = matches!(
             values,
-            (Value::CodistributionRank | Value::Visible { .. }, _) | (_, Value::CodistributionRank)
+            (Value::CodistributionRank | Value::Visible { .. } | Value::Solutions(_), _)
+                | (_, Value::CodistributionRank | Value::Solutions(_))
         );
         if of_codistribution
             && !self.states.is_empty()

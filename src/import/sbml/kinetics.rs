@@ -122,7 +122,10 @@ fn stoichiometry(node: Node<'_, '_>, formulas: &Formulas, is_level_3: bool) -> R
     if let Some(math) = elements(node).find(|one| is(*one, "stoichiometryMath")) {
         return match child(math, "math") {
             Some(math) => formulas.meaning(math),
-            None => Err(Problem::new(&place(math), "a stoichiometry without a formula", "this").help("write <math>")),
+            None => {
+                Err(Problem::new(&place(math), "a stoichiometry without a formula", "this")
+                    .help("write <math>"))
+            }
         };
     }
     let span = place(node);
@@ -143,15 +146,20 @@ impl Reading {
                 Some(law) => model.definitions.push((reaction.id.clone(), law.clone())),
                 None if changes => {
                     let message = format!("the reaction '{}' has no kinetic law", reaction.id);
-                    return Err(Problem::new(&reaction.span, message, "this").help("a model of rates has one for each reaction"));
+                    return Err(Problem::new(&reaction.span, message, "this")
+                        .help("a model of rates has one for each reaction"));
                 }
                 None => {}
             }
             if let Some((species, place)) =
                 reaction.makes.iter().find(|(species, _)| !self.species.iter().any(|one| one.id == *species))
             {
-                return Err(Problem::new(&place.span, format!("nothing says what the species '{species}' is"), "this")
-                    .help("list it under listOfSpecies"));
+                return Err(Problem::new(
+                    &place.span,
+                    format!("nothing says what the species '{species}' is"),
+                    "this",
+                )
+                .help("list it under listOfSpecies"));
             }
         }
         for species in self.species.iter().filter(|one| self.moves_by_reactions(&one.id)) {
@@ -213,7 +221,8 @@ impl Reading {
             return Ok(None);
         };
         if !rule.is_rate {
-            let message = format!("'{}' is a concentration in a compartment whose size is assigned", species.id);
+            let message =
+                format!("'{}' is a concentration in a compartment whose size is assigned", species.id);
             return Err(Problem::new(&species.span, message, "this species")
                 .help("write the rate of the size as a rate rule, or the species as an amount"));
         }

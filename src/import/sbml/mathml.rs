@@ -44,7 +44,11 @@ impl Formulas {
 
     fn of(&self, node: Node<'_, '_>, depth: usize) -> Meant {
         if depth > DEEPEST {
-            return Err(unread(node, "a formula that is nested too deeply", "give its parts names by assignment rules"));
+            return Err(unread(
+                node,
+                "a formula that is nested too deeply",
+                "give its parts names by assignment rules",
+            ));
         }
         let span = place(node);
         match node.tag_name().name() {
@@ -52,9 +56,8 @@ impl Formulas {
             "ci" => Ok(ForeignExpr::name(text_of(node), &node.range())),
             "csymbol" => self.symbol(node, &span),
             "pi" => Ok(ForeignExpr::new(ForeignKind::Pi, &span)),
-            "exponentiale" => {
-                constant("exponentiale", &span).ok_or_else(|| unread(node, "a constant that is not known", ""))
-            }
+            "exponentiale" => constant("exponentiale", &span)
+                .ok_or_else(|| unread(node, "a constant that is not known", "")),
             "apply" => self.apply(node, depth),
             "piecewise" => self.piecewise(node, depth),
             "semantics" | "math" => match elements(node).next() {
@@ -75,7 +78,9 @@ impl Formulas {
             "time" => Ok(ForeignExpr::name(&self.time, span)),
             "avogadro" => ForeignExpr::number(AVOGADRO, span),
             "delay" => Err(unread(node, "delays are not read", "a system with delays has no finite state")),
-            other => Err(unread(node, &format!("the symbol '{other}' is not read"), "write what it stands for")),
+            other => {
+                Err(unread(node, &format!("the symbol '{other}' is not read"), "write what it stands for"))
+            }
         }
     }
 
@@ -142,10 +147,15 @@ impl Formulas {
     fn function(&self, head: Node<'_, '_>, arguments: Vec<ForeignExpr>, node: Node<'_, '_>) -> Meant {
         let name = text_of(head);
         let Some((parameters, body)) = self.functions.get(&name) else {
-            return Err(unread(node, &format!("nothing says what the function '{name}' is"), "define it above its use"));
+            return Err(unread(
+                node,
+                &format!("nothing says what the function '{name}' is"),
+                "define it above its use",
+            ));
         };
         if parameters.len() != arguments.len() {
-            let message = format!("'{name}' takes {} arguments, and has {} here", parameters.len(), arguments.len());
+            let message =
+                format!("'{name}' takes {} arguments, and has {} here", parameters.len(), arguments.len());
             return Err(unread(node, &message, ""));
         }
         // how large it becomes, before it does
@@ -173,13 +183,20 @@ impl Formulas {
             match (part.tag_name().name(), inner.as_slice()) {
                 ("otherwise", [value]) => result = Some(self.of(*value, depth + 1)?),
                 ("piece", [value, condition]) => pieces.push((*value, *condition)),
-                _ => return Err(unread(part, "this case cannot be read", "a piece has a value and a condition")),
+                _ => {
+                    return Err(unread(
+                        part,
+                        "this case cannot be read",
+                        "a piece has a value and a condition",
+                    ));
+                }
             }
         }
         for (value, condition) in pieces.into_iter().rev() {
             let then = self.of(value, depth + 1)?;
             let Some(otherwise) = result else {
-                let help = "add <otherwise>: a value that exists on a part of the states alone cannot be said";
+                let help =
+                    "add <otherwise>: a value that exists on a part of the states alone cannot be said";
                 return Err(unread(node, "nothing is said of what is so elsewhere", help));
             };
             result = Some(self.chosen(condition, then, otherwise, depth + 1)?);
@@ -187,7 +204,13 @@ impl Formulas {
         result.ok_or_else(|| unread(node, "no case", "write the cases"))
     }
 
-    fn chosen(&self, condition: Node<'_, '_>, then: ForeignExpr, otherwise: ForeignExpr, depth: usize) -> Meant {
+    fn chosen(
+        &self,
+        condition: Node<'_, '_>,
+        then: ForeignExpr,
+        otherwise: ForeignExpr,
+        depth: usize,
+    ) -> Meant {
         if depth > DEEPEST {
             return Err(unread(condition, "a condition that is nested too deeply", "write it shorter"));
         }
@@ -217,7 +240,11 @@ impl Formulas {
                 };
                 Ok(case(self.of(*left, depth + 1)?, order, self.of(*right, depth + 1)?, then, otherwise))
             }
-            _ => Err(unread(condition, "this condition cannot be read", "one comparison with lt, leq, gt or geq")),
+            _ => Err(unread(
+                condition,
+                "this condition cannot be read",
+                "one comparison with lt, leq, gt or geq",
+            )),
         }
     }
 }
@@ -230,22 +257,30 @@ pub(super) fn text_of(node: Node<'_, '_>) -> String {
 fn number(node: Node<'_, '_>, span: &Span) -> Meant {
     let kind = node.attribute("type").unwrap_or("real").trim();
     let bad = |text: &str| {
-        unread(node, &format!("'{text}' is no number that can be read"), "decimals of at most 4096 digits; INF and NaN are none")
+        unread(
+            node,
+            &format!("'{text}' is no number that can be read"),
+            "decimals of at most 4096 digits; INF and NaN are none",
+        )
     };
     if node.attribute("base").is_some_and(|base| base.trim() != "10") {
         return Err(unread(node, "a number that is no decimal", "write it in decimal digits"));
     }
-    let texts: Vec<&str> = node.children().filter(|child| child.is_text()).filter_map(|child| child.text()).map(str::trim).collect();
+    let texts: Vec<&str> = node
+        .children()
+        .filter(|child| child.is_text())
+        .filter_map(|child| child.text())
+        .map(str::trim)
+        .collect();
     match (kind, texts.as_slice()) {
-        ("integer" | "real" | "double", [text]) => {
-            ForeignExpr::number(text, span).map_err(|_| bad(text))
-        }
+        ("integer" | "real" | "double", [text]) => ForeignExpr::number(text, span).map_err(|_| bad(text)),
         ("e-notation", [mantissa, exponent]) => {
             let text = format!("{mantissa}e{}", exponent.trim_start_matches('+'));
             ForeignExpr::number(&text, span).map_err(|_| bad(&text))
         }
         ("rational", [top, bottom]) => {
-            let both = (!top.contains('/') && !bottom.contains('/')).then(|| Some((parse_decimal(top)?, parse_decimal(bottom)?)));
+            let both = (!top.contains('/') && !bottom.contains('/'))
+                .then(|| Some((parse_decimal(top)?, parse_decimal(bottom)?)));
             both.flatten()
                 .and_then(|(top, bottom)| fraction(&top, &bottom, span))
                 .ok_or_else(|| bad(&format!("{top}/{bottom}")))

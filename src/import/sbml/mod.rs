@@ -56,8 +56,12 @@ fn refuse(model: Node<'_, '_>) -> Result<(), Problem> {
     }
     for reaction in listed(model, "listOfReactions") {
         if says(reaction, "fast", false) {
-            return Err(Problem::new(&place(reaction), format!("the reaction{} is fast: that is not read", named(reaction)), "this")
-                .help("fast reactions are equations between states: eliminate them"));
+            return Err(Problem::new(
+                &place(reaction),
+                format!("the reaction{} is fast: that is not read", named(reaction)),
+                "this",
+            )
+            .help("fast reactions are equations between states: eliminate them"));
         }
     }
     Ok(())
@@ -66,13 +70,21 @@ fn refuse(model: Node<'_, '_>) -> Result<(), Problem> {
 /// Packages of level 3 that change what the core says.
 fn refuse_packages(root: Node<'_, '_>) -> Result<(), Problem> {
     let needed = root.attributes().find(|attribute| {
-        attribute.name() == "required" && attribute.namespace().is_some() && matches!(attribute.value().trim(), "true" | "1")
+        attribute.name() == "required"
+            && attribute.namespace().is_some()
+            && matches!(attribute.value().trim(), "true" | "1")
     });
     match needed {
         Some(attribute) => {
             let package = attribute.namespace().unwrap_or_default();
-            let name = package.trim_end_matches(|c: char| c.is_ascii_digit() || matches!(c, '/' | 'v')).rsplit('/').next();
-            let message = format!("the package '{}' changes what the model means, and is not read", name.unwrap_or(package));
+            let name = package
+                .trim_end_matches(|c: char| c.is_ascii_digit() || matches!(c, '/' | 'v'))
+                .rsplit('/')
+                .next();
+            let message = format!(
+                "the package '{}' changes what the model means, and is not read",
+                name.unwrap_or(package)
+            );
             Err(Problem::new(&place(root), message, "this").help("export the model as core SBML"))
         }
         None => Ok(()),
@@ -112,14 +124,18 @@ fn value_of(node: Node<'_, '_>, name: &str) -> Result<Option<RBig>, Problem> {
     }
     match (!text.contains('/')).then(|| parse_decimal(text)).flatten() {
         Some(value) => Ok(Some(value)),
-        None => Err(Problem::new(&place(node), format!("{name}=\"{text}\" is no number"), "this").help("write a decimal")),
+        None => Err(Problem::new(&place(node), format!("{name}=\"{text}\" is no number"), "this")
+            .help("write a decimal")),
     }
 }
 
 impl Reading {
     fn of(model: Node<'_, '_>, is_level_3: bool) -> Result<Reading, Problem> {
         let ids: BTreeSet<&str> = model.descendants().filter_map(|node| node.attribute("id")).collect();
-        let time = ["time", "t", "clock"].into_iter().find(|name| !ids.contains(name)).unwrap_or("time_of_the_model");
+        let time = ["time", "t", "clock"]
+            .into_iter()
+            .find(|name| !ids.contains(name))
+            .unwrap_or("time_of_the_model");
         let mut formulas = Formulas { functions: BTreeMap::new(), time: time.to_owned() };
         for function in listed(model, "listOfFunctionDefinitions") {
             let (name, definition) = function_definition(function, &formulas)?;
@@ -131,11 +147,14 @@ impl Reading {
                 Ok(Compartment {
                     id: required(node, "id")?.to_owned(),
                     size: value_of(node, "size")?,
-                    is_point: node.attribute("spatialDimensions").is_some_and(|n| matches!(n.trim(), "0" | "0.0")),
+                    is_point: node
+                        .attribute("spatialDimensions")
+                        .is_some_and(|n| matches!(n.trim(), "0" | "0.0")),
                 })
             })
             .collect::<Result<Vec<_>, Problem>>()?;
-        let species = listed(model, "listOfSpecies").into_iter().map(Species::read).collect::<Result<_, _>>()?;
+        let species =
+            listed(model, "listOfSpecies").into_iter().map(Species::read).collect::<Result<_, _>>()?;
         let parameters = listed(model, "listOfParameters")
             .into_iter()
             .map(|node| Ok((required(node, "id")?.to_owned(), value_of(node, "value")?)))
@@ -162,7 +181,8 @@ impl Reading {
 
     fn math(&self, node: Node<'_, '_>) -> Result<ForeignExpr, Problem> {
         let math = child(node, "math").ok_or_else(|| {
-            Problem::new(&place(node), format!("'{}' has no formula", node.tag_name().name()), "this").help("write <math>")
+            Problem::new(&place(node), format!("'{}' has no formula", node.tag_name().name()), "this")
+                .help("write <math>")
         })?;
         self.formulas.meaning(math)
     }
@@ -185,7 +205,9 @@ impl Reading {
             if twice || !self.has(&variable) {
                 let message = match twice {
                     true => format!("'{variable}' has two rules"),
-                    false => format!("the rule is about '{variable}', which is no species, compartment or parameter"),
+                    false => format!(
+                        "the rule is about '{variable}', which is no species, compartment or parameter"
+                    ),
                 };
                 return Err(Problem::new(&place(node), message, "this rule")
                     .help("rules about stoichiometries are not read; write the number into the reaction"));
@@ -200,8 +222,12 @@ impl Reading {
         for node in listed(model, "listOfInitialAssignments") {
             let symbol = required(node, "symbol")?.to_owned();
             if !self.has(&symbol) {
-                return Err(Problem::new(&place(node), format!("'{symbol}' is no species, compartment or parameter"), "this")
-                    .help("assignments to stoichiometries are not read; write the number into the reaction"));
+                return Err(Problem::new(
+                    &place(node),
+                    format!("'{symbol}' is no species, compartment or parameter"),
+                    "this",
+                )
+                .help("assignments to stoichiometries are not read; write the number into the reaction"));
             }
             let value = self.math(node)?;
             self.beginnings.push((symbol, value));
@@ -219,25 +245,32 @@ impl Reading {
         model.source = source(node);
         for (id, rule) in &self.rules {
             match rule.is_rate {
-                true => model.states.push(ForeignRate { name: id.clone(), rate: rule.value.clone(), span: rule.span.clone() }),
+                true => model.states.push(ForeignRate {
+                    name: id.clone(),
+                    rate: rule.value.clone(),
+                    span: rule.span.clone(),
+                }),
                 false => model.definitions.push((id.clone(), rule.value.clone())),
             }
         }
         self.add_reactions(&mut model)?;
         // laws stand in the order of the file, above the rates; states too
-        let order: BTreeMap<&str, usize> = self.species.iter().enumerate().map(|(at, one)| (one.id.as_str(), at)).collect();
+        let order: BTreeMap<&str, usize> =
+            self.species.iter().enumerate().map(|(at, one)| (one.id.as_str(), at)).collect();
         model.states.sort_by_key(|state| order.get(state.name.as_str()).copied().unwrap_or(usize::MAX));
         self.add_constants(&mut model)?;
         self.outputs(&mut model);
         let mut uses_time = false;
-        let mut look = |value: &ForeignExpr| value.names(&mut |name, _| uses_time |= name == self.formulas.time);
+        let mut look =
+            |value: &ForeignExpr| value.names(&mut |name, _| uses_time |= name == self.formulas.time);
         model.states.iter().for_each(|state| look(&state.rate));
         model.definitions.iter().for_each(|(_, value)| look(value));
         if uses_time {
             model.add_clock(&self.formulas.time);
         }
         self.refuse_unknown_names(&model)?;
-        let unknown: Vec<&str> = model.constants.iter().filter(|c| c.is_unknown).map(|c| c.name.as_str()).collect();
+        let unknown: Vec<&str> =
+            model.constants.iter().filter(|c| c.is_unknown).map(|c| c.name.as_str()).collect();
         if !unknown.is_empty() {
             model.remarks.push("all parameters are taken to be unknown, and all beginnings: --unknown says otherwise of parameters".to_owned());
         }
@@ -260,7 +293,11 @@ impl Reading {
         }
         let mut held = Vec::new();
         for one in self.species.iter().filter(|one| !ruled(&one.id)) {
-            let size = self.compartments.iter().find(|own| own.id == one.compartment).and_then(|own| own.size.clone());
+            let size = self
+                .compartments
+                .iter()
+                .find(|own| own.id == one.compartment)
+                .and_then(|own| own.size.clone());
             constants.push(constant(&one.id, one.beginning(size.as_ref()), false));
             held.push(one.id.as_str());
         }
@@ -289,14 +326,23 @@ impl Reading {
                 }
             });
             if let Some((name, span)) = bad {
-                return Err(Problem::new(&span, format!("'{id}' begins by the value of '{name}', which moves"), "this")
-                    .help(format!("give '{id}' a value of its own, or make it unknown by taking the assignment out")));
+                return Err(Problem::new(
+                    &span,
+                    format!("'{id}' begins by the value of '{name}', which moves"),
+                    "this",
+                )
+                .help(format!(
+                    "give '{id}' a value of its own, or make it unknown by taking the assignment out"
+                )));
             }
             constants.retain(|constant| constant.name != *id);
             model.definitions.push((id.clone(), value.clone()));
         }
         if states_begin {
-            model.remarks.push("initial assignments of states are not taken over: a rank is asked of all beginnings".to_owned());
+            model.remarks.push(
+                "initial assignments of states are not taken over: a rank is asked of all beginnings"
+                    .to_owned(),
+            );
         }
         model.constants = constants;
         Ok(())
@@ -308,7 +354,8 @@ impl Reading {
         }
         let mut found = false;
         if let Some(rule) = self.rule(name).filter(|rule| !rule.is_rate) {
-            rule.value.names(&mut |inner, _| found = found || self.depends_on_states(inner, moved, depth + 1));
+            rule.value
+                .names(&mut |inner, _| found = found || self.depends_on_states(inner, moved, depth + 1));
         }
         found
     }
@@ -331,14 +378,19 @@ impl Reading {
             if names.is_empty() {
                 names = model.states.iter().map(|state| state.name.clone()).collect();
             }
-            model.remarks.push("SBML has no outputs: all species that move are measured here; --output says otherwise".to_owned());
+            model.remarks.push(
+                "SBML has no outputs: all species that move are measured here; --output says otherwise"
+                    .to_owned(),
+            );
         } else {
             model.remarks.push(
                 "SBML has no outputs: what assignment rules say and nothing uses is measured here; --output says otherwise".to_owned(),
             );
         }
-        model.outputs =
-            names.into_iter().map(|name| ForeignOutput { name: None, value: ForeignExpr::name(name, &(0..0)) }).collect();
+        model.outputs = names
+            .into_iter()
+            .map(|name| ForeignOutput { name: None, value: ForeignExpr::name(name, &(0..0)) })
+            .collect();
     }
 
     fn refuse_unknown_names(&self, model: &ForeignModel) -> Result<(), Problem> {
@@ -354,8 +406,10 @@ impl Reading {
         model.states.iter().for_each(|state| look(&state.rate));
         model.definitions.iter().for_each(|(_, value)| look(value));
         match bad {
-            Some((name, span)) => Err(Problem::new(&span, format!("nothing says what '{name}' is"), "this name")
-                .help("names are those of compartments, species, parameters, functions and reactions")),
+            Some((name, span)) => {
+                Err(Problem::new(&span, format!("nothing says what '{name}' is"), "this name")
+                    .help("names are those of compartments, species, parameters, functions and reactions"))
+            }
             None => Ok(()),
         }
     }
@@ -367,13 +421,17 @@ fn function_definition(
     formulas: &Formulas,
 ) -> Result<(String, (Vec<String>, ForeignExpr)), Problem> {
     let id = required(node, "id")?.to_owned();
-    let unread = || Problem::new(&place(node), format!("the function '{id}' cannot be read"), "this").help("a function is a <lambda>");
+    let unread = || {
+        Problem::new(&place(node), format!("the function '{id}' cannot be read"), "this")
+            .help("a function is a <lambda>")
+    };
     let lambda = child(node, "math").and_then(|math| {
         let math = child(math, "semantics").unwrap_or(math);
         child(math, "lambda")
     });
     let lambda = lambda.ok_or_else(unread)?;
-    let bound = elements(lambda).filter(|one| is(*one, "bvar")).filter_map(|one| child(one, "ci")).map(text_of);
+    let bound =
+        elements(lambda).filter(|one| is(*one, "bvar")).filter_map(|one| child(one, "ci")).map(text_of);
     let bound: Vec<String> = bound.collect();
     let body = elements(lambda).find(|one| !is(*one, "bvar")).ok_or_else(unread)?;
     let body = formulas.meaning_of(body)?;
@@ -386,8 +444,11 @@ fn source(model: Node<'_, '_>) -> Option<String> {
     let annotation = child(model, "annotation")?;
     let described = annotation.descendants().filter(|node| is(*node, "isDescribedBy"));
     for item in described.flat_map(|node| node.descendants()).filter(|node| is(*node, "li")) {
-        let Some(resource) = item.attributes().find(|attribute| attribute.name() == "resource") else { continue };
-        let tail = resource.value().trim_start_matches("urn:miriam:").trim_start_matches("http://identifiers.org/");
+        let Some(resource) = item.attributes().find(|attribute| attribute.name() == "resource") else {
+            continue;
+        };
+        let tail =
+            resource.value().trim_start_matches("urn:miriam:").trim_start_matches("http://identifiers.org/");
         parts.push(tail.trim_start_matches("https://identifiers.org/").replace("%2F", "/").replace('/', ":"));
     }
     (!parts.is_empty()).then(|| parts.join(", "))

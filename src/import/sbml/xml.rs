@@ -14,17 +14,27 @@ const DEEPEST_ELEMENT: usize = 400;
 pub(super) fn document(text: &str) -> Result<Document<'_>, Problem> {
     // what counts its brackets itself needs no stack for them
     if let Some(at) = too_deep(text) {
-        return Err(Problem::new(&(at..at + 1), "elements are nested too deeply", "here").help("this is no model"));
+        return Err(
+            Problem::new(&(at..at + 1), "elements are nested too deeply", "here").help("this is no model")
+        );
     }
     let options = ParsingOptions { nodes_limit: 2_000_000, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|why| {
         let place = why.pos();
-        let line = text.split_inclusive('\n').take(place.row.saturating_sub(1) as usize).map(str::len).sum::<usize>();
+        let line = text
+            .split_inclusive('\n')
+            .take(place.row.saturating_sub(1) as usize)
+            .map(str::len)
+            .sum::<usize>();
         let rest = text.get(line..).unwrap_or_default();
         let column: usize = rest.chars().take(place.col.saturating_sub(1) as usize).map(char::len_utf8).sum();
         let at = (line + column).min(text.len());
-        Problem::new(&(at..(at + 1).min(text.len())), format!("this is no XML that can be read: {why}"), "here")
-            .help("SBML is XML; export the model again")
+        Problem::new(
+            &(at..(at + 1).min(text.len())),
+            format!("this is no XML that can be read: {why}"),
+            "here",
+        )
+        .help("SBML is XML; export the model again")
     })
 }
 
@@ -68,7 +78,9 @@ pub(super) fn elements<'a, 'b>(node: Node<'a, 'b>) -> impl Iterator<Item = Node<
 
 /// The elements of a list that the model has, or none.
 pub(super) fn listed<'a, 'b>(node: Node<'a, 'b>, list: &str) -> Vec<Node<'a, 'b>> {
-    child(node, list).map(|list| elements(list).filter(|one| !is(*one, "annotation") && !is(*one, "notes")).collect()).unwrap_or_default()
+    child(node, list)
+        .map(|list| elements(list).filter(|one| !is(*one, "annotation") && !is(*one, "notes")).collect())
+        .unwrap_or_default()
 }
 
 /// An attribute that has to be there.

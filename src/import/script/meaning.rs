@@ -18,7 +18,8 @@ pub(in crate::import) fn named_function(syntax: &Syntax) -> Option<(&str, &[Synt
 }
 
 fn refused(syntax: &Syntax, what: &str) -> Problem {
-    Problem::new(&syntax.span, format!("{what} is no number"), "this").help("a number is meant here: write an expression")
+    Problem::new(&syntax.span, format!("{what} is no number"), "this")
+        .help("a number is meant here: write an expression")
 }
 
 /// What a piece of syntax means as a number. `special` is asked first at every part, and says what it knows: what names are, what
@@ -34,7 +35,8 @@ pub(in crate::import) fn meaning(
     match &syntax.kind {
         SyntaxKind::Number(value) => Ok(ForeignExpr::new(ForeignKind::Number(value.clone()), span)),
         SyntaxKind::Name(name) => {
-            Err(Problem::new(span, format!("nothing says what '{name}' is"), "this name").help("declare it above"))
+            Err(Problem::new(span, format!("nothing says what '{name}' is"), "this name")
+                .help("declare it above"))
         }
         SyntaxKind::Sum(terms) => {
             let terms: Vec<(bool, ForeignExpr)> = all(terms, special)?;
@@ -44,12 +46,12 @@ pub(in crate::import) fn meaning(
                 Err(terms) => Ok(ForeignExpr::new(ForeignKind::Sum(terms), span)),
             }
         }
-        SyntaxKind::Product(factors) => Ok(ForeignExpr::new(ForeignKind::Product(all(factors, special)?), span)),
+        SyntaxKind::Product(factors) => {
+            Ok(ForeignExpr::new(ForeignKind::Product(all(factors, special)?), span))
+        }
         SyntaxKind::Power(base, exponent) => {
-            let kind = ForeignKind::Power(
-                Box::new(meaning(base, special)?),
-                Box::new(meaning(exponent, special)?),
-            );
+            let kind =
+                ForeignKind::Power(Box::new(meaning(base, special)?), Box::new(meaning(exponent, special)?));
             Ok(ForeignExpr::new(kind, span))
         }
         SyntaxKind::Choice(condition, then, otherwise) => choice(condition, then, otherwise, special),
@@ -129,7 +131,8 @@ fn compared(
 }
 
 fn unread(span: &Span) -> Problem {
-    Problem::new(span, "this condition cannot be read", "this").help("one comparison with '<', '<=', '>' or '>='")
+    Problem::new(span, "this condition cannot be read", "this")
+        .help("one comparison with '<', '<=', '>' or '>='")
 }
 
 fn order(sign: &str) -> Option<ForeignOrder> {
@@ -150,9 +153,10 @@ fn function(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Option<Meant>)
         ("ifelse" | "if_else", [condition, then, otherwise]) => choice(condition, then, otherwise, special),
         ("Piecewise" | "piecewise", cases) if !cases.is_empty() => piecewise(syntax, cases, special),
         // what changes the form and not the value
-        ("simplify" | "expand" | "factor" | "collect" | "vpa" | "sympify" | "S" | "UnevaluatedExpr", [inner]) => {
-            meaning(inner, special)
-        }
+        (
+            "simplify" | "expand" | "factor" | "collect" | "vpa" | "sympify" | "S" | "UnevaluatedExpr",
+            [inner],
+        ) => meaning(inner, special),
         _ => {
             if let Some(keyword) = arguments.iter().find(|one| matches!(one.kind, SyntaxKind::Equation(..))) {
                 return Err(Problem::new(&keyword.span, format!("'{name}' has no such argument"), "this"));
@@ -177,8 +181,12 @@ fn piecewise(syntax: &Syntax, cases: &[Syntax], special: &mut impl FnMut(&Syntax
                 compared(condition, then, otherwise, special)?
             }
             (_, None) => {
-                return Err(Problem::new(&condition.span, "nothing is said of what is so elsewhere", "the last case")
-                    .help("end with a case for all others: (value, True)"));
+                return Err(Problem::new(
+                    &condition.span,
+                    "nothing is said of what is so elsewhere",
+                    "the last case",
+                )
+                .help("end with a case for all others: (value, True)"));
             }
         });
     }

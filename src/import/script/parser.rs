@@ -247,8 +247,7 @@ impl<'a> Parser<'a> {
         }
         let inner = self.fraction()?;
         let end = inner.span.end;
-        let inner =
-            if turned { joined(SyntaxKind::Not(Box::new(inner)), &begin, end) } else { inner };
+        let inner = if turned { joined(SyntaxKind::Not(Box::new(inner)), &begin, end) } else { inner };
         Ok(match negative {
             true => joined(SyntaxKind::Sum(vec![(true, inner)]), &begin, end),
             false => inner,
@@ -298,7 +297,9 @@ impl<'a> Parser<'a> {
             self.next();
             powers += 1;
             if powers > DEEPEST {
-                return Err(Problem::new(&self.peek().span, "a tower of powers", "here").help("write it shorter"));
+                return Err(
+                    Problem::new(&self.peek().span, "a tower of powers", "here").help("write it shorter")
+                );
             }
             // from the left in MATLAB, from the right elsewhere; a sign of the exponent is its own
             let exponent = match self.dialect {
@@ -318,7 +319,9 @@ impl<'a> Parser<'a> {
             base = joined(SyntaxKind::Power(Box::new(base), Box::new(exponent)), &begin, end);
         }
         if self.dialect == Dialect::Python && self.operator(&["^"]).is_some() {
-            return Err(Problem::new(&self.peek().span, "'^' is no power in Python", "this").help("write '**'"));
+            return Err(
+                Problem::new(&self.peek().span, "'^' is no power in Python", "this").help("write '**'")
+            );
         }
         Ok(base)
     }
@@ -376,7 +379,8 @@ impl<'a> Parser<'a> {
             let end = self.tokens[self.at - 1].span.end;
             inner = joined(kind, &begin, end);
         }
-        Err(Problem::new(&inner.span, "calls of calls of calls", "here").help("give the inner part a name of its own"))
+        Err(Problem::new(&inner.span, "calls of calls of calls", "here")
+            .help("give the inner part a name of its own"))
     }
 
     /// Arguments up to the closing bracket.
@@ -424,7 +428,10 @@ impl<'a> Parser<'a> {
                 match (list.len(), self.tokens[self.at.saturating_sub(2)].is(",")) {
                     (1, false) => {
                         let inner = list.remove(0);
-                        return Ok(Syntax { kind: inner.kind, span: span.start..self.tokens[self.at - 1].span.end });
+                        return Ok(Syntax {
+                            kind: inner.kind,
+                            span: span.start..self.tokens[self.at - 1].span.end,
+                        });
                     }
                     _ => SyntaxKind::List(list),
                 }
@@ -443,7 +450,8 @@ impl<'a> Parser<'a> {
     }
 
     fn value(&self, token: &Token) -> Result<dashu::rational::RBig, Problem> {
-        let plain: String = token.text.chars().filter(|c| *c != '_').map(|c| if c == 'f' { 'e' } else { c }).collect();
+        let plain: String =
+            token.text.chars().filter(|c| *c != '_').map(|c| if c == 'f' { 'e' } else { c }).collect();
         parse_decimal(&plain).ok_or_else(|| {
             Problem::new(&token.span, "a number that is too long", "this")
                 .help("decimals of at most 4096 digits, with an exponent of at most 4096")

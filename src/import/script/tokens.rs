@@ -51,9 +51,9 @@ impl Token {
 
 /// All signs, longer ones first.
 const SIGNS: [&str; 47] = [
-    "...", "===", "**", "==", "~=", "!=", "<=", ">=", "=>", "->", "&&", "||", "//", ".*", "./", ".^", ".'", "+=", "-=",
-    "*=", "/=", "::", "+", "-", "*", "/", "^", "=", "<", ">", "(", ")", "[", "]", "{", "}", ",", ";", ":", "~", "!", "?",
-    "@", "&", "|", ".", "'",
+    "...", "===", "**", "==", "~=", "!=", "<=", ">=", "=>", "->", "&&", "||", "//", ".*", "./", ".^", ".'",
+    "+=", "-=", "*=", "/=", "::", "+", "-", "*", "/", "^", "=", "<", ">", "(", ")", "[", "]", "{", "}", ",",
+    ";", ":", "~", "!", "?", "@", "&", "|", ".", "'",
 ];
 
 /// The words of a text, and its comments with their places.
@@ -120,7 +120,8 @@ impl Reading<'_> {
         loop {
             let rest = self.rest();
             let Some(c) = rest.chars().next() else { return Ok((spaced, newline)) };
-            let starts_a_line = self.text[..self.at].rsplit('\n').next().is_none_or(|line| line.trim().is_empty());
+            let starts_a_line =
+                self.text[..self.at].rsplit('\n').next().is_none_or(|line| line.trim().is_empty());
             if c == '\n' {
                 newline = true;
                 self.at += 1;
@@ -131,7 +132,9 @@ impl Reading<'_> {
                 self.nested_comment()?;
             } else if self.dialect == Dialect::Matlab && starts_a_line && line_of(rest).trim() == "%{" {
                 self.block_comment();
-            } else if c == '#' && self.dialect != Dialect::Matlab || c == '%' && self.dialect == Dialect::Matlab {
+            } else if c == '#' && self.dialect != Dialect::Matlab
+                || c == '%' && self.dialect == Dialect::Matlab
+            {
                 let line = line_of(rest).to_owned();
                 self.comments.push((self.at, line.trim_start_matches(['#', '%']).trim().to_owned()));
                 self.at += line.len();
@@ -242,7 +245,9 @@ impl Reading<'_> {
             matches!(self.dialect, Dialect::Matlab | Dialect::Julia)
                 && matches!(next, Some('*' | '/' | '^' | '\'' | '\\'))
         };
-        if behind.is_some_and(|next| !is_operator(next) && !next.is_some_and(|c| begins_name(c) && c != 'e' && c != 'E')) {
+        if behind.is_some_and(|next| {
+            !is_operator(next) && !next.is_some_and(|c| begins_name(c) && c != 'e' && c != 'E')
+        }) {
             self.at += 1;
             digits(self);
         }

@@ -17,10 +17,7 @@ pub(in crate::import) enum ScriptValue {
     /// A number: an expression of symbols and definitions.
     One(ForeignExpr),
     /// A matrix, row by row; a list is a column.
-    Many {
-        rows: usize,
-        entries: Vec<ForeignExpr>,
-    },
+    Many { rows: usize, entries: Vec<ForeignExpr> },
     /// Something that is no number and no matrix.
     Else,
 }
@@ -53,8 +50,12 @@ impl ScriptWorkspace {
     /// Makes a symbol and gives it as a value.
     pub fn symbol(&mut self, name: &str, span: &Span) -> Valued {
         if self.definitions.iter().any(|(own, _)| own == name) {
-            return Err(Problem::new(span, format!("'{name}' has a value already, and becomes a symbol here"), "this")
-                .help("give one of the two another name"));
+            return Err(Problem::new(
+                span,
+                format!("'{name}' has a value already, and becomes a symbol here"),
+                "this",
+            )
+            .help("give one of the two another name"));
         }
         self.symbols.insert(name.to_owned());
         Ok(ScriptValue::One(ForeignExpr::name(name, span)))
@@ -74,7 +75,9 @@ impl ScriptWorkspace {
     pub fn get(&self, name: &str) -> Option<Valued> {
         self.bound.get(name).map(|bound| match bound {
             Ok(value) => Ok(value.clone()),
-            Err((span, message, help)) => Err(Problem { help: help.clone(), ..Problem::new(span, message, "this") }),
+            Err((span, message, help)) => {
+                Err(Problem { help: help.clone(), ..Problem::new(span, message, "this") })
+            }
         })
     }
 
@@ -108,13 +111,18 @@ impl ScriptWorkspace {
 
     /// Whether a value of another name, or a definition, is made of a symbol.
     fn uses(&self, symbol: &str) -> bool {
-        let values = self.bound.iter().filter(|(name, _)| *name != symbol).filter_map(|(_, value)| value.as_ref().ok());
+        let values = self
+            .bound
+            .iter()
+            .filter(|(name, _)| *name != symbol)
+            .filter_map(|(_, value)| value.as_ref().ok());
         let mut entries = values.flat_map(|value| match value {
             ScriptValue::One(one) => std::slice::from_ref(one),
             ScriptValue::Many { entries, .. } => entries.as_slice(),
             ScriptValue::Else => &[],
         });
-        entries.any(|one| one_uses(one, symbol)) || self.definitions.iter().any(|(_, one)| one_uses(one, symbol))
+        entries.any(|one| one_uses(one, symbol))
+            || self.definitions.iter().any(|(_, one)| one_uses(one, symbol))
     }
 
     /// The value of an expression.
@@ -207,10 +215,12 @@ impl ScriptWorkspace {
             && let [index] = arguments
         {
             let index = self.one(index)?;
-            let at = index.as_number().and_then(|value| usize::try_from(value.clone().numerator().clone()).ok());
+            let at =
+                index.as_number().and_then(|value| usize::try_from(value.clone().numerator().clone()).ok());
             let inside = at.and_then(|at| entries.get(at.checked_sub(1)?).cloned());
             return inside.map(ScriptValue::One).ok_or_else(|| {
-                Problem::new(span, format!("'{name}' has no such element"), "this").help("elements are counted from 1")
+                Problem::new(span, format!("'{name}' has no such element"), "this")
+                    .help("elements are counted from 1")
             });
         }
         match (name, arguments) {
@@ -239,7 +249,9 @@ impl ScriptWorkspace {
                 }
                 Ok(ScriptValue::Many { rows, entries: vec![value; count] })
             }
-            ("Symbol" | "sym", [Syntax { kind: SyntaxKind::Text(text), span }, ..]) => self.symbol(text.trim(), span),
+            ("Symbol" | "sym", [Syntax { kind: SyntaxKind::Text(text), span }, ..]) => {
+                self.symbol(text.trim(), span)
+            }
             ("symbols" | "var", [Syntax { kind: SyntaxKind::Text(text), span }, ..]) => {
                 let names = symbol_names(text, span)?;
                 let entries: Vec<ForeignExpr> = names
@@ -274,7 +286,8 @@ impl ScriptWorkspace {
     /// `sym.Function('x')(t)`
     fn function_of_time(&mut self, syntax: &Syntax) -> Valued {
         if let SyntaxKind::Call(callee, _) = &syntax.kind
-            && let Some(("Function", [Syntax { kind: SyntaxKind::Text(text), span }])) = named_function(callee)
+            && let Some(("Function", [Syntax { kind: SyntaxKind::Text(text), span }])) =
+                named_function(callee)
         {
             return self.symbol(text, span);
         }
@@ -399,8 +412,8 @@ fn multiplied(left: ScriptValue, right: ScriptValue, divided: bool, span: &Span)
             let mut entries = Vec::new();
             for row in 0..rows {
                 for column in 0..columns {
-                    let mut terms = (0..inner)
-                        .map(|k| a[row * inner + k].clone().times(b[k * columns + column].clone()));
+                    let mut terms =
+                        (0..inner).map(|k| a[row * inner + k].clone().times(b[k * columns + column].clone()));
                     let Some(first) = terms.next() else { return Err(unlike(span)) };
                     entries.push(terms.fold(first, |sum, term| sum_of(sum, term, false)));
                 }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 /// All monomials that were met, by their numbers; the first one is one.
 pub(super) struct Monomials {
+    weights: Vec<u32>,
     variables: usize,
     powers: Vec<u16>,
     degrees: Vec<u32>,
@@ -15,8 +16,11 @@ pub(super) struct Monomials {
 }
 
 impl Monomials {
-    pub fn new(variables: usize) -> Monomials {
+    /// Monomials in so many variables as there are weights: a degree is a sum of these.
+    pub fn new(weights: Vec<u32>) -> Monomials {
+        let variables = weights.len();
         let mut table = Monomials {
+            weights,
             variables,
             powers: Vec::new(),
             degrees: Vec::new(),
@@ -48,7 +52,9 @@ impl Monomials {
         }
         let number = self.degrees.len() as u32;
         self.powers.extend_from_slice(&self.scratch);
-        self.degrees.push(self.scratch.iter().map(|power| u32::from(*power)).sum());
+        let weighted =
+            self.scratch.iter().zip(&self.weights).map(|(power, weight)| u32::from(*power) * weight);
+        self.degrees.push(weighted.sum());
         let bits = self.scratch.iter().enumerate().filter(|(_, power)| **power > 0);
         self.masks.push(bits.fold(0, |mask, (variable, _)| mask | 1 << (variable % 64)));
         self.numbers.insert(self.scratch.clone().into_boxed_slice(), number);

@@ -97,6 +97,10 @@ impl FormulaLayout<'_> {
                 let word = VISIBLE.into_iter().find(|word| *word == name).unwrap_or_default();
                 (Formula::Row(vec![Formula::Word(word), round(all())]), Binding::Prefix)
             }
+            ("solutions", [inner]) => {
+                let word = Formula::Word("solutions");
+                (Formula::Row(vec![word, round(self.expression(inner))]), Binding::Prefix)
+            }
             ("pole", [inner, factor]) => {
                 let zero =
                     [Formula::Sign(FormulaSign::Relation(Relation::Equal)), Formula::Number("0".into())];
