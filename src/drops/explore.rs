@@ -209,7 +209,6 @@ impl Search<'_> {
         draw(algebra, case, &symbols, &mut self.rng)
             .ok_or_else(|| "no point of it was found modulo a prime".to_owned())
     }
-
 }
 
 /// Whether an expression of a chart is divided by zero at all of its points.

@@ -140,7 +140,12 @@ impl Search<'_> {
     ///
     /// # Errors
     /// Why that is not known, in words.
-    pub(super) fn lower_on(&mut self, algebra: &mut Algebra<'_>, case: &Case, point: &Point) -> Result<f64, String> {
+    pub(super) fn lower_on(
+        &mut self,
+        algebra: &mut Algebra<'_>,
+        case: &Case,
+        point: &Point,
+    ) -> Result<f64, String> {
         if !case.relations.is_empty() {
             return Err("it is cut out by an equation that is linear in no symbol".to_owned());
         }

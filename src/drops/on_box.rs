@@ -41,7 +41,8 @@ pub(crate) fn share_of_the_box(system: &mut System, interrupt: &AtomicBool) -> R
         return Err(format!("this holds nowhere in the box: {}", answer.nowhere.join(", ")));
     }
     let free = answer.ranges.iter().filter(|(_, matters)| *matters).map(|(side, _)| side);
-    let sides = free.map(|side| (side.name.clone(), Range { low: side.low.clone(), high: side.high.clone() }));
+    let sides =
+        free.map(|side| (side.name.clone(), Range { low: side.low.clone(), high: side.high.clone() }));
     Ok(BoxShare {
         proved: answer.proved,
         boxes: answer.boxes,

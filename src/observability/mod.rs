@@ -43,7 +43,9 @@ pub(crate) use elimination::{certain_rank, kernel};
 pub(crate) use equilibrate::WEIGHT_OF_ERRORS;
 #[cfg(test)]
 pub(crate) use equilibrate::equilibrate;
-pub use fibre::{Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion, WORK as SOLUTIONS_WORK, solutions};
+pub use fibre::{
+    Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion, WORK as SOLUTIONS_WORK, solutions,
+};
 #[doc(hidden)]
 pub use flow::Flow;
 pub use generic::{

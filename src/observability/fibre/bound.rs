@@ -64,20 +64,24 @@ pub(super) fn bounds(model: &Model, orders: &Orders, asked: Option<&Quotient>) -
             bottoms.push(&quotient.bottom);
         }
     }
-    let r = bottoms.iter().map(|bottom| size(bottom)).fold(Size::default(), |a, b| Size {
-        degree: a.degree + b.degree,
-        bits: a.bits + b.bits,
-    });
+    let r = bottoms
+        .iter()
+        .map(|bottom| size(bottom))
+        .fold(Size::default(), |a, b| Size { degree: a.degree + b.degree, bits: a.bits + b.bits });
     // over the common denominator
     let over = |quotient: &Quotient| {
         let (top, bottom) = (size(&quotient.top), size(&quotient.bottom));
         Size { degree: top.degree + r.degree - bottom.degree, bits: top.bits + r.bits }
     };
-    let p = all.iter().map(|quotient| over(quotient)).fold(Size::default(), |a, b| Size {
-        degree: a.degree.max(b.degree),
-        bits: a.bits.max(b.bits),
-    });
-    let step = if r.degree > 0.0 { (p.degree + r.degree - 1.0).max(2.0 * r.degree) } else { (p.degree - 1.0).max(0.0) };
+    let p = all
+        .iter()
+        .map(|quotient| over(quotient))
+        .fold(Size::default(), |a, b| Size { degree: a.degree.max(b.degree), bits: a.bits.max(b.bits) });
+    let step = if r.degree > 0.0 {
+        (p.degree + r.degree - 1.0).max(2.0 * r.degree)
+    } else {
+        (p.degree - 1.0).max(0.0)
+    };
     let (mut log2_degree, mut heights, mut count, mut deepest) = (0.0, 0.0, 0.0, 0.0f64);
     for (output, raised) in model.outputs.iter().zip(&orders.raised) {
         let (mut row, mut power) = (over(output), if r.degree > 0.0 { 1.0 } else { 0.0 });
@@ -116,7 +120,9 @@ pub(super) fn bounds(model: &Model, orders: &Orders, asked: Option<&Quotient>) -
     let several = Size {
         degree: (count + 2.0) * points.degree + 2.0 * values * values,
         bits: (count + 2.0) * points.bits
-            + 2.0 * values * ((top.degree + bottom.degree).max(1.0) * points.bits + values.max(2.0).log2() + 2.0),
+            + 2.0
+                * values
+                * ((top.degree + bottom.degree).max(1.0) * points.bits + values.max(2.0).log2() + 2.0),
     };
     Some(Bounds { one, several })
 }

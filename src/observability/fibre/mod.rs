@@ -25,9 +25,9 @@ mod quotient;
 #[cfg(test)]
 mod tests;
 
+use super::Frame;
 use super::generic::{Orders, Probe, Seen};
 use super::needed::CodistributionError;
-use super::Frame;
 use crate::expression::NodeId;
 use crate::number::PrimeField;
 use crate::system::{Assignment, System, UnknownKind};
@@ -123,13 +123,20 @@ struct Round {
 ///
 /// # Errors
 /// In words, where nothing can be asked; and as for the rank.
-pub fn solutions(system: &mut System, question: &SolutionsQuestion) -> Result<SolutionsAnswer, CodistributionError> {
+pub fn solutions(
+    system: &mut System,
+    question: &SolutionsQuestion,
+) -> Result<SolutionsAnswer, CodistributionError> {
     let frame = Frame::new(system, &question.conditions)?;
     let generic = frame.generic;
     let unknowns = system.unknowns();
     let mut found: Vec<SolutionsOf> = Vec::new();
     for symbol in &unknowns {
-        let local = generic.unknowns.iter().find(|(other, _)| other == symbol).map_or(Seen::Undecided, |(_, seen)| *seen);
+        let local = generic
+            .unknowns
+            .iter()
+            .find(|(other, _)| other == symbol)
+            .map_or(Seen::Undecided, |(_, seen)| *seen);
         found.push(SolutionsOf {
             name: system.symbol_name(*symbol).to_owned(),
             kind: system.unknown_kind(*symbol),
@@ -143,14 +150,22 @@ pub fn solutions(system: &mut System, question: &SolutionsQuestion) -> Result<So
         let solutions = Solutions::Undecided(String::new());
         found.push(SolutionsOf { name: name.clone(), kind: None, local, solutions, at_most: None });
     }
-    let mut answer =
-        SolutionsAnswer { unknowns: found, rounds: 0, orders: Vec::new(), points: None, orders_are_open: false };
+    let mut answer = SolutionsAnswer {
+        unknowns: found,
+        rounds: 0,
+        orders: Vec::new(),
+        points: None,
+        orders_are_open: false,
+    };
     let counted = count(system, question, &mut answer);
     for of_it in &mut answer.unknowns {
         match (of_it.local, &counted) {
             (Seen::No, _) => of_it.solutions = Solutions::Infinite,
             (Seen::Undecided, _) => {
-                let why = generic.open.clone().unwrap_or_else(|| "it is not known whether it is seen locally".to_owned());
+                let why = generic
+                    .open
+                    .clone()
+                    .unwrap_or_else(|| "it is not known whether it is seen locally".to_owned());
                 of_it.solutions = Solutions::Undecided(why);
                 of_it.at_most = None;
             }
@@ -278,9 +293,15 @@ fn round(
     let sizes = || format!("{} equations in {} variables", solved.equations.len(), variables.len());
     let basis = Basis::of(field, monomials, rows, &limits).map_err(|stop| match stop {
         Stop::TimeIsUp if question.interrupt.load(Ordering::Relaxed) => "it was cut off".to_owned(),
-        Stop::TimeIsUp => format!("the Groebner basis of {} takes more than {:.0e} products", sizes(), question.work as f64),
-        Stop::TooWide(columns) => format!("the Groebner basis of {} needs a matrix of more than {columns} columns", sizes()),
-        Stop::DegreeTooHigh(degree) => format!("the Groebner basis of {} needs polynomials of degree {degree}", sizes()),
+        Stop::TimeIsUp => {
+            format!("the Groebner basis of {} takes more than {:.0e} products", sizes(), question.work as f64)
+        }
+        Stop::TooWide(columns) => {
+            format!("the Groebner basis of {} needs a matrix of more than {columns} columns", sizes())
+        }
+        Stop::DegreeTooHigh(degree) => {
+            format!("the Groebner basis of {} needs polynomials of degree {degree}", sizes())
+        }
     })?;
     let mut algebra = Algebra::new(basis, MOST_POINTS).map_err(|why| match why {
         NoAlgebra::Infinite => "the fibre of a random point is not finite".to_owned(),
@@ -319,11 +340,11 @@ fn round(
 fn row(equation: &Jet, place: &HashMap<u32, usize>, monomials: &mut Monomials) -> Row {
     let mut terms: Vec<(u32, u64)> = Vec::new();
     for (monomial, coefficient) in &equation.terms {
-        let powers: Vec<(usize, u16)> = monomial.iter().map(|(variable, power)| (place[variable], *power)).collect();
+        let powers: Vec<(usize, u16)> =
+            monomial.iter().map(|(variable, power)| (place[variable], *power)).collect();
         terms.push((monomials.of(&powers), *coefficient));
     }
     terms.sort_by(|a, b| monomials.compare(b.0, a.0));
     let (monomials, coefficients) = terms.into_iter().unzip();
     Row { monomials, coefficients }
 }
-

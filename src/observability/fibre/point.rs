@@ -98,7 +98,12 @@ fn needed(model: &Model, orders: &Orders) -> Vec<Option<usize>> {
 
 impl Fibre {
     /// The fibre through a random point, with the unknowns that are free held at their values.
-    pub fn new(model: &Model, orders: &Orders, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<Fibre, Trouble> {
+    pub fn new(
+        model: &Model,
+        orders: &Orders,
+        field: PrimeField,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Fibre, Trouble> {
         let numbering = Numbering { variables: model.variables.len(), asked: model.asked.len() };
         let needed = needed(model, orders);
         let next = |jet: u32| -> Option<u32> {
@@ -124,7 +129,8 @@ impl Fibre {
         for (variable, order) in needed.iter().enumerate() {
             if let (Motion::Moves(rate), Some(order)) = (&model.variables[variable].motion, order) {
                 let moved = Jet::variable(&field, numbering.jet(variable, 1));
-                let mut equation = Jet::of(&field, &rate.bottom).times(&field, &moved, MOST_TERMS).ok_or_else(too_large)?;
+                let mut equation =
+                    Jet::of(&field, &rate.bottom).times(&field, &moved, MOST_TERMS).ok_or_else(too_large)?;
                 let minus_one = field.modulus() - field.one();
                 equation.add_multiple(&field, &Jet::of(&field, &rate.top), minus_one);
                 moving.push((variable, *order, equation));
@@ -153,7 +159,9 @@ impl Fibre {
         for (output, last) in model.outputs.iter().zip(&orders.last) {
             // an output as a variable of its own, whose derivatives are known
             let own = numbering.stride() - 1;
-            let next = |jet: u32| if jet % numbering.stride() == own { Some(jet + numbering.stride()) } else { next(jet) };
+            let next = |jet: u32| {
+                if jet % numbering.stride() == own { Some(jet + numbering.stride()) } else { next(jet) }
+            };
             let seen = Jet::variable(&field, own);
             let mut equation =
                 Jet::of(&field, &output.bottom).times(&field, &seen, MOST_TERMS).ok_or_else(too_large)?;
@@ -189,11 +197,14 @@ impl Fibre {
             (0..model.variables.len()).filter(|place| model.variables[*place].is_known).collect();
         held.extend(orders.free.iter().flat_map(|free| model.unknowns[*free].1.clone()));
         held.extend(model.given.iter().map(|(place, _)| *place));
-        let mut known: HashMap<u32, u64> =
-            held.into_iter().filter_map(|place| Some((at_first(place), *self.values.get(&at_first(place))?))).collect();
+        let mut known: HashMap<u32, u64> = held
+            .into_iter()
+            .filter_map(|place| Some((at_first(place), *self.values.get(&at_first(place))?)))
+            .collect();
         for (place, variable) in model.variables.iter().enumerate() {
             if let Motion::Driven = variable.motion {
-                let jets = self.values.iter().filter(|(jet, _)| (**jet % numbering.stride()) as usize == place);
+                let jets =
+                    self.values.iter().filter(|(jet, _)| (**jet % numbering.stride()) as usize == place);
                 known.extend(jets.map(|(jet, value)| (*jet, *value)));
             }
         }
@@ -212,7 +223,8 @@ impl Fibre {
         }
         for (place, bottom) in bottoms.iter().enumerate() {
             let inverse = Jet::variable(&field, numbering.inverse(place));
-            let mut equation = Jet::of(&field, bottom).times(&field, &inverse, MOST_TERMS).ok_or_else(too_large)?;
+            let mut equation =
+                Jet::of(&field, bottom).times(&field, &inverse, MOST_TERMS).ok_or_else(too_large)?;
             equation.add_term(&field, Vec::new(), minus_one);
             self.equations.push(equation);
         }
@@ -227,9 +239,11 @@ impl Fibre {
         }
         for (place, asked) in model.asked.iter().enumerate() {
             let own = Jet::variable(&field, numbering.asked(place));
-            let mut equation = Jet::of(&field, &asked.bottom).times(&field, &own, MOST_TERMS).ok_or_else(too_large)?;
+            let mut equation =
+                Jet::of(&field, &asked.bottom).times(&field, &own, MOST_TERMS).ok_or_else(too_large)?;
             equation.add_multiple(&field, &Jet::of(&field, &asked.top), minus_one);
-            let value = solve(&field, &equation, numbering.asked(place), &self.values).ok_or(Trouble::Pole)?;
+            let value =
+                solve(&field, &equation, numbering.asked(place), &self.values).ok_or(Trouble::Pole)?;
             self.values.insert(numbering.asked(place), value);
             self.equations.push(equation);
             self.asked.push(numbering.asked(place));
@@ -246,8 +260,11 @@ impl Fibre {
             }
             self.equations.push(equation);
         }
-        self.unknowns =
-            model.unknowns.iter().map(|(_, places)| places.iter().map(|place| at_first(*place)).collect()).collect();
+        self.unknowns = model
+            .unknowns
+            .iter()
+            .map(|(_, places)| places.iter().map(|place| at_first(*place)).collect())
+            .collect();
         Ok(())
     }
 }
@@ -269,11 +286,19 @@ fn begin(model: &Model, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<HashM
         }
     }
     let program = model.given_program();
-    let by_input: HashMap<Input, u64> =
-        model.variables.iter().zip(0u32..).map(|(variable, place)| (variable.input, values[&place])).collect();
+    let by_input: HashMap<Input, u64> = model
+        .variables
+        .iter()
+        .zip(0u32..)
+        .map(|(variable, place)| (variable.input, values[&place]))
+        .collect();
     let drawn = draw_residues(&program, &field, rng);
-    let inputs: Vec<u64> =
-        program.inputs().iter().zip(drawn).map(|(input, drawn)| by_input.get(input).copied().unwrap_or(drawn)).collect();
+    let inputs: Vec<u64> = program
+        .inputs()
+        .iter()
+        .zip(drawn)
+        .map(|(input, drawn)| by_input.get(input).copied().unwrap_or(drawn))
+        .collect();
     let loaded = program.load(field).map_err(|_| Trouble::Pole)?;
     let given = loaded.run(&inputs, &mut Vec::new()).map_err(|_| Trouble::Pole)?;
     for ((place, _), value) in model.given.iter().zip(given) {
@@ -306,4 +331,3 @@ fn solve(field: &PrimeField, equation: &Jet, variable: u32, values: &HashMap<u32
     let minus = if rest == 0 { 0 } else { field.modulus() - rest };
     Some(field.product(minus, field.inverse(slope)?))
 }
-

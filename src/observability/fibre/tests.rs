@@ -20,7 +20,8 @@ fn found(text: &str) -> Vec<(String, Option<usize>)> {
 }
 
 fn is(text: &str, expected: &[(&str, Option<usize>)]) {
-    let expected: Vec<(String, Option<usize>)> = expected.iter().map(|(name, n)| ((*name).to_owned(), *n)).collect();
+    let expected: Vec<(String, Option<usize>)> =
+        expected.iter().map(|(name, n)| ((*name).to_owned(), *n)).collect();
     assert_eq!(found(text), expected, "{text}");
 }
 
@@ -29,5 +30,8 @@ fn a_square_has_two_roots() {
     is("state x param k unknown drift f x' = k^2*x output x", &[("x", Some(1)), ("k", Some(2))]);
     is("state x param k unknown drift f x' = k*x output x^2", &[("x", Some(2)), ("k", Some(1))]);
     is("state x param a, b unknown drift f x' = a*b*x output x", &[("x", Some(1)), ("a", None), ("b", None)]);
-    is("state x param a, b unknown drift f x' = (a + b)*x + a*b output x", &[("x", Some(1)), ("a", Some(2)), ("b", Some(2))]);
+    is(
+        "state x param a, b unknown drift f x' = (a + b)*x + a*b output x",
+        &[("x", Some(1)), ("a", Some(2)), ("b", Some(2))],
+    );
 }

@@ -166,7 +166,11 @@ fn expression(text: &str) -> Markup {
 
 fn place(set: &DropSet) -> Markup {
     let all: Vec<String> = set.equations.iter().chain(&set.unless).cloned().collect();
-    if all.is_empty() { html! { "all states" } } else { listed(&all) }
+    if all.is_empty() {
+        html! { "all states" }
+    } else {
+        listed(&all)
+    }
 }
 
 /// Conditions as formulas, one after the other; each of those that are too long as it is written, in part.
