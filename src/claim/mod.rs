@@ -6,6 +6,7 @@
 //!
 //! This floor shares no formula with `proofs/`, and knows nothing of pages or plots.
 
+mod branches;
 mod cells;
 mod decide;
 mod defaults;

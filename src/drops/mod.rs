@@ -26,7 +26,7 @@ mod real;
 mod rows;
 mod sets;
 
-pub(crate) use claim::{ClaimedEverywhere, Everywhere, MinorIdentity, decide_everywhere};
+pub(crate) use claim::{ClaimedEverywhere, Everywhere, MinorIdentity, StatesOfCases, decide_everywhere};
 pub use on_box::BoxShare;
 pub(crate) use on_box::share_of_the_box;
 pub(crate) use rows::rows_up_to;

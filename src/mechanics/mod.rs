@@ -14,8 +14,10 @@
 //! formula of the thesis beyond the definitions of the frames and of what `s`, `r`, `d` and `e` mean. In
 //! particular it does not know that `r' = -d`, nor how `s` moves, nor Euler's equation.
 //!
-//! Left out here: friction, contact that breaks (the sign of a contact force is reported, not enforced), palms
-//! that are not flat, and time: a motion is known at one moment, with its first two derivatives there. Through time
+//! A [`Palm`] says what a sensor's value means: the contact, tangent, normal and curvature there. Flat ones and circular
+//! ones there are in the plane, flat ones in space.
+//!
+//! Left out here: friction, contact that breaks (the sign of a contact force is reported, not enforced), and time: a motion is known at one moment, with its first two derivatives there. Through time
 //! and in double precision bodies are moved by [`moving`], for which this is the witness.
 
 mod body;

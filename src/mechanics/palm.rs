@@ -108,6 +108,16 @@ where
     }
 }
 
+impl Palm<f64> {
+    /// How far the palm reaches, in m along it: without end if it is flat, half a circle otherwise.
+    pub(super) fn reach(&self) -> f64 {
+        match self {
+            Palm::Flat => f64::INFINITY,
+            Palm::Circular { radius } => std::f64::consts::PI * radius.abs(),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

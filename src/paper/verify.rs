@@ -9,8 +9,9 @@ use crate::certificate::certify_region;
 use crate::claim::decide_all;
 use crate::drops::where_it_drops;
 use crate::experiment::{Experiment, Scene};
+use crate::expression::syntax::{Expr, ExprKind};
 use crate::sweep::UNINTERRUPTED;
-use crate::system::{ReadError, System};
+use crate::system::{ReadError, Statement, System};
 use crate::tradeoff::stress::{Stress, StressOptions, StressStudy};
 use crate::tradeoff::{
     LandscapeRows, TradeQuestion, compare_routes, growth_of_lie_derivatives, printed_values, trade,
@@ -127,7 +128,12 @@ fn names_something(system: &System) -> bool {
 /// Whether a file claims what a rank is at all states, `rank = 6 except where g = 0`.
 fn speaks_of_all_states(system: &System) -> bool {
     let statements = system.claims.iter().flat_map(|claim| claim.body.statements());
-    statements.into_iter().any(|statement| statement.except.is_some())
+    let is_of_words = |expr: &Expr| matches!(&expr.kind, ExprKind::Name(name) if name == "rank");
+    let is_one = |statement: &Statement| {
+        let sides = [&statement.equation.left, &statement.equation.right];
+        statement.except.is_some() && sides.into_iter().any(is_of_words)
+    };
+    statements.into_iter().any(is_one)
 }
 
 /// How many steps are announced.
