@@ -7,12 +7,14 @@ Those of proofs/benchmarks have claims; the others are those of tests/models tha
 import argparse
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
 import tomllib
 from pathlib import Path
 
+from differential import is_seen, theirs
 from model_files import BENCHMARKS, TABLE, model_path
 from unknowns import MODELS, ROOT, Measure, commands, machine
 from unknowns_shown import OURS, STRIKEPY, figures, seconds
@@ -56,14 +58,24 @@ def arguments():
     return options
 
 
+def without_claims(path, folder):
+    """A copy of a file for those who are asked for the rank alone."""
+    text = path.read_text()
+    end = re.search(r"^(claim|erratum) ", text, re.MULTILINE)
+    copy = Path(folder) / path.name
+    copy.write_text(text[: end.start()] if end else text)
+    return copy
+
+
 def answer(binary, path):
     """Unknowns, rank, and which unknowns are not seen, as `rank` tells them."""
     run = subprocess.run(
         [binary, "rank", "--json", "--samples", "0", str(path)], capture_output=True, text=True, check=True
     )
-    generic = json.loads(run.stdout)["generic"]
-    unseen = [unknown["name"] for unknown in generic["unknowns"] if unknown["seen"] == "no"]
-    return {"unknowns": generic["dimension"], "rank": generic["rank"], "not_seen": unseen}
+    report = json.loads(run.stdout)
+    rank, final, words = theirs(report)
+    unseen = [name for name, word in words.items() if is_seen(word) is False]
+    return {"unknowns": report["dimension"], "rank": rank if final else None, "not_seen": unseen}
 
 
 def main():
@@ -74,6 +86,7 @@ def main():
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     os.environ |= dict.fromkeys(["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "RAYON_NUM_THREADS"], "1")
     expected = tomllib.loads(TABLE.read_text())
+    told = options.book or options.json  # from what was kept, where one program alone is measured
     with tempfile.TemporaryDirectory() as folder:
         measure = Measure(options, folder)
         measure.programs = programs(options.binary)
@@ -81,18 +94,20 @@ def main():
         for name in options.models:
             path = model_path(name)
             point = {"model": name, "has_claims": path.parent == BENCHMARKS}
-            if not options.only:
-                point |= answer(options.binary, path)
+            point["claims"] = len(re.findall(r"^(?:claim|erratum) ", path.read_text(), re.MULTILINE))
+            bare = without_claims(path, folder)
+            if told or not options.only:
+                point |= answer(options.binary, bare)
             for program in (OURS, STRIKEPY) + ((CLAIMS,) if point["has_claims"] else ()):
-                point[program] = measure(program, name, path)
+                point[program] = measure(program, name, path if program == CLAIMS else bare)
             models.append(point)
-    if options.only:
+    if options.only and not told:
         return 0
     report = {"machine": machine(options.binary), "limit": options.limit, "models": models, "remark": options.remark}
     wrong = [
-        f"{point['model']}: {told}"
+        f"{point['model']}: {ranks}"
         for point in models
-        if len({*(told := [p["rank"] for p in (point[OURS], point[STRIKEPY]) if p and p["rank"] is not None]), point["rank"]}) > 1
+        if len({*(ranks := [p["rank"] for p in (point[OURS], point[STRIKEPY]) if p and p["rank"] is not None]), point["rank"]}) > 1
         or expected.get(point["model"], {"rank": point["rank"]})["rank"] != point["rank"]
     ]
     print(json.dumps(report, indent=2) if options.json else table(report))
@@ -111,10 +126,10 @@ def table(report):
         "|---|---:|---:|---:|---:|---:|---:|---:|---|",
     ]
     for point in sorted(report["models"], key=lambda point: (not point["has_claims"], point["model"])):
-        claims = point.get(CLAIMS)
+        claims = point["claims"] if point["has_claims"] else ""
         lines.append(
             f"| {point['model']} | {point['unknowns']} | {point['rank']} | {len(point['not_seen']) or ''} | "
-            f"{claims['rank'] if claims else ''} | {seconds(claims)} | {seconds(point[OURS])} | {seconds(point[STRIKEPY])} | |"
+            f"{claims} | {seconds(point.get(CLAIMS))} | {seconds(point[OURS])} | {seconds(point[STRIKEPY])} | |"
         )
     measured = [point for point in report["models"] if point[STRIKEPY]]
     decided = [point for point in measured if point[STRIKEPY]["seconds"] is not None]
@@ -123,9 +138,10 @@ def table(report):
         for program in (OURS, CLAIMS)
     }
     machine = report["machine"]
+    claims = f"{figures(sums[CLAIMS])} s for all claims and " if sums[CLAIMS] else ""
     words = (
         f"StrikePy decides {len(decided)} of the {len(measured)} models that it was given within {report['limit']:g} s each; palmistry "
-        f"takes {figures(sums[CLAIMS])} s for all claims and {figures(sums[OURS])} s for all ranks."
+        f"takes {claims}{figures(sums[OURS])} s for all {len(report['models'])} ranks."
     )
     tools = (
         f"{machine['processor']}, one core, processor time; palmistry {machine['palmistry']} as a whole process, least of three; Python "
