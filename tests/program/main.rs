@@ -7,6 +7,7 @@ mod appendix;
 mod benchmarks;
 mod damaged;
 mod editors;
+mod import;
 mod page;
 mod paper;
 mod papers;
