@@ -9,6 +9,7 @@ use super::question::Question;
 use super::ranks::{decide_codistribution, decide_rank};
 use super::terms::{OnBranch, Terms};
 use super::verdict::Verdict;
+use super::visible::decide_visible;
 use crate::checker::Evidence;
 use crate::expression::{Guard, NodeId, add_guard};
 use crate::observability::{Branch, Edges, SignCell, in_sign_cell};
@@ -26,7 +27,7 @@ pub(super) struct Asked<'a> {
 }
 
 /// A branch, or a part of one, with its verdict and what that rests on.
-pub(super) type DecidedBranch = (Branch, OnOneBranch, Option<Evidence>);
+pub(super) type DecidedBranch = (Branch, OnOneBranch, Vec<Evidence>);
 
 impl Asked<'_> {
     /// The verdict on a branch: of a rank on each part on which the signs under roots of squares are known, of anything else only
@@ -101,7 +102,7 @@ impl Asked<'_> {
         cell: &SignCell,
         kept: Kept,
         rng: &mut ChaCha8Rng,
-    ) -> Result<(OnOneBranch, Option<Evidence>), String> {
+    ) -> Result<(OnOneBranch, Vec<Evidence>), String> {
         let question = self.question;
         let all = self.all_guards(system, branch);
         let is_assumed: Vec<bool> =
@@ -127,11 +128,15 @@ impl Asked<'_> {
             Question::Codistribution { claimed } => {
                 decide_codistribution(system, &on, branch, *claimed, rng)?
             }
+            Question::Visible { is_seen, .. } => {
+                let resolved = on_resolved(system, &on, cell, rng)?;
+                return decide_visible(system, resolved.as_ref().unwrap_or(&on), *is_seen, kept, rng);
+            }
         };
-        let mut evidence = None;
+        let mut evidence = Vec::new();
         if let (OnOneBranch::Verdict(verdict, _), Kept::Evidence) = (&verdict, kept) {
             // random numbers of its own: what is kept changes no verdict
-            evidence = question.evidence(system, &on, verdict, &mut rng.clone());
+            evidence.extend(question.evidence(system, &on, verdict, &mut rng.clone()));
         }
         Ok((verdict, evidence))
     }
@@ -175,8 +180,10 @@ pub(super) fn together(
                 verdicts.push(match verdict {
                     // of a rank at almost all states this is no counterexample
                     Verdict::Refuted { witness, .. } if size == Size::Smaller && of_rank => {
+                        let the_rank =
+                            if matches!(question, Question::Visible { .. }) { "it" } else { "the rank" };
                         Verdict::undecided(format!(
-                            "{place}the rank is {} there, on a branch of fewer dimensions than the set",
+                            "{place}{the_rank} is {} there, on a branch of fewer dimensions than the set",
                             witness.left
                         ))
                     }

@@ -7,10 +7,12 @@ use super::existence::{Existence, existence};
 use super::identity::decide_nearness;
 use super::pole::decide_pole;
 use super::question::{Question, claimed_integer, guards_of_conditions, sample_box};
+use super::solutions::{Asking, decide_solutions};
 use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict, Witness};
+use super::visible::smooth;
 use crate::checker::{Evidence, VerdictRecord};
-use crate::expression::syntax::{Equation, Relation};
+use crate::expression::syntax::{Equation, Expr, Relation};
 use crate::expression::{Symbol, add_guard};
 use crate::observability::{Branch, solve};
 use crate::sweep::UNINTERRUPTED;
@@ -243,7 +245,13 @@ fn attempt(
     for guard in before.into_iter().chain(after) {
         add_guard(&system.graph, &mut guards, guard);
     }
-    let of_rank = [&left, &right].iter().any(|value| matches!(value, Value::CodistributionRank));
+    let of_what_is_seen = matches!(left, Value::Visible { .. });
+    let of_rank =
+        of_what_is_seen || [&left, &right].iter().any(|value| matches!(value, Value::CodistributionRank));
+    if of_what_is_seen {
+        // a function has a differential where it is smooth
+        smooth(&mut guards);
+    }
     if of_rank {
         // every Lie derivative of the outputs has to exist
         guards.extend(system.smooth_guards(&system.moving_fields()));
@@ -277,6 +285,14 @@ fn attempt(
             }
             _ => Err("'within' compares numbers".to_owned()),
         };
+    }
+    if let Some(asked) = Asking::of(system, &left, &right, equation.relation) {
+        let asked = asked?;
+        let kept = Evidence::Unchecked("how many values there are is not found by evaluation".to_owned());
+        notes.evidence.push(kept);
+        let text = |expr: &Expr| in_one_line(&system.source, &expr.span);
+        let name = text(if asked.is_left { &equation.left } else { &equation.right });
+        return decide_solutions(system, statement, &asked, name);
     }
     if matches!(left, Value::Pole { .. }) || matches!(right, Value::Pole { .. }) {
         let terms = Terms { guards, ..Terms::default() };

@@ -1,5 +1,6 @@
 //! Where a rank drops, on the page: the sets as formulas, what the rank is on each, what proves the rest, what is open.
 
+use super::entry::raised;
 use crate::drops::{BoxShare, DropAnswer, DropSet, UsedMinor};
 use crate::observability::StateInWords;
 use crate::report::claims::outcomes::error_bound;
@@ -79,7 +80,7 @@ fn sets(sets: &[DropSet]) -> Markup {
                         td {
                             @match error_bound(set.log2_error).as_str() {
                                 "0" => { "certain" }
-                                bound => { "error below " (bound) }
+                                bound => { "error below " (raised(bound)) }
                             }
                         }
                         td.words { @if let Some(state) = &set.state { (at(state)) } }
@@ -198,7 +199,7 @@ fn at(state: &StateInWords) -> Markup {
     html! {
         @for (place, at) in state.iter().enumerate() {
             @if place > 0 { ", " }
-            (at.name) " = " (at.exact)
+            (at.name) @if at.exact.contains('=') { ": " } @else { " = " } (at.exact)
         }
     }
 }
