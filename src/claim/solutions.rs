@@ -1,7 +1,8 @@
 //! Claims about how many values give the same outputs: `solutions(k) = 2`, `solutions(x*y) = 1`, `solutions(b) = infinity`.
 //!
 //! *Proved* are a number that random points modulo random primes bound from above with an error below `2^-100` and a symmetry, or nothing
-//! at all where it is one, from below; and infinitely many, where the rank grows with the expression as an output. A number that is only computed
+//! at all where it is one, from below; and infinitely many, where the rank grows with the expression as an output. A number
+//! that is only computed
 //! leaves the claim undecided, and stands in its remark.
 
 use super::question::claimed_integer;
@@ -30,7 +31,12 @@ pub(super) struct Asking {
 
 impl Asking {
     /// The question, where one side is a number of solutions; the error is in words.
-    pub fn of(system: &System, left: &Value, right: &Value, relation: Relation) -> Option<Result<Asking, String>> {
+    pub fn of(
+        system: &System,
+        left: &Value,
+        right: &Value,
+        relation: Relation,
+    ) -> Option<Result<Asking, String>> {
         let (expression, other, relation, is_left) = match (left, right) {
             (Value::Solutions(expression), other) => (*expression, other, relation, true),
             (other, Value::Solutions(expression)) => (*expression, other, turned(relation), false),
@@ -41,7 +47,9 @@ impl Asking {
             Value::Scalar(number) => claimed_integer(system, *number)
                 .map_err(|_| "a number of solutions is compared with an integer or with infinity".to_owned())
                 .and_then(|claimed| {
-                    usize::try_from(claimed).map(Some).map_err(|_| format!("a number of solutions is never {claimed}"))
+                    usize::try_from(claimed)
+                        .map(Some)
+                        .map_err(|_| format!("a number of solutions is never {claimed}"))
                 }),
             other => Err(format!("a number of solutions is compared with {}", other.describe())),
         };
@@ -103,7 +111,9 @@ pub(super) fn decide_solutions(
     let initial = system.initial_conditions().to_vec();
     let branches = solve_conditions(system, &initial).map_err(|why| why.to_string())?;
     let [branch] = branches.as_slice() else {
-        return Err("values at the beginning are given in several ways: of these no solutions are counted".to_owned());
+        return Err(
+            "values at the beginning are given in several ways: of these no solutions are counted".to_owned()
+        );
     };
     let question = SolutionsQuestion {
         conditions: branch.values.clone(),
@@ -117,7 +127,8 @@ pub(super) fn decide_solutions(
     match asking.holds(proved.least, proved.most) {
         Some(true) => Ok(Verdict::Proved { engine: proved.engine, log2_error: proved.log2_error }),
         Some(false) => {
-            let number = |count: usize| if count == usize::MAX { "infinity".to_owned() } else { count.to_string() };
+            let number =
+                |count: usize| if count == usize::MAX { "infinity".to_owned() } else { count.to_string() };
             let left = match (proved.least, proved.most) {
                 (least, most) if least == most => number(least),
                 (least, usize::MAX) => format!("at least {}", number(least)),
@@ -171,7 +182,9 @@ fn open(found: &SolutionsOf, rounds: usize) -> String {
     };
     match &found.solutions {
         Solutions::Finite(count) => {
-            format!("{count} over the complex numbers, computed modulo {rounds} primes at random points{most}{least}")
+            format!(
+                "{count} over the complex numbers, computed modulo {rounds} primes at random points{most}{least}"
+            )
         }
         Solutions::Undecided(why) => format!("{why}{least}"),
         Solutions::Infinite => "infinitely many".to_owned(),

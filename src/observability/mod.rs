@@ -43,7 +43,10 @@ pub(crate) use elimination::{certain_rank, kernel};
 pub(crate) use equilibrate::WEIGHT_OF_ERRORS;
 #[cfg(test)]
 pub(crate) use equilibrate::equilibrate;
-pub use fibre::{SecondPoint, Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion, WORK as SOLUTIONS_WORK, solutions};
+pub use fibre::{
+    SecondPoint, Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion, WORK as SOLUTIONS_WORK,
+    solutions,
+};
 #[doc(hidden)]
 pub use flow::Flow;
 pub use generic::{Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, generic_rank};

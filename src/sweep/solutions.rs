@@ -60,7 +60,11 @@ impl GlobalAnswer {
 ///
 /// # Errors
 /// No unknowns or no outputs, no drift or input, values at the beginning that cannot be solved for.
-pub fn answer_solutions(system: &mut System, work: u64, interrupt: &AtomicBool) -> Result<GlobalAnswer, RankError> {
+pub fn answer_solutions(
+    system: &mut System,
+    work: u64,
+    interrupt: &AtomicBool,
+) -> Result<GlobalAnswer, RankError> {
     let begin = Instant::now();
     if system.unknown_count() == 0 || system.outputs.is_empty() {
         return Err(RankError::NothingToSee(system.name.clone()));
@@ -69,10 +73,12 @@ pub fn answer_solutions(system: &mut System, work: u64, interrupt: &AtomicBool) 
     let equations = system.initial_conditions().to_vec();
     let branches = solve_conditions(system, &equations)?;
     let [branch] = branches.as_slice() else {
-        let several = "values at the beginning that are given in several ways: of these no values are counted";
+        let several =
+            "values at the beginning that are given in several ways: of these no values are counted";
         return Err(RankError::Condition(several.to_owned()));
     };
-    let asked = RankQuestion { samples: 0, wanted: Certainty::Computed, interrupt, ..RankQuestion::default() };
+    let asked =
+        RankQuestion { samples: 0, wanted: Certainty::Computed, interrupt, ..RankQuestion::default() };
     let held = held_parameters(system, &asked, &branch.values, std::iter::empty());
     let conditions = held_conditions(system, &asked, branch);
     let question = SolutionsQuestion { conditions, expressions: Vec::new(), work, interrupt };

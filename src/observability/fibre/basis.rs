@@ -56,8 +56,14 @@ pub(super) struct Basis {
 
 impl Basis {
     /// The basis of the ideal of some rows; each is sorted, and monic or not.
-    pub fn of(field: PrimeField, monomials: Monomials, rows: Vec<Row>, limits: &Limits) -> Result<Basis, Stop> {
-        let mut basis = Basis { field, monomials, elements: Vec::new(), active: Vec::new(), pairs: Vec::new() };
+    pub fn of(
+        field: PrimeField,
+        monomials: Monomials,
+        rows: Vec<Row>,
+        limits: &Limits,
+    ) -> Result<Basis, Stop> {
+        let mut basis =
+            Basis { field, monomials, elements: Vec::new(), active: Vec::new(), pairs: Vec::new() };
         let mut waiting: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
         for row in rows {
             if let Some(lead) = row.monomials.first() {
@@ -151,7 +157,8 @@ impl Basis {
         let field = &self.field;
         let mut columns: Vec<u32> = met.into_iter().collect();
         columns.sort_by(|a, b| self.monomials.compare(*b, *a));
-        let place: HashMap<u32, u32> = columns.iter().zip(0..).map(|(monomial, place)| (*monomial, place)).collect();
+        let place: HashMap<u32, u32> =
+            columns.iter().zip(0..).map(|(monomial, place)| (*monomial, place)).collect();
         let placed = |row: &Row| -> (Vec<u32>, Vec<u64>) {
             (row.monomials.iter().map(|monomial| place[monomial]).collect(), row.coefficients.clone())
         };
@@ -222,7 +229,8 @@ impl Basis {
     fn multiple(&mut self, place: usize, lead: u32) -> Row {
         let row = &self.elements[place];
         let factor = self.monomials.quotient(lead, row.monomials[0]);
-        let monomials = row.monomials.iter().map(|monomial| self.monomials.product(*monomial, factor)).collect();
+        let monomials =
+            row.monomials.iter().map(|monomial| self.monomials.product(*monomial, factor)).collect();
         Row { monomials, coefficients: row.coefficients.clone() }
     }
 

@@ -2,7 +2,8 @@
 //! times and all inputs.
 //!
 //! A map `X_v = e_v x_w`, `w` a permutation of the unknowns and `e_v` signs, takes solutions to solutions where `r_v(X) = e_v r_w(x)` for
-//! the rates, and leaves the outputs as they are where `h(X) = h(x)`. Both are equations between polynomials with integer coefficients, and are compared term by term: there is no
+//! the rates, and leaves the outputs as they are where `h(X) = h(x)`. Both are equations between polynomials with integer
+//! coefficients, and are compared term by term: there is no
 //! error. Permutations are found by refining a partition of the unknowns, the signs by linear algebra modulo 2.
 
 use super::exact::{Exact, Monomial};
@@ -91,7 +92,8 @@ impl Exchange {
 
 /// How many values an unknown, by the place of its variable, has at the images of a state.
 pub(super) fn values_of_variable(exchanges: &[Exchange], place: usize) -> usize {
-    let images: BTreeSet<(usize, bool)> = exchanges.iter().map(|map| map.of[place]).chain([(place, false)]).collect();
+    let images: BTreeSet<(usize, bool)> =
+        exchanges.iter().map(|map| map.of[place]).chain([(place, false)]).collect();
     images.len()
 }
 
@@ -157,18 +159,28 @@ impl Search<'_> {
             }
             count = kinds.len();
             let mut seen: Vec<Vec<u64>> = vec![Vec::new(); colours.len()];
-            let outputs = self.model.outputs.iter().enumerate().map(|(place, output)| (hash(&("output", place)), None, output));
-            let rates = self.model.variables.iter().enumerate().filter_map(|(place, variable)| match &variable.motion {
-                Motion::Moves(rate) => Some((hash(&("rate", colours[place])), Some(place), rate)),
-                _ => None,
-            });
+            let outputs = self
+                .model
+                .outputs
+                .iter()
+                .enumerate()
+                .map(|(place, output)| (hash(&("output", place)), None, output));
+            let rates =
+                self.model.variables.iter().enumerate().filter_map(|(place, variable)| {
+                    match &variable.motion {
+                        Motion::Moves(rate) => Some((hash(&("rate", colours[place])), Some(place), rate)),
+                        _ => None,
+                    }
+                });
             for (owner, place, quotient) in outputs.chain(rates) {
                 let mut terms: Vec<(u64, u32, u16)> = Vec::new();
                 let mut all: Vec<u64> = Vec::new();
                 for (side, polynomial) in [(0, &quotient.top), (1, &quotient.bottom)] {
                     for (monomial, coefficient) in &polynomial.terms {
-                        let mut parts: Vec<(u64, u16)> =
-                            monomial.iter().map(|(variable, power)| (colours[*variable as usize], *power)).collect();
+                        let mut parts: Vec<(u64, u16)> = monomial
+                            .iter()
+                            .map(|(variable, power)| (colours[*variable as usize], *power))
+                            .collect();
                         parts.sort_unstable();
                         let term = hash(&(owner, side, coefficient.clone().abs().to_string(), parts));
                         all.push(term);
@@ -206,7 +218,9 @@ impl Search<'_> {
             classes
         };
         let (here, there) = (classes(&from), classes(&to));
-        if here.len() != there.len() || here.iter().any(|(colour, own)| there.get(colour).is_none_or(|o| o.len() != own.len())) {
+        if here.len() != there.len()
+            || here.iter().any(|(colour, own)| there.get(colour).is_none_or(|o| o.len() != own.len()))
+        {
             return;
         }
         let open = here.iter().filter(|(_, own)| own.len() > 1).min_by_key(|(_, own)| own.len());
@@ -235,14 +249,16 @@ impl Search<'_> {
                     bits.iter_mut().zip(direction).for_each(|(bit, other)| *bit ^= other);
                 }
             }
-            let map = Exchange { of: permutation.iter().copied().zip(bits[..count].iter().copied()).collect() };
+            let map =
+                Exchange { of: permutation.iter().copied().zip(bits[..count].iter().copied()).collect() };
             if self.found.len() < MOST && !map.is_nothing() && map.is_symmetry(self.model, &self.fixed) {
                 self.found.insert(map);
             }
         }
     }
 
-    /// The signs as a solution of linear equations modulo 2, and those of the equations without right sides: a bit for each variable, then one
+    /// The signs as a solution of linear equations modulo 2, and those of the equations without right sides: a bit for each
+    /// variable, then one
     /// for each top and bottom.
     fn solve(&self, permutation: &[usize]) -> Option<(Vec<bool>, Vec<Vec<bool>>)> {
         let count = permutation.len();
@@ -263,13 +279,17 @@ impl Search<'_> {
             rows.push(row);
         }
         for (number, (place, own, image)) in pairs.iter().enumerate() {
-            for (side, (left, right)) in [(&own.top, &image.top), (&own.bottom, &image.bottom)].into_iter().enumerate() {
+            for (side, (left, right)) in
+                [(&own.top, &image.top), (&own.bottom, &image.bottom)].into_iter().enumerate()
+            {
                 if left.terms.len() != right.terms.len() {
                     return None;
                 }
                 for (monomial, coefficient) in &left.terms {
-                    let mut moved: Monomial =
-                        monomial.iter().map(|(variable, power)| (permutation[*variable as usize] as u32, *power)).collect();
+                    let mut moved: Monomial = monomial
+                        .iter()
+                        .map(|(variable, power)| (permutation[*variable as usize] as u32, *power))
+                        .collect();
                     moved.sort_unstable();
                     let other = right.terms.get(&moved)?;
                     if other.clone().abs() != coefficient.clone().abs() {
@@ -315,10 +335,13 @@ fn solve_modulo_two(mut rows: Vec<Vec<bool>>, width: usize) -> Option<(Vec<bool>
     if rows[done..].iter().any(|row| row[width]) {
         return None;
     }
-    let particular = (0..width).map(|column| pivots.get(&column).is_some_and(|row| rows[*row][width])).collect();
+    let particular =
+        (0..width).map(|column| pivots.get(&column).is_some_and(|row| rows[*row][width])).collect();
     let free = (0..width).filter(|column| !pivots.contains_key(column));
     let kernel = free.map(|free| {
-        (0..width).map(|column| column == free || pivots.get(&column).is_some_and(|row| rows[*row][free])).collect()
+        (0..width)
+            .map(|column| column == free || pivots.get(&column).is_some_and(|row| rows[*row][free]))
+            .collect()
     });
     Some((particular, kernel.collect()))
 }
@@ -326,11 +349,16 @@ fn solve_modulo_two(mut rows: Vec<Vec<bool>>, width: usize) -> Option<(Vec<bool>
 /// A map in words: `k1 -> k2, k2 -> k1, x -> -x`.
 pub(super) fn in_words(model: &Model, map: &Exchange) -> String {
     let name = |place: usize| {
-        model.variables[place].input.symbol().map_or_else(String::new, |symbol| model.graph.symbol_name(symbol).to_owned())
+        model.variables[place]
+            .input
+            .symbol()
+            .map_or_else(String::new, |symbol| model.graph.symbol_name(symbol).to_owned())
     };
     let changed = map.of.iter().enumerate().filter(|(place, (other, turned))| place != other || *turned);
     let parts: Vec<String> = changed
-        .map(|(place, (other, turned))| format!("{} -> {}{}", name(place), if *turned { "-" } else { "" }, name(*other)))
+        .map(|(place, (other, turned))| {
+            format!("{} -> {}{}", name(place), if *turned { "-" } else { "" }, name(*other))
+        })
         .collect();
     parts.join(", ")
 }

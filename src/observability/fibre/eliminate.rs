@@ -71,7 +71,9 @@ impl Solved {
                 let growth = elsewhere * length.saturating_sub(1) * degree.max(1);
                 let cost = if degree <= 1 { growth / 4 } else { growth };
                 // what is of higher order comes first
-                if best.is_none_or(|(least, _, other)| (cost, u32::MAX - variable) < (least, u32::MAX - other)) {
+                if best
+                    .is_none_or(|(least, _, other)| (cost, u32::MAX - variable) < (least, u32::MAX - other))
+                {
                     best = Some((cost, place, variable));
                 }
             }
@@ -106,7 +108,9 @@ impl Solved {
 
     /// Linear combinations of the equations, over the numbers: whether one of them is linear that was not.
     fn combine(&mut self, field: &PrimeField) -> bool {
-        let linear = |equations: &[Jet]| equations.iter().filter(|e| !alone_and_linear(e).is_empty() && e.degree() <= 1).count();
+        let linear = |equations: &[Jet]| {
+            equations.iter().filter(|e| !alone_and_linear(e).is_empty() && e.degree() <= 1).count()
+        };
         let before = linear(&self.equations);
         let degree = |m: &[(u32, u16)]| m.iter().map(|(_, n)| u32::from(*n)).sum::<u32>();
         let mut rows: Vec<Jet> = Vec::new();

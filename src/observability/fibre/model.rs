@@ -51,6 +51,9 @@ pub(super) struct Model {
     /// The values at the beginning that the file gives, as programs of known parameters.
     pub given: Vec<(usize, NodeId)>,
     pub angles: HashSet<Symbol>,
+    /// The rates and the outputs as expressions.
+    pub rates: Vec<(Symbol, NodeId)>,
+    pub seen: Vec<NodeId>,
 }
 
 /// A name that no file can give.
@@ -66,13 +69,15 @@ impl Model {
             return Err("the values of an unknown are counted in continuous time alone, and this system goes in steps".to_owned());
         }
         if !system.zero_outputs().is_empty() || system.longest_word().is_some() {
-            return Err("outputs that are zero tie known signals to states, of which values are not counted".to_owned());
+            return Err("outputs that are zero tie known signals to states, of which values are not counted"
+                .to_owned());
         }
         let mut graph = system.graph.clone();
         let angles = system.angles();
         let is_angle = |symbol: Symbol| angles.contains(&symbol);
         let is_fixed = |(symbol, value): (&Symbol, &NodeId)| {
-            (!system.states.contains(symbol) && graph.symbols_of([*value]).is_empty()).then_some((*symbol, *value))
+            (!system.states.contains(symbol) && graph.symbols_of([*value]).is_empty())
+                .then_some((*symbol, *value))
         };
         let fixed: Assignment = conditions.iter().filter_map(is_fixed).collect();
         let mut rates: HashMap<Symbol, NodeId> = HashMap::new();
@@ -93,12 +98,15 @@ impl Model {
                 rates.insert(*symbol, sum);
             }
         }
-        let moved: Vec<Symbol> = system.states.iter().copied().filter(|state| rates.contains_key(state)).collect();
+        let moved: Vec<Symbol> =
+            system.states.iter().copied().filter(|state| rates.contains_key(state)).collect();
         let mut roots: Vec<NodeId> = moved.iter().map(|state| rates[state]).collect();
         roots.extend(system.outputs.iter().map(|(_, node)| *node));
         roots.extend(asked);
         let roots = graph.substitute(&roots, &fixed);
         let roots = expand_angles(&mut graph, &roots, is_angle);
+        let expressions: Vec<(Symbol, NodeId)> = moved.iter().copied().zip(roots.iter().copied()).collect();
+        let seen = roots[moved.len()..moved.len() + system.outputs.len()].to_vec();
         let program = Program::with_unknown_functions(&graph, &roots, is_angle);
         if let Some(angle) = program.bare_angle() {
             let name = system.symbol_name(angle);
@@ -124,9 +132,13 @@ impl Model {
         }
         let place: HashMap<Input, usize> = inputs.iter().copied().zip(0..).collect();
         let fractions = Fractions::<Exact>::default();
-        let elements: Vec<Fraction> =
-            program.inputs().iter().map(|input| fractions.element(Exact::variable(place[input] as u32))).collect();
-        let refused = |refusal: Refusal| format!("the equations could not be written as polynomials: {refusal}");
+        let elements: Vec<Fraction> = program
+            .inputs()
+            .iter()
+            .map(|input| fractions.element(Exact::variable(place[input] as u32)))
+            .collect();
+        let refused =
+            |refusal: Refusal| format!("the equations could not be written as polynomials: {refusal}");
         let loaded = program.load(&fractions).map_err(refused)?;
         let values = loaded.run(&elements, &mut Vec::new()).map_err(|failure| refused(failure.refusal))?;
         let rate_of: HashMap<Symbol, &Fraction> = moved.iter().copied().zip(&values).collect();
@@ -157,10 +169,13 @@ impl Model {
                 (Some(rate), ..) => Motion::Moves(quotient(rate)?),
             };
             let motion = match motion {
-                Motion::Moves(rate) if rate.top.as_constant().is_some_and(|top| top.is_zero()) => Motion::Rests,
+                Motion::Moves(rate) if rate.top.as_constant().is_some_and(|top| top.is_zero()) => {
+                    Motion::Rests
+                }
                 other => other,
             };
-            let is_known = symbol.is_none_or(|symbol| system.known.contains(&symbol) || !system.states.contains(&symbol));
+            let is_known = symbol
+                .is_none_or(|symbol| system.known.contains(&symbol) || !system.states.contains(&symbol));
             variables.push(Variable { input: *input, motion, is_known });
         }
         let (outputs, asked) = values[moved.len()..].split_at(system.outputs.len());
@@ -189,7 +204,7 @@ impl Model {
             of_it.iter().filter_map(|input| place.get(input).copied()).collect()
         };
         let unknowns = system.unknowns().into_iter().map(|symbol| (symbol, places(symbol))).collect();
-        Ok(Model { graph, variables, outputs, asked, unknowns, given, angles })
+        Ok(Model { graph, variables, outputs, asked, unknowns, given, angles, rates: expressions, seen })
     }
 
     /// Whether values at the beginning are numbers or expressions, and not anything.

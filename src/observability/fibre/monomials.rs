@@ -52,7 +52,8 @@ impl Monomials {
         }
         let number = self.degrees.len() as u32;
         self.powers.extend_from_slice(&self.scratch);
-        let weighted = self.scratch.iter().zip(&self.weights).map(|(power, weight)| u32::from(*power) * weight);
+        let weighted =
+            self.scratch.iter().zip(&self.weights).map(|(power, weight)| u32::from(*power) * weight);
         self.degrees.push(weighted.sum());
         let bits = self.scratch.iter().enumerate().filter(|(_, power)| **power > 0);
         self.masks.push(bits.fold(0, |mask, (variable, _)| mask | 1 << (variable % 64)));

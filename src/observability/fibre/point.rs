@@ -1,4 +1,5 @@
-//! The equations of a fibre: all values of the unknowns at the beginning, and of all derivatives, for which the outputs have the derivatives
+//! The equations of a fibre: all values of the unknowns at the beginning, and of all derivatives, for which the outputs have
+//! the derivatives
 //! that they have at one random point.
 
 use super::exact::Exact;
@@ -21,6 +22,26 @@ pub(super) enum Trouble {
     Pole,
     /// In words.
     TooLarge(String),
+}
+
+/// Where the values of a point come from.
+pub(super) struct Source<'a> {
+    pub rng: &'a mut ChaCha8Rng,
+    /// Values of variables; of those that are not among them they are random.
+    pub given: HashMap<u32, i64>,
+}
+
+impl Source<'_> {
+    fn value(&mut self, field: &PrimeField, jet: u32) -> u64 {
+        match self.given.get(&jet) {
+            Some(value) => field.integer(&(*value).into()),
+            None => field.draw(self.rng),
+        }
+    }
+
+    fn random(&mut self) -> &mut ChaCha8Rng {
+        self.rng
+    }
 }
 
 /// Polynomials that vanish on a fibre, and a point of it.
@@ -97,8 +118,13 @@ fn needed(model: &Model, orders: &Orders) -> Vec<Option<usize>> {
 }
 
 impl Fibre {
-    /// The fibre through a random point, with the unknowns that are free held at their values.
-    pub fn new(model: &Model, orders: &Orders, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<Fibre, Trouble> {
+    /// The fibre through a point, with the unknowns that are free held at their values.
+    pub fn new(
+        model: &Model,
+        orders: &Orders,
+        field: PrimeField,
+        source: &mut Source,
+    ) -> Result<Fibre, Trouble> {
         let numbering = Numbering { variables: model.variables.len(), asked: model.asked.len() };
         let needed = needed(model, orders);
         let next = |jet: u32| -> Option<u32> {
@@ -108,12 +134,13 @@ impl Fibre {
                 _ => Some(jet + numbering.stride()),
             }
         };
-        let mut values: HashMap<u32, u64> = begin(model, field, rng)?;
+        let mut values: HashMap<u32, u64> = begin(model, field, source)?;
         // derivatives of drives are anything
         for (variable, order) in needed.iter().enumerate() {
             if let (Motion::Driven, Some(order)) = (&model.variables[variable].motion, order) {
                 for k in 0..=*order {
-                    values.entry(numbering.jet(variable, k)).or_insert_with(|| field.draw(rng));
+                    let jet = numbering.jet(variable, k);
+                    values.entry(jet).or_insert_with(|| source.value(&field, jet));
                 }
             }
         }
@@ -124,7 +151,8 @@ impl Fibre {
         for (variable, order) in needed.iter().enumerate() {
             if let (Motion::Moves(rate), Some(order)) = (&model.variables[variable].motion, order) {
                 let moved = Jet::variable(&field, numbering.jet(variable, 1));
-                let mut equation = Jet::of(&field, &rate.bottom).times(&field, &moved, MOST_TERMS).ok_or_else(too_large)?;
+                let mut equation =
+                    Jet::of(&field, &rate.bottom).times(&field, &moved, MOST_TERMS).ok_or_else(too_large)?;
                 let minus_one = field.modulus() - field.one();
                 equation.add_multiple(&field, &Jet::of(&field, &rate.top), minus_one);
                 moving.push((variable, *order, equation));
@@ -153,7 +181,9 @@ impl Fibre {
         for (output, last) in model.outputs.iter().zip(&orders.last) {
             // an output as a variable of its own, whose derivatives are known
             let own = numbering.stride() - 1;
-            let next = |jet: u32| if jet % numbering.stride() == own { Some(jet + numbering.stride()) } else { next(jet) };
+            let next = |jet: u32| {
+                if jet % numbering.stride() == own { Some(jet + numbering.stride()) } else { next(jet) }
+            };
             let seen = Jet::variable(&field, own);
             let mut equation =
                 Jet::of(&field, &output.bottom).times(&field, &seen, MOST_TERMS).ok_or_else(too_large)?;
@@ -189,11 +219,14 @@ impl Fibre {
             (0..model.variables.len()).filter(|place| model.variables[*place].is_known).collect();
         held.extend(orders.free.iter().flat_map(|free| model.unknowns[*free].1.clone()));
         held.extend(model.given.iter().map(|(place, _)| *place));
-        let mut known: HashMap<u32, u64> =
-            held.into_iter().filter_map(|place| Some((at_first(place), *self.values.get(&at_first(place))?))).collect();
+        let mut known: HashMap<u32, u64> = held
+            .into_iter()
+            .filter_map(|place| Some((at_first(place), *self.values.get(&at_first(place))?)))
+            .collect();
         for (place, variable) in model.variables.iter().enumerate() {
             if let Motion::Driven = variable.motion {
-                let jets = self.values.iter().filter(|(jet, _)| (**jet % numbering.stride()) as usize == place);
+                let jets =
+                    self.values.iter().filter(|(jet, _)| (**jet % numbering.stride()) as usize == place);
                 known.extend(jets.map(|(jet, value)| (*jet, *value)));
             }
         }
@@ -212,7 +245,8 @@ impl Fibre {
         }
         for (place, bottom) in bottoms.iter().enumerate() {
             let inverse = Jet::variable(&field, numbering.inverse(place));
-            let mut equation = Jet::of(&field, bottom).times(&field, &inverse, MOST_TERMS).ok_or_else(too_large)?;
+            let mut equation =
+                Jet::of(&field, bottom).times(&field, &inverse, MOST_TERMS).ok_or_else(too_large)?;
             equation.add_term(&field, Vec::new(), minus_one);
             self.equations.push(equation);
         }
@@ -227,9 +261,11 @@ impl Fibre {
         }
         for (place, asked) in model.asked.iter().enumerate() {
             let own = Jet::variable(&field, numbering.asked(place));
-            let mut equation = Jet::of(&field, &asked.bottom).times(&field, &own, MOST_TERMS).ok_or_else(too_large)?;
+            let mut equation =
+                Jet::of(&field, &asked.bottom).times(&field, &own, MOST_TERMS).ok_or_else(too_large)?;
             equation.add_multiple(&field, &Jet::of(&field, &asked.top), minus_one);
-            let value = solve(&field, &equation, numbering.asked(place), &self.values).ok_or(Trouble::Pole)?;
+            let value =
+                solve(&field, &equation, numbering.asked(place), &self.values).ok_or(Trouble::Pole)?;
             self.values.insert(numbering.asked(place), value);
             self.equations.push(equation);
             self.asked.push(numbering.asked(place));
@@ -246,34 +282,45 @@ impl Fibre {
             }
             self.equations.push(equation);
         }
-        self.unknowns =
-            model.unknowns.iter().map(|(_, places)| places.iter().map(|place| at_first(*place)).collect()).collect();
+        self.unknowns = model
+            .unknowns
+            .iter()
+            .map(|(_, places)| places.iter().map(|place| at_first(*place)).collect())
+            .collect();
         Ok(())
     }
 }
 
 /// Random values at the beginning, or those that the file gives.
-fn begin(model: &Model, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<HashMap<u32, u64>, Trouble> {
+fn begin(model: &Model, field: PrimeField, source: &mut Source) -> Result<HashMap<u32, u64>, Trouble> {
     let mut values = HashMap::new();
     for (place, variable) in model.variables.iter().enumerate() {
         match variable.input {
             Input::Cosine(_) => {
-                let (sine, cosine) = field.draw_unit(rng);
+                let (sine, cosine) = field.draw_unit(source.random());
                 values.insert(place as u32, cosine);
                 values.insert(place as u32 + 1, sine);
             }
             Input::Sine(_) => {}
             _ => {
-                values.insert(place as u32, field.draw(rng));
+                values.insert(place as u32, source.value(&field, place as u32));
             }
         }
     }
     let program = model.given_program();
-    let by_input: HashMap<Input, u64> =
-        model.variables.iter().zip(0u32..).map(|(variable, place)| (variable.input, values[&place])).collect();
-    let drawn = draw_residues(&program, &field, rng);
-    let inputs: Vec<u64> =
-        program.inputs().iter().zip(drawn).map(|(input, drawn)| by_input.get(input).copied().unwrap_or(drawn)).collect();
+    let by_input: HashMap<Input, u64> = model
+        .variables
+        .iter()
+        .zip(0u32..)
+        .map(|(variable, place)| (variable.input, values[&place]))
+        .collect();
+    let drawn = draw_residues(&program, &field, source.random());
+    let inputs: Vec<u64> = program
+        .inputs()
+        .iter()
+        .zip(drawn)
+        .map(|(input, drawn)| by_input.get(input).copied().unwrap_or(drawn))
+        .collect();
     let loaded = program.load(field).map_err(|_| Trouble::Pole)?;
     let given = loaded.run(&inputs, &mut Vec::new()).map_err(|_| Trouble::Pole)?;
     for ((place, _), value) in model.given.iter().zip(given) {
@@ -306,4 +353,3 @@ fn solve(field: &PrimeField, equation: &Jet, variable: u32, values: &HashMap<u32
     let minus = if rest == 0 { 0 } else { field.modulus() - rest };
     Some(field.product(minus, field.inverse(slope)?))
 }
-

@@ -26,10 +26,16 @@ impl Algebra {
     pub fn new(mut basis: Basis, most: usize) -> Result<Algebra, NoAlgebra> {
         let variables = basis.monomials.variables();
         let leads: Vec<u32> = basis.leads().map(|(lead, _)| lead).collect();
-        let is_standard = |basis: &Basis, monomial: u32| !leads.iter().any(|lead| basis.monomials.divides(*lead, monomial));
+        let is_standard =
+            |basis: &Basis, monomial: u32| !leads.iter().any(|lead| basis.monomials.divides(*lead, monomial));
         for variable in 0..variables {
             let is_power = |lead: &u32| {
-                basis.monomials.powers(*lead).iter().enumerate().all(|(other, power)| other == variable || *power == 0)
+                basis
+                    .monomials
+                    .powers(*lead)
+                    .iter()
+                    .enumerate()
+                    .all(|(other, power)| other == variable || *power == 0)
             };
             if !leads.iter().any(is_power) {
                 return Err(NoAlgebra::Infinite);
@@ -82,17 +88,25 @@ impl Algebra {
                 self.known.insert(now, unit);
                 continue;
             }
-            let lead = self.basis.leads().map(|(lead, _)| lead).find(|lead| self.basis.monomials.divides(*lead, now));
+            let lead = self
+                .basis
+                .leads()
+                .map(|(lead, _)| lead)
+                .find(|lead| self.basis.monomials.divides(*lead, now));
             let Some(lead) = lead else {
                 // no monomial is neither standard nor a multiple of a leading one
                 self.known.insert(now, vec![0; self.standard.len()]);
                 continue;
             };
             if lead == now {
-                let row: Option<Row> = self.basis.leads().find(|(other, _)| *other == lead).map(|(_, row)| row.clone());
+                let row: Option<Row> =
+                    self.basis.leads().find(|(other, _)| *other == lead).map(|(_, row)| row.clone());
                 let Some(row) = row else { return vec![0; self.standard.len()] };
-                let missing: Vec<u32> =
-                    row.monomials[1..].iter().copied().filter(|other| !self.known.contains_key(other)).collect();
+                let missing: Vec<u32> = row.monomials[1..]
+                    .iter()
+                    .copied()
+                    .filter(|other| !self.known.contains_key(other))
+                    .collect();
                 if !missing.is_empty() {
                     waiting.extend(missing);
                     continue;

@@ -23,8 +23,8 @@ mod steps;
 mod tests;
 
 pub(super) use matrix::formal_rank;
-pub(crate) use orders::Orders;
 pub use matrix::{GenericRank, generic_rank};
+pub(crate) use orders::Orders;
 
 use crate::expression::Symbol;
 use crate::number::{PrimeField, Refusal};

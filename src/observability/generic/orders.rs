@@ -80,7 +80,8 @@ impl Probe {
                 }
             }
             if open.is_empty() || length >= most {
-                let free = (0..equations.columns.len()).filter(|column| !columns.begins_at(*column)).collect();
+                let free =
+                    (0..equations.columns.len()).filter(|column| !columns.begins_at(*column)).collect();
                 let last = last.into_iter().map(|order| order.unwrap_or(most)).collect();
                 return Ok(Orders { last, raised, free });
             }

@@ -43,9 +43,10 @@ fn unknown_json(of_it: &SolutionsOf) -> Value {
 }
 
 fn second_json(second: &SecondPoint) -> Value {
-    let each = second.values.iter().map(|(name, one, other)| {
-        (name.clone(), json!([plain_number(one), plain_number(other)]))
-    });
+    let each = second
+        .values
+        .iter()
+        .map(|(name, one, other)| (name.clone(), json!([plain_number(one), plain_number(other)])));
     json!({
         "values": each.collect::<serde_json::Map<_, _>>(),
         "equal_derivatives": second.order,
@@ -87,20 +88,28 @@ fn in_words(of_it: &SolutionsOf, orders_are_open: bool) -> String {
             let word = if is_constant { "globally identifiable" } else { "globally observable" };
             match of_it.at_most {
                 Some((1, log2_error)) => {
-                    format!("1, {word}: proved, but for an error of probability below {}", error_bound(log2_error))
+                    format!(
+                        "1, {word}: proved, but for an error of probability below {}",
+                        error_bound(log2_error)
+                    )
                 }
                 _ => format!("1, {word}: computed"),
             }
         }
         Solutions::Finite(count) => {
             let proved = of_it.is_proved();
-            let mut text = format!("{count} over the complex numbers: {}", if proved { "proved" } else { "computed" });
+            let mut text =
+                format!("{count} over the complex numbers: {}", if proved { "proved" } else { "computed" });
             match &of_it.at_least {
                 Some((least, map)) if *least < *count => {
                     let _ = write!(text, "; at least {least} that are real: proved, by {map}");
                 }
                 Some((_, map)) => {
-                    let _ = write!(text, "{}, by {map}", if proved { "" } else { "; no fewer, and real: proved" });
+                    let _ = write!(
+                        text,
+                        "{}, by {map}",
+                        if proved { "" } else { "; no fewer, and real: proved" }
+                    );
                 }
                 None => {}
             }
