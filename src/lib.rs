@@ -133,5 +133,5 @@ pub use certificate::certify;
 pub use claim::{
     Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all, prove,
 };
-pub use sweep::{RankAnswer, RankQuestion, answer_accessibility, answer_rank};
+pub use sweep::{RankAnswer, RankQuestion, answer_accessibility, answer_rank, answer_solutions};
 pub use system::{ReadError, System};

@@ -34,6 +34,7 @@ mod source_text;
 mod standing;
 mod unknowns;
 mod views;
+mod visible;
 #[doc(hidden)]
 pub mod vocabulary;
 mod written;

@@ -4,6 +4,7 @@
 mod common;
 
 mod appendix;
+mod benchmarks;
 mod damaged;
 mod editors;
 mod import;
