@@ -74,6 +74,9 @@ pub mod expression;
 // a system, and how it is read from a proof file
 pub mod system;
 
+// models of other programs, as proof files
+pub mod import;
+
 // what was found, evaluated again by code that shares nothing with what found it
 pub mod checker;
 
@@ -130,5 +133,5 @@ pub use certificate::certify;
 pub use claim::{
     Outcome, PointValue, ValueError, Verdict, Witness, certified_value, decide, decide_all, prove,
 };
-pub use sweep::{RankAnswer, RankQuestion, answer_accessibility, answer_rank};
+pub use sweep::{RankAnswer, RankQuestion, answer_accessibility, answer_rank, answer_solutions};
 pub use system::{ReadError, System};

@@ -52,7 +52,7 @@ impl OnBranch {
     }
 
     /// What was drawn of a point, without what follows from it.
-    fn free_part(&self, point: &Point) -> State {
+    pub(super) fn free_part(&self, point: &Point) -> State {
         let mut state = point.state.clone();
         for (symbol, _) in self.solved_values() {
             state.values.remove(&symbol);
@@ -274,7 +274,8 @@ pub(super) fn claimed_rank(
     }))
 }
 
-fn listed_rank(
+/// The rank at a state with its minor, of which `free` was drawn, as the checker reads it; without a kernel.
+pub(super) fn listed_rank(
     system: &System,
     on: &OnBranch,
     matrix: &RankedMatrix,

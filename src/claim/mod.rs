@@ -6,6 +6,7 @@
 //!
 //! This floor shares no formula with `proofs/`, and knows nothing of pages or plots.
 
+mod branches;
 mod cells;
 mod decide;
 mod defaults;
@@ -20,9 +21,11 @@ mod rank_bounds;
 mod rank_witness;
 mod ranks;
 mod selection;
+mod solutions;
 mod terms;
 mod value;
 mod verdict;
+mod visible;
 mod witness;
 
 pub use decide::{decide, decide_all, decide_all_keeping, prove};

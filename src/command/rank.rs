@@ -9,11 +9,13 @@ use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::drops::where_it_drops;
 use palmistry::evidence::rank_records;
+use palmistry::observability::SOLUTIONS_WORK;
 use palmistry::report::{
-    accessibility_json, accessibility_text, drops_json, drops_text, rank_json, rank_text,
+    accessibility_json, accessibility_text, drops_json, drops_page, drops_text, global_json, global_text,
+    rank_json, rank_text,
 };
 use palmistry::sweep::{MOST_DIGITS, answer_rank_at_once};
-use palmistry::{RankQuestion, System, answer_accessibility, answer_rank};
+use palmistry::{RankQuestion, System, answer_accessibility, answer_rank, answer_solutions};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -31,6 +33,7 @@ use std::path::PathBuf;
   palmistry rank mysystem.proof --at omega0=0              on the set where omega0 is zero
   palmistry rank mysystem.proof --where 'sin(phi1) = 0'    on the set of a condition
   palmistry rank mysystem.proof --where-it-drops           the exact set, with a proof that it drops nowhere else
+  palmistry rank mysystem.proof --global                   how many values of each unknown give the same outputs
   palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain
   palmistry rank mysystem.proof --accessible               what the inputs can move, by brackets")]
 pub(crate) struct Rank {
@@ -82,6 +85,17 @@ pub(crate) struct Rank {
     /// it is at almost all states. The parameters may have any values.
     #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts"])]
     where_it_drops: bool,
+    /// Write a page with these sets and their proof (index.html), and drops.json, into this folder.
+    #[arg(long, value_name = "DIR", requires = "where_it_drops")]
+    out: Option<PathBuf>,
+    /// Instead of sampled states: how many values of each unknown give the same outputs, one (it is globally identifiable or
+    /// observable), finitely many over the complex numbers, or infinitely many. For rational systems, at almost all states, by Groebner bases at
+    /// random points modulo random primes; each number says whether it is proved or computed.
+    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "accessible", "where_it_drops", "reparametrise"])]
+    global: bool,
+    /// With '--global': how much work may be done, in products of residues; what takes more is undecided.
+    #[arg(long, default_value_t = SOLUTIONS_WORK, value_name = "N", requires = "global")]
+    work: u64,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -92,6 +106,9 @@ impl Rank {
         let mut system = System::read(&self.file)?;
         if self.where_it_drops {
             return self.tell_where(&mut system);
+        }
+        if self.global {
+            return self.tell_values(&mut system);
         }
         let fixed: BTreeMap<_, _> = assignments(&system, &self.at)?.into_iter().collect();
         let samples = self.samples.unwrap_or(RankQuestion::default().samples);
@@ -143,13 +160,29 @@ impl Rank {
         files.print(Form::of(self.json), object, text, status)
     }
 
+    /// How many values of each unknown give the same outputs.
+    fn tell_values(&self, system: &mut System) -> miette::Result<Status> {
+        let answer = answer_solutions(system, self.work, &INTERRUPTED)
+            .map_err(|why| Unusable::report(why.to_string(), ""))?;
+        begin_to_tell();
+        let status =
+            if answer.is_final() && !answer.interrupted { Status::AsExpected } else { Status::CutOff };
+        Files::default().print(Form::of(self.json), global_json(&answer), || global_text(&answer), status)
+    }
+
     /// The exact set on which the rank drops.
     fn tell_where(&self, system: &mut System) -> miette::Result<Status> {
         let answer =
             where_it_drops(system, self.seed, &INTERRUPTED).map_err(|why| Unusable::report(why, ""))?;
         begin_to_tell();
         let status = if answer.is_exact() { Status::AsExpected } else { Status::CutOff };
-        Files::default().print(Form::of(self.json), drops_json(&answer), || drops_text(&answer), status)
+        let (mut files, object) = (Files::default(), drops_json(&answer));
+        if let Some(folder) = &self.out {
+            files.text(&folder.join("index.html"), &drops_page(&answer));
+            files.json(&folder.join("drops.json"), &object);
+            files.announce(&folder.join("index.html"));
+        }
+        files.print(Form::of(self.json), object, || drops_text(&answer), status)
     }
 }
 

@@ -266,7 +266,7 @@ fn known_constants(
         }
     } else if let Some(simulated) = &scene.simulated {
         // a recording of what the scene describes
-        for (name, value) in constants(simulated, &body(scene, simulated)?.0) {
+        for (name, value) in constants(scene, simulated, &body(scene, simulated)?.0) {
             give(&name, value);
         }
     }

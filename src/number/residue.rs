@@ -84,7 +84,7 @@ impl PrimeField {
 
     /// `t / 2^64 mod p`, for `t` below `p * 2^64`.
     #[inline]
-    fn reduced(&self, t: u128) -> u64 {
+    pub(crate) fn reduced(&self, t: u128) -> u64 {
         let m = (t as u64).wrapping_mul(self.negative_inverse);
         let sum = t + u128::from(m) * u128::from(self.p); // below 2^124 + 2^126
         let high = (sum >> 64) as u64;

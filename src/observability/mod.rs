@@ -13,6 +13,7 @@ mod conditions;
 mod defined;
 mod elimination;
 mod equilibrate;
+mod fibre;
 mod flow;
 mod generic;
 mod locus;
@@ -42,9 +43,15 @@ pub(crate) use elimination::{certain_rank, kernel};
 pub(crate) use equilibrate::WEIGHT_OF_ERRORS;
 #[cfg(test)]
 pub(crate) use equilibrate::equilibrate;
+pub use fibre::{
+    SecondPoint, Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion, WORK as SOLUTIONS_WORK,
+    solutions,
+};
 #[doc(hidden)]
 pub use flow::Flow;
-pub use generic::{Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, generic_rank};
+pub use generic::{
+    Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, generic_answer_of, generic_rank,
+};
 #[doc(hidden)]
 pub use generic::{Directions, Probe};
 pub(crate) use locus::AVOIDED;

@@ -36,11 +36,12 @@ pub use layout::Layout;
 #[doc(hidden)]
 pub use motion::ended_in_words;
 pub use motion::{Observed, observe_json, observe_page, observe_text};
-pub use page::{findings_json, findings_text, page};
+pub use page::{drops_page, findings_json, findings_text, page};
 #[doc(hidden)]
 pub use page::{forget_seconds, forget_times};
 pub use ranks::{
-    accessibility_json, accessibility_text, drops_json, drops_text, rank_json, rank_text, unseen_field_text,
+    accessibility_json, accessibility_text, drops_json, drops_text, global_json, global_text, rank_json,
+    rank_text, unseen_field_text,
 };
 #[doc(hidden)]
 pub use stress::{stress_json, stress_pictures, stress_text};

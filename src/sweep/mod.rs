@@ -16,6 +16,7 @@ mod digits;
 mod ladder;
 mod question;
 mod series;
+mod solutions;
 mod states;
 mod stream;
 mod unseen;
@@ -32,6 +33,7 @@ pub use digits::{Digits, NoDigits};
 #[doc(hidden)]
 pub use ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
 pub use question::{BranchAnswer, RankAnswer, RankError, TakenRow, answer_rank, answer_rank_at_once};
+pub use solutions::{GlobalAnswer, answer_solutions};
 pub(crate) use states::UNINTERRUPTED;
 pub use states::{RecordedState, SweepOptions, SweepReport, sweep};
 pub(crate) use stream::{Elimination, Jacobi};

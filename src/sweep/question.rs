@@ -153,7 +153,7 @@ pub(super) fn guarded(system: &System) -> Vec<NodeId> {
 }
 
 /// The unknowns of a system, by name; a state that no field moves is a parameter, whatever it is called.
-fn named_unknowns(system: &System) -> Vec<(String, UnknownKind)> {
+pub(super) fn named_unknowns(system: &System) -> Vec<(String, UnknownKind)> {
     let fields = || system.moving_fields().into_iter().flat_map(|field| &system.fields[field].components);
     let moved: HashSet<Symbol> = fields()
         .filter(|(symbol, rate)| match system.time {
@@ -329,7 +329,7 @@ fn answer_branch(
         _ => None,
     };
     let mut codistribution = codistribution;
-    codistribution.generic.seen_at_states(&full);
+    codistribution.generic.seen_at_states(system, &full);
     let known = codistribution.generic.is_final() && question.order.is_none();
     let motions = motions(system, &codistribution, &conditions, &given);
     let generic_rank =

@@ -13,7 +13,7 @@ use dashu::rational::RBig;
 pub(super) const LARGEST_GRAPH: usize = 4_000_000;
 
 /// The functions of the language beside [`Function::ALL`].
-pub(super) const OTHER_FUNCTIONS: [&str; 16] = [
+pub(super) const OTHER_FUNCTIONS: [&str; 21] = [
     "tan",
     "cot",
     "sec",
@@ -30,6 +30,11 @@ pub(super) const OTHER_FUNCTIONS: [&str; 16] = [
     "cross",
     "sum",
     "product",
+    "observable",
+    "unobservable",
+    "identifiable",
+    "unidentifiable",
+    "solutions",
 ];
 
 /// What a name should have been.
@@ -90,7 +95,14 @@ impl System {
             ExprKind::Matrix(rows) => self.blocks(rows, &expr.span),
             ExprKind::At(inner, list) => {
                 let (value, domain) = self.apart(|system| system.elaborate(inner))?;
-                if matches!(value, Value::CodistributionRank | Value::Pole { .. }) {
+                if matches!(
+                    value,
+                    Value::CodistributionRank
+                        | Value::Pole { .. }
+                        | Value::Visible { .. }
+                        | Value::Solutions(_)
+                        | Value::Infinity
+                ) {
                     let message = format!("{} is not taken at a point", value.describe());
                     return Err(Problem::new(&expr.span, message, "here")
                         .help("write 'where name = value' behind the claim"));
@@ -154,7 +166,11 @@ impl System {
                 let both = graph.substitute(&[expression, factor], assignment);
                 Value::Pole { expression: both[0], factor: both[1] }
             }
-            Value::CodistributionRank => value,
+            Value::Visible { functions, is_seen } => {
+                Value::Visible { functions: graph.substitute(&functions, assignment), is_seen }
+            }
+            Value::Solutions(id) => Value::Solutions(graph.substitute(&[id], assignment)[0]),
+            Value::CodistributionRank | Value::Infinity => value,
         }
     }
 
@@ -172,6 +188,7 @@ impl System {
         match name {
             "pi" => Ok(Value::Scalar(self.graph.pi())),
             "rank" => Ok(Value::CodistributionRank),
+            "infinity" => Ok(Value::Infinity),
             _ => Err(self.unknown(name, span, Wanted::Name)),
         }
     }
@@ -278,6 +295,10 @@ impl System {
                 },
                 _ => Err(Problem::new(span, format!("'{name}' takes two vectors"), "here")),
             },
+            "solutions" => match arguments {
+                [expression] => Ok(Value::Solutions(self.scalar(expression)?)),
+                _ => Err(Problem::new(span, "'solutions' takes one unknown, or one expression", "here")),
+            },
             "pole" => match arguments {
                 [expression, factor] => {
                     let expression = self.scalar(expression)?;
@@ -291,6 +312,9 @@ impl System {
                 )),
             },
             _ => {
+                if let Some(word) = super::visible::VISIBLE.into_iter().find(|(word, ..)| *word == name) {
+                    return self.visible(word, arguments, span);
+                }
                 if let Some(found) = self.composed(name, arguments, span) {
                     return found;
                 }

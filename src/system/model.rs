@@ -165,9 +165,30 @@ pub enum Value {
         /// What vanishes there.
         factor: NodeId,
     },
+    /// `observable(e, ...)` or `unobservable(e, ...)`: a statement by itself.
+    Visible {
+        /// What it is said of.
+        functions: Vec<NodeId>,
+        /// Whether they are seen.
+        is_seen: bool,
+    },
+    /// `solutions(e)`, how many values of an expression give the same outputs.
+    Solutions(NodeId),
+    /// `infinity`, with which such a number is compared.
+    Infinity,
 }
 
 impl Value {
+    /// Whether two values can be compared that are no matrices: a number with anything but infinity, which a number of solutions
+    /// can be.
+    pub(crate) fn are_comparable(&self, other: &Value) -> bool {
+        let is_one = |value: &Value| matches!(value, Value::Scalar(_));
+        match (self, other) {
+            (Value::Infinity, other) | (other, Value::Infinity) => matches!(other, Value::Solutions(_)),
+            (left, right) => is_one(left) || is_one(right),
+        }
+    }
+
     /// The number that it is: a matrix of one row and one column is one wherever a number is meant.
     pub fn as_number(&self) -> Option<NodeId> {
         match self {
@@ -199,6 +220,9 @@ impl Value {
             Value::Matrix(m) => format!("a matrix of {} by {}", m.rows, m.columns),
             Value::Rank(_) | Value::CodistributionRank => "a rank".to_owned(),
             Value::Pole { .. } => "the order of a pole".to_owned(),
+            Value::Visible { .. } => "a statement about what is seen".to_owned(),
+            Value::Solutions(_) => "a number of solutions".to_owned(),
+            Value::Infinity => "infinity".to_owned(),
         }
     }
 }

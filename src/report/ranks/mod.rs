@@ -4,6 +4,7 @@ mod accessible;
 pub(super) mod answer;
 mod drops;
 pub(super) mod generic;
+mod global;
 pub(super) mod motions;
 mod seen;
 
@@ -11,4 +12,5 @@ pub use accessible::{accessibility_json, accessibility_text};
 pub(super) use answer::taken_for_granted;
 pub use answer::{rank_json, rank_text};
 pub use drops::{drops_json, drops_text};
+pub use global::{global_json, global_text};
 pub use motions::unseen_field_text;

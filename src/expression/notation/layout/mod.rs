@@ -24,9 +24,32 @@ enum Binding {
 }
 
 /// Upright words with a meaning: a name may not look like one.
-const WORDS: [&str; 24] = [
-    "sin", "cos", "tan", "cot", "sec", "csc", "arcsin", "arccos", "arctan", "exp", "log", "det", "rank",
-    "pole", "lg", "ln", "mod", "sinh", "cosh", "tanh", "min", "max", "sgn", "atan2",
+const WORDS: [&str; 25] = [
+    "sin",
+    "cos",
+    "tan",
+    "cot",
+    "sec",
+    "csc",
+    "arcsin",
+    "arccos",
+    "arctan",
+    "exp",
+    "log",
+    "det",
+    "rank",
+    "pole",
+    "lg",
+    "ln",
+    "mod",
+    "sinh",
+    "cosh",
+    "tanh",
+    "min",
+    "max",
+    "sgn",
+    "atan2",
+    "solutions",
 ];
 
 /// Lays out the expressions of one text.
