@@ -3,6 +3,7 @@
 use super::{FirstState, PalmReadings};
 use crate::experiment::scene::{Scene, SceneError};
 use crate::experiment::simulation::{TOUCH, deviation};
+use crate::mechanics::Palm;
 use crate::number::rational_to_f64;
 use crate::observer::Signals;
 use crate::system::System;
@@ -25,6 +26,10 @@ impl Unguided {
         known: &BTreeMap<String, f64>,
         signals: &Signals,
     ) -> Result<Unguided, SceneError> {
+        if scene.palm_forms.iter().any(|form| *form != Palm::Flat) {
+            let help = "a state is found without a first guess between flat palms only";
+            return Err(refuse(scene, "there is no first guess, and a palm is circular".to_owned(), help));
+        }
         let rows = (scene.observer.window + 1).min(signals.times().len());
         let readings = palm_readings(scene, system, known, signals, rows).map_err(|name| {
             let help = "give it under `known`, hand over a column of that name, or give a first guess";
