@@ -319,9 +319,8 @@ impl<'a> Parser<'a> {
             base = joined(SyntaxKind::Power(Box::new(base), Box::new(exponent)), &begin, end);
         }
         if self.dialect == Dialect::Python && self.operator(&["^"]).is_some() {
-            return Err(
-                Problem::new(&self.peek().span, "'^' is no power in Python", "this").help("write '**'")
-            );
+            return Err(Problem::new(&self.peek().span, "'^' is no power in Python", "this")
+                .help("write '**' for a power"));
         }
         Ok(base)
     }

@@ -120,8 +120,6 @@ impl Reading<'_> {
         loop {
             let rest = self.rest();
             let Some(c) = rest.chars().next() else { return Ok((spaced, newline)) };
-            let starts_a_line =
-                self.text[..self.at].rsplit('\n').next().is_none_or(|line| line.trim().is_empty());
             if c == '\n' {
                 newline = true;
                 self.at += 1;
@@ -130,7 +128,7 @@ impl Reading<'_> {
                 self.at += c.len_utf8();
             } else if self.dialect == Dialect::Julia && rest.starts_with("#=") {
                 self.nested_comment()?;
-            } else if self.dialect == Dialect::Matlab && starts_a_line && line_of(rest).trim() == "%{" {
+            } else if self.dialect == Dialect::Matlab && self.begins_block() {
                 self.block_comment();
             } else if c == '#' && self.dialect != Dialect::Matlab
                 || c == '%' && self.dialect == Dialect::Matlab
@@ -151,6 +149,12 @@ impl Reading<'_> {
                 return Ok((spaced, newline));
             }
         }
+    }
+
+    /// Whether `%{` stands here in a line of its own.
+    fn begins_block(&self) -> bool {
+        let before = || self.text[..self.at].rsplit('\n').next().is_none_or(|line| line.trim().is_empty());
+        self.rest().starts_with("%{") && line_of(self.rest()).trim() == "%{" && before()
     }
 
     fn nested_comment(&mut self) -> Result<(), Problem> {

@@ -130,7 +130,11 @@ impl ScriptWorkspace {
         let span = &syntax.span;
         match &syntax.kind {
             SyntaxKind::Name(name) if self.bound.contains_key(name) => {
-                self.get(name).unwrap_or(Ok(ScriptValue::Else))
+                // a number stands where it is used
+                Ok(match self.get(name).unwrap_or(Ok(ScriptValue::Else))? {
+                    ScriptValue::One(one) => ScriptValue::One(ForeignExpr { span: span.clone(), ..one }),
+                    other => other,
+                })
             }
             SyntaxKind::List(list) => {
                 let parts: Vec<ScriptValue> =
