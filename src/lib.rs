@@ -74,6 +74,9 @@ pub mod expression;
 // a system, and how it is read from a proof file
 pub mod system;
 
+// models of other programs, as proof files
+pub mod import;
+
 // what was found, evaluated again by code that shares nothing with what found it
 pub mod checker;
 

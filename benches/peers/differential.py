@@ -15,9 +15,11 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 from pathlib import Path
 
 from generic_rank import NoSuchState, Prime, Reals, Series, accessible_rank, constant, decide, insert
+from model_files import TABLE, model_paths
 from proof_file import TOKEN, ProofFile
 from random_systems import declared_system, edge_systems, random_system, related_system
 
@@ -247,8 +249,7 @@ def main():
         else ((seed, make(seed)) for seed in range(options.first, options.first + options.count))
     )
     if options.models:
-        folder = Path(__file__).resolve().parents[2] / "tests/models"
-        systems = ((path.stem, path.read_text()) for path in sorted(folder.glob("*.proof")))
+        systems = ((name, path.read_text()) for name, path in model_paths(tomllib.loads(TABLE.read_text())).items())
     counts, findings = collections.Counter(), options.out.parent / "FINDINGS.txt"
     with tempfile.TemporaryDirectory() as folder:
         for name, text in systems:

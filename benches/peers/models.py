@@ -1,4 +1,4 @@
-"""The published models of tests/models: models.py [BINARY]
+"""The published models of tests/models and proofs/benchmarks: models.py [BINARY]
 
 Holds `expected.toml` to the plain test at two primes, at true states where there are functions that are not rational, and
 to the functions that were published as identifiable: each of them is seen, and there are as many as there can be. With a
@@ -9,13 +9,11 @@ import json
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 
 from differential import FUNCTION, is_seen, theirs
 from generic_rank import Reals, decide
+from model_files import TABLE, model_paths
 from proof_file import ProofFile
-
-MODELS = Path(__file__).resolve().parents[2] / "tests" / "models"
 
 
 def told(text, functions, alone=False, known_constants=False):
@@ -65,15 +63,16 @@ def binary_mistakes(binary, path, expected, limit=60):
 
 
 def main(binary=None):
-    table, wrong = tomllib.loads((MODELS / "expected.toml").read_text()), 0
-    names = {path.stem for path in MODELS.glob("*.proof")}
+    table, wrong = tomllib.loads(TABLE.read_text()), 0
+    paths = model_paths(table)
+    names = set(paths)
     for name in sorted(names ^ table.keys()):
         print(f"{name}: a file without an entry, or an entry without a file")
         wrong += 1
     for name in sorted(names & table.keys()):
-        text = (MODELS / f"{name}.proof").read_text()
+        text = paths[name].read_text()
         found = mistakes(text, table[name]) + (
-            binary_mistakes(binary, MODELS / f"{name}.proof", table[name]) if binary else []
+            binary_mistakes(binary, paths[name], table[name]) if binary else []
         )
         wrong += bool(found)
         for line in found:

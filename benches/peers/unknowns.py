@@ -23,6 +23,7 @@ from pathlib import Path
 
 from differential import theirs
 from families import family
+from model_files import TABLE, model_path
 from unknowns_shown import OURS, PLAIN, STRIKEPY, picture, tables
 
 HERE = Path(__file__).resolve().parent
@@ -182,12 +183,12 @@ def measure_family(name, options, measure, folder):
 
 
 def measure_models(options, measure):
-    expected = tomllib.loads((ROOT / "tests/models/expected.toml").read_text())
+    expected = tomllib.loads(TABLE.read_text())
     found = []
     for name in options.models:
         point = {"model": name, "unknowns": expected[name]["dimension"], "rank": expected[name]["rank"]}
         for program in measure.programs:
-            point[program] = measure(program, name, ROOT / f"tests/models/{name}.proof")
+            point[program] = measure(program, name, model_path(name))
         found.append(point)
     return found
 

@@ -27,8 +27,9 @@ pub(super) fn cells(
 ) -> Result<Vec<BranchCell>, String> {
     let operands: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
     let (nodes, operands) = match question {
-        Question::Codistribution { .. } => {
-            let mut nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
+        Question::Codistribution { .. } | Question::Visible { .. } => {
+            let mut nodes: Vec<NodeId> = question.sides().to_vec();
+            nodes.extend(system.outputs.iter().map(|(_, node)| *node));
             for field in system.moving_fields() {
                 nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));
             }

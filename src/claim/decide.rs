@@ -1,23 +1,20 @@
 //! From a claim to its outcome.
 
-use super::cells::{cells, on_resolved};
+use super::branches::{Asked, Size, together};
 use super::defaults::at_the_files_values;
 use super::evidence::{Kept, Nearness, nearness};
 use super::existence::{Existence, existence};
-
-use super::identity::{OnOneBranch, decide_identity, decide_nearness};
-use super::inequality::decide_relations;
+use super::identity::decide_nearness;
 use super::pole::decide_pole;
 use super::question::{Question, claimed_integer, guards_of_conditions, sample_box};
-use super::ranks::{decide_codistribution, decide_rank};
 use super::solutions::{Asking, decide_solutions};
 use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict, Witness};
+use super::visible::smooth;
 use crate::checker::{Evidence, VerdictRecord};
-use crate::drops::ClaimedEverywhere;
 use crate::expression::syntax::{Equation, Expr, Relation};
-use crate::expression::{Guard, NodeId, Symbol, add_guard};
-use crate::observability::{Branch, Edges, SignCell, assumed, in_sign_cell, solve};
+use crate::expression::{Symbol, add_guard};
+use crate::observability::{Branch, solve};
 use crate::sweep::UNINTERRUPTED;
 use crate::system::{
     Basis, ClaimBody, ClaimSyntax, Expectation, Statement, System, Value, in_one_line, line_and_column,
@@ -214,10 +211,10 @@ fn decide_statement(system: &mut System, statement: &Statement, kept: Kept, rng:
     let verdict = attempt(system, statement, rng, &mut notes).unwrap_or_else(Verdict::undecided);
     let Notes { domain, beside, mut evidence, .. } = notes;
     let word = verdict.word();
-    // at a state where a rank is lower than claimed it is certified
+    // at a state where a rank is lower than claimed it is certified, and at states of all cases where it is proved everywhere
     let is_of_it = |evidence: &Evidence| {
         [word, "unchecked"].contains(&evidence.word())
-            || word == "refuted" && matches!(evidence, Evidence::Rank(_))
+            || ["proved", "refuted"].contains(&word) && matches!(evidence, Evidence::Rank(_))
     };
     evidence.retain(is_of_it);
     match &verdict {
@@ -248,7 +245,13 @@ fn attempt(
     for guard in before.into_iter().chain(after) {
         add_guard(&system.graph, &mut guards, guard);
     }
-    let of_rank = [&left, &right].iter().any(|value| matches!(value, Value::CodistributionRank));
+    let of_what_is_seen = matches!(left, Value::Visible { .. });
+    let of_rank =
+        of_what_is_seen || [&left, &right].iter().any(|value| matches!(value, Value::CodistributionRank));
+    if of_what_is_seen {
+        // a function has a differential where it is smooth
+        smooth(&mut guards);
+    }
     if of_rank {
         // every Lie derivative of the outputs has to exist
         guards.extend(system.smooth_guards(&system.moving_fields()));
@@ -313,7 +316,13 @@ fn attempt(
         notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
     }
     if let Some(except) = &statement.except {
-        return everywhere(system, statement, &question, except, (guards, conditions), rng, notes);
+        let mut claim = super::everywhere::read(system, statement, &question, except, (guards, conditions))?;
+        notes.domain = claim.guards.iter().map(|guard| guard.text(&system.graph)).collect();
+        claim.with_examples = notes.kept == Kept::Evidence;
+        let decided = super::everywhere::decide(system, &claim, rng)?;
+        notes.evidence = decided.evidence;
+        notes.beside = decided.beside;
+        return Ok(decided.verdict);
     }
     let sampled =
         if statement.on_sample { sample_box(system, question.sides(), &conditions) } else { Vec::new() };
@@ -365,242 +374,6 @@ fn attempt(
         }
     }
     Ok(together(&question, found, &solution.unsolved))
-}
-
-/// What is asked of every branch.
-struct Asked<'a> {
-    question: &'a Question,
-    guards: &'a [Guard],
-    sampled: &'a [Guard],
-    conditions: &'a [NodeId],
-    unsolved: &'a [NodeId],
-    one_thing_twice: bool,
-}
-
-/// A branch, or a part of one, with its verdict and what that rests on.
-type DecidedBranch = (Branch, OnOneBranch, Option<Evidence>);
-
-impl Asked<'_> {
-    /// The verdict on a branch: of a rank on each part on which the signs under roots of squares are known, of anything else only
-    /// where it is not decided as a whole.
-    fn on_branch(
-        &self,
-        system: &mut System,
-        branch: &Branch,
-        kept: Kept,
-        rng: &mut ChaCha8Rng,
-    ) -> Result<Vec<DecidedBranch>, String> {
-        let guards = self.all_guards(system, branch);
-        if self.question.is_of_a_rank() {
-            let mut found = Vec::new();
-            for part in cells(system, self.question, branch, &guards, Edges::LeftOut)? {
-                let work = |system: &mut System| self.on_part(system, &part.branch, &part.cell, kept, rng);
-                let (verdict, evidence) = in_sign_cell(system, &part.cell, work)?;
-                found.push((part.branch, verdict, evidence));
-            }
-            return Ok(found);
-        }
-        // boxes are slow where they cannot tell
-        let by_boxes = matches!(self.question, Question::Relations { .. });
-        if by_boxes && let Some(found) = self.proved_by_signs(system, branch, &guards, kept, rng)? {
-            return Ok(found);
-        }
-        let (verdict, evidence) = self.on_part(system, branch, &SignCell::default(), kept, rng)?;
-        let is_open = matches!(verdict, OnOneBranch::Verdict(Verdict::Undecided { .. }, _));
-        if is_open
-            && !by_boxes
-            && let Some(found) = self.proved_by_signs(system, branch, &guards, kept, rng)?
-        {
-            return Ok(found);
-        }
-        Ok(vec![(branch.clone(), verdict, evidence)])
-    }
-
-    /// The verdicts on the parts of a branch by signs, where there are several and it is proved on all of them. A state at which
-    /// it fails is looked for on the whole branch.
-    fn proved_by_signs(
-        &self,
-        system: &mut System,
-        branch: &Branch,
-        guards: &[Guard],
-        kept: Kept,
-        rng: &mut ChaCha8Rng,
-    ) -> Result<Option<Vec<DecidedBranch>>, String> {
-        let Ok(parts) = cells(system, self.question, branch, guards, Edges::Counted) else { return Ok(None) };
-        let mut found = Vec::new();
-        for part in parts.iter().filter(|_| parts.len() > 1) {
-            let (verdict, evidence) = self.on_part(system, &part.branch, &part.cell, kept, rng)?;
-            match verdict {
-                OnOneBranch::Verdict(Verdict::Proved { .. }, _) | OnOneBranch::Empty(_) => {
-                    found.push((part.branch.clone(), verdict, evidence));
-                }
-                OnOneBranch::Verdict(..) => return Ok(None),
-            }
-        }
-        Ok(if found.is_empty() { None } else { Some(found) })
-    }
-
-    fn all_guards(&self, system: &System, branch: &Branch) -> Vec<Guard> {
-        let mut all = branch.guards.clone();
-        self.sampled.iter().chain(self.guards).for_each(|guard| add_guard(&system.graph, &mut all, *guard));
-        all
-    }
-
-    fn on_part(
-        &self,
-        system: &mut System,
-        branch: &Branch,
-        cell: &SignCell,
-        kept: Kept,
-        rng: &mut ChaCha8Rng,
-    ) -> Result<(OnOneBranch, Option<Evidence>), String> {
-        let question = self.question;
-        let all = self.all_guards(system, branch);
-        let is_assumed: Vec<bool> =
-            all.iter().map(|guard| branch.assumed.contains(guard) || self.sampled.contains(guard)).collect();
-        let terms = Terms {
-            sides: question.sides().to_vec(),
-            relations: question.all_relations().to_vec(),
-            guards: all,
-            conditions: self.conditions.to_vec(),
-            one_thing_twice: self.one_thing_twice,
-        };
-        let on = OnBranch::new(system, branch, &terms)?;
-        let verdict = match question {
-            Question::Identity { columns, .. } => decide_identity(system, &on, *columns, rng),
-            Question::Relations { .. } => {
-                let resolved = on_resolved(system, &on, cell, rng)?;
-                decide_relations(system, resolved.as_ref().unwrap_or(&on), &is_assumed, self.unsolved, rng)
-            }
-            Question::Rank { columns, claimed, .. } => {
-                let resolved = on_resolved(system, &on, cell, rng)?;
-                decide_rank(system, resolved.as_ref().unwrap_or(&on), *columns, *claimed, rng)
-            }
-            Question::Codistribution { claimed } => {
-                decide_codistribution(system, &on, branch, *claimed, rng)?
-            }
-        };
-        let mut evidence = None;
-        if let (OnOneBranch::Verdict(verdict, _), Kept::Evidence) = (&verdict, kept) {
-            // random numbers of its own: what is kept changes no verdict
-            evidence = question.evidence(system, &on, verdict, &mut rng.clone());
-        }
-        Ok((verdict, evidence))
-    }
-}
-
-/// A rank at all states but those of some sets.
-fn everywhere(
-    system: &mut System,
-    statement: &Statement,
-    question: &Question,
-    except: &[Vec<Equation>],
-    (mut guards, conditions): (Vec<Guard>, Vec<NodeId>),
-    rng: &mut ChaCha8Rng,
-    notes: &mut Notes,
-) -> Result<Verdict, String> {
-    let (matrix, rank) = match question {
-        Question::Rank { entries, columns, claimed } => (Some((entries.clone(), *columns)), *claimed),
-        Question::Codistribution { claimed } => (None, *claimed),
-        _ => return Err("'except where' is said of a rank".to_owned()),
-    };
-    for guard in guards_of_conditions(system, statement)? {
-        add_guard(&system.graph, &mut guards, guard);
-    }
-    for condition in statement.conditions.iter().filter(|one| one.relation != Relation::Equal) {
-        let left = system.scalar(&condition.left).map_err(|problem| problem.message)?;
-        let right = system.scalar(&condition.right).map_err(|problem| problem.message)?;
-        if let Some(guard) = assumed(&mut system.graph, condition.relation, left, right) {
-            add_guard(&system.graph, &mut guards, guard);
-        }
-    }
-    let (mut sets, mut written) = (Vec::new(), Vec::new());
-    for set in except {
-        let ends = set.first().zip(set.last()).map(|(first, last)| first.span.start..last.span.end);
-        written.push(in_one_line(&system.source, &ends.unwrap_or_default()));
-        let mut vanishing = Vec::new();
-        for equation in set {
-            let mut side = |expr: &Expr| -> Result<NodeId, String> {
-                let (value, needed) = system.elaborate_guarded(expr).map_err(|problem| problem.message)?;
-                needed.into_iter().for_each(|guard| add_guard(&system.graph, &mut guards, guard));
-                value.as_number().ok_or_else(|| "what is left out is said by numbers".to_owned())
-            };
-            let (left, right) = (side(&equation.left)?, side(&equation.right)?);
-            vanishing.push(system.graph.sub(left, right));
-        }
-        sets.push(vanishing);
-    }
-    guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
-    notes.domain = guards.iter().map(|guard| guard.text(&system.graph)).collect();
-    let claim = ClaimedEverywhere { matrix, rank, guards, conditions, except: sets, written };
-    let decided = super::everywhere::decide(system, &claim, rng)?;
-    notes.evidence = decided.evidence;
-    notes.beside = decided.beside;
-    Ok(decided.verdict)
-}
-
-/// How a branch stands to the set of all states that meet the conditions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Size {
-    /// It has the dimension of the set.
-    Part,
-    /// It has fewer dimensions, and may be a part of its own.
-    Smaller,
-    /// It is an edge of others.
-    Thinner,
-}
-
-/// What the verdicts on all branches come to together.
-fn together(question: &Question, found: Vec<(Size, Branch, OnOneBranch)>, unsolved: &[String]) -> Verdict {
-    let of_rank = question.is_of_a_rank();
-    let several = found.len() > 1;
-    let (mut verdicts, mut shown, mut needs) = (Vec::new(), false, Vec::new());
-    for (size, branch, on_one) in found {
-        let place = if several && !branch.steps.is_empty() {
-            format!("where {}: ", branch.steps.join(", "))
-        } else {
-            String::new()
-        };
-        match on_one {
-            OnOneBranch::Empty(guard) => needs.push(format!("{place}{guard}")),
-            OnOneBranch::Verdict(verdict, existence) => {
-                match existence {
-                    Existence::Shown => shown = true,
-                    Existence::Nowhere(guard) | Existence::NotShown(guard) => {
-                        needs.push(format!("{place}{guard}"));
-                    }
-                }
-                verdicts.push(match verdict {
-                    // of a rank at almost all states this is no counterexample
-                    Verdict::Refuted { witness, .. } if size == Size::Smaller && of_rank => {
-                        Verdict::undecided(format!(
-                            "{place}the rank is {} there, on a branch of fewer dimensions than the set",
-                            witness.left
-                        ))
-                    }
-                    Verdict::Undecided { why } => Verdict::undecided(format!("{place}{why}")),
-                    verdict => verdict,
-                });
-            }
-        }
-    }
-    let proved = verdicts.iter().all(|verdict| matches!(verdict, Verdict::Proved { .. }));
-    if proved && !shown {
-        needs.dedup();
-        let needs = needs.join("; ");
-        return Verdict::undecided(if verdicts.is_empty() {
-            format!("it exists nowhere: it needs {needs}")
-        } else {
-            format!("no state was found at which all of it exists: it needs {needs}")
-        });
-    }
-    match Verdict::all(verdicts) {
-        Verdict::Proved { engine, log2_error } if !unsolved.is_empty() => Verdict::Proved {
-            engine: format!("{engine}; not looked at, thinner than the set: {}", unsolved.join("; ")),
-            log2_error,
-        },
-        verdict => verdict,
-    }
 }
 
 /// For an order of a pole the conditions are a point: `name = number`, at which the others are generic.

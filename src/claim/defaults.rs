@@ -61,7 +61,10 @@ fn values_for(system: &mut System, statement: &Statement) -> Vec<(Symbol, RBig)>
                 // the order of a pole is asked where these move
                 fixed.extend(system.graph.symbols_of([factor]));
             }
-            Ok(Value::CodistributionRank) => {
+            Ok(value @ (Value::CodistributionRank | Value::Visible { .. })) => {
+                if let Value::Visible { functions, .. } = value {
+                    nodes.extend(functions);
+                }
                 nodes.extend(system.outputs.iter().map(|(_, node)| *node));
                 for field in system.moving_fields() {
                     nodes.extend(system.fields[field].components.iter().map(|(_, node)| *node));

@@ -1,14 +1,18 @@
 //! Claims about a rank at all states, `rank = 6 except where g*omega0 = 0`, and what the checker needs of them.
 
+use super::question::{Question, guards_of_conditions};
 use super::verdict::{Verdict, Witness};
 use crate::checker::{CertifiedRank, Effort, Evidence, Finding, Missing, RankedState, Ratio, StatedIdentity};
-use crate::drops::{ClaimedEverywhere, Everywhere, MinorIdentity, decide_everywhere};
+use crate::drops::{
+    ClaimedEverywhere, Everywhere, MinorIdentity, StatesOfCases, decide_everywhere, share_of_the_box,
+};
 use crate::evidence::{Lowering, StatementAt, exact_state, largest_minor};
-use crate::expression::{NodeId, Program, expand_angles};
+use crate::expression::syntax::{Equation, Expr, Relation};
+use crate::expression::{Guard, NodeId, Program, add_guard, expand_angles};
 use crate::number::{PrimeField, Rationals};
-use crate::observability::{Coordinate, State, kernel};
+use crate::observability::{Coordinate, State, assumed, kernel};
 use crate::sweep::UNINTERRUPTED;
-use crate::system::System;
+use crate::system::{Statement, System, in_one_line};
 use dashu::rational::RBig;
 use rand::{Rng, RngExt};
 
@@ -30,6 +34,52 @@ pub(super) struct DecidedEverywhere {
     pub beside: Vec<String>,
 }
 
+/// Reads a claim about a rank at all states but those of some sets.
+///
+/// # Errors
+/// In words, where it is none.
+pub(super) fn read(
+    system: &mut System,
+    statement: &Statement,
+    question: &Question,
+    except: &[Vec<Equation>],
+    (mut guards, conditions): (Vec<Guard>, Vec<NodeId>),
+) -> Result<ClaimedEverywhere, String> {
+    let (matrix, rank) = match question {
+        Question::Rank { entries, columns, claimed } => (Some((entries.clone(), *columns)), *claimed),
+        Question::Codistribution { claimed } => (None, *claimed),
+        _ => return Err("'except where' is said of a rank".to_owned()),
+    };
+    for guard in guards_of_conditions(system, statement)? {
+        add_guard(&system.graph, &mut guards, guard);
+    }
+    for condition in statement.conditions.iter().filter(|one| one.relation != Relation::Equal) {
+        let left = system.scalar(&condition.left).map_err(|problem| problem.message)?;
+        let right = system.scalar(&condition.right).map_err(|problem| problem.message)?;
+        if let Some(guard) = assumed(&mut system.graph, condition.relation, left, right) {
+            add_guard(&system.graph, &mut guards, guard);
+        }
+    }
+    let (mut sets, mut written) = (Vec::new(), Vec::new());
+    for set in except {
+        let ends = set.first().zip(set.last()).map(|(first, last)| first.span.start..last.span.end);
+        written.push(in_one_line(&system.source, &ends.unwrap_or_default()));
+        let mut vanishing = Vec::new();
+        for equation in set {
+            let mut side = |expr: &Expr| -> Result<NodeId, String> {
+                let (value, needed) = system.elaborate_guarded(expr).map_err(|problem| problem.message)?;
+                needed.into_iter().for_each(|guard| add_guard(&system.graph, &mut guards, guard));
+                value.as_number().ok_or_else(|| "what is left out is said by numbers".to_owned())
+            };
+            let (left, right) = (side(&equation.left)?, side(&equation.right)?);
+            vanishing.push(system.graph.sub(left, right));
+        }
+        sets.push(vanishing);
+    }
+    guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
+    Ok(ClaimedEverywhere { matrix, rank, guards, conditions, except: sets, written, with_examples: false })
+}
+
 /// Decides a claim about a rank at all states, and notes what the verdict rests on.
 ///
 /// # Errors
@@ -40,14 +90,21 @@ pub(super) fn decide(
     rng: &mut impl Rng,
 ) -> Result<DecidedEverywhere, String> {
     let seed = rng.random::<u64>();
-    Ok(match decide_everywhere(system, claim, seed, &UNINTERRUPTED)? {
-        Everywhere::Proved { cases: (cases, empty), minors, beside, log2_error } => {
+    let decided = decide_everywhere(system, claim, seed, &UNINTERRUPTED);
+    Ok(match decided.map_err(|why| why + &on_the_box(system, claim))? {
+        Everywhere::Proved { cases: (cases, empty), minors, examples, beside, log2_error } => {
             let engine = format!("{ENGINE}, in {cases} cases, {empty} of them empty");
-            let evidence = minors.iter().map(|minor| identity(system, minor, log2_error, rng)).collect();
+            let mut evidence = Vec::new();
+            if claim.with_examples {
+                evidence.extend(minors.iter().map(|minor| identity(system, minor, log2_error, rng)));
+                evidence.extend(on_the_cases(system, claim, examples, rng));
+            }
             DecidedEverywhere { verdict: Verdict::Proved { engine, log2_error }, evidence, beside }
         }
         Everywhere::Refuted { state, found, set, log2_error } => {
-            let certified = rank_at(system, claim, &state, rng).map_err(|why| why.to_string())?;
+            let rows = rows(system, claim);
+            let certified = ranks_at(system, claim, rows, std::slice::from_ref(&state), rng);
+            let certified = certified.map_err(|why| why.to_string())?;
             let finding = certified.check(&Effort::new(WORK), &UNINTERRUPTED);
             if !matches!(finding, Finding::Confirmed { .. }) {
                 return Err(format!(
@@ -74,10 +131,25 @@ pub(super) fn decide(
             DecidedEverywhere { verdict: Verdict::Refuted { engine, witness }, evidence, beside: Vec::new() }
         }
         Everywhere::Open(why) => {
-            let verdict = Verdict::undecided(why);
+            let verdict = Verdict::undecided(why + &on_the_box(system, claim));
             DecidedEverywhere { verdict, evidence: Vec::new(), beside: Vec::new() }
         }
     })
+}
+
+/// What interval certificates say of the sample box where a rank at all states is open, as the end of a sentence.
+fn on_the_box(system: &mut System, claim: &ClaimedEverywhere) -> String {
+    let is_full = claim.matrix.is_none() && claim.rank == system.unknown_count();
+    if !is_full || !claim.conditions.is_empty() {
+        return String::new();
+    }
+    match share_of_the_box(system, &UNINTERRUPTED) {
+        Ok(share) if share.proved > 0.0 => {
+            let (percent, rank) = (share.percent(), claim.rank);
+            format!("; on {percent} % of the sample box the rank is {rank}, by interval certificates")
+        }
+        _ => String::new(),
+    }
 }
 
 /// A minor and its product of factors, as an identity that the checker tries.
@@ -117,26 +189,59 @@ fn identity(system: &System, minor: &MinorIdentity, log2_error: f64, rng: &mut i
     Evidence::Unchecked(why)
 }
 
-/// The rank at a state, with its minor and its kernel.
-fn rank_at(
+/// The rank at a state of each case, for the checker: small sets are where a mistake in a factor would show.
+fn on_the_cases(
     system: &mut System,
     claim: &ClaimedEverywhere,
-    state: &State,
+    examples: StatesOfCases,
+    rng: &mut impl Rng,
+) -> Option<Evidence> {
+    let (_, width, _, columns) = match &claim.matrix {
+        Some(_) => rows(system, claim),
+        None => (Vec::new(), system.unknown_count(), Vec::new(), system.column_names()),
+    };
+    let StatesOfCases { words, entries, states } = examples;
+    let mut found = match ranks_at(system, claim, (entries, width, words, columns), &states, rng) {
+        Ok(found) => found,
+        Err(missing) => return Some(Evidence::Unchecked(format!("it could not be written down: {missing}"))),
+    };
+    // a state that meets the equations of a case may lie in a smaller one, for which other rows are meant
+    found.states.retain(|state| state.rank == claim.rank);
+    (!found.states.is_empty()).then_some(Evidence::Rank(found))
+}
+
+/// Rows, their number of entries, what they are of, and what their columns are.
+type NamedRows = (Vec<NodeId>, usize, Vec<String>, Vec<String>);
+
+/// The rank at some states, with its minor and its kernel.
+fn ranks_at(
+    system: &mut System,
+    claim: &ClaimedEverywhere,
+    (entries, width, words, columns): NamedRows,
+    states: &[State],
     rng: &mut impl Rng,
 ) -> Result<CertifiedRank, Missing> {
-    let (entries, width, words, columns) = rows(system, claim);
     let is_angle = &system.angle_test();
     let expanded = expand_angles(&mut system.graph, &entries, is_angle);
     let program = Program::new(&system.graph, &expanded, is_angle);
-    let minor = largest_minor(&program, width, state, PrimeField::random(rng)).unwrap_or_default();
-    let exact = Rationals { bits: BITS };
-    let values = state
-        .inputs(&program, &exact)
-        .ok()
-        .and_then(|inputs| program.load(exact).ok()?.run(&inputs, &mut Vec::new()).ok())
-        .unwrap_or_default();
-    let matrix: Vec<Vec<RBig>> = values.chunks(width.max(1)).map(<[RBig]>::to_vec).collect();
-    let unseen = kernel(&Rationals { bits: BITS }, matrix, width).unwrap_or_default();
+    let mut ranked = Vec::new();
+    for state in states {
+        let minor = largest_minor(&program, width, state, PrimeField::random(rng)).unwrap_or_default();
+        let exact = Rationals { bits: BITS };
+        let values = state
+            .inputs(&program, &exact)
+            .ok()
+            .and_then(|inputs| program.load(exact).ok()?.run(&inputs, &mut Vec::new()).ok())
+            .unwrap_or_default();
+        let matrix: Vec<Vec<RBig>> = values.chunks(width.max(1)).map(<[RBig]>::to_vec).collect();
+        let unseen = kernel(&Rationals { bits: BITS }, matrix, width).unwrap_or_default();
+        ranked.push(RankedState {
+            state: exact_state(&system.graph, state),
+            rank: minor.rows.len(),
+            minor,
+            kernel: unseen.into_iter().map(|v| v.into_iter().map(Ratio).collect()).collect(),
+        });
+    }
     let graph = &system.graph;
     let mut lowering = Lowering::new(graph);
     let mut places = Vec::new();
@@ -154,17 +259,12 @@ fn rank_at(
         conditions,
         requirements,
         listing: lowering.finish(),
-        states: vec![RankedState {
-            state: exact_state(graph, state),
-            rank: minor.rows.len(),
-            minor,
-            kernel: unseen.into_iter().map(|v| v.into_iter().map(Ratio).collect()).collect(),
-        }],
+        states: ranked,
     })
 }
 
 /// All rows of the matrix, or those of the words that were taken.
-fn rows(system: &mut System, claim: &ClaimedEverywhere) -> (Vec<NodeId>, usize, Vec<String>, Vec<String>) {
+fn rows(system: &mut System, claim: &ClaimedEverywhere) -> NamedRows {
     let numbered = |what: &str, count: usize| (1..=count).map(|n| format!("{what} {n}")).collect();
     match &claim.matrix {
         Some((entries, width)) => {

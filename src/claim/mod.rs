@@ -6,6 +6,7 @@
 //!
 //! This floor shares no formula with `proofs/`, and knows nothing of pages or plots.
 
+mod branches;
 mod cells;
 mod decide;
 mod defaults;
@@ -24,6 +25,8 @@ mod solutions;
 mod terms;
 mod value;
 mod verdict;
+mod visible;
+mod visible_evidence;
 mod witness;
 
 pub use decide::{decide, decide_all, decide_all_keeping, prove};

@@ -19,6 +19,8 @@ pub(super) enum Question {
     Rank { entries: Vec<NodeId>, columns: usize, claimed: usize },
     /// Has the observability codistribution this rank?
     Codistribution { claimed: usize },
+    /// Are these functions of what is measured, all of them, or is none?
+    Visible { functions: Vec<NodeId>, is_seen: bool },
 }
 
 impl Question {
@@ -46,7 +48,7 @@ impl Question {
     }
 
     pub fn is_of_a_rank(&self) -> bool {
-        matches!(self, Question::Rank { .. } | Question::Codistribution { .. })
+        matches!(self, Question::Rank { .. } | Question::Codistribution { .. } | Question::Visible { .. })
     }
 
     /// How each left side is claimed to stand to its right one; none where all are equations.
@@ -76,6 +78,7 @@ impl Question {
             (Value::CodistributionRank, Value::Scalar(r)) | (Value::Scalar(r), Value::CodistributionRank) => {
                 Ok(Question::Codistribution { claimed: claimed(r)? })
             }
+            (Value::Visible { functions, is_seen }, _) => Ok(Question::Visible { functions, is_seen }),
             (l, r) => Err(format!("{} is compared with {}", l.describe(), r.describe())),
         }
     }
@@ -100,8 +103,16 @@ impl Question {
                 RankedMatrix::of_file(entries, *columns, *claimed)
             }
             (Question::Codistribution { claimed }, _) => {
-                RankedMatrix::codistribution(system, &on.branch, *claimed)?
+                match RankedMatrix::codistribution(system, &on.branch, *claimed) {
+                    Ok(matrix) => matrix,
+                    Err(_) if !matches!(verdict, Verdict::Proved { .. } | Verdict::Refuted { .. }) => {
+                        return None;
+                    }
+                    Err(why) => return Some(Evidence::Unchecked(why)),
+                }
             }
+            // it comes with the verdict
+            (Question::Visible { .. }, _) => return None,
         };
         claimed_rank(system, on, &matrix, verdict, rng)
     }
@@ -111,7 +122,8 @@ impl Question {
         match self {
             Question::Identity { entries, .. }
             | Question::Relations { entries, .. }
-            | Question::Rank { entries, .. } => entries,
+            | Question::Rank { entries, .. }
+            | Question::Visible { functions: entries, .. } => entries,
             Question::Codistribution { .. } => &[],
         }
     }

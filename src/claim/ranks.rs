@@ -14,8 +14,9 @@ use rand::Rng;
 const MINOR: &str = "a minor that is not zero modulo a prime";
 
 /// The same of the differentials of derivatives along a trajectory, and the other half.
-const MINOR_OF_SERIES: &str = "a minor of the differentials of power series that is not zero modulo a prime";
-const SERIES: &str = "power series at random points of random prime fields";
+pub(super) const MINOR_OF_SERIES: &str =
+    "a minor of the differentials of power series that is not zero modulo a prime";
+pub(super) const SERIES: &str = "power series at random points of random prime fields";
 
 /// Decides `rank(M) = claimed` on a branch; the entries are the sides of the terms.
 pub(crate) fn decide_rank(
@@ -94,7 +95,7 @@ pub(crate) fn decide_codistribution(
     Ok(on_one_branch(exists, || decide(system, &rows, limits, claimed, rng)))
 }
 
-fn on_one_branch(exists: Existence, verdict: impl FnOnce() -> Verdict) -> OnOneBranch {
+pub(super) fn on_one_branch(exists: Existence, verdict: impl FnOnce() -> Verdict) -> OnOneBranch {
     match exists {
         Existence::Nowhere(guard) => OnOneBranch::Empty(guard),
         Existence::NotShown(guard) => {
@@ -120,7 +121,8 @@ fn by_series(
     Verdict::Refuted { engine, witness: witness(ranks).unwrap_or_else(|| ranks.nowhere()) }
 }
 
-fn decide(
+/// Decides a rank of rows on a branch.
+pub(super) fn decide(
     system: &mut System,
     rows: &Rows<'_>,
     limits: Limits,

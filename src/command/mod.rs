@@ -11,6 +11,7 @@ mod claims;
 mod completions;
 mod eval;
 mod fmt;
+mod import;
 mod interrupt;
 mod lsp;
 mod man;
@@ -69,6 +70,7 @@ enum Verb {
     Stress(stress::Stress),
     Eval(eval::Eval),
     Observe(observe::Observe),
+    Import(import::Import),
     New(new::New),
     Fmt(fmt::Fmt),
     Lsp(lsp::Lsp),
@@ -160,6 +162,7 @@ impl Verb {
             Verb::Stress(verb) => verb.json,
             Verb::Eval(verb) => verb.json,
             Verb::Observe(verb) => verb.json,
+            Verb::Import(verb) => verb.json,
             Verb::New(verb) => verb.json,
             Verb::Fmt(verb) => verb.json,
             Verb::Lsp(_) | Verb::Completions(_) | Verb::Man(_) => false,
@@ -181,6 +184,7 @@ impl Verb {
             Verb::Stress(verb) => verb.run(),
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Import(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::New(verb) => verb.run(),
             Verb::Fmt(verb) => verb.run(),
             Verb::Lsp(verb) => verb.run(),

@@ -8,7 +8,6 @@ use indicatif::ProgressBar;
 use palmistry::experiment::{Answer, Basin, Experiment, NoiseLevel, Scene, SceneError, basins, noise_study};
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
-use palmistry::observer::{Update, UpdateEnd};
 use palmistry::report::{Observed, ended_in_words, forget_seconds, observe_json, observe_page, observe_text};
 use std::path::PathBuf;
 
@@ -23,6 +22,10 @@ use std::path::PathBuf;
 /// With --data the readings come from a CSV or Parquet file with the columns that the model needs (time, s1, s2, phi1, ...);
 /// faulty rows are reported by number and handled as the scene says. With --studies the scene's studies run as well: the
 /// error over many seeds at several levels of noise beside the bound, and the first guesses from which each method arrives.
+///
+/// An update that converged is held against the noise that the scene states: what is left has to be what the noise explains. Where
+/// no noise is stated it is estimated from what is left, which then has to look like noise. The exit status is 1 where an update
+/// converged and does not fit, or a method by windows has no update that does.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed")]
@@ -113,10 +116,13 @@ impl Observe {
         {
             note(&format!("the motion ended early: {}", ended_in_words(simulation.ended())));
         }
-        // a window that cannot be seen is part of the answer; a method that saw none has found nothing
-        let unseen = |update: &Update| matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
-        let found_nothing = |updates: &[Update]| !updates.is_empty() && updates.iter().all(unseen);
-        let as_expected = !answers.iter().any(|answer| found_nothing(&answer.track.updates));
+        // a window that cannot be seen is part of the answer; a method by windows that saw none has found nothing, and one that
+        // contradicts the readings is wrong
+        let by_windows = |answer: &&Answer| answer.method.search().is_some();
+        let as_expected = answers.iter().filter(by_windows).all(|answer| match interrupted {
+            true => !answer.track.is_contradicted(),
+            false => answer.track.is_sound(),
+        });
         let status = Status::of(as_expected);
         files.print(Form::of(self.json), json, || observe_text(&observed), status)
     }

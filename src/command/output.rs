@@ -41,7 +41,12 @@ pub(crate) struct Files {
 struct Failure {
     file: PathBuf,
     why: String,
+    /// What can be done about it.
+    help: &'static str,
 }
+
+/// Where the file is at fault.
+const ANOTHER_PLACE: &str = "the results are printed; name a place that can be written, or free some space";
 
 impl Files {
     /// Writes a text.
@@ -54,7 +59,10 @@ impl Files {
     pub fn text_or(&mut self, path: &Path, text: Result<String, impl std::fmt::Display>) {
         match text {
             Ok(text) => self.text(path, &text),
-            Err(why) => self.note(path, Err(format!("cannot write {}: {why}", path.display()))),
+            Err(why) => {
+                let why = format!("{} is not written: {why}", path.display());
+                self.failures.push(Failure { file: path.to_owned(), why, help: "the results are printed" });
+            }
         }
     }
 
@@ -71,7 +79,7 @@ impl Files {
 
     fn note(&mut self, path: &Path, written: Result<(), String>) {
         if let Err(why) = written {
-            self.failures.push(Failure { file: path.to_owned(), why });
+            self.failures.push(Failure { file: path.to_owned(), why, help: ANOTHER_PLACE });
         }
     }
 
@@ -123,8 +131,7 @@ impl Files {
     /// Says on standard error what could not be written.
     pub fn note_failures(&self) {
         for failure in &self.failures {
-            let help = "the results are printed; name a place that can be written, or free some space";
-            file::note(&format!("{:?}", Unusable::report(failure.why.clone(), help)));
+            file::note(&format!("{:?}", Unusable::report(failure.why.clone(), failure.help)));
         }
     }
 }

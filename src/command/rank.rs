@@ -11,8 +11,8 @@ use palmistry::drops::where_it_drops;
 use palmistry::evidence::rank_records;
 use palmistry::observability::SOLUTIONS_WORK;
 use palmistry::report::{
-    accessibility_json, accessibility_text, drops_json, drops_text, global_json, global_text, rank_json,
-    rank_text,
+    accessibility_json, accessibility_text, drops_json, drops_page, drops_text, global_json, global_text,
+    rank_json, rank_text,
 };
 use palmistry::sweep::{MOST_DIGITS, answer_rank_at_once};
 use palmistry::{RankQuestion, System, answer_accessibility, answer_rank, answer_solutions};
@@ -86,6 +86,9 @@ pub(crate) struct Rank {
     /// it is at almost all states. The parameters may have any values.
     #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts"])]
     where_it_drops: bool,
+    /// Write a page with these sets and their proof (index.html), and drops.json, into this folder.
+    #[arg(long, value_name = "DIR", requires = "where_it_drops")]
+    out: Option<PathBuf>,
     /// Instead of sampled states: how many values of each unknown give the same outputs, one (it is globally identifiable or
     /// observable), finitely many over the complex numbers, or infinitely many. For rational systems, at almost all states, by
     /// Groebner bases at
@@ -175,7 +178,13 @@ impl Rank {
             where_it_drops(system, self.seed, &INTERRUPTED).map_err(|why| Unusable::report(why, ""))?;
         begin_to_tell();
         let status = if answer.is_exact() { Status::AsExpected } else { Status::CutOff };
-        Files::default().print(Form::of(self.json), drops_json(&answer), || drops_text(&answer), status)
+        let (mut files, object) = (Files::default(), drops_json(&answer));
+        if let Some(folder) = &self.out {
+            files.text(&folder.join("index.html"), &drops_page(&answer));
+            files.json(&folder.join("drops.json"), &object);
+            files.announce(&folder.join("index.html"));
+        }
+        files.print(Form::of(self.json), object, || drops_text(&answer), status)
     }
 }
 

@@ -128,6 +128,18 @@ impl<'s> Algebra<'s> {
         self.products.variables()
     }
 
+    /// Variables that are positive at all states: values of exponentials.
+    pub fn positive_variables(&self) -> Vec<Polynomial> {
+        let is_positive = |variable: &Variable| match variable {
+            Variable::Unknown(node) => {
+                matches!(self.system.graph.node(*node), Node::Apply(Function::Exp, _))
+            }
+            _ => false,
+        };
+        let places = self.products.variables().iter().enumerate();
+        places.filter(|(_, one)| is_positive(one)).map(|(place, _)| Polynomial::variable(place)).collect()
+    }
+
     /// The symbol of a variable that is one.
     pub fn symbol_at(&self, place: usize) -> Option<Symbol> {
         match self.products.variables().get(place)? {

@@ -89,6 +89,16 @@ impl Case {
         self.positive.push(polynomial.clone());
     }
 
+    /// The same with what is positive everywhere.
+    pub fn knowing(mut self, algebra: &Algebra<'_>) -> Case {
+        for variable in algebra.positive_variables() {
+            if !self.positive.contains(&variable) {
+                self.add_positive(&variable);
+            }
+        }
+        self
+    }
+
     /// The factors of a polynomial that may vanish here.
     pub fn doubtful(&self, polynomial: &Polynomial) -> Vec<Polynomial> {
         let found = factors(polynomial, &self.nonzero).into_iter().map(|(factor, _)| factor);
@@ -147,7 +157,11 @@ impl Case {
     }
 
     /// Meets one more equation.
-    pub fn step(mut self, algebra: &mut Algebra<'_>) -> Reach<Step> {
+    pub fn step(self, algebra: &mut Algebra<'_>) -> Reach<Step> {
+        self.knowing(algebra).next(algebra)
+    }
+
+    fn next(mut self, algebra: &mut Algebra<'_>) -> Reach<Step> {
         if self.contradicts_itself()? {
             return Ok(Step::Empty);
         }

@@ -12,6 +12,7 @@ use crate::number::Rationals;
 use crate::observability::{Codistribution, Length, State, rank};
 use crate::system::{Matrix, System, determinant};
 use dashu::rational::RBig;
+use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
 /// The claim, read.
@@ -28,6 +29,8 @@ pub(crate) struct ClaimedEverywhere {
     pub except: Vec<Vec<NodeId>>,
     /// The same as they are written.
     pub written: Vec<String>,
+    /// Whether states of all cases are asked for.
+    pub with_examples: bool,
 }
 
 /// A minor as a product, both in symbols of their own.
@@ -39,6 +42,16 @@ pub(crate) struct MinorIdentity {
     pub guards: Vec<Guard>,
 }
 
+/// The rows that show the rank, and a state of each case on which they do, as far as one was found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StatesOfCases {
+    /// What the rows are of.
+    pub words: Vec<String>,
+    /// Their entries, one row after the other, as the file has them.
+    pub entries: Vec<NodeId>,
+    pub states: Vec<State>,
+}
+
 /// What became of a claim.
 #[derive(Clone, Debug)]
 pub(crate) enum Everywhere {
@@ -47,6 +60,7 @@ pub(crate) enum Everywhere {
         /// In how many cases, and how many of them are empty.
         cases: (usize, usize),
         minors: Vec<MinorIdentity>,
+        examples: StatesOfCases,
         /// What the rank is on the sets that are left out, in words.
         beside: Vec<String>,
         log2_error: f64,
@@ -201,7 +215,7 @@ fn off_the_sets(
     explored: &Explored,
     claim: &ClaimedEverywhere,
 ) -> Reach<Everywhere> {
-    let mut open: Vec<String> = Vec::new();
+    let mut open: Vec<String> = explored.stopped.iter().cloned().collect();
     for shown in merged(algebra, search, &explored.short) {
         if claim.except.iter().any(|set| lies_in(algebra, &shown, set)) {
             continue;
@@ -234,15 +248,25 @@ fn off_the_sets(
     if explored.full.is_empty() {
         return Ok(Everywhere::Open("no state was found at which all of it exists".to_owned()));
     }
-    let somewhere =
-        explored.full.iter().any(|full| state_on(algebra, search, &full.case, &claim.except).is_some());
-    if !somewhere {
+    let states = explored.full.iter().filter_map(|full| state_on(algebra, search, &full.case, &claim.except));
+    let states: Vec<State> = states.take(if claim.with_examples { MOST_EXAMPLES } else { 1 }).collect();
+    if states.is_empty() {
         return Ok(Everywhere::Open("no state was found at which all of it exists".to_owned()));
     }
     let minors = explored.full.iter().map(|full| identity(algebra, full)).collect();
     let cases = (explored.cases, explored.empty);
-    Ok(Everywhere::Proved { cases, minors, beside: Vec::new(), log2_error: f64::NEG_INFINITY })
+    let used: BTreeSet<usize> = explored.full.iter().flat_map(|full| full.chosen.rows.clone()).collect();
+    let examples = StatesOfCases {
+        words: used.iter().map(|row| search.rows.names[*row].clone()).collect(),
+        entries: used.iter().flat_map(|row| search.rows.as_written()[*row].clone()).collect(),
+        states,
+    };
+    let log2_error = f64::NEG_INFINITY;
+    Ok(Everywhere::Proved { cases, minors, examples, beside: Vec::new(), log2_error })
 }
+
+/// States of so many cases are written down.
+const MOST_EXAMPLES: usize = 40;
 
 /// Whether all expressions of a set vanish on another one.
 fn lies_in(algebra: &mut Algebra<'_>, shown: &Shown, set: &[NodeId]) -> bool {

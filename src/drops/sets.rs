@@ -6,6 +6,7 @@ use super::choice;
 use super::explore::{FullCase, Search, ShortCase};
 use super::merge::{Shown, merged};
 use super::minor::Product;
+use super::on_box::{BoxShare, share_of_the_box};
 use super::real::state_on;
 use super::rows::Rows;
 use crate::expression::{Guard, NodeId};
@@ -71,6 +72,9 @@ pub struct DropAnswer {
     pub cases: (usize, usize),
     /// Why the set was not found; nothing where it was.
     pub out_of_reach: Option<String>,
+    /// Where the sets are not known to be all: on how much of the sample box interval certificates prove the rank to be full, or why
+    /// that is not known; nothing where they are.
+    pub on_the_box: Option<Result<BoxShare, String>>,
     /// How long it took.
     pub seconds: f64,
 }
@@ -88,7 +92,13 @@ impl DropAnswer {
 /// In words, where there is no codistribution.
 pub fn where_it_drops(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<DropAnswer, String> {
     let mentioned = mentioned_in_words(system);
-    with_angles(system, &mentioned, |system| drops_of(system, seed, interrupt))
+    let mut answer = with_angles(system, &mentioned, |system| drops_of(system, seed, interrupt))?;
+    if !answer.is_exact() && answer.rank == answer.dimension {
+        let begin = Instant::now();
+        answer.on_the_box = Some(share_of_the_box(system, interrupt));
+        answer.seconds += begin.elapsed().as_secs_f64();
+    }
+    Ok(answer)
 }
 
 /// All that Lie derivatives are made of: the outputs' differentials, the fields and where they exist.
@@ -138,12 +148,14 @@ fn drops_of(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<Dr
         minors: Vec::new(),
         cases: (0, 0),
         out_of_reach: None,
+        on_the_box: None,
         seconds: 0.0,
     };
     let rows = Rows::of_words(system);
     let asked = Asked { rank, guards, ..Asked::default() };
     let found = prepared(system, rows, &asked, seed, interrupt, |algebra, search| {
         let explored = &search.run(algebra)?;
+        answer.out_of_reach.clone_from(&explored.stopped);
         answer.cases = (explored.cases, explored.empty);
         answer.minors = explored.full.iter().map(|full| used(algebra, &search.rows, full)).collect();
         let (sets, open): (Vec<_>, Vec<_>) =
@@ -155,7 +167,9 @@ fn drops_of(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<Dr
         answer.open = described(open);
         Ok(())
     });
-    answer.out_of_reach = found.err();
+    if let Err(why) = found {
+        answer.out_of_reach = Some(why);
+    }
     answer.seconds = begin.elapsed().as_secs_f64();
     Ok(answer)
 }

@@ -10,6 +10,7 @@ mod columns;
 mod run;
 mod scene;
 mod simulation;
+mod since;
 mod study;
 
 #[doc(hidden)]

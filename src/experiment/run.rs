@@ -2,9 +2,10 @@
 
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{Simulation, TOUCH, body, constants, deviation};
+use super::since::Since;
 use crate::observer::{
-    EstimateQuestion, Fault, ModelError, MovingWindow, Observer, Record, RecordError, RecordReading, Signals,
-    Task, Track, WindowSearch,
+    EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
+    Signals, Task, Track, WindowSearch,
 };
 use crate::sweep::UNINTERRUPTED;
 use crate::system::{Kind, System, nearest};
@@ -28,6 +29,8 @@ pub struct Experiment {
     pub simulation: Option<Simulation>,
     /// The readings.
     pub record: Record,
+    /// The time of the first sample where times are counted from there, because they were counted from another age; else zero. In s.
+    pub origin: f64,
     /// What was wrong with the rows of a file.
     pub faults: Vec<Fault>,
     /// The readings as curves of time.
@@ -90,11 +93,17 @@ impl Experiment {
                 return Err(scene.error_at("title", "there is nothing to observe", "this scene", help));
             }
         };
+        let since = Since::first(&record);
+        let record = match file {
+            Some(_) => since.count(&scene, record)?,
+            None => record,
+        };
+        let origin = since.origin;
         let signals = Signals::of_record(&record);
         let signals =
             signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
         let question = estimate_question(&scene, &system, simulation.as_ref(), known, &signals)?;
-        let experiment = Experiment { scene, system, simulation, record, faults, signals, question };
+        let experiment = Experiment { scene, system, simulation, record, origin, faults, signals, question };
         // whether the model can be made at all is better known now
         experiment.task(&UNINTERRUPTED)?;
         Ok(experiment)
@@ -123,7 +132,19 @@ impl Experiment {
         let sigma = deviation(sensor.noise, sensor.resolution);
         task.exact = sigma == 0.0;
         task.sigma = if task.exact { NOMINAL } else { sigma };
+        if !task.exact {
+            task.noise = Noise::Stated { normal: sensor.noise, rounding: sensor.resolution };
+        }
+        task.timing = self.origin.abs() * f64::EPSILON * self.fastest(&task);
         Ok(task)
+    }
+
+    /// The fastest change of an output from one sample to the next, per s.
+    fn fastest(&self, task: &Task<'_>) -> f64 {
+        let times = self.signals.times();
+        let columns = task.full.outputs.iter().filter_map(|name| self.signals.find(name));
+        let steps = columns.flat_map(|place| self.signals.column(place).windows(2).zip(times.windows(2)));
+        steps.map(|(value, time)| ((value[1] - value[0]) / (time[1] - time[0])).abs()).fold(0.0, f64::max)
     }
 
     /// The observer of a name, with the scene's settings.
@@ -234,7 +255,7 @@ fn known_constants(
         }
     } else if let Some(simulated) = &scene.simulated {
         // a recording of what the scene describes
-        for (name, value) in constants(simulated, &body(scene, simulated)?.0) {
+        for (name, value) in constants(scene, simulated, &body(scene, simulated)?.0) {
             give(&name, value);
         }
     }

@@ -2,6 +2,7 @@
 
 use super::columns::{COLUMNS, Column, SeenAs};
 use super::scene::{self, Scene, SceneError, Simulated};
+use crate::mechanics::Palm;
 use crate::mechanics::moving::{
     BodyForm, CentreOfMass, DEFAULT_TOLERANCE, Ended, FormError, MovingScene as Bodies,
     SceneError as Refused, Shape, SplineDraws, Trajectory, simulate as follow,
@@ -34,7 +35,7 @@ impl Simulation {
     /// Where the body is not convex or the palms cannot hold it, with the place in the scene.
     pub fn of(scene: &Scene, simulated: &Simulated) -> Result<Simulation, SceneError> {
         let (shape, draws) = body(scene, simulated)?;
-        let constants = constants(simulated, &shape);
+        let constants = constants(scene, simulated, &shape);
         let bodies = Bodies {
             mass: simulated.body.mass,
             gyration: simulated.body.radius_of_gyration.unwrap_or_else(|| shape.gyration()),
@@ -43,6 +44,7 @@ impl Simulation {
             gravity: simulated.body.gravity,
             palm_inertia: simulated.palms.inertia,
             palm_lengths: [f64::INFINITY; 2],
+            palms: scene.palm_forms,
             drive: simulated.palms.drive.clone(),
             tolerance: DEFAULT_TOLERANCE,
             shape,
@@ -144,8 +146,9 @@ pub(super) fn body(scene: &Scene, simulated: &Simulated) -> Result<(Shape, Optio
     })
 }
 
-/// Constants of the bodies by the names that the thesis gives them: `m`, `rho`, `I1`, `I2`, `g`.
-pub(super) fn constants(simulated: &Simulated, shape: &Shape) -> BTreeMap<String, f64> {
+/// Constants of the bodies by the names that the thesis gives them: `m`, `rho`, `I1`, `I2`, `g`, and `b1`, `b2` of circular
+/// palms.
+pub(super) fn constants(scene: &Scene, simulated: &Simulated, shape: &Shape) -> BTreeMap<String, f64> {
     let (body, inertia) = (&simulated.body, simulated.palms.inertia);
     let constants = [
         ("m", body.mass),
@@ -154,7 +157,11 @@ pub(super) fn constants(simulated: &Simulated, shape: &Shape) -> BTreeMap<String
         ("I2", inertia[1]),
         ("g", body.gravity),
     ];
-    constants.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    let radii = ["b1", "b2"].into_iter().zip(scene.palm_forms).filter_map(|(name, form)| match form {
+        Palm::Circular { radius } => Some((name, radius)),
+        Palm::Flat => None,
+    });
+    constants.into_iter().chain(radii).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 fn outline(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {

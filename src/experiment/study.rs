@@ -2,8 +2,8 @@
 
 use super::run::{Experiment, error};
 use super::scene::{self, BasinStudy, NoiseStudy, SceneError};
-use super::simulation::Simulation;
-use crate::observer::{MovingWindow, Order, Signals, Task, UpdateEnd, WindowSearch, cramer_rao};
+use super::simulation::{Simulation, deviation};
+use crate::observer::{MovingWindow, Noise, Order, Signals, Task, UpdateEnd, WindowSearch, cramer_rao};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -14,6 +14,8 @@ pub struct NoiseLevel {
     pub noise: f64,
     /// Estimates that converged, of how many seeds.
     pub converged: usize,
+    /// Those of them of which it was said that they do not fit: false alarms.
+    pub unfit: usize,
     /// How many draws of noise.
     pub seeds: usize,
     /// The root of the mean square error of what is sought at the first sample, over the seeds that converged.
@@ -76,13 +78,17 @@ pub fn noise_study(
                 let seed = experiment.scene.seed.wrapping_add(1 + seed);
                 let signals = noisy(experiment, simulation, noise, seed)?;
                 let mut task = task.with_signals(&signals);
-                (task.exact, task.sigma) = (false, noise);
+                let rounding = experiment.scene.sensor.resolution;
+                (task.exact, task.sigma) = (false, deviation(noise, rounding));
+                task.noise = Noise::Stated { normal: noise, rounding };
                 let rows = first_window(&task, &observer);
                 let update = observer.update(&task, &task.guess, &rows, &task.clamped);
-                matches!(update.end, UpdateEnd::Converged | UpdateEnd::Stuck).then_some(update.estimate)
+                let fits = update.fit.is_some_and(|fit| fit.fits);
+                matches!(update.end, UpdateEnd::Converged | UpdateEnd::DoesNotFit | UpdateEnd::Stuck)
+                    .then_some((update.estimate, fits))
             })();
             done();
-            estimate.map_or(Trial::Failed, Trial::Converged)
+            estimate.map_or(Trial::Failed, |(estimate, fits)| Trial::Converged { estimate, fits })
         };
         let mut trials: Vec<Trial> = (0..study.seeds as u64).into_par_iter().map(one).collect();
         trials.retain(|trial| *trial != Trial::Interrupted);
@@ -95,6 +101,10 @@ pub fn noise_study(
         levels.push(NoiseLevel {
             noise,
             converged: arrived.len(),
+            unfit: trials
+                .iter()
+                .filter(|trial| matches!(trial, Trial::Converged { fits: false, .. }))
+                .count(),
             seeds: trials.len(),
             errors: (0..truth.len()).map(error).collect(),
             bounds: bounds(&task, &observer, &truth, noise),
@@ -110,13 +120,16 @@ enum Trial {
     Interrupted,
     /// There was no estimate, or it did not converge.
     Failed,
-    Converged(Vec<f64>),
+    Converged {
+        estimate: Vec<f64>,
+        fits: bool,
+    },
 }
 
 impl Trial {
     fn estimate(&self) -> Option<&Vec<f64>> {
         match self {
-            Trial::Converged(estimate) => Some(estimate),
+            Trial::Converged { estimate, .. } => Some(estimate),
             Trial::Interrupted | Trial::Failed => None,
         }
     }

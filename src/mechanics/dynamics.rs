@@ -3,7 +3,7 @@
 use super::contact::Placement;
 use super::linear::{Vector, cross_planar, scaled, solve};
 use super::motion::{PalmMotion, PlanarMotion, Swing, observe};
-use super::{PlanarBody, Real};
+use super::{Palm, PlanarBody, Real};
 
 /// Masses and what else the laws of motion ask for, in SI units.
 #[derive(Clone, Debug)]
@@ -48,9 +48,20 @@ pub fn planar_dynamics(
     omega0: &Real,
     inertia: &Inertia,
 ) -> Option<PlanarDynamics> {
+    planar_dynamics_on(body, palms, &[Palm::Flat, Palm::Flat], [phi0, omega0], inertia)
+}
+
+/// The same between palms of any form; `start` is the body's angle and its rate.
+pub fn planar_dynamics_on(
+    body: &PlanarBody,
+    palms: &PalmMotion,
+    forms: &[Palm<Real>; 2],
+    start: [&Real; 2],
+    inertia: &Inertia,
+) -> Option<PlanarDynamics> {
     let turning = |acceleration: Real| {
-        let swing = Swing { value: phi0.clone(), rate: omega0.clone(), acceleration };
-        observe(body, palms, |time| swing.at(time))
+        let swing = Swing { value: start[0].clone(), rate: start[1].clone(), acceleration };
+        observe(body, palms, forms, |time| swing.at(time))
     };
     let (placement, coasting) = turning(Real::zero())?;
     let (_, driven) = turning(Real::one())?;

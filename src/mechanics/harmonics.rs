@@ -6,7 +6,8 @@
 use std::ops::{Add, Mul, Sub};
 
 /// Numbers of which a support function is made.
-pub(super) trait SupportNumber: Clone {
+pub trait SupportNumber: Clone {
+    /// A small whole number.
     fn whole(n: i32) -> Self;
 }
 

@@ -14,12 +14,15 @@
 //! formula of the thesis beyond the definitions of the frames and of what `s`, `r`, `d` and `e` mean. In
 //! particular it does not know that `r' = -d`, nor how `s` moves, nor Euler's equation.
 //!
-//! Left out here: friction, contact that breaks (the sign of a contact force is reported, not enforced), palms
-//! that are not flat, and time: a motion is known at one moment, with its first two derivatives there. Through time
+//! A [`Palm`] says what a sensor's value means: the contact, tangent, normal and curvature there. Flat ones and circular
+//! ones there are in the plane, flat ones in space.
+//!
+//! Left out here: friction, contact that breaks (the sign of a contact force is reported, not enforced), and time: a motion is known at one moment, with its first two derivatives there. Through time
 //! and in double precision bodies are moved by [`moving`], for which this is the witness.
 
 mod body;
 mod contact;
+mod curved;
 mod derivative;
 mod dynamics;
 mod grip;
@@ -27,6 +30,7 @@ mod harmonics;
 pub mod linear;
 mod motion;
 pub mod moving;
+mod palm;
 mod precise;
 mod quasistatics;
 mod rest;
@@ -36,16 +40,20 @@ mod tumbling;
 #[doc(hidden)]
 pub use body::PlanarBody;
 #[doc(hidden)]
-pub use contact::{Placement, place};
+pub use contact::{Angles, Placement, place};
+#[doc(hidden)]
+pub use curved::place_on;
 #[doc(hidden)]
 pub use derivative::differentiate;
 pub(crate) use derivative::{Derivatives, Moving};
 #[doc(hidden)]
-pub use dynamics::{Inertia, PlanarDynamics, planar_dynamics};
+pub use dynamics::{Inertia, PlanarDynamics, planar_dynamics, planar_dynamics_on};
 #[doc(hidden)]
 pub use grip::palm_frame;
 #[doc(hidden)]
 pub use motion::{PalmMotion, PlanarMotion, Swing, radius_of_curvature};
+#[doc(hidden)]
+pub use palm::{Palm, PalmNumber, PalmPoint};
 #[doc(hidden)]
 pub use precise::Real;
 #[doc(hidden)]

@@ -1,8 +1,9 @@
 //! A planar body that is carried along by given angles, seen by differences.
 
-use super::contact::{Angles, Placement, place};
+use super::contact::{Angles, Placement};
+use super::curved::place_on;
 use super::linear::Vector;
-use super::{Derivatives, Moving, PlanarBody, Real, differentiate};
+use super::{Derivatives, Moving, Palm, PlanarBody, Real, differentiate};
 
 /// An angle as a function of time near time zero: radians, per second, per second squared.
 #[derive(Clone, Debug)]
@@ -59,17 +60,19 @@ fn pairs(found: Derivatives) -> (impl Iterator<Item = [Moving; 2]>, Real) {
     (std::iter::from_fn(next), found.error)
 }
 
-/// Differentiates the motion of a body whose orientation is a function of time and of the palms' angles then.
+/// Differentiates the motion of a body between palms of the given forms, whose orientation is a function of time and of the
+/// palms' angles then.
 ///
 /// `None` only where the list of quantities does not come back whole, which does not happen.
 pub fn observe(
     body: &PlanarBody,
     palms: &PalmMotion,
+    forms: &[Palm<Real>; 2],
     orientation: impl Fn(&Real) -> Real,
 ) -> Option<(Placement, PlanarMotion)> {
     let placement = |time: &Real| {
         let phi0 = orientation(time);
-        (place(body, &palms.angles(phi0.clone(), time)), phi0)
+        (place_on(body, &palms.angles(phi0.clone(), time), forms), phi0)
     };
     let quantities = |time: &Real| {
         let (Placement { centre, contacts: [a, b] }, phi0) = placement(time);

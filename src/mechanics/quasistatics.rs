@@ -2,7 +2,7 @@
 
 use super::contact::{Angles, place};
 use super::motion::{PalmMotion, PlanarMotion, observe};
-use super::{Placement, PlanarBody, Real, differentiate};
+use super::{Palm, Placement, PlanarBody, Real, differentiate};
 
 /// How many orientations are tried to find the lowest one.
 const TRIED: i64 = 48;
@@ -53,7 +53,8 @@ pub fn lowest_pose(body: &PlanarBody, phi1: &Real, phi2: &Real) -> Option<Real> 
 /// The motion of a body that is at rest on the palms at every moment while they move slowly, from a stable
 /// pose `phi0` at time zero.
 pub fn follow(body: &PlanarBody, palms: &PalmMotion, phi0: &Real) -> Option<(Placement, PlanarMotion)> {
-    observe(body, palms, |time| stationary(body, &palms.phi1.at(time), &palms.phi2.at(time), phi0).0)
+    let forms = [Palm::Flat, Palm::Flat];
+    observe(body, palms, &forms, |time| stationary(body, &palms.phi1.at(time), &palms.phi2.at(time), phi0).0)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use super::composition;
 use super::conditions::{all_vanish, vanishes};
-use super::generic::{Ceiling, GenericAnswer, generic_answer};
+use super::generic::{Ceiling, GenericAnswer, Seen, generic_answer, generic_answer_of};
 use super::needed::{CodistributionError, needed};
 use super::series::lie_derivative_by_series;
 use crate::expression::{Node, NodeId, Symbol, gradient};
@@ -122,6 +122,16 @@ impl Frame {
             if is_invariant(system, conditions) { Ceiling::Rests } else { rank_around(system, conditions) };
         let generic = generic_answer(system, conditions, around);
         Ok(Frame { around, generic })
+    }
+
+    /// Of each of some functions whether it is seen at almost all of these states, and what that rests on: the rank, found anew.
+    pub fn functions(
+        &self,
+        system: &System,
+        conditions: &Assignment,
+        asked: &[NodeId],
+    ) -> (GenericAnswer, Vec<Seen>) {
+        generic_answer_of(system, conditions, self.around, asked)
     }
 
     /// Whether the words that show what is seen are short enough, and few enough, to be written down in a moment: along one field the
@@ -339,9 +349,9 @@ impl Codistribution {
         self.needed.len() < self.generic.at_least && matches!(self.stop, Stop::TooMany | Stop::Order)
     }
 
-    /// Whether the search came to its own end, and was not cut off.
+    /// Whether the search came to its own end, and was neither cut off nor left out.
     pub fn has_rested(&self) -> bool {
-        !matches!(self.stop, Stop::TooMany | Stop::Order)
+        !matches!(self.stop, Stop::TooMany | Stop::Order | Stop::NotTaken)
     }
 
     /// What no rank can exceed at any state of the locus, for certain but for the error of the generic answer.

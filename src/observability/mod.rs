@@ -49,7 +49,9 @@ pub use fibre::{
 };
 #[doc(hidden)]
 pub use flow::Flow;
-pub use generic::{Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, generic_rank};
+pub use generic::{
+    Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, generic_answer_of, generic_rank,
+};
 #[doc(hidden)]
 pub use generic::{Directions, Probe};
 pub(crate) use locus::AVOIDED;

@@ -4,11 +4,14 @@
 //! for constants or signals; a [`ModelFlow`] follows it through time with its exact first and second derivatives by the unknowns. A
 //! `Window` compares what the model expects with what was read, `cramer_rao` bounds how well that can tell the
 //! unknowns, and an [`Observer`] works through a [`Task`] and gives a [`Track`]: Newton's method and a region of trust
-//! ([`MovingWindow`]), [`Integration`], [`Kalman`], [`HighGain`].
+//! ([`MovingWindow`]), [`Integration`], [`Kalman`], [`HighGain`]. Whether what is left is what the errors of the readings explain
+//! is a [`Fit`]; which errors of what is taken for known it would show, and which not, says a [`Suspect`].
 //!
 //! This floor knows systems, signals and numbers; it knows nothing of palms, bodies or scenes.
 
 mod bound;
+mod chi_square;
+mod fit;
 mod flow;
 mod high_gain;
 mod integration;
@@ -19,12 +22,16 @@ mod moving_window;
 mod newton;
 pub(crate) mod record;
 mod signal;
+mod suspect;
 mod task;
 mod trust_region;
 mod window;
 
 pub use bound::CramerRaoBound;
 pub(crate) use bound::cramer_rao;
+#[doc(hidden)]
+pub use chi_square::exceeded_with;
+pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom};
 pub use flow::Lost;
 #[doc(hidden)]
 pub use flow::{ModelFlow, Order, Sample};
@@ -38,5 +45,6 @@ pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
 pub use newton::Newton;
 pub use record::{Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading};
 pub use signal::{SignalError, Signals};
+pub use suspect::Suspect;
 pub use task::{EstimateQuestion, Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
 pub use trust_region::TrustRegion;

@@ -1,9 +1,11 @@
 //! The observer of section 4.5: after every window of samples some steps towards the state at its beginning that explains
 //! it best, from there on by the equations.
 
+use super::fit::{FALSE_ALARMS, Misfit, Noise};
+use super::suspect::{is_asked, suspects};
 use super::task::{Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
 use super::window::Window;
-use super::{Newton, Order, TrustRegion, cramer_rao};
+use super::{Fit, Newton, Order, TrustRegion, cramer_rao};
 use argmin::core::{Executor, State, TerminationReason, TerminationStatus};
 use nalgebra::DVector;
 use serde::Deserialize;
@@ -56,6 +58,7 @@ impl MovingWindow {
 impl Observer for MovingWindow {
     fn observe(&self, task: &Task<'_>) -> Track {
         let mut track = Track::default();
+        let mut are_suspects_known = false;
         let samples = task.signals.times().len();
         let mut belief = task.guess.clone();
         let mut row = 0;
@@ -65,8 +68,13 @@ impl Observer for MovingWindow {
             let rows = row..(row + self.window.max(2)).min(samples - 1) + 1;
             let clamped: &[usize] = if row == 0 { &task.clamped } else { &[] };
             // too few samples to compare are only followed, and seen if those before were
-            let update =
+            let mut update =
                 (rows.len() >= self.window.min(samples)).then(|| self.update(task, &belief, &rows, clamped));
+            if let Some(update) = update.as_mut().filter(|update| !are_suspects_known && is_asked(update)) {
+                let window = Self::window(task, &belief, &rows, clamped);
+                update.suspects = suspects(task, &window, update, self.alarm(task));
+                are_suspects_known = true;
+            }
             let mut start = task.full_state(&belief, row);
             if let Some(update) = update {
                 sees = !matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
@@ -109,8 +117,36 @@ impl MovingWindow {
         window.free.iter().map(size).collect()
     }
 
+    /// The probability of a false alarm that an update may have for all of a run to have no more than [`FALSE_ALARMS`].
+    fn alarm(&self, task: &Task<'_>) -> f64 {
+        let updates = task.signals.times().len().div_ceil(self.window.max(1));
+        FALSE_ALARMS / updates.max(1) as f64
+    }
+
     /// One update: what is believed of the state at the first of the rows.
+    ///
+    /// Where no noise is stated readings are taken as they are first; where something is left that the computation does not explain,
+    /// the first readings are in doubt as all others are, and the size of the errors is that of what is left.
     pub fn update(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &std::ops::Range<usize>,
+        clamped: &[usize],
+    ) -> Update {
+        let update = self.attempt(task, belief, rows, clamped);
+        let exactly = task.exact && task.noise == Noise::Unstated;
+        let at_best = matches!(update.end, UpdateEnd::Converged | UpdateEnd::DoesNotFit | UpdateEnd::Stuck);
+        if !(exactly && at_best) || update.misfit <= task.sigma {
+            return update;
+        }
+        let mut task = task.clone();
+        task.exact = false;
+        let again = self.attempt(&task, &update.estimate, rows, clamped);
+        Update { seconds: update.seconds + again.seconds, steps: update.steps + again.steps, ..again }
+    }
+
+    fn attempt(
         &self,
         task: &Task<'_>,
         belief: &[f64],
@@ -133,13 +169,15 @@ impl MovingWindow {
             troubled: 0,
             seconds: 0.0,
             end: UpdateEnd::Stuck,
+            fit: None,
+            suspects: Vec::new(),
         };
         let guess = window.unknowns(&window.start);
         update.end = match window.expand(&guess, Order::First) {
             Err(lost) => UpdateEnd::Lost(lost),
             Ok(expansion) => {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
-                match self.see(task, &window, &expansion.slopes, &sizes, &mut update) {
+                match self.see(task, task.sigma, &window, &expansion.slopes, &sizes, &mut update) {
                     Some(blind) => blind,
                     None => self.search(task, &window, guess, &sizes, &mut update),
                 }
@@ -149,16 +187,34 @@ impl MovingWindow {
         update
     }
 
+    /// How well a state explains a window.
+    fn fit(&self, task: &Task<'_>, window: &Window<'_>, differences: &DVector<f64>) -> Fit {
+        let read = || window.measured.iter().flatten();
+        let square: f64 = read().map(|value| value * value).sum();
+        let taken = if task.exact { task.full.states.len() - task.estimated() } else { 0 };
+        let misfit = Misfit {
+            differences,
+            outputs: task.full.outputs.len(),
+            unknowns: window.free.len() + taken,
+            size: (square / read().count().max(1) as f64).sqrt(),
+            alarm: self.alarm(task),
+            least: task.sigma,
+            timing: task.timing,
+        };
+        misfit.fit(task.noise)
+    }
+
     /// Sets the bound; says so where something that is sought is not seen.
     fn see(
         &self,
         task: &Task<'_>,
+        sigma: f64,
         window: &Window<'_>,
         slopes: &nalgebra::DMatrix<f64>,
         sizes: &[f64],
         update: &mut Update,
     ) -> Option<UpdateEnd> {
-        let bound = cramer_rao(slopes, task.sigma, sizes);
+        let bound = cramer_rao(slopes, sigma, sizes);
         let mut blind = false;
         update.deviations = vec![0.0; task.estimated()];
         for ((place, deviation), size) in window.free.iter().zip(&bound.deviations).zip(sizes) {
@@ -211,15 +267,19 @@ impl MovingWindow {
             Err(lost) => return UpdateEnd::Lost(lost),
             Ok(expansion) => {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
-                if let Some(blind) = self.see(task, window, &expansion.slopes, sizes, update) {
+                let fit = self.fit(task, window, &expansion.differences);
+                update.fit = Some(fit);
+                if let Some(blind) = self.see(task, fit.sigma, window, &expansion.slopes, sizes, update) {
                     update.estimate = window.start[..task.estimated()].to_vec();
                     update.outputs = window.start[task.estimated()..].to_vec();
                     return blind;
                 }
             }
         }
+        let fits = update.fit.is_some_and(|fit| fit.fits);
         match state.get_termination_status() {
-            TerminationStatus::Terminated(TerminationReason::SolverConverged) => UpdateEnd::Converged,
+            TerminationStatus::Terminated(TerminationReason::SolverConverged) if fits => UpdateEnd::Converged,
+            TerminationStatus::Terminated(TerminationReason::SolverConverged) => UpdateEnd::DoesNotFit,
             TerminationStatus::Terminated(TerminationReason::MaxItersReached) => UpdateEnd::StepsSpent,
             _ => UpdateEnd::Stuck,
         }

@@ -106,6 +106,13 @@ impl Signals {
         &self.columns[place]
     }
 
+    /// The same with a column multiplied by a factor.
+    pub(super) fn scaled(&self, place: usize, factor: f64) -> Signals {
+        let mut scaled = self.clone();
+        scaled.columns[place].iter_mut().for_each(|value| *value *= factor);
+        scaled
+    }
+
     /// The values of some columns at a time; outside the samples, of the polynomials at the nearest end.
     pub fn at(&self, places: &[usize], time: f64, values: &mut [f64]) {
         let mut basis = [0.0; POINTS];

@@ -1,5 +1,7 @@
 //! What every observer is given, and what it gives back.
 
+use super::fit::{Fit, Noise};
+use super::suspect::Suspect;
 use super::{Lost, Model, ModelError, ModelFlow, ModelQuestion, Order, Signals};
 use crate::system::System;
 use std::collections::BTreeMap;
@@ -21,14 +23,21 @@ pub struct Task<'a> {
     pub sizes: Vec<f64>,
     /// What an observer may not change in its first window, by place among what is sought.
     pub clamped: Vec<usize>,
-    /// The standard deviation of the readings of the outputs, in their unit; positive.
+    /// The standard deviation of the readings of the outputs, in their unit; positive. Where no noise is stated the least that is
+    /// believed of any reading.
     pub sigma: f64,
+    /// What is known of the readings' errors: by it a misfit is judged.
+    pub noise: Noise,
+    /// What the rounding of the samples' times may add to a reading, in the outputs' unit.
+    pub timing: f64,
     /// Whether the readings are taken as they are for the first values of the outputs, because they have no error.
     pub exact: bool,
     /// The tolerance of the integration.
     pub tolerance: f64,
     /// Set from outside to stop: what is done by then is given back.
     pub interrupt: &'a AtomicBool,
+    /// What the models were made from, for who asks what else they could have been.
+    pub(super) source: Arc<(System, EstimateQuestion)>,
 }
 
 /// Which states are to be estimated, and what is known beside the signals.
@@ -98,9 +107,12 @@ impl<'a> Task<'a> {
             clamped: (0..names.len()).filter(|i| wanted.clamped.contains(&names[*i])).collect(),
             guess,
             sigma: 1e-9,
+            noise: Noise::Unstated,
+            timing: 0.0,
             exact: true,
             tolerance: TOLERANCE,
             interrupt,
+            source: Arc::new((system.clone(), wanted.clone())),
         })
     }
 
@@ -167,8 +179,11 @@ pub struct SampleEstimate {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // names and messages say it
 pub enum UpdateEnd {
-    /// The last step was too short to matter.
+    /// The last step was too short to matter, and what is left is what the errors of the readings explain.
     Converged,
+    /// The last step was too short to matter, and what is left is more than the errors of the readings explain: another model,
+    /// other errors, or a false minimum.
+    DoesNotFit,
     /// All steps that were allowed are done.
     StepsSpent,
     /// No step made the error smaller.
@@ -206,6 +221,24 @@ pub struct Update {
     pub seconds: f64,
     /// How it ended.
     pub end: UpdateEnd,
+    /// How well it explains the readings, where it was found out.
+    pub fit: Option<Fit>,
+    /// What else might be wrong with the model: for the first update of a track that converged where the noise is stated.
+    pub suspects: Vec<Suspect>,
+}
+
+impl Update {
+    /// Whether it has an answer that the readings bear out.
+    pub fn is_borne_out(&self) -> bool {
+        let fits = self.fit.is_some_and(|fit| fit.fits);
+        fits && matches!(self.end, UpdateEnd::Converged | UpdateEnd::Stuck)
+    }
+
+    /// Whether the best state that was found leaves more than the errors of the readings explain.
+    pub fn is_contradicted(&self) -> bool {
+        let fails = self.fit.is_some_and(|fit| !fit.fits);
+        fails && matches!(self.end, UpdateEnd::DoesNotFit | UpdateEnd::Stuck)
+    }
 }
 
 /// What an observer makes of a task.
@@ -225,6 +258,16 @@ impl Track {
     /// What it believed last.
     pub fn last(&self) -> Option<&SampleEstimate> {
         self.estimates.last()
+    }
+
+    /// Whether one of its updates is contradicted by the readings.
+    pub fn is_contradicted(&self) -> bool {
+        self.updates.iter().any(Update::is_contradicted)
+    }
+
+    /// Whether one of its updates is borne out by the readings, and none is contradicted: of methods that work by windows.
+    pub fn is_sound(&self) -> bool {
+        self.updates.iter().any(Update::is_borne_out) && !self.is_contradicted()
     }
 }
 

@@ -6,6 +6,7 @@ use super::reduction::ReductionFound;
 use super::views::{LineFound, MapFound, SetRank};
 use crate::certificate::RegionAnswer;
 use crate::claim::Outcome;
+use crate::drops::DropAnswer;
 use crate::experiment::{Answer, Experiment};
 use crate::system::System;
 use crate::tradeoff::stress::StressStudy;
@@ -31,6 +32,8 @@ pub struct FileFindings {
     pub outcomes: Vec<Outcome>,
     /// The whole box first, then each named set.
     pub ranks: Vec<SetRank>,
+    /// Where the rank drops, of a file that claims something of a rank at all states.
+    pub drops: Option<DropAnswer>,
     /// The maps that the file asks for.
     pub maps: Vec<MapFound>,
     /// The lines that it asks for.
@@ -58,6 +61,7 @@ impl FileFindings {
             system,
             outcomes: Vec::new(),
             ranks: Vec::new(),
+            drops: None,
             maps: Vec::new(),
             lines: Vec::new(),
             printed: Vec::new(),

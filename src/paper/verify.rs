@@ -7,9 +7,11 @@ use super::reduction::reduce;
 use super::views::{draw, has_a_rank, rank_on};
 use crate::certificate::certify_region;
 use crate::claim::decide_all;
+use crate::drops::where_it_drops;
 use crate::experiment::{Experiment, Scene};
+use crate::expression::syntax::{Expr, ExprKind};
 use crate::sweep::UNINTERRUPTED;
-use crate::system::{ReadError, System};
+use crate::system::{ReadError, Statement, System};
 use crate::tradeoff::stress::{Stress, StressOptions, StressStudy};
 use crate::tradeoff::{
     LandscapeRows, TradeQuestion, compare_routes, growth_of_lie_derivatives, printed_values, trade,
@@ -123,10 +125,24 @@ fn names_something(system: &System) -> bool {
     !(system.sets.is_empty() && system.maps.is_empty() && system.lines.is_empty())
 }
 
+/// Whether a file claims what a rank is at all states, `rank = 6 except where g = 0`.
+fn speaks_of_all_states(system: &System) -> bool {
+    let statements = system.claims.iter().flat_map(|claim| claim.body.statements());
+    let is_of_words = |expr: &Expr| matches!(&expr.kind, ExprKind::Name(name) if name == "rank");
+    let is_one = |statement: &Statement| {
+        let sides = [&statement.equation.left, &statement.equation.right];
+        statement.except.is_some() && sides.into_iter().any(is_of_words)
+    };
+    statements.into_iter().any(is_one)
+}
+
 /// How many steps are announced.
 fn steps(paper: &Paper, systems: &[System]) -> u64 {
     let of_system = |system: &System| {
-        let ranks = if has_a_rank(system) { 4 + system.sets.len() } else { 0 };
+        let ranks = match has_a_rank(system) {
+            true => 4 + system.sets.len() + usize::from(speaks_of_all_states(system)),
+            false => 0,
+        };
         system.claims.len() + system.reductions.len() + ranks
     };
     (systems.iter().map(of_system).sum::<usize>() + paper.scenes.len() + 3) as u64
@@ -193,6 +209,11 @@ impl Run<'_> {
                 let what = set.map_or("the whole sample box", |set| &set.name);
                 let rank = || Ok(rank_on(system, set, seed, interrupt));
                 self.keep(place, what, rank, |file, rank| file.ranks.push(rank));
+            }
+            if speaks_of_all_states(system) {
+                // where there is no such question the claims say why
+                let drops = || Ok(where_it_drops(&mut system.clone(), seed, interrupt).ok());
+                self.keep(place, "where the rank drops", drops, |file, found| file.drops = found);
             }
             let pictures = || {
                 let mut left_out = Vec::new();

@@ -16,7 +16,10 @@ fn statement_formula(text: &str) -> Option<Formula> {
         Formula::Row(parts) => parts,
         other => vec![other],
     };
-    let mut row = relations(statement.relations().collect());
+    let mut row = match statement.is_about_what_is_seen() {
+        true => vec![layout.expression(&statement.equation.left)],
+        false => relations(statement.relations().collect()),
+    };
     if statement.on_sample {
         row.push(Formula::Text("on sample"));
     }

@@ -36,7 +36,7 @@ pub use layout::Layout;
 #[doc(hidden)]
 pub use motion::ended_in_words;
 pub use motion::{Observed, observe_json, observe_page, observe_text};
-pub use page::{findings_json, findings_text, page};
+pub use page::{drops_page, findings_json, findings_text, page};
 #[doc(hidden)]
 pub use page::{forget_seconds, forget_times};
 pub use ranks::{

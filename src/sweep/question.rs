@@ -329,7 +329,7 @@ fn answer_branch(
         _ => None,
     };
     let mut codistribution = codistribution;
-    codistribution.generic.seen_at_states(&full);
+    codistribution.generic.seen_at_states(system, &full);
     let known = codistribution.generic.is_final() && question.order.is_none();
     let motions = motions(system, &codistribution, &conditions, &given);
     let generic_rank =

@@ -410,20 +410,31 @@ impl Codistribution {
 }
 
 impl GenericAnswer {
-    /// Takes the highest rank that was certified at a state for a lower bound, on the component of the domain on which the state lies,
-    /// where that decides the rank.
-    pub(super) fn seen_at_states(&mut self, report: &SweepReport) {
-        let highest = report.rank_histogram.keys().next_back().copied();
+    /// Takes the rank that was certified at all sampled states for a lower bound, on the components of the domain on which they lie,
+    /// where that decides the rank; and what is not seen at one of them for not seen.
+    pub(super) fn seen_at_states(&mut self, system: &System, report: &SweepReport) {
+        let mut ranks = report.rank_histogram.keys();
+        let (rank, others) = (ranks.next(), ranks.next());
         let all_certified = report.samples > 0 && report.certified == report.samples;
-        if self.is_final() || !all_certified || highest != Some(self.at_most) {
+        // states of two ranks may lie on two components
+        if self.is_final() || !all_certified || rank != Some(&self.at_most) || others.is_some() {
             return;
         }
         self.at_least = self.at_most;
         self.open = Some(
             "by minors at the sampled states, for the components of the domain on which these lie".to_owned(),
         );
-        if self.at_least == self.dimension {
-            self.unknowns.iter_mut().for_each(|(_, seen)| *seen = Seen::Yes);
+        // a part that is told is no zero, also where it is known to many digits only
+        let takes_part = |name: &str| {
+            report.unseen.iter().any(|direction| direction.states.iter().any(|state| state == name))
+        };
+        for ((symbol, seen), surely) in self.unknowns.iter_mut().zip(&self.seen_at_most) {
+            if *surely || self.at_least == self.dimension {
+                *seen = Seen::Yes;
+            } else if takes_part(system.symbol_name(*symbol)) {
+                // the rank does without its column there, and so does it around
+                *seen = Seen::No;
+            }
         }
     }
 }

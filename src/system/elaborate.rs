@@ -13,7 +13,7 @@ use dashu::rational::RBig;
 pub(super) const LARGEST_GRAPH: usize = 4_000_000;
 
 /// The functions of the language beside [`Function::ALL`].
-pub(super) const OTHER_FUNCTIONS: [&str; 17] = [
+pub(super) const OTHER_FUNCTIONS: [&str; 21] = [
     "tan",
     "cot",
     "sec",
@@ -30,6 +30,10 @@ pub(super) const OTHER_FUNCTIONS: [&str; 17] = [
     "cross",
     "sum",
     "product",
+    "observable",
+    "unobservable",
+    "identifiable",
+    "unidentifiable",
     "solutions",
 ];
 
@@ -93,7 +97,11 @@ impl System {
                 let (value, domain) = self.apart(|system| system.elaborate(inner))?;
                 if matches!(
                     value,
-                    Value::CodistributionRank | Value::Pole { .. } | Value::Solutions(_) | Value::Infinity
+                    Value::CodistributionRank
+                        | Value::Pole { .. }
+                        | Value::Visible { .. }
+                        | Value::Solutions(_)
+                        | Value::Infinity
                 ) {
                     let message = format!("{} is not taken at a point", value.describe());
                     return Err(Problem::new(&expr.span, message, "here")
@@ -157,6 +165,9 @@ impl System {
             Value::Pole { expression, factor } => {
                 let both = graph.substitute(&[expression, factor], assignment);
                 Value::Pole { expression: both[0], factor: both[1] }
+            }
+            Value::Visible { functions, is_seen } => {
+                Value::Visible { functions: graph.substitute(&functions, assignment), is_seen }
             }
             Value::Solutions(id) => Value::Solutions(graph.substitute(&[id], assignment)[0]),
             Value::CodistributionRank | Value::Infinity => value,
@@ -301,6 +312,9 @@ impl System {
                 )),
             },
             _ => {
+                if let Some(word) = super::visible::VISIBLE.into_iter().find(|(word, ..)| *word == name) {
+                    return self.visible(word, arguments, span);
+                }
                 if let Some(found) = self.composed(name, arguments, span) {
                     return found;
                 }

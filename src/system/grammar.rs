@@ -6,6 +6,7 @@ use super::problems::{Damage, indentation, is_first_in_line, next_entry, open_qu
 use super::signals::{DeclaredInitial, DeclaredSignal, Knowledge, entry};
 use super::standing::{Basis, Flaw, Reference, basis, fault};
 use super::views::{View, begins, view};
+use super::visible::visible;
 use crate::expression::Expected;
 use crate::expression::parse::{
     Depth, Read, Text, blank, conditions, ends_a_line, equations, keyword, loops, moved, name, range,
@@ -159,10 +160,12 @@ impl ClaimBody {
         })
     }
 
-    /// Whether a statement is about `rank`, the rank of the observability codistribution.
+    /// Whether a statement is about `rank`, the rank of the observability codistribution, or about what it spans.
     pub fn is_about_the_codistribution(&self) -> bool {
         let is_rank = |side: &Expr| matches!(&side.kind, ExprKind::Name(name) if name == "rank");
-        self.statements().iter().any(|s| is_rank(&s.equation.left) || is_rank(&s.equation.right))
+        self.statements()
+            .iter()
+            .any(|s| is_rank(&s.equation.left) || is_rank(&s.equation.right) || s.is_about_what_is_seen())
     }
 }
 
@@ -390,8 +393,13 @@ const MOST_CARRIED_DIGITS: usize = 30;
 
 pub(super) fn statement(input: &mut Text<'_>) -> Read<Box<Statement>> {
     let begin = input.current_token_start();
-    let mut further = cut_err(equations).parse_next(input)?;
-    let equation = further.remove(0);
+    let (equation, further) = match opt(visible).parse_next(input)? {
+        Some(visible) => (visible, Vec::new()),
+        None => {
+            let mut further = cut_err(equations).parse_next(input)?;
+            (further.remove(0), further)
+        }
+    };
     let mut end = equation.span.end;
     let carried = match opt(keyword("carrying")).parse_next(input)? {
         None => None,

@@ -34,6 +34,7 @@ mod source_text;
 mod standing;
 mod unknowns;
 mod views;
+mod visible;
 #[doc(hidden)]
 pub mod vocabulary;
 mod written;
@@ -57,7 +58,6 @@ pub(crate) use outline::{Declaration, DeclarationKind, Outline};
 pub use problems::MOST_PROBLEMS;
 pub use read::Examination;
 pub(crate) use source_text::load;
-#[cfg(feature = "cli")]
 pub(crate) use source_text::with_plain_line_ends;
 pub use standing::{Basis, Flaw, Reference};
 pub use unknowns::UnknownKind;

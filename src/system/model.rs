@@ -165,6 +165,13 @@ pub enum Value {
         /// What vanishes there.
         factor: NodeId,
     },
+    /// `observable(e, ...)` or `unobservable(e, ...)`: a statement by itself.
+    Visible {
+        /// What it is said of.
+        functions: Vec<NodeId>,
+        /// Whether they are seen.
+        is_seen: bool,
+    },
     /// `solutions(e)`, how many values of an expression give the same outputs.
     Solutions(NodeId),
     /// `infinity`, with which such a number is compared.
@@ -213,6 +220,7 @@ impl Value {
             Value::Matrix(m) => format!("a matrix of {} by {}", m.rows, m.columns),
             Value::Rank(_) | Value::CodistributionRank => "a rank".to_owned(),
             Value::Pole { .. } => "the order of a pole".to_owned(),
+            Value::Visible { .. } => "a statement about what is seen".to_owned(),
             Value::Solutions(_) => "a number of solutions".to_owned(),
             Value::Infinity => "infinity".to_owned(),
         }

@@ -288,16 +288,14 @@ impl System {
                 if !self.calculates_nothing(expr) {
                     self.calculated.insert(name.text.clone());
                 }
-                if matches!(value, Value::Solutions(_) | Value::Infinity) {
-                    let message = format!("{} has no name", value.describe());
+                let nameless = match &value {
+                    Value::CodistributionRank => Some("the rank of the codistribution".to_owned()),
+                    Value::Visible { .. } | Value::Solutions(_) | Value::Infinity => Some(value.describe()),
+                    _ => None,
+                };
+                if let Some(nameless) = nameless {
+                    let message = format!("{nameless} has no name");
                     return Err(Problem::new(&expr.span, message, "claim it as it is"));
-                }
-                if value == Value::CodistributionRank {
-                    return Err(Problem::new(
-                        &expr.span,
-                        "the rank of the codistribution has no name",
-                        "claim it as it is",
-                    ));
                 }
                 self.note_component(&name.text);
                 let written = match (&value, is_component(&name.text)) {
@@ -379,11 +377,14 @@ impl System {
         let comparable = match &values {
             (Value::Matrix(l), Value::Matrix(r)) => (l.rows, l.columns) == (r.rows, r.columns),
             (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
+            (Value::Visible { .. }, _) | (_, Value::Visible { .. }) => statement.is_about_what_is_seen(),
             (left, right) => left.are_comparable(right),
         };
-        let of_codistribution =
-            matches!(values, (Value::CodistributionRank, _) | (_, Value::CodistributionRank))
-                || matches!(values, (Value::Solutions(_), _) | (_, Value::Solutions(_)));
+        let of_codistribution = matches!(
+            values,
+            (Value::CodistributionRank | Value::Visible { .. } | Value::Solutions(_), _)
+                | (_, Value::CodistributionRank | Value::Solutions(_))
+        );
         if of_codistribution
             && !self.states.is_empty()
             && !self.outputs.is_empty()

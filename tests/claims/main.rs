@@ -25,4 +25,5 @@ mod recheck;
 mod series;
 mod units;
 mod vectors;
+mod visible;
 mod words;

@@ -131,7 +131,7 @@ fn entries(system: &mut System, text: &str) -> Vec<NodeId> {
         Value::Scalar(id) => vec![id],
         Value::Matrix(matrix) | Value::Rank(matrix) => matrix.entries,
         Value::Pole { expression, factor } => vec![expression, factor],
-        Value::CodistributionRank => Vec::new(),
+        Value::CodistributionRank | Value::Visible { .. } => Vec::new(),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Published models: the rank at almost all states, and of each unknown whether it is seen, as `tests/models/expected.toml` has them. Those
+//! Published models, those in `tests/models` and those in `proofs/benchmarks`: the rank at almost all states, and of each unknown whether it is seen, as `tests/models/expected.toml` has them. Those
 //! answers are held to a program that shares nothing with ours by `benches/peers/models.py`.
 
 use palmistry::System;
@@ -15,13 +15,18 @@ struct Expected {
 
 #[test]
 fn published_models_have_their_answers() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models");
-    let text = std::fs::read_to_string(folder.join("expected.toml")).unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("tests/models/expected.toml")).unwrap();
     let expected: BTreeMap<String, Expected> = toml::from_str(&text).unwrap();
     assert!(expected.len() > 70);
     let mut open = Vec::new();
     for (name, expected) in &expected {
-        let mut system = System::read(&folder.join(name).with_extension("proof")).unwrap();
+        // those that are proved besides lie there, and none lies at both places
+        let places = ["tests/models", "proofs/benchmarks"];
+        let paths = places.map(|folder| root.join(folder).join(name).with_extension("proof"));
+        let path: Vec<_> = paths.iter().filter(|path| path.exists()).collect();
+        assert_eq!(path.len(), 1, "{name}");
+        let mut system = System::read(path[0]).unwrap();
         let answer = Frame::new(&mut system, &HashMap::new()).unwrap().generic;
         assert_eq!(answer.dimension, expected.dimension, "{name}");
         assert!(answer.at_least <= expected.rank && expected.rank <= answer.at_most, "{name}: {answer:?}");

@@ -383,6 +383,18 @@ fn signals_and_constants() {
     assert_eq!(reparametrise(&system, &found, "a.proof"), Err(NotReparametrised::KnownSignals));
 }
 
+/// The removed of an epidemic stand in no rate and no output: they are left out, and no coordinate is new.
+#[test]
+fn what_nothing_mentions_is_left_out() {
+    check(&Case {
+        text: "system \"epidemic\"  state S, I, R  param b unknown, g unknown
+            drift f S' = -b*S*I I' = b*S*I - g*I R' = g*I  output I",
+        fields: &["d/dR"],
+        seen: &["S", "I", "b", "g"],
+        functions: &[],
+    });
+}
+
 /// A chain of twenty, 61 unknowns, in a time that a test has: the scalings of each link.
 #[test]
 fn sixty_unknowns() {

@@ -109,6 +109,7 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
     }
     checks.sensor(&keys.sensor)?;
     checks.positive("data.spike", keys.data.spike, "usual departures")?;
+    let palm_forms = checks.forms(keys.palms.as_ref().and_then(|palms| palms.radii))?;
     let simulated = checks.simulated(keys.duration, keys.samples, keys.rate, keys.body, keys.palms)?;
     match &simulated {
         None if keys.data.record.is_none() => {
@@ -137,6 +138,7 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         model: folder.join(keys.model),
         seed: keys.seed,
         simulated,
+        palm_forms,
         sensor: keys.sensor,
         data,
         observer,

@@ -39,6 +39,7 @@ fn one() -> u64 {
 #[serde(deny_unknown_fields)]
 pub(super) struct PalmsKeys {
     pub inertia: [f64; 2],
+    pub radii: Option<[f64; 2]>,
     pub prescribed: Option<[Course; 2]>,
     pub torques: Option<[PushedPalm; 2]>,
 }

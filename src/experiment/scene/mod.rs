@@ -13,6 +13,7 @@ pub use crate::system::ReadError as SceneError;
 pub use observing::{BasinStudy, Data, Guess, Method, NoiseStudy, ObserverSettings, Sensor, Study};
 pub use simulated::{Body, Palms, SceneOutline, Simulated};
 
+use crate::mechanics::Palm;
 use crate::observer::FaultRules;
 use crate::system::{Problem, load};
 use place::Places;
@@ -31,6 +32,9 @@ pub struct Scene {
     pub seed: u64,
     /// `duration`, `samples` or `rate`, `[body]` and `[palms]`: what is simulated. Absent where the data is recorded.
     pub simulated: Option<Simulated>,
+    /// `radii` of `[palms]`, in m: positive of a hollow circular palm, negative of a bulging one, infinite of a flat one, as both
+    /// are unless given.
+    pub palm_forms: [Palm<f64>; 2],
     /// `[sensor]`: how well the sensors read.
     pub sensor: Sensor,
     /// `[data]`: recorded data, and what to do with a faulty row.

@@ -149,7 +149,8 @@ fn write_name(name: &FormulaName, out: &mut String) {
 fn word_of(word: &str) -> String {
     match word {
         "d" => "\\mathrm{d}".to_owned(),
-        "rank" | "pole" | "sgn" | "atan2" | "solutions" => format!("\\operatorname{{{word}}}"),
+        "rank" | "pole" | "sgn" | "atan2" | "solutions" | "observable" | "unobservable" | "identifiable"
+        | "unidentifiable" => format!("\\operatorname{{{word}}}"),
         _ => format!("\\{word}"),
     }
 }

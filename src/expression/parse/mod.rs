@@ -205,7 +205,7 @@ pub(crate) fn sum(input: &mut Text<'_>) -> Read<Expr> {
 }
 
 /// The sign between two sides.
-fn relation(input: &mut Text<'_>) -> Read<Relation> {
+pub(crate) fn relation(input: &mut Text<'_>) -> Read<Relation> {
     // the longer signs first
     alt((
         sign("!=").value(Relation::NotEqual),

@@ -4,9 +4,13 @@ use super::breach::Breach;
 use super::drive::{Drive, Oscillation};
 use super::laws::Situation;
 use super::scene::{MovingScene, SceneError};
+use crate::mechanics::palm::Palm;
 
 /// The tolerances that double precision and the method can serve.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-14..=1e-3;
+
+/// Radii of palms in m. Beyond, an arc is flat to more digits than a motion has.
+const RADII: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
 impl MovingScene {
     /// Whether all values can be used and both palms hold the body at the start.
@@ -28,6 +32,20 @@ impl MovingScene {
             let of = |what: &str| format!("palm {}'s {what}", i + 1);
             let (inertia, length) = (self.palm_inertia[i], self.palm_lengths[i]);
             is(length > 0.0, &of("length"), length, "positive, or infinite")?;
+            if let Palm::Circular { radius } = self.palms[i] {
+                let usable = RADII.contains(&radius.abs());
+                is(
+                    usable,
+                    &of("radius"),
+                    radius,
+                    "between 1e-6 m and 1e6 m, or minus that; flatter ones are flat",
+                )?;
+                // a body rolls freely in a circle that is nowhere more curved than itself (Blaschke)
+                let curvature = self.shape.greatest_radius_of_curvature();
+                if radius > 0.0 && curvature >= radius {
+                    return Err(SceneError::TooHollow { palm: i + 1, radius, curvature });
+                }
+            }
             let swings: &[Oscillation] = match &self.drive {
                 Drive::Prescribed(courses) => {
                     // a palm that is told how to move may weigh nothing

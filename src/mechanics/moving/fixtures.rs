@@ -2,6 +2,7 @@
 //! scenes with round numbers; `every_fixture_keeps_what_it_promises` says what holds in them.
 
 use super::*;
+use crate::mechanics::Palm;
 
 /// No ellipse, and no symmetry but for the second harmonic's own.
 pub(crate) fn shape() -> Shape {
@@ -19,6 +20,7 @@ fn scene(shape: Shape, [orientation, rate]: [f64; 2], palms: [Course; 2]) -> Mov
         gravity: -9.81,
         palm_inertia: [0.5, 0.6],
         palm_lengths: [f64::INFINITY; 2],
+        palms: [Palm::Flat; 2],
         drive: Drive::Prescribed(palms),
         tolerance: DEFAULT_TOLERANCE,
     }
@@ -66,6 +68,21 @@ pub(crate) fn spline_swings() -> MovingScene {
     let form = BodyForm::Spline { radii: [1.2, 1.6, 1.3], knots: Knots::Uniform };
     let palms = [course(0.7, 0.1, &[[0.1, 0.4, 2.6]]), course(1.6, 0.2, &[[0.1, 0.5, 0.1]])];
     scene(Shape::new(&form, CentreOfMass::Uniform).unwrap(), [3.6, 1.7], palms)
+}
+
+/// Hollow palms that swing (section 4.7).
+pub(crate) fn hollow_swing() -> MovingScene {
+    MovingScene { palms: [4.0, 5.0].map(|radius| Palm::Circular { radius }), rate: -0.8, ..palms_swing() }
+}
+
+/// Palms that bulge, one of them at rest.
+pub(crate) fn bulging() -> MovingScene {
+    MovingScene { palms: [-5.0, -4.0].map(|radius| Palm::Circular { radius }), ..palm_2_turns() }
+}
+
+/// A hollow palm and a flat one, both at rest.
+pub(crate) fn hollow_and_flat() -> MovingScene {
+    MovingScene { palms: [Palm::Circular { radius: 4.0 }, Palm::Flat], ..palms_fixed() }
 }
 
 /// The times of section 4.6: 400 steps in 1.4 s.

@@ -1,4 +1,4 @@
-//! The laws of motion at one moment: geometry of contact, Newton's and Euler's laws, two linear equations for the
+//! The laws of motion at one moment, between flat palms (`curved` has the others): geometry of contact, Newton's and Euler's laws, two linear equations for the
 //! contact forces.
 //!
 //! Palm `i` has the world angle `psi_i`, the rate `w_i` and the normal `n_i` towards the body; the body's outward
@@ -19,6 +19,7 @@ use super::breach::Breach;
 use super::drive::Drive;
 use super::plane::{Plane, along, cross, dot, left_of, meet, scaled, unit};
 use super::scene::MovingScene;
+use crate::mechanics::palm::Palm;
 use std::f64::consts::FRAC_PI_2;
 
 /// What is integrated: `phi0`, `omega0`, `phi1`, `omega1`, `phi2`, `omega2` (these four stay as they are where the
@@ -52,6 +53,8 @@ pub(super) struct Situation {
     pub d: [f64; 2],
     pub forces: [f64; 2],
     pub torques: [f64; 2],
+    /// The sine of the angle between the palms' tangents at the contacts.
+    pub opening: f64,
 }
 
 impl MovingScene {
@@ -65,18 +68,47 @@ impl MovingScene {
         }
         state
     }
+
+    /// Angle, rate and, where it is told, acceleration of both palms against the X axis.
+    pub(super) fn palms_at(&self, time: f64, state: &State) -> [[f64; 3]; 2] {
+        let own: [[f64; 3]; 2] = match &self.drive {
+            Drive::Prescribed(courses) => [courses[0].at(time), courses[1].at(time)],
+            Drive::Torques(_) => [[state[2], state[3], 0.0], [state[4], state[5], 0.0]],
+        };
+        [own[0], std::array::from_fn(|k| own[0][k] + own[1][k])]
+    }
+
+    /// The palms' accelerations and the motors' torques, by the palms' own law: one of the two is told.
+    pub(super) fn accelerations_and_torques(
+        &self,
+        time: f64,
+        world: &[[f64; 3]; 2],
+        levers: [f64; 2],
+        forces: [f64; 2],
+    ) -> ([f64; 2], [f64; 2]) {
+        match &self.drive {
+            Drive::Prescribed(_) => {
+                let told = [world[0][2], world[1][2]];
+                let torque = |i: usize| self.palm_inertia[i] * told[i] + levers[i] * forces[i];
+                (told, [torque(0), torque(1)])
+            }
+            Drive::Torques(palms) => {
+                let torques = [0, 1].map(|i: usize| palms[i].torque_at(time));
+                let found = |i: usize| (torques[i] - levers[i] * forces[i]) / self.palm_inertia[i];
+                ([found(0), found(1)], torques)
+            }
+        }
+    }
 }
 
 impl Situation {
     /// The contacts, forces and accelerations that a state has at a time. Not finite where the palms are parallel.
     pub(super) fn at(scene: &MovingScene, time: f64, state: &State) -> Situation {
+        if scene.palms.iter().any(|palm| *palm != Palm::Flat) {
+            return Situation::between_curved(scene, time, state);
+        }
         let [phi0, omega0, ..] = *state;
-        // angle, rate and, where it is told, acceleration of palm 1 and of palm 2 against palm 1
-        let own: [[f64; 3]; 2] = match &scene.drive {
-            Drive::Prescribed(courses) => [courses[0].at(time), courses[1].at(time)],
-            Drive::Torques(_) => [[state[2], state[3], 0.0], [state[4], state[5], 0.0]],
-        };
-        let world = [own[0], std::array::from_fn(|k| own[0][k] + own[1][k])];
+        let world = scene.palms_at(time, state);
         let [angles, rates] = [0, 1].map(|k: usize| [world[0][k], world[1][k]]);
 
         let normals = [left_of(unit(angles[0])), scaled(-1.0, left_of(unit(angles[1])))];
@@ -117,24 +149,14 @@ impl Situation {
             }
         }
         let forces = meet(rows[0], right[0], rows[1], right[1]);
-        let (accelerations, torques) = match &scene.drive {
-            Drive::Prescribed(_) => {
-                let told = [world[0][2], world[1][2]];
-                let torque = |i: usize| scene.palm_inertia[i] * told[i] + levers[i] * forces[i];
-                (told, [torque(0), torque(1)])
-            }
-            Drive::Torques(palms) => {
-                let torques = [0, 1].map(|i: usize| palms[i].torque_at(time));
-                let found = |i: usize| (torques[i] - levers[i] * forces[i]) / scene.palm_inertia[i];
-                ([found(0), found(1)], torques)
-            }
-        };
+        let (accelerations, torques) = scene.accelerations_and_torques(time, &world, levers, forces);
         Situation {
             alpha0: dot(forces, moments) / inertia,
             s: [0, 1].map(|i: usize| dot(contacts[i], unit(angles[i]))),
             r: [support[0][0], support[1][0]],
             // the thesis's tangent is a quarter turn clockwise from the outward normal
             d: [-support[0][1], -support[1][1]],
+            opening: (angles[1] - angles[0]).sin(),
             centre,
             velocity,
             angles,
@@ -158,12 +180,17 @@ impl Situation {
     /// What is wrong with the contacts, if anything is.
     pub(super) fn breach(&self, scene: &MovingScene) -> Option<Breach> {
         let positive = |x: f64| x > 0.0;
-        if !positive((self.angles[1] - self.angles[0]).sin() - PARALLEL) {
+        if !positive(self.opening - PARALLEL) {
             return Some(Breach::Parallel);
         }
         let each = |holds: &dyn Fn(usize) -> bool| (0..2).find(|&i| !holds(i)).map(|i| i + 1);
-        let beyond =
-            each(&|i| positive(scene.palm_lengths[i] - self.s[i])).map(|palm| Breach::Beyond { palm });
+        let on_palm = |i: usize| {
+            // a flat palm's contact lies on the body's side of the other one; an arc ends where it has turned by half a turn
+            let reach = scene.palms[i].reach();
+            positive(scene.palm_lengths[i].min(reach) - self.s[i])
+                && (reach.is_infinite() || positive(self.s[i]))
+        };
+        let beyond = each(&on_palm).map(|palm| Breach::Beyond { palm });
         let contact = each(&|i| positive(self.forces[i])).map(|palm| Breach::Contact { palm });
         beyond.or(contact)
     }

@@ -13,10 +13,11 @@
 //! the witness in tests; what a body with harmonics looks like, its support function, both share.
 //!
 //! Left out: friction, impacts (a motion ends where a contact force reaches zero, for after that the body may
-//! come back and hit), palms that are not flat, the palms' own weight.
+//! come back and hit), palms that touch each other, the palms' own weight.
 
 mod breach;
 mod check;
+mod curved;
 mod drive;
 mod form;
 mod integrate;

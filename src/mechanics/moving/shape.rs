@@ -119,6 +119,13 @@ impl Shape {
         h + second
     }
 
+    /// The greatest radius of curvature, in metres, of as many points as tell it to a thousandth and more.
+    pub fn greatest_radius_of_curvature(&self) -> f64 {
+        const DIRECTIONS: u32 = 8192;
+        let at = |i: u32| self.radius_of_curvature(TAU * f64::from(i) / f64::from(DIRECTIONS));
+        (0..DIRECTIONS).map(at).fold(0.0, f64::max)
+    }
+
     /// Points of the outline in the body's frame, counterclockwise, at equal steps of the normal's angle.
     pub fn outline(&self, count: usize) -> Vec<[f64; 2]> {
         (0..count).map(|i| self.point(TAU * i as f64 / count as f64)).collect()

@@ -68,8 +68,9 @@ pub(super) fn rounds(equations: &Equations, orders: usize) -> Result<Rounds, Str
     let Some((rounds, log2_error)) = bounded else {
         return Err(format!("the degree of a minor may be {:.1e}", size.degree));
     };
-    // of each column it is asked whether the others do without it
+    // of each column it is asked whether the others do without it, and of functions whether they add to the span
     let each = log2_error / rounds as f64;
-    let rounds = rounds.max(((100.0 + rows.log2() + 1.0) / -each).ceil() as usize);
-    Ok(Rounds { rounds, log2_error: rounds as f64 * each + (rows + 1.0).log2() })
+    let questions = rows + equations.asked as f64;
+    let rounds = rounds.max(((100.0 + questions.log2() + 1.0) / -each).ceil() as usize);
+    Ok(Rounds { rounds, log2_error: rounds as f64 * each + (questions + 1.0).log2() })
 }

@@ -42,6 +42,15 @@ impl Echelon {
         true
     }
 
+    /// Whether a row lies in the span.
+    pub fn contains(&self, mut row: Vec<u64>) -> bool {
+        for (pivot, other) in self.pivots.iter().zip(&self.rows) {
+            let factor = row[*pivot];
+            self.field.subtract_multiple(&mut row, factor, other);
+        }
+        row.iter().all(|entry| *entry == 0)
+    }
+
     /// Whether a row begins at this column.
     pub fn begins_at(&self, column: usize) -> bool {
         self.pivots.contains(&column)

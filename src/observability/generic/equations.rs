@@ -24,6 +24,8 @@ pub(super) struct Equations {
     /// The unknowns and what is known at the beginning: the rows of these are what rests when it has stopped growing.
     pub closed: Vec<usize>,
     pub outputs: usize,
+    /// How many functions are asked for besides: their differentials come behind those of the outputs.
+    pub asked: usize,
     /// What the bound of degrees is taken from: rates, outputs, and how functions move.
     pub measured: Vec<NodeId>,
     /// What the flow is given, from what is free on the set of the conditions.
@@ -45,7 +47,7 @@ pub(super) struct Equations {
 
 /// What a trajectory gives.
 pub(super) struct Trajectory {
-    /// `dh` of each output.
+    /// `dh` of each output, then of each function that is asked for.
     pub covectors: Vec<Covector>,
     /// The Jacobian of the rates.
     pub entries: Vec<Entry>,
@@ -55,7 +57,8 @@ pub(super) struct Trajectory {
 const DRIVE: &str = "\u{1}drive";
 
 impl Equations {
-    pub fn new(system: &System, conditions: &Assignment) -> Equations {
+    /// The equations, and the differentials of functions that are asked for.
+    pub fn new(system: &System, conditions: &Assignment, asked: &[NodeId]) -> Equations {
         let mut graph = system.graph.clone();
         let angles = system.angles();
         // constants that are given are put in; everything else that a condition says is where the flow begins
@@ -90,7 +93,7 @@ impl Equations {
         let moved: Vec<Symbol> =
             system.states.iter().copied().filter(|state| rates.contains_key(state)).collect();
         let mut written: Vec<NodeId> = moved.iter().map(|state| rates[state]).collect();
-        written.extend(system.outputs.iter().map(|(_, node)| *node));
+        written.extend(system.outputs.iter().map(|(_, node)| *node).chain(asked.iter().copied()));
         let written = graph.substitute(&written, &fixed);
         let written = expand_angles(&mut graph, &written, |symbol| angles.contains(&symbol));
         let (written, related) = related(&mut graph, system, &written, &fixed, conditions, &angles);
@@ -136,7 +139,8 @@ impl Equations {
             states: system.states.len(),
             columns: places(system, &system.unknowns()),
             closed: places(system, &system.closed_coordinates()),
-            outputs: outputs.len(),
+            outputs: system.outputs.len(),
+            asked: asked.len(),
             measured,
             starts,
             roots: functions.iter().filter(|node| square_root(node)).count(),
@@ -205,7 +209,7 @@ impl Equations {
             self.flow.coefficients(&arithmetic, &signals, order).map_err(|failure| failure.refusal)?;
         let mut series = series.into_iter().map(residues);
         let blank = || Covector { series: vec![Vec::new(); self.states], length };
-        let mut covectors: Vec<Covector> = (0..self.outputs).map(|_| blank()).collect();
+        let mut covectors: Vec<Covector> = (0..self.outputs + self.asked).map(|_| blank()).collect();
         for (output, column) in &self.differentials {
             covectors[*output].series[*column] = series.next().unwrap_or_default();
         }

@@ -5,7 +5,7 @@
 //! derivatives of all outputs up to their `h`. The field that these generate is therefore that of all derivatives.
 
 use super::echelon::Echelon;
-use super::{ATTEMPTS, Draw, Probe};
+use super::probe::{ATTEMPTS, Draw, Probe};
 use crate::number::{PrimeField, Refusal};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

@@ -39,6 +39,8 @@ pub(super) struct Steps {
     /// Where among the values of a step these begin.
     begin: usize,
     outputs: usize,
+    /// How many functions are asked for at the beginning: they come behind the outputs.
+    asked: usize,
     /// What the bound of degrees is taken from.
     measured: Program,
     /// All that moves but known signals, and which of it is unknown at the beginning.
@@ -53,7 +55,12 @@ impl Steps {
     ///
     /// # Errors
     /// In words, where something is met that is no rational function of numbers, sines and cosines.
-    pub fn new(system: &System, conditions: &Assignment, rests: bool) -> Result<Steps, String> {
+    pub fn new(
+        system: &System,
+        conditions: &Assignment,
+        rests: bool,
+        asked: &[NodeId],
+    ) -> Result<Steps, String> {
         let mut graph = system.graph.clone();
         let is_angle = system.angle_test();
         let closed = system.closed_coordinates();
@@ -78,7 +85,8 @@ impl Steps {
             .iter()
             .map(|state| successors.get(state).copied().unwrap_or_else(|| graph.symbol(*state)))
             .collect();
-        let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
+        let outputs: Vec<NodeId> =
+            system.outputs.iter().map(|(_, node)| *node).chain(asked.iter().copied()).collect();
         let written = graph.substitute(&[after, outputs].concat(), &fixed);
         let written = expand_angles(&mut graph, &written, &is_angle);
         let (after, outputs) = written.split_at(closed.len());
@@ -148,7 +156,7 @@ impl Steps {
         let next = step.inputs().iter().map(next).collect();
         let columns = (0..closed.len()).filter(|place| unknowns.contains(&closed[*place])).collect();
         let count = if rests && !on_a_set { closed.len() } else { 2 * closed.len() };
-        let (outputs, closed) = (outputs.len(), closed.len());
+        let (outputs, closed) = (system.outputs.len(), closed.len());
         Ok(Steps {
             start,
             step,
@@ -157,6 +165,7 @@ impl Steps {
             differentials,
             begin,
             outputs,
+            asked: asked.len(),
             measured,
             closed,
             columns,
@@ -164,11 +173,16 @@ impl Steps {
         })
     }
 
-    /// The span of the differentials at a random start, and after how many steps the last of it was found.
+    /// The span of the differentials at a random start, the differentials of what is asked for, and after how many steps the last
+    /// of the span was found.
     ///
     /// # Errors
     /// Where the random sequence meets a pole.
-    pub fn follow(&self, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<(Echelon, usize), Refusal> {
+    pub fn follow(
+        &self,
+        field: PrimeField,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<(Echelon, Vec<Vec<u64>>, usize), Refusal> {
         let refused = |failure: crate::expression::Failure| failure.refusal;
         let drawn = draw_residues(&self.start, &field, rng);
         let mut inputs = self.start.load(field)?.run(&drawn, &mut Vec::new()).map_err(refused)?.to_vec();
@@ -180,7 +194,7 @@ impl Steps {
         for (column, place) in self.columns.iter().enumerate() {
             slopes[*place][column] = field.one();
         }
-        let mut registers = Vec::new();
+        let (mut registers, mut asked) = (Vec::new(), Vec::new());
         for taken in 0..=self.count {
             let values = step.run(&inputs, &mut registers).map_err(refused)?.to_vec();
             let (of_map, of_outputs) = values[self.begin..].split_at(self.entries.len());
@@ -192,7 +206,12 @@ impl Steps {
                 }
                 found
             };
-            for row in times(&self.differentials, of_outputs, self.outputs) {
+            let mut rows = times(&self.differentials, of_outputs, self.outputs + self.asked);
+            let besides = rows.split_off(self.outputs);
+            if taken == 0 {
+                asked = besides;
+            }
+            for row in rows {
                 if echelon.insert(row) {
                     order = taken;
                 }
@@ -209,7 +228,7 @@ impl Steps {
                 }
             }
         }
-        Ok((echelon, order))
+        Ok((echelon, asked, order))
     }
 
     /// In how many rounds a rank is known: a minor of rows each of which is of degree `d^k` at the most.

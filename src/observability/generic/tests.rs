@@ -1,6 +1,7 @@
 //! The generic answer against words of Lie derivatives, and against systems whose answers are known by hand.
 
 use super::*;
+use crate::number::PrimeField;
 use crate::observability::{Codistribution, Length};
 
 fn answer(text: &str) -> (System, GenericAnswer) {

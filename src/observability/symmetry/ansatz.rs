@@ -130,12 +130,12 @@ impl Search<'_> {
             if self.is_complete() {
                 return;
             }
-            let unknowns = self.block.columns.len() * count(self.block.variables.len(), degree);
+            let unknowns = self.block.columns.len() * count(self.block.variables(self.source).len(), degree);
             if unknowns > MOST_UNKNOWNS {
                 self.cut_off = true;
                 return;
             }
-            for monomial in monomials(self.source, &self.block.variables, degree) {
+            for monomial in monomials(self.source, self.block.variables(self.source), degree) {
                 terms.extend(self.block.columns.iter().map(|column| (*column, monomial.clone())));
             }
             self.try_terms(&terms, rng);
@@ -267,7 +267,7 @@ impl Search<'_> {
                 .is_none_or(|there| there.free != kernel.free || entry(&there, free, column) != here)
         };
         let variables: Vec<usize> =
-            self.block.variables.iter().filter(|variable| changes(variable, rng)).copied().collect();
+            self.block.variables(source).iter().filter(|variable| changes(variable, rng)).copied().collect();
         let mut all: Vec<Monomial> = vec![Monomial::default()];
         for degree in 1..=HIGHEST_DEGREE {
             if 2 * count(variables.len(), degree) > MOST_UNKNOWNS {

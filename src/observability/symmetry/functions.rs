@@ -153,9 +153,11 @@ impl Search<'_> {
     fn degree(&mut self, degree: usize, factors: &[i64], wanted: usize, rng: &mut ChaCha8Rng) {
         let source = self.source;
         let own = |place: &usize| self.column_of(*place).is_some();
-        let variables: Vec<usize> = (0..source.variables.len())
-            .filter(|place| own(place) || self.block.variables.contains(place))
-            .collect();
+        // what scalings leave are products of powers of the coordinates that they scale
+        let only_scalings = self.others.as_ref().is_some_and(Vec::is_empty);
+        let others: &[usize] = if only_scalings { &[] } else { self.block.variables(source) };
+        let variables: Vec<usize> =
+            (0..source.variables.len()).filter(|place| own(place) || others.contains(place)).collect();
         let mut all: Vec<Monomial> = Vec::new();
         for degree in 1..=degree {
             if super::monomial::count(variables.len(), degree) > 8 * MOST_UNKNOWNS {

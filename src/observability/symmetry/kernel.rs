@@ -5,8 +5,11 @@ use crate::expression::{Input, NodeId, Program, Symbol, SymbolFunction, SymbolIn
 use crate::number::PrimeField;
 use crate::observability::generic::Probe;
 use crate::system::{Assignment, System};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
+use std::rc::Rc;
 
 /// How what is not seen is computed at a point.
 pub(super) enum Evaluation {
@@ -38,6 +41,7 @@ pub(super) struct Point {
 }
 
 /// The vectors that all rows annihilate at one point: each has a one at a free column of its own, and zeros at the others.
+#[derive(Clone)]
 pub(super) struct Kernel {
     pub free: Vec<usize>,
     pub basis: Vec<Vec<u64>>,
@@ -234,56 +238,85 @@ impl KernelSource {
 
 /// Columns that no kernel vector couples with others: the kernel is the sum of those of its blocks.
 pub(super) struct Block {
-    /// The columns, those of them that are free, and the variables that the kernel there depends on.
+    /// The columns, and those of them that are free.
     pub columns: Vec<usize>,
     pub free: Vec<usize>,
-    pub variables: Vec<usize>,
+    place: usize,
+    dependence: Rc<Dependence>,
 }
 
-/// The blocks of the kernel, and what each depends on: found by changing one symbol at a time.
-pub(super) fn blocks(
-    source: &KernelSource,
-    point: &Point,
-    kernel: &Kernel,
-    rng: &mut ChaCha8Rng,
-) -> Vec<Block> {
-    let mut blocks: Vec<Block> = Vec::new();
+/// On which variables the blocks of a kernel depend. It is looked for when somebody asks: it takes a kernel for every symbol.
+struct Dependence {
+    point: Point,
+    kernel: Kernel,
+    /// The free columns of each block.
+    free: Vec<Vec<usize>>,
+    found: OnceCell<Vec<Vec<usize>>>,
+}
+
+impl Block {
+    /// The variables that the kernel depends on in this block.
+    pub fn variables(&self, source: &KernelSource) -> &[usize] {
+        &self.dependence.found.get_or_init(|| self.dependence.find(source))[self.place]
+    }
+}
+
+impl Dependence {
+    /// Changes one symbol at a time.
+    fn find(&self, source: &KernelSource) -> Vec<Vec<usize>> {
+        let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+        let mut found = vec![Vec::new(); self.free.len()];
+        let mut at = 0;
+        while at < source.variables.len() {
+            let symbol = source.variables[at].symbol;
+            let pair: Vec<usize> = (at..source.variables.len())
+                .take_while(|next| source.variables[*next].symbol == symbol)
+                .collect();
+            at += pair.len();
+            let moved = (0..ATTEMPTS).find_map(|_| {
+                let kernel_there = source.kernel(&source.redraw(&self.point, symbol, &mut rng))?;
+                (kernel_there.free == self.kernel.free).then_some(kernel_there)
+            });
+            for (variables, free) in found.iter_mut().zip(&self.free) {
+                let of_block = |(column, _): &(&usize, &Vec<u64>)| free.contains(column);
+                let same = moved.as_ref().is_some_and(|moved| {
+                    let here = self.kernel.free.iter().zip(&self.kernel.basis).filter(of_block);
+                    here.eq(moved.free.iter().zip(&moved.basis).filter(of_block))
+                });
+                if !same {
+                    variables.extend(&pair);
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The blocks of the kernel at a point.
+pub(super) fn blocks(point: &Point, kernel: &Kernel) -> Vec<Block> {
+    // columns and free columns
+    let mut blocks: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
     for (free, vector) in kernel.free.iter().zip(&kernel.basis) {
         let mut columns: BTreeSet<usize> = (0..vector.len()).filter(|place| vector[*place] != 0).collect();
         let mut all = vec![*free];
         blocks.retain(|block| {
-            let apart = block.columns.iter().all(|column| !columns.contains(column));
+            let apart = block.0.iter().all(|column| !columns.contains(column));
             if !apart {
-                columns.extend(&block.columns);
-                all.extend(&block.free);
+                columns.extend(&block.0);
+                all.extend(&block.1);
             }
             apart
         });
         all.sort_unstable();
-        blocks.push(Block { columns: columns.into_iter().collect(), free: all, variables: Vec::new() });
+        blocks.push((columns.into_iter().collect(), all));
     }
-    blocks.sort_by(|a, b| a.columns.cmp(&b.columns));
-    let mut at = 0;
-    while at < source.variables.len() {
-        let symbol = source.variables[at].symbol;
-        let pair: Vec<usize> = (at..source.variables.len())
-            .take_while(|next| source.variables[*next].symbol == symbol)
-            .collect();
-        at += pair.len();
-        let moved = (0..ATTEMPTS).find_map(|_| {
-            let kernel_there = source.kernel(&source.redraw(point, symbol, rng))?;
-            (kernel_there.free == kernel.free).then_some(kernel_there)
-        });
-        for block in &mut blocks {
-            let of_block = |(free, _): &(&usize, &Vec<u64>)| block.free.contains(free);
-            let same = moved.as_ref().is_some_and(|moved| {
-                let here = kernel.free.iter().zip(&kernel.basis).filter(of_block);
-                here.eq(moved.free.iter().zip(&moved.basis).filter(of_block))
-            });
-            if !same {
-                block.variables.extend(&pair);
-            }
-        }
-    }
-    blocks
+    blocks.sort();
+    let dependence = Rc::new(Dependence {
+        point: point.clone(),
+        kernel: kernel.clone(),
+        free: blocks.iter().map(|(_, free)| free.clone()).collect(),
+        found: OnceCell::new(),
+    });
+    let block = |(place, (columns, free))| Block { columns, free, place, dependence: Rc::clone(&dependence) };
+    blocks.into_iter().enumerate().map(block).collect()
 }

@@ -91,7 +91,7 @@ impl Attempt {
         if words.is_some_and(|words| coordinates.len() - words.generic_rank() != unseen) {
             return None;
         }
-        let blocks = blocks(&source, &point, &kernel, rng);
+        let blocks = blocks(&point, &kernel);
         let found = UnseenMotions { values: values.clone(), ..UnseenMotions::default() };
         let mut attempt = Attempt { found, vectors: Vec::new() };
         let mut of_blocks: Vec<Vec<FieldTerms>> = Vec::new();

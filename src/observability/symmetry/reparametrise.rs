@@ -17,7 +17,7 @@ use std::fmt::Write;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotReparametrised {
     /// Fields or functions are missing.
-    #[error("{fields} unseen directions and {functions} functions that are seen were not found in symbols")]
+    #[error("not found in symbols: {}", missing_text(*fields, *functions))]
     Incomplete {
         /// Directions without a field.
         fields: usize,
@@ -322,19 +322,36 @@ fn text(
         .collect();
     held.sort_unstable();
     conditions.extend(held.iter().map(|(name, value)| format!("{name} = {value}")));
-    let place = format!("where {}", conditions.join(", "));
+    let place = match conditions.is_empty() {
+        true => String::new(), // what is not seen is left out, and nothing else
+        false => format!(" where {}", conditions.join(", ")),
+    };
     let _ = writeln!(out, "\n# the original moves them so, and its outputs are the same");
     for field in system.moving_fields() {
         let name = &system.fields[field].name;
         for coordinate in coordinates {
             let (new, old) = (&coordinate.name, &coordinate.text);
-            let _ = writeln!(out, "claim {name}.{new}: L(original.{name}, {old}) = L({name}, {new}) {place}");
+            let _ = writeln!(out, "claim {name}.{new}: L(original.{name}, {old}) = L({name}, {new}){place}");
         }
     }
     let outputs = reduced.output_texts.join("; ");
-    let _ = writeln!(out, "claim output: original.output = [{outputs}] {place}");
+    let _ = writeln!(out, "claim output: original.output = [{outputs}]{place}");
     let _ = writeln!(out, "claim seen: rank = {}", coordinates.len());
     out
+}
+
+/// How many fields and functions are missing, in words.
+fn missing_text(fields: usize, functions: usize) -> String {
+    let of = |count: usize, one: &str| {
+        (count > 0).then(|| format!("{count} {one}{}", if count == 1 { "" } else { "s" }))
+    };
+    let parts = [of(fields, "unseen direction"), of(functions, "function that is seen")];
+    parts
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(" and ")
+        .replace("functions that is", "functions that are")
 }
 
 /// Where the new coordinates are, at states of the sample box.

@@ -3,6 +3,7 @@
 use crate::experiment::{Answer, Basin, Experiment, NoiseLevel, error};
 use crate::mechanics::moving::Ended;
 use crate::observer::{Fault, Update, UpdateEnd};
+use crate::report::motion::fit::{fit_in_words, noise_from, suspect_json, suspects_in_words};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -31,6 +32,7 @@ impl<'a> Observed<'a> {
 pub(super) fn end_name(end: &UpdateEnd) -> String {
     match end {
         UpdateEnd::Converged => "converged".to_owned(),
+        UpdateEnd::DoesNotFit => "converged, but does not fit".to_owned(),
         UpdateEnd::StepsSpent => "all steps spent".to_owned(),
         UpdateEnd::Stuck => "no step lowers the error".to_owned(),
         UpdateEnd::Blind { .. } => "cannot see".to_owned(),
@@ -57,7 +59,7 @@ pub fn fault_lines(faults: &[Fault]) -> Vec<String> {
 }
 
 /// An infinite bound has no number in JSON.
-fn finite(value: f64) -> Value {
+pub(super) fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }
 
@@ -94,6 +96,19 @@ fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
     });
     if let UpdateEnd::Blind { weakest } = &update.end {
         found["unseen"] = json!(weakest);
+    }
+    if let Some(fit) = &update.fit {
+        found["fit"] = json!({
+            "fits": fit.fits,
+            "chi_square": finite(fit.chi_square),
+            "degrees_of_freedom": fit.degrees,
+            "probability": fit.probability,
+            "noise": finite(fit.sigma),
+            "noise_from": noise_from(fit.from),
+        });
+    }
+    if !update.suspects.is_empty() {
+        found["suspects"] = update.suspects.iter().map(|suspect| suspect_json(observed, suspect)).collect();
     }
     found
 }
@@ -135,6 +150,9 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         "observers": answers.collect::<Vec<_>>(),
         "interrupted": observed.interrupted,
     });
+    if experiment.origin != 0.0 {
+        found["time_origin"] = json!(experiment.origin);
+    }
     if let Some(simulation) = &experiment.simulation {
         found["simulation"] = json!({
             "ended": ended_in_words(simulation.ended()),
@@ -152,6 +170,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
                 "noise": level.noise,
                 "seeds": level.seeds,
                 "converged": level.converged,
+                "said_not_to_fit": level.unfit,
                 "root_mean_square_error": by_name(&level.errors),
                 "bound": by_name(&level.bounds),
             })
@@ -190,6 +209,9 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
     } else {
         let _ = writeln!(text, "{samples} samples from a file; faults: {}", experiment.faults.len());
     }
+    if experiment.origin != 0.0 {
+        let _ = writeln!(text, "times are counted from the first sample, at {} s", experiment.origin);
+    }
     for line in fault_lines(&experiment.faults) {
         let _ = writeln!(text, "  {line}");
     }
@@ -199,11 +221,18 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         let _ = writeln!(text, "\n{}{time}", answer.method.name());
         for update in &answer.track.updates {
             let time = if is_timed { format!(", {:.1} ms", 1e3 * update.seconds) } else { String::new() };
-            let standing = end_name(&update.end);
-            let _ =
-                writeln!(text, "  from {:.3} s: {standing} after {} steps{time}", update.from, update.steps);
+            // that it does not fit has its own words, with the figures
+            let standing = match &update.end {
+                UpdateEnd::DoesNotFit => end_name(&UpdateEnd::Converged),
+                end => end_name(end),
+            };
+            let (from, steps, fit) = (update.from, update.steps, fit_in_words(update));
+            let _ = writeln!(text, "  from {from:.3} s: {standing} after {steps} steps{fit}{time}");
             let bounds = Some(&update.deviations[..]);
             state_lines(&mut text, observed, &names, update.from, &update.estimate, bounds);
+            for line in suspects_in_words(update) {
+                let _ = writeln!(text, "    {line}");
+            }
         }
         if let Some(last) = answer.track.last() {
             let _ = writeln!(text, "  at the end, {:.3} s:", last.time);
@@ -219,8 +248,8 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
     for level in observed.noise {
         let _ = writeln!(
             text,
-            "\nnoise {:.1e} m: {} of {} seeds converged",
-            level.noise, level.converged, level.seeds
+            "\nnoise {:.1e} m: {} of {} seeds converged, of {} it was said that they do not fit",
+            level.noise, level.converged, level.seeds, level.unfit
         );
         for ((name, error), bound) in names.iter().zip(&level.errors).zip(&level.bounds) {
             let ratio = error / bound;

@@ -1,9 +1,10 @@
 //! Pictures of the body between its palms, and of the outline that was recovered.
 
+use crate::mechanics::Palm;
 use crate::mechanics::moving::Shape;
 use crate::report::drawing::{Drawing, INK, svg};
 use crate::report::motion::answers::Observed;
-use crate::report::motion::shape::{Instant, Outline, turned};
+use crate::report::motion::shape::{Instant, Outline, on_palm, turned};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -14,6 +15,9 @@ const TRUE_OUTLINE: RGBColor = RGBColor(150, 156, 165);
 const UNSEEN: RGBColor = RGBColor(205, 209, 215);
 /// Twice the size in which they are shown: places are whole pixels, and a curve of few pixels is not smooth.
 const CELL: (u32, u32) = (400, 336);
+
+/// Pieces of a palm that is an arc.
+const ARC: u32 = 48;
 
 /// A place in the world or the body's frame as a pixel.
 struct View {
@@ -90,16 +94,28 @@ pub(super) fn frames(observed: &Observed<'_>, outline: &Outline, most: usize) ->
     let instants = &outline.instants;
     let count = most.min(instants.len());
     let rows: Vec<usize> = (1..=count).map(|frame| frame * instants.len() / count - 1).collect();
-    let longest = instants.iter().flat_map(|i| i.contacts).map(|[x, y]| x.hypot(y)).fold(0.0, f64::max);
-    let tip = |angle: f64| [1.15 * longest * angle.cos(), 1.15 * longest * angle.sin()];
+    let (contacts, sensed) =
+        (instants.iter().flat_map(|i| i.contacts), instants.iter().flat_map(|i| i.sensed));
+    let longest = contacts.map(|[x, y]| x.hypot(y)).fold(0.0, f64::max);
+    let farthest = sensed.fold(0.0, f64::max);
+    // from the joint to its end
+    let palm = |instant: &Instant, i: usize| -> Vec<[f64; 2]> {
+        let angle = instant.palms[i];
+        match outline.forms[i] {
+            Palm::Flat => vec![[0.0; 2], [1.15 * longest * angle.cos(), 1.15 * longest * angle.sin()]],
+            form => (0..=ARC)
+                .map(|k| on_palm(&form, i, angle, 1.15 * farthest * f64::from(k) / f64::from(ARC)))
+                .collect(),
+        }
+    };
     let shape = observed.experiment.simulation.as_ref().map(|simulation| &simulation.shape);
     let sides: Vec<[f64; 2]> = shape.map(|shape| shape.outline(180)).unwrap_or_default();
     let everywhere = rows.iter().flat_map(|row| {
         let instant = &instants[*row];
         let pose = pose(observed, instant);
-        let palms = instant.palms.map(tip);
+        let palms = [palm(instant, 0), palm(instant, 1)].concat();
         let points = instants[..=*row].iter().flat_map(|instant| instant.points).chain(sides.clone());
-        palms.into_iter().chain([[0.0; 2]]).chain(points.map(move |point| placed(point, pose)))
+        palms.into_iter().chain(points.map(move |point| placed(point, pose)))
     });
     let view = View::of(everywhere, (f64::from(CELL.0) - 48.0, f64::from(CELL.1) - 80.0));
     let frame = |row: &usize| {
@@ -110,9 +126,9 @@ pub(super) fn frames(observed: &Observed<'_>, outline: &Outline, most: usize) ->
             let pose = pose(observed, instant);
             let style = ("sans-serif", 26).into_font().color(&INK);
             area.draw(&Text::new(time.clone(), (20, 10), style))?;
-            for angle in instant.palms {
-                let ends = [pixel([0.0; 2]), pixel(tip(angle))];
-                area.draw(&PathElement::new(ends, INK.stroke_width(5)))?;
+            for i in 0..2 {
+                let points: Vec<(i32, i32)> = palm(instant, i).into_iter().map(pixel).collect();
+                area.draw(&PathElement::new(points, INK.stroke_width(5)))?;
             }
             closed(area, sides.iter().map(|point| pixel(placed(*point, pose))), 2)?;
             dots(area, &instants[..=*row], 3, |point| pixel(placed(point, pose)))?;

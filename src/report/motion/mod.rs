@@ -2,6 +2,7 @@
 
 pub(super) mod answers;
 pub(super) mod curves;
+pub(super) mod fit;
 pub(super) mod frames;
 pub(super) mod page;
 pub(super) mod plot;

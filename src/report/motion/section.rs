@@ -1,6 +1,7 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
 use crate::experiment::{ARRIVED, NOMINAL, SceneOutline, error};
+use crate::mechanics::Palm;
 use crate::report::motion::answers::{Observed, ended_in_words, fault_lines};
 use crate::report::motion::frames::{frames, recovered_outline};
 use crate::report::motion::plot::{errors, sensor_errors, state};
@@ -37,6 +38,20 @@ pub(in crate::report) fn observed_section(experiments: &[Observed<'_>]) -> Marku
     }
 }
 
+fn palms_in_words(forms: &[Palm<f64>; 2]) -> String {
+    let one = |form: &Palm<f64>| match form {
+        Palm::Flat => "flat".to_owned(),
+        Palm::Circular { radius } if *radius > 0.0 => {
+            format!("hollow, an arc of radius {} m", shortest(*radius))
+        }
+        Palm::Circular { radius } => format!("bulging, an arc of radius {} m", shortest(-radius)),
+    };
+    match forms {
+        [Palm::Flat, Palm::Flat] => "two palms".to_owned(),
+        [first, second] => format!("two palms (the first is {}, the second {})", one(first), one(second)),
+    }
+}
+
 fn shape_in_words(shape: &SceneOutline) -> String {
     match shape {
         SceneOutline::Harmonics { harmonics, .. } => {
@@ -61,7 +76,7 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
         (headline(observed))
         p {
             @if let (Some(simulation), Some(simulated)) = (&experiment.simulation, &scene.simulated) {
-                "Simulated: " (shape_in_words(&simulated.body.shape)) ", " (simulated.body.mass) " kg, between two palms; "
+                "Simulated: " (shape_in_words(&simulated.body.shape)) ", " (simulated.body.mass) " kg, between " (palms_in_words(&scene.palm_forms)) "; "
                 b { (times.len()) " samples over " (shortest(last - first)) " s" } ". The motion "
                 @match simulation.ended() {
                     crate::mechanics::moving::Ended::Completed => { "went to its end" }
@@ -152,7 +167,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
     let Some(outline) = outline(observed) else {
         return html! {
             p.remark {
-                "There is no picture of the body: that takes two flat palms with the outputs s1 and s2, estimates of r1 and r2, and "
+                "There is no picture of the body: that takes two palms with the outputs s1 and s2, estimates of r1 and r2, and "
                 "omega0, phi1 and phi2 sought, read or told."
             }
         };

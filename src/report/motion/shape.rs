@@ -1,8 +1,9 @@
 //! The outline that recovered states draw: the contacts, sample by sample, in the frame of the body.
 //!
-//! This is geometry of two flat palms about the origin; what is true comes only from the simulation.
+//! This is geometry of two palms about the origin, flat or circular; what is true comes only from the simulation.
 
 use crate::experiment::{Answer, Experiment, Method};
+use crate::mechanics::Palm;
 use crate::mechanics::moving::Shape;
 use crate::number::rational_to_f64;
 use crate::report::motion::answers::Observed;
@@ -13,8 +14,10 @@ use std::f64::consts::TAU;
 pub(super) struct Instant {
     /// In s.
     pub time: f64,
-    /// Directions of the palms in the world, in rad.
+    /// Directions of the palms in the world, in rad; at the joint.
     pub palms: [f64; 2],
+    /// The contacts by what is read: along the palms from the joint, in m.
+    pub sensed: [f64; 2],
     /// The contacts in the world, as they are read, in m.
     pub contacts: [[f64; 2]; 2],
     /// The recovered centre of mass in the world, in m.
@@ -30,6 +33,8 @@ pub(super) struct Instant {
 /// What one observer recovered of the outline.
 pub(super) struct Outline {
     pub method: Method,
+    /// The palms' forms.
+    pub forms: [Palm<f64>; 2],
     pub instants: Vec<Instant>,
 }
 
@@ -52,10 +57,10 @@ fn told(experiment: &Experiment, name: &str, row: usize) -> Option<f64> {
     })
 }
 
-/// The outline by the best of the answers. None where the model is not one of two flat palms, or `r1` and `r2` were not sought.
+/// The outline by the best of the answers. None where the model is not one of two palms, or `r1` and `r2` were not sought.
 ///
 /// The contacts as seen from the centre of mass are `R x_i = -(r_i n_i + d_i t_i)`, with `d_i` by 3.18 and 3.19 from the recovered
-/// `r_i` and the `s_i` that are read. They are turned back by the orientation, the integral of the recovered `omega0` by the
+/// `r_i` and the `s_i` that are read; on curved palms the `r_i` place the centre of mass, and it the contacts. They are turned back by the orientation, the integral of the recovered `omega0` by the
 /// trapezoidal rule; it starts at the true one where that is known, and at zero otherwise.
 pub(super) fn outline(observed: &Observed<'_>) -> Option<Outline> {
     let experiment = observed.experiment;
@@ -71,6 +76,7 @@ pub(super) fn outline(observed: &Observed<'_>) -> Option<Outline> {
     let start = experiment.simulation.as_ref().and_then(|s| s.trajectory.moments.first());
     let mut orientation = start.map_or(0.0, |moment| moment.phi0);
     let mut before: Option<(f64, f64)> = None;
+    let forms = forms(experiment);
     let mut instants = Vec::new();
     for moment in &answer.track.estimates {
         let row = times.partition_point(|time| *time < moment.time);
@@ -85,21 +91,15 @@ pub(super) fn outline(observed: &Observed<'_>) -> Option<Outline> {
         before = Some((moment.time, rate));
         let (r, s) = ([moment.state[first], moment.state[second]], [of("s1")?, of("s2")?]);
         let (phi1, phi2) = (of("phi1")?, of("phi2")?);
-        let (sine, cosine) = phi2.sin_cos();
-        let d = [(r[0] * cosine + r[1]) / sine - s[0], -(r[1] * cosine + r[0]) / sine + s[1]];
         let palms = [phi1, phi1 + phi2];
-        // t2 points towards the origin, so that n2 points to the body as n1 does
-        let along = [unit(palms[0]), unit(palms[1]).map(|x| -x)];
-        let arm = |i: usize| -> [f64; 2] {
-            let t = along[i];
-            let n = [-t[1], t[0]];
-            [-(r[i] * n[0] + d[i] * t[0]), -(r[i] * n[1] + d[i] * t[1])]
+        let Seen { contacts, arms } = match forms {
+            [Palm::Flat, Palm::Flat] => between_flat(phi2, palms, r, s),
+            _ => between_curved(&forms, palms, r, s),
         };
-        let contacts = [unit(palms[0]).map(|x| x * s[0]), unit(palms[1]).map(|x| x * s[1])];
-        let arms = [arm(0), arm(1)];
         instants.push(Instant {
             time: moment.time,
             palms,
+            sensed: s,
             contacts,
             centre: [contacts[0][0] - arms[0][0], contacts[0][1] - arms[0][1]],
             orientation,
@@ -107,7 +107,62 @@ pub(super) fn outline(observed: &Observed<'_>) -> Option<Outline> {
             seen: answer.track.updates.is_empty() || !moment.residual.is_empty(),
         });
     }
-    (!instants.is_empty()).then_some(Outline { method: answer.method, instants })
+    (!instants.is_empty()).then_some(Outline { method: answer.method, forms, instants })
+}
+
+/// The contacts, from the joint and from the centre of mass, in the world.
+struct Seen {
+    contacts: [[f64; 2]; 2],
+    arms: [[f64; 2]; 2],
+}
+
+/// The forms of the palms: those of the scene; of a recording those that the model is told.
+fn forms(experiment: &Experiment) -> [Palm<f64>; 2] {
+    if experiment.simulation.is_some() {
+        return experiment.scene.palm_forms;
+    }
+    ["b1", "b2"].map(|name| match told(experiment, name, 0) {
+        Some(radius) if radius.is_finite() && radius != 0.0 => Palm::Circular { radius },
+        _ => Palm::Flat,
+    })
+}
+
+fn between_flat(phi2: f64, palms: [f64; 2], r: [f64; 2], s: [f64; 2]) -> Seen {
+    let (sine, cosine) = phi2.sin_cos();
+    let d = [(r[0] * cosine + r[1]) / sine - s[0], -(r[1] * cosine + r[0]) / sine + s[1]];
+    // t2 points towards the origin, so that n2 points to the body as n1 does
+    let along = [unit(palms[0]), unit(palms[1]).map(|x| -x)];
+    let arm = |i: usize| -> [f64; 2] {
+        let t = along[i];
+        let n = [-t[1], t[0]];
+        [-(r[i] * n[0] + d[i] * t[0]), -(r[i] * n[1] + d[i] * t[1])]
+    };
+    let contacts = [unit(palms[0]).map(|x| x * s[0]), unit(palms[1]).map(|x| x * s[1])];
+    Seen { contacts, arms: [arm(0), arm(1)] }
+}
+
+/// The centre of mass is `r_i` from the tangent at each contact.
+fn between_curved(forms: &[Palm<f64>; 2], palms: [f64; 2], r: [f64; 2], s: [f64; 2]) -> Seen {
+    let contacts = [0, 1].map(|i: usize| on_palm(&forms[i], i, palms[i], s[i]));
+    let normals = [0, 1].map(|i: usize| world(i, palms[i], forms[i].at(&s[i]).normal));
+    let heights =
+        [0, 1].map(|i: usize| r[i] + normals[i][0] * contacts[i][0] + normals[i][1] * contacts[i][1]);
+    let [[a, b], [c, d]] = normals;
+    let sine = a * d - b * c;
+    let centre = [(heights[0] * d - heights[1] * b) / sine, (a * heights[1] - c * heights[0]) / sine];
+    Seen { contacts, arms: contacts.map(|place| [place[0] - centre[0], place[1] - centre[1]]) }
+}
+
+/// A vector in the frame of a palm (0 or 1) at an angle, in the world.
+fn world(palm: usize, angle: f64, [ahead, across]: [f64; 2]) -> [f64; 2] {
+    let [c, s] = unit(angle);
+    let across = if palm == 0 { across } else { -across };
+    [ahead * c - across * s, ahead * s + across * c]
+}
+
+/// The point of a palm (0 or 1) at an angle, so far along it, in the world.
+pub(super) fn on_palm(form: &Palm<f64>, palm: usize, angle: f64, s: f64) -> [f64; 2] {
+    world(palm, angle, form.at(&s).place)
 }
 
 impl Outline {

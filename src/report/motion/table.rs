@@ -4,6 +4,7 @@ use crate::experiment::{Answer, error};
 use crate::observer::{Update, UpdateEnd};
 use crate::report::axis::unit_of;
 use crate::report::motion::answers::{Observed, end_name};
+use crate::report::motion::fit::{suspects_in_words, unexplained};
 use maud::{Markup, html};
 
 /// More updates than these are in the JSON only.
@@ -61,7 +62,7 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
             thead { tr {
                 th { "method" } th { "at" }
                 @for name in &names { th { (name) } @if known { th { "error" } } }
-                th { "updates that converged" } @if timed { th { "time" } }
+                th { "updates that converged and fit" } @if timed { th { "time" } }
             } }
             tbody {
                 @for answer in observed.answers {
@@ -189,14 +190,21 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
                     lines.push(format!("{name} from {from:.3} s: {}", blind(observed, update, weakest)));
                 }
                 UpdateEnd::Converged => {}
+                UpdateEnd::DoesNotFit => {
+                    let why = update.fit.map_or_else(String::new, |fit| unexplained(update, &fit));
+                    lines.push(format!("{name} from {from:.3} s: {}: {why}", end_name(&update.end)));
+                }
                 _ => lines.push(format!("{name} from {from:.3} s: {}", end_name(&update.end))),
             }
         }
+        lines.extend(
+            answer.track.updates.iter().flat_map(suspects_in_words).map(|line| format!("{name}: {line}")),
+        );
         lines.extend(answer.track.remarks.iter().map(|remark| format!("{name}: {remark}")));
     }
     html! {
         @if lines.is_empty() {
-            p { "Every update converged, and there was no sample at which a method could not see." }
+            p { "Every update converged and fits, and there was no sample at which a method could not see." }
         } @else {
             details open[lines.len() <= 12] {
                 summary { "what they could not see or not do, and other remarks: " (lines.len()) }

@@ -7,7 +7,7 @@ use crate::report::claims::outcomes::{claim_json, claim_line};
 use crate::report::claims::words::{counts, counts_text, errors};
 use crate::report::motion::answers::{Observed, observe_json};
 use crate::report::ranks::answer::rank_json;
-use crate::report::ranks::taken_for_granted;
+use crate::report::ranks::{drops_json, taken_for_granted};
 use crate::report::stress::answer::stress_json;
 use crate::report::trade::answer::trade_json;
 use crate::sweep::RankAnswer;
@@ -102,6 +102,7 @@ fn file_json(file: &FileFindings) -> Value {
             })).collect::<Vec<_>>(),
         })),
         "trade": file.trade.as_ref().map(trade_json),
+        "where_it_drops": file.drops.as_ref().map(drops_json),
         "certificate": file.certificate.as_ref().map(region_json),
         "left_out": file.left_out.iter().map(|left| json!({ "what": left.what, "why": left.why })).collect::<Vec<_>>(),
     })
@@ -184,6 +185,9 @@ pub fn forget_times(found: &mut Findings) {
     found.seconds = f64::NAN;
     for file in &mut found.files {
         file.trade = None;
+        if let Some(drops) = &mut file.drops {
+            drops.seconds = f64::NAN;
+        }
         for comparison in file.reductions.iter_mut().filter_map(|found| found.comparison.as_mut().ok()) {
             (comparison.small_seconds, comparison.large_seconds) = (f64::NAN, f64::NAN);
         }

@@ -2,6 +2,7 @@
 
 mod anchors;
 mod claims;
+mod drops;
 mod entry;
 pub(super) mod extremes;
 pub(super) mod findings;
@@ -11,5 +12,6 @@ mod source;
 mod unknowns;
 pub(super) mod whole;
 
+pub use drops::drops_page;
 pub use findings::{findings_json, findings_text, forget_seconds, forget_times};
 pub use whole::page;

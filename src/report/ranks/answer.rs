@@ -290,6 +290,7 @@ pub fn rank_text(answer: &RankAnswer) -> String {
         }
         generic_text(branch, &mut out);
         if branch.stop == Stop::NotTaken {
+            branch.motions.iter().for_each(|found| motions_text(found, false, &mut out));
             let _ = writeln!(out, "no states were sampled (--samples N draws N)");
             continue;
         }
@@ -300,7 +301,7 @@ pub fn rank_text(answer: &RankAnswer) -> String {
             let _ =
                 writeln!(out, "longer words may still raise the rank: nothing here says that they cannot");
         }
-        branch.motions.iter().for_each(|found| motions_text(found, &mut out));
+        branch.motions.iter().for_each(|found| motions_text(found, true, &mut out));
         sweep_text("the full codistribution", &branch.full, &mut out);
         branch.deviations.iter().for_each(|found| deviations_text(found, &mut out));
         if let Some(rows) = &branch.rows {

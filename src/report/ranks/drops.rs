@@ -1,7 +1,8 @@
 //! Where a rank drops, as JSON and as text.
 
-use crate::drops::{DropAnswer, DropSet, UsedMinor};
+use crate::drops::{BoxShare, DropAnswer, DropSet, UsedMinor};
 use crate::report::claims::outcomes::error_bound;
+use crate::report::names::{by_default_text, ranges_json};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -34,6 +35,18 @@ fn minor_json(minor: &UsedMinor) -> Value {
     })
 }
 
+fn box_json(share: &Result<BoxShare, String>) -> Value {
+    match share {
+        Ok(share) => json!({
+            "proved_fraction": share.proved,
+            "boxes": share.boxes,
+            "sides": ranges_json(&share.sides),
+            "drawn_by_default": ranges_json(&share.by_default),
+        }),
+        Err(why) => json!({ "not_done": why }),
+    }
+}
+
 /// The answer as one JSON object.
 pub fn drops_json(answer: &DropAnswer) -> Value {
     json!({
@@ -50,6 +63,7 @@ pub fn drops_json(answer: &DropAnswer) -> Value {
         "cases": answer.cases.0,
         "empty": answer.cases.1,
         "out_of_reach": answer.out_of_reach,
+        "on_the_box": answer.on_the_box.as_ref().map(box_json),
         "seconds": answer.seconds,
     })
 }
@@ -73,8 +87,13 @@ pub fn drops_text(answer: &DropAnswer) -> String {
     let _ = writeln!(out, "{title} ({file})");
     let _ = writeln!(
         out,
-        "rank {rank} of {dimension} at almost all states{}",
-        if answer.is_final { "" } else { ", as far as was looked; longer words may add to it" }
+        "{}",
+        match answer.is_final {
+            true => format!("rank {rank} of {dimension} at almost all states"),
+            false => format!(
+                "rank {rank} of {dimension} is asked for; whether almost all states have it is not decided"
+            ),
+        }
     );
     if !answer.domain.is_empty() {
         let _ = writeln!(out, "all words exist where {}", answer.domain.join(", "));
@@ -116,6 +135,23 @@ pub fn drops_text(answer: &DropAnswer) -> String {
         (None, false) => {
             let _ = writeln!(out, "off these sets the rank is no lower: proved");
         }
+    }
+    match &answer.on_the_box {
+        Some(Ok(share)) => {
+            let _ = writeln!(
+                out,
+                "on {} % of the sample box the rank is {rank}: proved, by interval certificates ({} boxes)",
+                share.percent(),
+                share.boxes
+            );
+            if !share.by_default.is_empty() {
+                let _ = writeln!(out, "  {}", by_default_text(&share.by_default));
+            }
+        }
+        Some(Err(why)) => {
+            let _ = writeln!(out, "interval certificates prove nothing on the sample box: {why}");
+        }
+        None => {}
     }
     for minor in &answer.minors {
         let factor = |(factor, power): &(String, i64)| match power {

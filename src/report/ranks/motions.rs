@@ -59,8 +59,8 @@ fn certainty(log2_error: f64) -> String {
     }
 }
 
-/// Fields and functions as text.
-pub(super) fn motions_text(found: &UnseenMotions, out: &mut String) {
+/// Fields and functions as text, before what was found at sampled states or alone.
+pub(super) fn motions_text(found: &UnseenMotions, sampled: bool, out: &mut String) {
     let directions = found.directions();
     let directions =
         if directions == 1 { "one direction".to_owned() } else { format!("{directions} directions") };
@@ -74,8 +74,9 @@ pub(super) fn motions_text(found: &UnseenMotions, out: &mut String) {
     if found.fields_missing > 0 {
         let _ = writeln!(
             out,
-            "  and {} more, of which no field of low degree was found{degree}: below each is shown at one state",
-            found.fields_missing
+            "  and {} more, of which no field of low degree was found{degree}{}",
+            found.fields_missing,
+            if sampled { ": below each is shown at one state" } else { "" }
         );
     }
     if !found.seen_names.is_empty() {
@@ -86,11 +87,11 @@ pub(super) fn motions_text(found: &UnseenMotions, out: &mut String) {
             writeln!(out, "seen together: {}  (proved, {})", function.text, certainty(function.log2_error));
     }
     if found.functions_missing > 0 {
-        let _ = writeln!(
-            out,
-            "{} more functions are seen, which are not found in low degree{degree}",
-            found.functions_missing
-        );
+        let more = match found.functions_missing {
+            1 => "1 more function is seen, which is not found in low degree".to_owned(),
+            missing => format!("{missing} more functions are seen, which are not found in low degree"),
+        };
+        let _ = writeln!(out, "{more}{degree}");
     }
 }
 

@@ -202,7 +202,11 @@ impl Checker<'_> {
             || ["tan", "cot", "sec", "csc", "sinh", "cosh", "tanh"].contains(&name);
         match (name, tables.as_slice()) {
             ("abs" | "sign" | "min" | "max" | "atan2", tables) => self.composed(name, tables, &place),
-            ("rank" | "pole" | "solutions", _) => Quantity::scalar(Entry::number()),
+            (
+                "rank" | "pole" | "solutions" | "observable" | "unobservable" | "identifiable"
+                | "unidentifiable",
+                _,
+            ) => Quantity::scalar(Entry::number()),
             ("sqrt", [one]) if one.is_scalar() => {
                 let entry = match &one.entries[0] {
                     Entry::Of(form) => Entry::Of(form.power(&(RBig::ONE / RBig::from(2)))),

@@ -8,6 +8,7 @@ mod balance;
 mod chapter3;
 mod chapter4;
 mod chapter5;
+mod circular;
 mod drawn;
 mod quaternions;
 mod sheet;

@@ -4,6 +4,7 @@
 //! the equations of `general.proof`. What is recovered is held against the body itself, never against another run.
 
 mod broken;
+mod circular;
 mod noise;
 mod options;
 mod random;
@@ -11,6 +12,7 @@ mod recorded;
 mod recovered;
 mod refused;
 mod witness;
+mod wrong;
 
 use crate::common::palmistry;
 use palmistry::experiment::{Answer, Experiment, Scene};

@@ -4,6 +4,7 @@ use super::super::keys::PalmsKeys;
 use super::super::simulated::MOST_JITTER;
 use super::super::{Body, Palms, SceneOutline, Sensor};
 use super::{Checks, MOST_SAMPLES, Problem, Simulated};
+use crate::mechanics::Palm;
 use crate::mechanics::moving::{Drive, Oscillation};
 use std::f64::consts::PI;
 
@@ -160,6 +161,22 @@ impl Checks<'_> {
             }
         };
         Ok(Palms { inertia: keys.inertia, drive })
+    }
+
+    /// The forms of palms with these radii.
+    pub(super) fn forms(&self, radii: Option<[f64; 2]>) -> Result<[Palm<f64>; 2], Problem> {
+        let mut forms = [Palm::Flat; 2];
+        for (index, radius) in radii.into_iter().flatten().enumerate() {
+            if radius.is_nan() || radius == 0.0 {
+                let message = format!("a palm cannot have the radius {radius}");
+                let help = "give it in m: above zero for a hollow palm, below zero for a bulging one, inf for a flat one";
+                return Err(self.wrong(&format!("palms.radii[{index}]"), message, help));
+            }
+            if radius.is_finite() {
+                forms[index] = Palm::Circular { radius };
+            }
+        }
+        Ok(forms)
     }
 
     /// The angle between the palms.

@@ -24,6 +24,9 @@ const FUNCTIONS: [(&str, &str); 15] = [
     ("sign", "sgn"),
 ];
 
+/// What is said of functions, and stands as it is.
+const VISIBLE: [&str; 4] = ["observable", "unobservable", "identifiable", "unidentifiable"];
+
 /// Functions of several arguments, and how they are called.
 const OF_SEVERAL: [(&str, &str); 3] = [("min", "min"), ("max", "max"), ("atan2", "atan2")];
 
@@ -90,6 +93,10 @@ impl FormulaLayout<'_> {
             }
             ("det", [inner]) => self.applied(Formula::Word("det"), inner, closed),
             ("rank", [inner]) => self.applied(Formula::Word("rank"), inner, closed),
+            ("observable" | "unobservable" | "identifiable" | "unidentifiable", _) => {
+                let word = VISIBLE.into_iter().find(|word| *word == name).unwrap_or_default();
+                (Formula::Row(vec![Formula::Word(word), round(all())]), Binding::Prefix)
+            }
             ("solutions", [inner]) => {
                 let word = Formula::Word("solutions");
                 (Formula::Row(vec![word, round(self.expression(inner))]), Binding::Prefix)

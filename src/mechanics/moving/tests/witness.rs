@@ -2,7 +2,7 @@
 
 use super::super::fixtures::{common_rate, palms_swing, times};
 use super::super::*;
-use crate::mechanics::{Inertia, PalmMotion, PlanarBody, Real, Swing, planar_dynamics};
+use crate::mechanics::{Inertia, Palm, PalmMotion, PlanarBody, Real, Swing, planar_dynamics_on};
 use crate::number::rational_from_f64;
 use dashu::rational::RBig;
 
@@ -15,7 +15,7 @@ fn real(x: f64) -> Real {
 }
 
 /// The body of the fixtures with its support function about its centre of mass.
-fn body(shape: &Shape) -> PlanarBody {
+pub(super) fn body(shape: &Shape) -> PlanarBody {
     let [x, y] = shape.centre_of_mass();
     let listed = [[0.0, 0.0], [0.1, 0.0], [0.03, -0.04]].map(|pair| pair.map(exact));
     let mut harmonics: Vec<(RBig, RBig)> = listed.into_iter().map(|[p, q]| (p, q)).collect();
@@ -24,7 +24,7 @@ fn body(shape: &Shape) -> PlanarBody {
 }
 
 /// The greatest difference between a moment and what the 320-bit floor says of it.
-fn difference(scene: &MovingScene, body: &PlanarBody, moment: &Moment) -> f64 {
+pub(super) fn difference(scene: &MovingScene, body: &PlanarBody, moment: &Moment) -> f64 {
     let swing = |i: usize| {
         let palm = &moment.palms[i];
         Swing { value: real(palm.angle), rate: real(palm.rate), acceleration: real(palm.acceleration) }
@@ -36,7 +36,12 @@ fn difference(scene: &MovingScene, body: &PlanarBody, moment: &Moment) -> f64 {
         gravity: real(scene.gravity),
     };
     let palms = PalmMotion { phi1: swing(0), phi2: swing(1) };
-    let found = planar_dynamics(body, &palms, &real(moment.phi0), &real(moment.omega0), &inertia).unwrap();
+    let forms = scene.palms.map(|palm| match palm {
+        Palm::Flat => Palm::Flat,
+        Palm::Circular { radius } => Palm::Circular { radius: real(radius) },
+    });
+    let start = [&real(moment.phi0), &real(moment.omega0)];
+    let found = planar_dynamics_on(body, &palms, &forms, start, &inertia).unwrap();
     let motion = &found.motion;
     let mut worst = (moment.alpha0 - motion.phi0.second.to_f64()).abs();
     let mut compare = |ours: f64, theirs: &Real| worst = worst.max((ours - theirs.to_f64()).abs());

@@ -1,0 +1,14 @@
+//! The text of Julia, Python, MATLAB and printed formulas, as far as models need it: tokens, syntax, and what expressions mean.
+//! Nothing is ever run: what is not an expression or an assignment is refused at its line.
+
+mod meaning;
+mod parser;
+mod syntax;
+mod tokens;
+mod workspace;
+
+pub(super) use meaning::{meaning, named_function};
+pub(super) use parser::Parser;
+pub(super) use syntax::{Syntax, SyntaxKind};
+pub(super) use tokens::{Dialect, Token, TokenKind, tokens};
+pub(super) use workspace::{ScriptValue, ScriptWorkspace};

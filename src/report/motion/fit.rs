@@ -1,0 +1,105 @@
+//! Whether what an observer found explains the readings, in words and as JSON; and what would not be noticed.
+
+use crate::observer::{Fit, NoiseFrom, Suspect, Update, UpdateEnd};
+use crate::report::motion::answers::{Observed, finite};
+use serde_json::{Map, Value, json};
+
+/// Where the size of the noise comes from, in a word.
+pub(super) fn noise_from(from: NoiseFrom) -> &'static str {
+    match from {
+        NoiseFrom::Stated => "stated",
+        NoiseFrom::Misfit => "misfit",
+        NoiseFrom::Computation => "computation",
+    }
+}
+
+/// How an update fits, to be put behind how it ended; empty where that was not found out.
+pub(super) fn fit_in_words(update: &Update) -> String {
+    let Some(fit) = &update.fit else { return String::new() };
+    match update.end {
+        UpdateEnd::Blind { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent => String::new(),
+        _ if fit.fits => format!(" and fits{}", explained(fit)),
+        _ => format!(", but does not fit: {}", unexplained(update, fit)),
+    }
+}
+
+fn explained(fit: &Fit) -> String {
+    match fit.from {
+        NoiseFrom::Stated => format!(" (probability {:.2})", fit.probability),
+        NoiseFrom::Misfit => format!(" (noise estimated from the misfit: {:.1e})", fit.sigma),
+        NoiseFrom::Computation => String::new(),
+    }
+}
+
+/// Why a misfit is not explained.
+pub(super) fn unexplained(update: &Update, fit: &Fit) -> String {
+    let (misfit, probability) = (update.misfit, fit.probability);
+    match fit.from {
+        NoiseFrom::Stated => {
+            let bound =
+                if probability > 0.0 { format!("{probability:.1e}") } else { "below 1e-300".to_owned() };
+            format!("a misfit of {misfit:.1e} for a noise of {:.1e} has the probability {bound}", fit.sigma)
+        }
+        _ if fit.degrees == 0 => "there are no more readings than unknowns".to_owned(),
+        _ => format!(
+            "what is left, {misfit:.1e}, is no noise (neighbours so alike have the probability {probability:.1e})"
+        ),
+    }
+}
+
+/// Whether an error that is noticed is one of which one would speak: below all of it, or within a tenth of a second.
+fn is_told(suspect: &Suspect) -> bool {
+    suspect.noticed.is_some_and(|noticed| noticed < 1.0)
+}
+
+/// What the readings of an update tell of all that is taken for known.
+pub(super) fn suspects_in_words(update: &Update) -> Vec<String> {
+    let mut lines = Vec::new();
+    let (told, hidden): (Vec<&Suspect>, Vec<&Suspect>) =
+        update.suspects.iter().partition(|suspect| is_told(suspect));
+    if !told.is_empty() {
+        let words = |suspect: &&Suspect| {
+            format!("{suspect} {}", suspect.in_words(suspect.noticed.unwrap_or(f64::INFINITY)))
+        };
+        let words: Vec<String> = told.iter().map(words).collect();
+        lines.push(format!("errors that are noticed (99 of 100) begin at: {}", words.join(", ")));
+    }
+    if !hidden.is_empty() {
+        let names: Vec<String> = hidden.iter().map(ToString::to_string).collect();
+        lines.push(format!("errors that cannot be told from what is sought: {}", names.join(", ")));
+    }
+    let mut named: Vec<&str> = Vec::new();
+    for suspect in &told {
+        let name = suspect.to_string();
+        if !suspect.same_as.is_empty() && !named.contains(&name.as_str()) {
+            lines.push(format!("{name} cannot be told from {}", suspect.same_as.join(", ")));
+            named.extend(suspect.same_as.iter().map(String::as_str));
+        }
+    }
+    if update.end == UpdateEnd::DoesNotFit
+        && let Some(fit) = &update.fit
+    {
+        let best = told.iter().max_by(|a, b| a.explains.1.total_cmp(&b.explains.1));
+        if let Some(best) = best {
+            let (error, part) = (best.in_words(best.explains.0), 100.0 * best.explains.1 / fit.chi_square);
+            lines.push(format!(
+                "of these {best} explains most, off by {error}: {part:.0} % of the misfit's square"
+            ));
+        }
+    }
+    lines
+}
+
+/// A suspect as JSON.
+pub(super) fn suspect_json(observed: &Observed<'_>, suspect: &Suspect) -> Value {
+    let names = observed.experiment.names();
+    let shifts: Map<String, Value> =
+        names.iter().zip(&suspect.shifts).map(|(name, shift)| ((*name).to_owned(), finite(*shift))).collect();
+    json!({
+        "what": suspect.to_string(),
+        "noticed_from": suspect.noticed.map_or(Value::Null, finite),
+        "same_as": suspect.same_as,
+        "shifts": shifts,
+        "would_explain": { "error": finite(suspect.explains.0), "chi_square": finite(suspect.explains.1) },
+    })
+}
