@@ -243,9 +243,8 @@ impl Reading {
     }
 
     fn model(self, node: Node<'_, '_>) -> Result<ForeignModel, Problem> {
-        let mut model = ForeignModel::default();
-        model.title = node.attribute("name").or(node.attribute("id")).map(str::to_owned);
-        model.source = source(node);
+        let title = node.attribute("name").or(node.attribute("id")).map(str::to_owned);
+        let mut model = ForeignModel { title, source: source(node), ..ForeignModel::default() };
         for (id, rule) in &self.rules {
             match rule.is_rate {
                 true => model.states.push(ForeignRate {

@@ -56,14 +56,14 @@ const SIGNS: [&str; 47] = [
     ";", ":", "~", "!", "?", "@", "&", "|", ".", "'",
 ];
 
+/// Comments with the places where they begin.
+pub(in crate::import) type Comments = Vec<(usize, String)>;
+
 /// The words of a text, and its comments with their places.
 ///
 /// # Errors
 /// A character that begins nothing, or a text that does not end.
-pub(in crate::import) fn tokens(
-    text: &str,
-    dialect: Dialect,
-) -> Result<(Vec<Token>, Vec<(usize, String)>), Problem> {
+pub(in crate::import) fn tokens(text: &str, dialect: Dialect) -> Result<(Vec<Token>, Comments), Problem> {
     let mut reading = Reading { text, dialect, at: 0, tokens: Vec::new(), comments: Vec::new() };
     reading.all()?;
     Ok((reading.tokens, reading.comments))
@@ -74,7 +74,7 @@ struct Reading<'a> {
     dialect: Dialect,
     at: usize,
     tokens: Vec<Token>,
-    comments: Vec<(usize, String)>,
+    comments: Comments,
 }
 
 fn begins_name(c: char) -> bool {

@@ -33,10 +33,13 @@ impl ScriptValue {
     }
 }
 
+/// Why something could not be read: where, what, and what to do.
+type Broken = (Span, String, Option<String>);
+
 /// The names of a script.
 #[derive(Default)]
 pub(in crate::import) struct ScriptWorkspace {
-    bound: BTreeMap<String, Result<ScriptValue, (Span, String, Option<String>)>>,
+    bound: BTreeMap<String, Result<ScriptValue, Broken>>,
     symbols: BTreeSet<String>,
     /// Definitions in the order in which they are made: name and expression.
     pub definitions: Vec<(String, ForeignExpr)>,

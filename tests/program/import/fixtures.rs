@@ -189,13 +189,16 @@ fn what_is_read_is_what_the_papers_say() {
     }
 }
 
+/// A fixture, options, its format, the rank, the number of unknowns, and those that are not seen.
+type Decided<'a> = (&'a str, &'a [&'a str], &'a str, u64, u64, &'a [&'a str]);
+
 /// Five formats imported and decided, by the program as its users run it. The ranks of the first three are the published ones
 /// (`tests/models/expected.toml`: siwr, seaijrc, hiv_latent). The predator's numbers have one scale that its prey does not tell:
 /// P, 1/a, 1/e and h go with it. Goldbeter's model has sixteen unknowns, all seen where all three states are.
 #[test]
 fn five_formats_are_imported_and_decided() {
     let folder = folder();
-    let decided: [(&str, &[&str], &str, u64, u64, &[&str]); 6] = [
+    let decided: [Decided<'_>; 6] = [
         ("cholera.jl", &["--model", "siwr"], "julia", 11, 11, &[]),
         ("covid.jl", &[], "julia", 13, 14, &["S", "E", "A", "q", "r"]),
         ("latent.py", &[], "strikepy", 12, 14, &["x2", "x3", "q1", "q2", "k1", "k2", "w1"]),
