@@ -12,6 +12,8 @@ mod scene;
 mod simulation;
 mod since;
 mod study;
+#[doc(hidden)]
+pub mod unguided;
 
 #[doc(hidden)]
 pub use run::NOMINAL;

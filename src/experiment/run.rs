@@ -3,6 +3,7 @@
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{Simulation, TOUCH, body, constants, deviation};
 use super::since::Since;
+use super::unguided::{PalmReadings, Unguided, palm_readings};
 use crate::observer::{
     EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
     Signals, Task, Track, WindowSearch,
@@ -145,6 +146,16 @@ impl Experiment {
         let columns = task.full.outputs.iter().filter_map(|name| self.signals.find(name));
         let steps = columns.flat_map(|place| self.signals.column(place).windows(2).zip(times.windows(2)));
         steps.map(|(value, time)| ((value[1] - value[0]) / (time[1] - time[0])).abs()).fold(0.0, f64::max)
+    }
+
+    /// The readings of the first window, for who seeks a state without a first guess.
+    ///
+    /// # Errors
+    /// The name of what is missing.
+    #[doc(hidden)]
+    pub fn palm_readings(&self) -> Result<PalmReadings, &'static str> {
+        let rows = (self.scene.observer.window + 1).min(self.signals.times().len());
+        palm_readings(&self.scene, &self.system, &self.question.known, &self.signals, rows)
     }
 
     /// The observer of a name, with the scene's settings.
@@ -297,10 +308,15 @@ fn estimate_question(
             known.entry(name.clone()).or_insert(column[0]);
         }
     }
+    let unguided = match settings.guess {
+        Guess::None => Unguided::of(scene, system, &known, signals)?,
+        Guess::Values(_) | Guess::Off(_) => Unguided::default(),
+    };
     let mut guess = Vec::new();
     for name in &settings.estimate {
         let truth = simulation.and_then(|simulation| simulation.truth(name)?.first().copied());
         let value = match (&settings.guess, truth) {
+            (Guess::None, _) => Some(unguided.value(scene, name)?),
             (Guess::Values(values), _) => values.get(name).copied(),
             (Guess::Off(off), Some(truth)) => Some(truth * (1.0 + off)),
             (Guess::Off(_), None) => None,

@@ -7,7 +7,10 @@ use crate::mechanics::moving::{Course, PushedPalm};
 use crate::observer::{HighGain, Kalman, WhenBlind};
 use crate::system::Problem;
 use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, MapAccess, Visitor};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::PathBuf;
 
 #[derive(Deserialize)]
@@ -53,7 +56,7 @@ pub(super) struct ObserverKeys {
     pub known: BTreeMap<String, f64>,
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
-    pub guess: Option<BTreeMap<String, f64>>,
+    pub guess: Option<GuessKeys>,
     pub guess_off: Option<f64>,
     #[serde(default)]
     pub clamp: Vec<String>,
@@ -68,6 +71,35 @@ pub(super) struct ObserverKeys {
     pub kalman: Kalman,
     #[serde(default)]
     pub high_gain: HighGain,
+}
+
+/// `guess`: values by name, or a word.
+pub(super) enum GuessKeys {
+    Values(BTreeMap<String, f64>),
+    Word(String),
+}
+
+/// By hand, so that what is wrong with a value is said of it and not of the whole.
+impl<'de> Deserialize<'de> for GuessKeys {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = GuessKeys;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a map")
+            }
+
+            fn visit_str<E>(self, word: &str) -> Result<GuessKeys, E> {
+                Ok(GuessKeys::Word(word.to_owned()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<GuessKeys, A::Error> {
+                BTreeMap::deserialize(MapAccessDeserializer::new(map)).map(GuessKeys::Values)
+            }
+        }
+        deserializer.deserialize_any(Either)
+    }
 }
 
 fn five() -> usize {

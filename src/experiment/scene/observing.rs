@@ -50,7 +50,7 @@ pub struct ObserverSettings {
     pub known: BTreeMap<String, f64>,
     /// `inputs`: input fields of the model and the columns that drive them, as in `{ g1 = "tau1" }`; none unless given.
     pub inputs: BTreeMap<String, String>,
-    /// `guess` or `guess_off`: where the search begins.
+    /// `guess` or `guess_off`: where the search begins; where a body between palms is described, `"none"` unless given.
     pub guess: Guess,
     /// `clamp`: sought states that keep their first guess in the first window; none unless given.
     pub clamp: Vec<String>,
@@ -77,6 +77,8 @@ pub enum Guess {
     /// `guess_off`: each state is off the truth by this part of it (0.1: ten percent more). Only where there is a
     /// truth, in a simulation.
     Off(f64),
+    /// `"none"`: the readings of the first window give it. Only between two flat palms.
+    None,
 }
 
 /// A way to estimate a state.

@@ -1,6 +1,6 @@
 //! What is to be found out, and the studies.
 
-use super::super::keys::ObserverKeys;
+use super::super::keys::{GuessKeys, ObserverKeys};
 use super::super::{Guess, ObserverSettings, Study};
 use super::{Checks, MOST_SAMPLES, Problem, Simulated};
 
@@ -67,7 +67,7 @@ impl Checks<'_> {
 
     fn guess(
         &self,
-        values: Option<std::collections::BTreeMap<String, f64>>,
+        values: Option<GuessKeys>,
         off: Option<f64>,
         estimate: &[String],
         simulated: Option<&Simulated>,
@@ -77,8 +77,16 @@ impl Checks<'_> {
                 let message = "both 'guess' and 'guess_off' are given";
                 Err(self.wrong_key("observer.guess_off", message, "leave one out"))
             }
+            (Some(GuessKeys::Word(word)), None) if word == "none" => Ok(Guess::None),
+            (Some(GuessKeys::Word(word)), None) => {
+                let help = "write guess = \"none\", or a table of values";
+                Err(self.wrong("observer.guess", format!("'{word}' is no first guess"), help))
+            }
+            // a body between palms tells its state by itself
+            (None, None) if simulated.is_some() => Ok(Guess::None),
             (None, None) => {
-                let help = "add, for instance: guess = { r1 = 2.0, r2 = 2.0 }, or guess_off = 0.1";
+                let help =
+                    "add, for instance: guess = { r1 = 2.0, r2 = 2.0 }, or guess = \"none\" between palms";
                 Err(self.wrong_key("observer", "there is no first guess", help))
             }
             (None, Some(off)) => {
@@ -90,7 +98,7 @@ impl Checks<'_> {
                 }
                 Ok(Guess::Off(off))
             }
-            (Some(values), None) => {
+            (Some(GuessKeys::Values(values)), None) => {
                 for (name, value) in &values {
                     let place = format!("observer.guess.{name}");
                     self.sought(&place, name, estimate)?;

@@ -1,0 +1,61 @@
+//! Scenes as they are drawn for the table of arrivals, and for its test.
+//!
+//! A body between half a metre and two metres in size whose support function has three harmonics (up to a tenth, a twenty-fifth and a fiftieth of its mean),
+//! a mass of 0.5 to 2 kg, any orientation, a rate of up to 3 rad/s either way. Palm 1 stands at 0.2 to 1.2 rad, palm 2 at 1 to 2.2 rad from it. The four regimes
+//! come in turn: both palms at one rate, palm 2 alone, both fixed (rates of up to 1 rad/s), both swinging. 81 samples over 0.28 s, which is a
+//! window of the thesis. Scenes that are not held by both palms all that time are drawn anew.
+
+/// Marsaglia's generator: the same scenes everywhere.
+pub struct Draws(u64);
+
+impl Draws {
+    pub fn new(seed: u64) -> Draws {
+        Draws(0x9e37_79b9_7f4a_7c15 ^ seed.wrapping_mul(0xbf58_476d_1ce4_e5b9))
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        for _ in 0..3 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+        }
+        low + (high - low) * (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn swing(&mut self) -> String {
+        let (amplitude, frequency, phase) =
+            (self.between(0.0, 0.2), self.between(0.2, 1.0), self.between(0.0, 6.28));
+        format!("swings = [{{ amplitude = {amplitude:?}, frequency = {frequency:?}, phase = {phase:?} }}]")
+    }
+}
+
+/// The text of a scene of a regime, 0 to 3; `model` is the path of its proof file.
+pub fn drawn(draws: &mut Draws, regime: usize, noise: f64, model: &str) -> String {
+    let size = draws.between(0.5, 2.0);
+    let mut harmonic = |most: f64| [0, 1].map(|_| size * draws.between(-most, most));
+    let harmonics = [[0.0; 2], harmonic(0.1), harmonic(0.04), harmonic(0.02)];
+    let (mass, orientation, rate) =
+        (draws.between(0.5, 2.0), draws.between(0.0, 6.28), draws.between(-3.0, 3.0));
+    let inertia = [draws.between(0.2, 1.0), draws.between(0.2, 1.0)];
+    let (first, second) = (draws.between(0.2, 1.2), draws.between(1.0, 2.2));
+    let rates = [draws.between(-1.0, 1.0), draws.between(-1.0, 1.0)];
+    let moving = match regime {
+        0 => [format!("rate = {:?}", rates[0]), "rate = 0.0".to_owned()],
+        1 => ["rate = 0.0".to_owned(), format!("rate = {:?}", rates[1])],
+        2 => ["rate = 0.0".to_owned(), "rate = 0.0".to_owned()],
+        _ => [0, 1].map(|palm| format!("rate = {:?}, {}", rates[palm], draws.swing())),
+    };
+    let sensor = match noise {
+        0.0 => String::new(),
+        noise => format!("[sensor]\nnoise = {:?}\n", noise * size),
+    };
+    format!(
+        "title = \"A drawn scene\"\nmodel = \"{model}\"\nduration = 0.28\nsamples = 81\n\
+         [body]\nshape = {{ kind = \"harmonics\", mean = {size:?}, harmonics = {harmonics:?} }}\n\
+         mass = {mass:?}\norientation = {orientation:?}\nrate = {rate:?}\n\
+         [palms]\ninertia = {inertia:?}\nprescribed = [{{ start = {first:?}, {} }}, {{ start = {second:?}, {} }}]\n\
+         {sensor}[observer]\nmethods = [\"trust-region\"]\ninputs = {{ g1 = \"tau1\", g2 = \"tau2\" }}\n\
+         estimate = [\"r1\", \"r2\", \"omega0\", \"rho\"]\nguess_off = 0.0\nwindow = 80\nsteps = 50\n",
+        moving[0], moving[1]
+    )
+}

@@ -1,0 +1,182 @@
+//! The integrals of the readings that the constraint is made of.
+
+use super::PalmReadings;
+
+/// One palm at one sample.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PalmSample {
+    /// The normal towards the body.
+    pub normal: [f64; 2],
+    /// `c_i x n_i`, the lever of the contact force about the hinge.
+    pub lever: f64,
+    pub rate: f64,
+}
+
+/// What the constraint needs at one sample.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Sample {
+    /// Since the first sample.
+    pub time: f64,
+    pub palms: [PalmSample; 2],
+    /// `P` and its rate.
+    pub place: [f64; 2],
+    pub velocity: [f64; 2],
+    pub a: [f64; 2],
+    pub b: [f64; 2],
+    pub c: f64,
+}
+
+/// All samples of a window, and its scales.
+pub(super) struct Integrals {
+    pub samples: Vec<Sample>,
+    pub mass: f64,
+    /// Where the radius of gyration is known, the logarithm of `k`.
+    pub log_k: Option<f64>,
+    /// The standard deviation of a contact, where it is known.
+    pub sigma: Option<f64>,
+    /// A length of the size of the contacts'.
+    pub length: f64,
+    /// A rate that is larger than the body's is likely to be.
+    pub rate: f64,
+    /// Where the palms' normals through the first contacts meet.
+    pub meeting: [f64; 2],
+}
+
+/// Over every interval between two samples, the integrals of Lagrange's polynomials through four neighbours.
+struct Rule {
+    first: Vec<usize>,
+    weights: Vec<[f64; 4]>,
+}
+
+impl Rule {
+    /// Gauss's rule with two nodes has no error for polynomials of the third degree.
+    fn of(times: &[f64]) -> Rule {
+        let last = times.len() - 4;
+        let first: Vec<usize> = (0..times.len() - 1).map(|i| i.saturating_sub(1).min(last)).collect();
+        let weights = first.iter().enumerate().map(|(i, first)| {
+            let nodes = &times[*first..first + 4];
+            let (middle, half) = ((times[i] + times[i + 1]) / 2.0, (times[i + 1] - times[i]) / 2.0);
+            let mut weights = [0.0; 4];
+            for at in [middle - half / 3f64.sqrt(), middle + half / 3f64.sqrt()] {
+                for (j, weight) in weights.iter_mut().enumerate() {
+                    let others = (0..4).filter(|other| *other != j);
+                    *weight +=
+                        half * others.map(|o| (at - nodes[o]) / (nodes[j] - nodes[o])).product::<f64>();
+                }
+            }
+            weights
+        });
+        let weights = weights.collect();
+        Rule { first, weights }
+    }
+
+    /// The integral from the first sample to each.
+    fn integrate(&self, values: &[f64]) -> Vec<f64> {
+        let mut sum = 0.0;
+        let mut all = Vec::with_capacity(values.len());
+        all.push(0.0);
+        for (first, weights) in self.first.iter().zip(&self.weights) {
+            let nodes = &values[*first..first + 4];
+            sum += weights.iter().zip(nodes).map(|(weight, value)| weight * value).sum::<f64>();
+            all.push(sum);
+        }
+        all
+    }
+}
+
+impl Integrals {
+    /// Of a window with at least four samples; none where a contact lies on the hinge or palms are parallel.
+    pub fn of(readings: &PalmReadings) -> Option<Integrals> {
+        let PalmReadings { times, contacts, angles, mass, .. } = readings;
+        let n = times.len();
+        let rule = Rule::of(times);
+        let mut samples = vec![Sample::default(); n];
+        let mut forces = vec![[0.0; 2]; n];
+        for (i, sample) in samples.iter_mut().enumerate() {
+            sample.time = times[i] - times[0];
+            for p in 0..2 {
+                let (sine, cosine) = angles[p][i].sin_cos();
+                let side = if p == 0 { 1.0 } else { -1.0 };
+                let lever = side * contacts[p][i];
+                sample.palms[p] =
+                    PalmSample { normal: [-side * sine, side * cosine], lever, rate: readings.rates[p][i] };
+                let torque = readings.torques[p][i] - readings.inertia[p] * readings.accelerations[p][i];
+                forces[i][p] = torque / lever;
+            }
+        }
+        let over = |samples: &[Sample], of: &dyn Fn(usize, &Sample) -> f64| -> Vec<f64> {
+            rule.integrate(&samples.iter().enumerate().map(|(i, sample)| of(i, sample)).collect::<Vec<_>>())
+        };
+        let pushed = |i: usize, sample: &Sample, axis: usize| -> f64 {
+            (0..2).map(|p| forces[i][p] * sample.palms[p].normal[axis]).sum()
+        };
+        let gravity = [0.0, readings.gravity];
+        for axis in 0..2 {
+            let velocity = over(&samples, &|i, sample| pushed(i, sample, axis) / mass + gravity[axis]);
+            samples.iter_mut().zip(velocity).for_each(|(sample, value)| sample.velocity[axis] = value);
+            let place = over(&samples, &|_, sample| sample.velocity[axis]);
+            samples.iter_mut().zip(place).for_each(|(sample, value)| sample.place[axis] = value);
+        }
+        // A' = sum f (n_y, -n_x)
+        let turning = |i: usize, sample: &Sample| [pushed(i, sample, 1), -pushed(i, sample, 0)];
+        for axis in 0..2 {
+            let a = over(&samples, &|i, sample| turning(i, sample)[axis]);
+            let b = over(&samples, &|i, sample| sample.time * turning(i, sample)[axis]);
+            for (sample, (a, b)) in samples.iter_mut().zip(a.into_iter().zip(b)) {
+                (sample.a[axis], sample.b[axis]) = (a, b);
+            }
+        }
+        let c = over(&samples, &|i, sample| {
+            let levers: f64 = (0..2).map(|p| forces[i][p] * sample.palms[p].lever).sum();
+            let [x, y] = turning(i, sample);
+            levers - x * sample.place[0] - y * sample.place[1]
+        });
+        samples.iter_mut().zip(c).for_each(|(sample, value)| sample.c = value);
+
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / n as f64;
+        let length = contacts.iter().map(|contacts| mean(contacts).abs()).sum::<f64>() / 2.0;
+        let turned = readings.rates.iter().flatten().fold(0.0, |most: f64, rate| most.max(rate.abs()));
+        let fastest = contacts.iter().map(|contacts| fastest(times, contacts)).fold(0.0, f64::max);
+        let pushes =
+            (0..n).map(|i| pushed(i, &samples[i], 0).hypot(pushed(i, &samples[i], 1) + mass * gravity[1]));
+        let acceleration = pushes.fold(0.0, f64::max) / mass;
+        let rate = 1.5 * (fastest / length + turned + (acceleration / length).sqrt());
+        let meeting = meeting(&samples[0])?;
+        let log_k = readings.gyration.map(|gyration| -(mass * gyration * gyration).ln());
+        let sigma = readings.sigma;
+        let all = Integrals { samples, mass: *mass, log_k, sigma, length, rate, meeting };
+        let ends = all.samples.last().map_or(f64::NAN, |end| end.c + end.place[0] + end.place[1]);
+        (ends.is_finite() && rate.is_finite() && length > 0.0).then_some(all)
+    }
+
+    /// By how much `c`, at a distance from the palms, is likely to turn: `k` of a disc whose radius is the mean of the distances'
+    /// squares; its logarithm.
+    pub fn likely_log_k(&self, centre: [f64; 2]) -> f64 {
+        self.log_k.unwrap_or_else(|| {
+            let square = self.radii(centre).iter().map(|r| r * r).sum::<f64>() / 2.0;
+            (2.0 / (self.mass * square.max((0.3 * self.length).powi(2)))).ln()
+        })
+    }
+
+    /// The distances of a point from the palms at the first sample.
+    pub fn radii(&self, centre: [f64; 2]) -> [f64; 2] {
+        self.samples[0].palms.map(|palm| palm.normal[0] * centre[0] + palm.normal[1] * centre[1])
+    }
+}
+
+/// The largest rate of change over an eighth of a window.
+fn fastest(times: &[f64], values: &[f64]) -> f64 {
+    let step = (times.len() / 8).max(1);
+    let ends = (step..times.len()).step_by(step);
+    ends.map(|i| ((values[i] - values[i - step]) / (times[i] - times[i - step])).abs()).fold(0.0, f64::max)
+}
+
+/// Where the normals through the contacts meet: `t_i · c = t_i · c_i`.
+fn meeting(sample: &Sample) -> Option<[f64; 2]> {
+    // the tangent is the normal turned clockwise, and the lever is the contact along it
+    let [first, second] = sample.palms.map(|palm| [palm.normal[1], -palm.normal[0], palm.lever]);
+    let determinant = first[0] * second[1] - first[1] * second[0];
+    let x = (first[2] * second[1] - first[1] * second[2]) / determinant;
+    let y = (first[0] * second[2] - first[2] * second[0]) / determinant;
+    (x.is_finite() && y.is_finite()).then_some([x, y])
+}

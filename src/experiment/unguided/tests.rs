@@ -1,0 +1,90 @@
+use super::*;
+use crate::experiment::{Experiment, Scene};
+use crate::mechanics::moving::Ended;
+
+#[path = "../../../benches/arrival/scenes.rs"]
+mod scenes;
+
+/// So many scenes of all four regimes that are held by both palms all the time.
+fn held(count: usize, noise: f64) -> Vec<Experiment> {
+    let mut draws = scenes::Draws::new(1);
+    let mut held = Vec::new();
+    while held.len() < count {
+        let text = scenes::drawn(&mut draws, held.len() % 4, noise, "proofs/moll2002/general.proof");
+        let scene = Scene::parse("drawn.toml", &text).unwrap_or_else(|error| panic!("{error}: {text}"));
+        let Ok(experiment) = Experiment::new(scene, None) else { continue };
+        let ended = experiment.simulation.as_ref().unwrap().ended().clone();
+        if ended == Ended::Completed {
+            held.push(experiment);
+        }
+    }
+    held
+}
+
+/// The constraint and the integrals hold of motions that follow from Newton's laws and know neither: at the true state nothing is left.
+#[test]
+fn the_true_state_leaves_nothing() {
+    for experiment in held(12, 0.0) {
+        let readings = experiment.palm_readings().unwrap();
+        let all = Integrals::of(&readings).unwrap();
+        let moment = experiment.simulation.as_ref().unwrap().trajectory.moments[0];
+        let gyration = experiment.simulation.as_ref().unwrap().constants["rho"];
+        let [x, y] = moment.centre;
+        let [vx, vy] = moment.velocity;
+        let truth = [x, y, vx, vy, moment.omega0, -(all.mass * gyration * gyration).ln()];
+        let look = normal::Look { stride: 1, softened: 0.01 };
+        let left = (normal::cost(&all, &truth, look) / 162.0).sqrt();
+        assert!(left < 1e-7 * all.length, "{left:e}: {}", experiment.scene.title);
+        // and it is no matter of all states: one percent off leaves much more
+        let off = normal::cost(&all, &truth.map(|value| 1.01 * value), look);
+        assert!((off / 162.0).sqrt() > 1e-5 * all.length, "{off:e}");
+        assert!((all.radii([x, y])[0] - moment.palms[0].r).abs() < 1e-12);
+    }
+}
+
+/// Of the states that are found without a guess nearly all are the true ones, radius of gyration included; the bench `arrival` counts
+/// a thousand.
+#[test]
+fn states_are_found_without_a_guess() {
+    let mut arrived = 0;
+    let experiments = held(40, 0.0);
+    for experiment in &experiments {
+        let readings = experiment.palm_readings().unwrap();
+        let moment = experiment.simulation.as_ref().unwrap().trajectory.moments[0];
+        let truth = [moment.palms[0].r, moment.palms[1].r, moment.omega0];
+        let Some(found) = readings.first_state() else { continue };
+        let found = [found.radii[0], found.radii[1], found.rate];
+        arrived +=
+            usize::from(found.iter().zip(truth).all(|(found, truth)| (found / truth - 1.0).abs() < 0.01));
+    }
+    assert!(arrived >= 39, "{arrived} of {}", experiments.len());
+}
+
+/// A known radius of gyration is used and given back.
+#[test]
+fn what_is_known_is_not_sought() {
+    for experiment in held(4, 0.0) {
+        let gyration = experiment.simulation.as_ref().unwrap().constants["rho"];
+        let readings = PalmReadings { gyration: Some(gyration), ..experiment.palm_readings().unwrap() };
+        let found = readings.first_state().unwrap();
+        assert!((found.gyration / gyration - 1.0).abs() < 1e-12);
+        let truth = experiment.truth_at(0.0).unwrap();
+        assert!((found.radii[0] / truth[0] - 1.0).abs() < 1e-4, "{found:?} for {truth:?}");
+    }
+}
+
+#[test]
+fn what_is_no_window_gives_no_state() {
+    let whole = held(1, 0.0)[0].palm_readings().unwrap();
+    let changed = |change: fn(&mut PalmReadings)| {
+        let mut readings = whole.clone();
+        change(&mut readings);
+        readings.first_state()
+    };
+    assert!(changed(|_| ()).is_some());
+    assert!(changed(|readings| readings.contacts[0][3] = f64::NAN).is_none());
+    assert!(changed(|readings| readings.contacts[0].fill(0.0)).is_none());
+    assert!(changed(|readings| readings.contacts[1].truncate(5)).is_none());
+    assert!(changed(|readings| readings.angles[1] = readings.angles[0].clone()).is_none());
+    assert!(changed(|readings| readings.times.truncate(0)).is_none());
+}
