@@ -9,7 +9,7 @@ use crate::checker::{
 use crate::evidence::{Lowering, StatementAt, exact_state, largest_minor};
 use crate::expression::{Guard, NodeId, Program, Symbol, expand_angles};
 use crate::number::PrimeField;
-use crate::observability::{Branch, Codistribution, Coordinate, Length, State};
+use crate::observability::{Branch, Codistribution, Coordinate, Length, State, Stop};
 use crate::system::System;
 use rand::Rng;
 
@@ -30,6 +30,8 @@ pub enum Kept {
 }
 
 /// Why there is nothing for the checker.
+pub(super) const TOO_LONG: &str = "the words that show it are too long to be written down";
+/// The same.
 const NO_STATE: &str = "no state was written down at which all of it exists";
 
 impl OnBranch {
@@ -209,9 +211,18 @@ impl RankedMatrix {
     }
 
     /// The observability codistribution on a branch.
-    pub fn codistribution(system: &mut System, branch: &Branch, claimed: usize) -> Option<Self> {
-        let words = Codistribution::new(system, &branch.values, Length::UntilItStops).ok()?;
-        Some(RankedMatrix {
+    ///
+    /// # Errors
+    /// In words, where there are no words, or those that are short enough do not show the rank that is claimed: they say nothing
+    /// against it.
+    pub fn codistribution(system: &mut System, branch: &Branch, claimed: usize) -> Result<Self, String> {
+        let words = Codistribution::new(system, &branch.values, Length::UntilItStops)
+            .map_err(|why| why.to_string())?;
+        let cut_off = matches!(words.stop, Stop::TooMany | Stop::Order);
+        if cut_off && words.generic_rank() < claimed {
+            return Err(TOO_LONG.to_owned());
+        }
+        Ok(RankedMatrix {
             entries: words.entries(),
             columns: system.unknowns().iter().map(|state| system.symbol_name(*state).to_owned()).collect(),
             words: words.words.iter().map(|word| word.text(system)).collect(),

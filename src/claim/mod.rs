@@ -26,6 +26,7 @@ mod terms;
 mod value;
 mod verdict;
 mod visible;
+mod visible_evidence;
 mod witness;
 
 pub use decide::{decide, decide_all, decide_all_keeping, prove};

@@ -1,7 +1,8 @@
 //! Claims about how many values give the same outputs: `solutions(k) = 2`, `solutions(x*y) = 1`, `solutions(b) = infinity`.
 //!
 //! *Proved* are a number that random points modulo random primes bound from above with an error below `2^-100` and a symmetry, or nothing
-//! at all where it is one, from below; and infinitely many, where the rank grows with the expression as an output. A number that is only computed
+//! at all where it is one, from below; and infinitely many, where the rank grows with the expression as an output. A number
+//! that is only computed
 //! leaves the claim undecided, and stands in its remark.
 
 use super::question::claimed_integer;

@@ -24,7 +24,8 @@ use std::path::PathBuf;
 ///
 /// First what holds at almost all states: the rank, by power series at random points modulo random primes, and of each unknown whether
 /// it is seen. Then at sampled states: words of Lie derivatives along the drift and the inputs are added shortest first until the rank
-/// stops growing or reaches the dimension. At every state the rank is computed by singular values and certified by exact arithmetic at that very state. Where the file
+/// stops growing or reaches the dimension. At every state the rank is computed by singular values and certified by exact
+/// arithmetic at that very state. Where the file
 /// defines a matrix named 'rows', its rank is decided at the same states too. Parameters without a range have the values of
 /// the file, and the answer says which, as it says from where it draws what has neither; a claim 'rank = n' in a file is about all values.
 #[derive(Args)]
@@ -89,7 +90,8 @@ pub(crate) struct Rank {
     #[arg(long, value_name = "DIR", requires = "where_it_drops")]
     out: Option<PathBuf>,
     /// Instead of sampled states: how many values of each unknown give the same outputs, one (it is globally identifiable or
-    /// observable), finitely many over the complex numbers, or infinitely many. For rational systems, at almost all states, by Groebner bases at
+    /// observable), finitely many over the complex numbers, or infinitely many. For rational systems, at almost all states, by
+    /// Groebner bases at
     /// random points modulo random primes; each number says whether it is proved or computed.
     #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "accessible", "where_it_drops", "reparametrise"])]
     global: bool,

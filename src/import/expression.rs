@@ -12,7 +12,7 @@ use std::ops::Range;
 pub(super) type Span = Range<usize>;
 
 /// Deeper expressions are refused: nobody means them, and our language counts its brackets too.
-pub(super) const DEEPEST: usize = 100;
+pub(super) const DEEPEST: usize = 300;
 
 /// An expression of a foreign file.
 #[derive(Clone, Debug, PartialEq)]

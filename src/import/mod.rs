@@ -137,6 +137,23 @@ pub struct ImportedModel {
 /// # Errors
 /// What cannot be read, where, and what to do.
 pub fn import(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedModel, ReadError> {
+    // programs nest brackets deeper than people do, and a thread that asks may have a small stack
+    let read = std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK);
+        let running = thread.spawn_scoped(scope, || read(name, text, question));
+        // a panic goes on where it was asked for
+        running.ok().map(|running| running.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    });
+    read.unwrap_or_else(|| {
+        let problem = Problem::new(&(0..text.len().min(1)), "there is no room to read this file", "the file");
+        Err(problem.help("free some memory, and report the file if that does not help").locate(name, text))
+    })
+}
+
+/// The stack on which a file is read.
+const STACK: usize = 64 << 20;
+
+fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedModel, ReadError> {
     let text = with_plain_line_ends(text);
     let format = question.format.unwrap_or_else(|| ForeignFormat::of(name, &text));
     let located = |problem: Problem| problem.locate(name, &text);

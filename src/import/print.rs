@@ -151,7 +151,10 @@ fn decimal(value: &RBig) -> Option<String> {
     } else if places <= 6 {
         format!("0.{}{digits}", "0".repeat(places - digits.len()))
     } else {
-        format!("{digits}e-{places}")
+        // the point behind the first digit
+        let (first, rest) = digits.split_at(1);
+        let point = if rest.is_empty() { "" } else { "." };
+        format!("{first}{point}{rest}e-{}", places + 1 - digits.len())
     })
 }
 

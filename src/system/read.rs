@@ -405,7 +405,8 @@ impl System {
         }
         let relation = statement.equation.relation;
         let of_numbers = values.0.as_number().is_some() && values.1.as_number().is_some();
-        if relation != Relation::Equal && !of_numbers {
+        let of_solutions = matches!(values, (Value::Solutions(_), _) | (_, Value::Solutions(_)));
+        if relation != Relation::Equal && !of_numbers && !of_solutions {
             let (left, right) = (values.0.describe(), values.1.describe());
             let message = format!("'{}' compares numbers, not {left} and {right}", relation.sign());
             return Err(Problem::new(&statement.equation.span, message, "this relation"));

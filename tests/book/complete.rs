@@ -69,7 +69,7 @@ fn every_field_of_the_json_is_named() {
         ["v.json", "paper", "out"].map(|name| folder.path().join(name).display().to_string());
     let chapter = chapter("json.md");
     let begin = chapter.split_once("\n## ").expect("parts").0;
-    let runs: [&[&str]; 13] = [
+    let runs: [&[&str]; 14] = [
         &["prove", file, "--verdicts", &verdicts],
         &["recheck", &verdicts],
         &["rank", file, "--samples", "20", "--digits", "5"],
@@ -82,6 +82,7 @@ fn every_field_of_the_json_is_named() {
         &["verify", file, "--out", &out],
         &["check", file],
         &["fmt", file],
+        &["import", "tests/imports/latent.py"],
         &["new", &paper],
     ];
     for run in runs {

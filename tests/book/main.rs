@@ -3,8 +3,8 @@
 //! What stands behind a fence: `palmistry` (a proof file, proved as it expects; `file=NAME` writes it beside the commands of the
 //! page, `after=NAME` puts it behind the file that was shown under that name, `refused` says that it is an error,
 //! `fails=ID,...` that these claims are not as expected), `console` (lines
-//! that begin with `$ ` are run, what is shown below them is their output), `toml file=NAME` and `csv file=NAME` (files for the
-//! commands), `json` (read). `not run: REASON` says why nothing is run. `PALMISTRY_BOOK=renew` writes outputs into the pages.
+//! that begin with `$ ` are run, what is shown below them is their output), `toml file=NAME`, `csv file=NAME` and those of other
+//! languages (files for the commands), `json` (read). `not run: REASON` says why nothing is run. `PALMISTRY_BOOK=renew` writes outputs into the pages.
 
 #![cfg(unix)]
 

@@ -96,7 +96,8 @@ impl Page<'_> {
                 }
             }
             // a file that commands below it read
-            "toml" | "csv" if block.value("file").is_some() => {}
+            "toml" | "csv" | "julia" | "xml" | "python" | "matlab" | "text"
+                if block.value("file").is_some() => {}
             kind => self.wrong(block, format!("a block of kind '{kind}' that nobody runs")),
         }
     }

@@ -128,10 +128,10 @@ fn point(system: &System, seed: u64) -> HashMap<String, RBig> {
 /// The entries of an expression.
 fn entries(system: &mut System, text: &str) -> Vec<NodeId> {
     match system.evaluate_text(text).unwrap_or_else(|error| panic!("{error}: {text}")) {
-        Value::Scalar(id) => vec![id],
+        Value::Scalar(id) | Value::Solutions(id) => vec![id],
         Value::Matrix(matrix) | Value::Rank(matrix) => matrix.entries,
         Value::Pole { expression, factor } => vec![expression, factor],
-        Value::CodistributionRank | Value::Visible { .. } => Vec::new(),
+        Value::CodistributionRank | Value::Visible { .. } | Value::Infinity => Vec::new(),
     }
 }
 

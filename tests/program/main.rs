@@ -4,8 +4,10 @@
 mod common;
 
 mod appendix;
+mod benchmarks;
 mod damaged;
 mod editors;
+mod import;
 mod page;
 mod paper;
 mod papers;

@@ -15,6 +15,7 @@ mod neighbours;
 mod observable;
 mod rank_edges;
 mod region_edges;
+mod solutions;
 mod stream;
 mod stress;
 mod trade;

@@ -25,7 +25,8 @@ pub(super) struct Species {
 }
 
 impl Species {
-    pub fn read(node: Node<'_, '_>) -> Result<Species, Problem> {
+    /// Reads a species; `factor` is what the model multiplies all changes by that name no factor of their own.
+    pub fn read(node: Node<'_, '_>, factor: Option<&str>) -> Result<Species, Problem> {
         Ok(Species {
             id: required(node, "id")?.to_owned(),
             compartment: required(node, "compartment")?.to_owned(),
@@ -33,7 +34,7 @@ impl Species {
             concentration: value_of(node, "initialConcentration")?,
             is_amount: says(node, "hasOnlySubstanceUnits", false),
             is_held: says(node, "boundaryCondition", false) || says(node, "constant", false),
-            factor: node.attribute("conversionFactor").map(str::to_owned),
+            factor: node.attribute("conversionFactor").or(factor).map(str::to_owned),
             span: place(node),
         })
     }
@@ -76,13 +77,12 @@ pub(super) fn shared_local_names(model: Node<'_, '_>) -> BTreeSet<String> {
 impl Reaction {
     pub fn read(
         node: Node<'_, '_>,
-        at: usize,
         formulas: &Formulas,
         is_level_3: bool,
         shared: &BTreeSet<String>,
         taken: &mut BTreeSet<String>,
     ) -> Result<Reaction, Problem> {
-        let id = node.attribute("id").map_or_else(|| format!("reaction_{}", at + 1), str::to_owned);
+        let id = required(node, "id")?.to_owned();
         let mut makes = Vec::new();
         for (list, sign) in [("listOfReactants", -1), ("listOfProducts", 1)] {
             for reference in listed(node, list) {

@@ -153,8 +153,11 @@ impl Reading {
                 })
             })
             .collect::<Result<Vec<_>, Problem>>()?;
-        let species =
-            listed(model, "listOfSpecies").into_iter().map(Species::read).collect::<Result<_, _>>()?;
+        let factor = model.attribute("conversionFactor");
+        let species = listed(model, "listOfSpecies")
+            .into_iter()
+            .map(|node| Species::read(node, factor))
+            .collect::<Result<_, _>>()?;
         let parameters = listed(model, "listOfParameters")
             .into_iter()
             .map(|node| Ok((required(node, "id")?.to_owned(), value_of(node, "value")?)))
@@ -172,8 +175,8 @@ impl Reading {
         reading.read_beginnings(model)?;
         let mut taken: BTreeSet<String> = ids.into_iter().map(str::to_owned).collect();
         let places = kinetics::shared_local_names(model);
-        for (at, node) in listed(model, "listOfReactions").into_iter().enumerate() {
-            let reaction = Reaction::read(node, at, &reading.formulas, is_level_3, &places, &mut taken)?;
+        for node in listed(model, "listOfReactions") {
+            let reaction = Reaction::read(node, &reading.formulas, is_level_3, &places, &mut taken)?;
             reading.reactions.push(reaction);
         }
         Ok(reading)
@@ -240,9 +243,8 @@ impl Reading {
     }
 
     fn model(self, node: Node<'_, '_>) -> Result<ForeignModel, Problem> {
-        let mut model = ForeignModel::default();
-        model.title = node.attribute("name").or(node.attribute("id")).map(str::to_owned);
-        model.source = source(node);
+        let title = node.attribute("name").or(node.attribute("id")).map(str::to_owned);
+        let mut model = ForeignModel { title, source: source(node), ..ForeignModel::default() };
         for (id, rule) in &self.rules {
             match rule.is_rate {
                 true => model.states.push(ForeignRate {

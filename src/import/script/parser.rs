@@ -91,12 +91,12 @@ impl<'a> Parser<'a> {
     /// Whether an expression ends before a word because a line does.
     fn line_ends(&self, token: &Token) -> bool {
         token.newline
-            && match (self.open.last(), self.dialect) {
-                (None, _) => true,
-                (Some(Bracket::Square), Dialect::Matlab | Dialect::Julia) => true,
-                (Some(Bracket::Curly), Dialect::Matlab) => true,
-                _ => false,
-            }
+            && matches!(
+                (self.open.last(), self.dialect),
+                (None, _)
+                    | (Some(Bracket::Square), Dialect::Matlab | Dialect::Julia)
+                    | (Some(Bracket::Curly), Dialect::Matlab)
+            )
     }
 
     /// Whether blanks stand between elements here.
@@ -319,9 +319,8 @@ impl<'a> Parser<'a> {
             base = joined(SyntaxKind::Power(Box::new(base), Box::new(exponent)), &begin, end);
         }
         if self.dialect == Dialect::Python && self.operator(&["^"]).is_some() {
-            return Err(
-                Problem::new(&self.peek().span, "'^' is no power in Python", "this").help("write '**'")
-            );
+            return Err(Problem::new(&self.peek().span, "'^' is no power in Python", "this")
+                .help("write '**' for a power"));
         }
         Ok(base)
     }
@@ -390,9 +389,10 @@ impl<'a> Parser<'a> {
         while !self.peek().is(close) {
             list.push(self.argument()?);
             // Julia has keyword arguments behind a semicolon
-            let goes_on = self.take(",") || self.dialect == Dialect::Julia && self.take(";");
+            let divided = self.take(",") || self.dialect == Dialect::Julia && self.take(";");
             let next = self.peek();
-            if !goes_on && !next.is(close) && !(self.dialect == Dialect::Julia && self.line_ends(next)) {
+            let goes_on = divided || self.dialect == Dialect::Julia && self.line_ends(next);
+            if !goes_on && !next.is(close) {
                 return Err(self.unexpected(&format!("',' or '{close}'")));
             }
         }

@@ -56,14 +56,14 @@ const SIGNS: [&str; 47] = [
     ";", ":", "~", "!", "?", "@", "&", "|", ".", "'",
 ];
 
+/// Comments with the places where they begin.
+pub(in crate::import) type Comments = Vec<(usize, String)>;
+
 /// The words of a text, and its comments with their places.
 ///
 /// # Errors
 /// A character that begins nothing, or a text that does not end.
-pub(in crate::import) fn tokens(
-    text: &str,
-    dialect: Dialect,
-) -> Result<(Vec<Token>, Vec<(usize, String)>), Problem> {
+pub(in crate::import) fn tokens(text: &str, dialect: Dialect) -> Result<(Vec<Token>, Comments), Problem> {
     let mut reading = Reading { text, dialect, at: 0, tokens: Vec::new(), comments: Vec::new() };
     reading.all()?;
     Ok((reading.tokens, reading.comments))
@@ -74,7 +74,7 @@ struct Reading<'a> {
     dialect: Dialect,
     at: usize,
     tokens: Vec<Token>,
-    comments: Vec<(usize, String)>,
+    comments: Comments,
 }
 
 fn begins_name(c: char) -> bool {
@@ -120,8 +120,6 @@ impl Reading<'_> {
         loop {
             let rest = self.rest();
             let Some(c) = rest.chars().next() else { return Ok((spaced, newline)) };
-            let starts_a_line =
-                self.text[..self.at].rsplit('\n').next().is_none_or(|line| line.trim().is_empty());
             if c == '\n' {
                 newline = true;
                 self.at += 1;
@@ -130,7 +128,7 @@ impl Reading<'_> {
                 self.at += c.len_utf8();
             } else if self.dialect == Dialect::Julia && rest.starts_with("#=") {
                 self.nested_comment()?;
-            } else if self.dialect == Dialect::Matlab && starts_a_line && line_of(rest).trim() == "%{" {
+            } else if self.dialect == Dialect::Matlab && self.begins_block() {
                 self.block_comment();
             } else if c == '#' && self.dialect != Dialect::Matlab
                 || c == '%' && self.dialect == Dialect::Matlab
@@ -151,6 +149,12 @@ impl Reading<'_> {
                 return Ok((spaced, newline));
             }
         }
+    }
+
+    /// Whether `%{` stands here in a line of its own.
+    fn begins_block(&self) -> bool {
+        let before = || self.text[..self.at].rsplit('\n').next().is_none_or(|line| line.trim().is_empty());
+        self.rest().starts_with("%{") && line_of(self.rest()).trim() == "%{" && before()
     }
 
     fn nested_comment(&mut self) -> Result<(), Problem> {

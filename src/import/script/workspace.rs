@@ -33,10 +33,13 @@ impl ScriptValue {
     }
 }
 
+/// Why something could not be read: where, what, and what to do.
+type Broken = (Span, String, Option<String>);
+
 /// The names of a script.
 #[derive(Default)]
 pub(in crate::import) struct ScriptWorkspace {
-    bound: BTreeMap<String, Result<ScriptValue, (Span, String, Option<String>)>>,
+    bound: BTreeMap<String, Result<ScriptValue, Broken>>,
     symbols: BTreeSet<String>,
     /// Definitions in the order in which they are made: name and expression.
     pub definitions: Vec<(String, ForeignExpr)>,
@@ -130,7 +133,11 @@ impl ScriptWorkspace {
         let span = &syntax.span;
         match &syntax.kind {
             SyntaxKind::Name(name) if self.bound.contains_key(name) => {
-                self.get(name).unwrap_or(Ok(ScriptValue::Else))
+                // a number stands where it is used
+                Ok(match self.get(name).unwrap_or(Ok(ScriptValue::Else))? {
+                    ScriptValue::One(one) => ScriptValue::One(ForeignExpr { span: span.clone(), ..one }),
+                    other => other,
+                })
             }
             SyntaxKind::List(list) => {
                 let parts: Vec<ScriptValue> =

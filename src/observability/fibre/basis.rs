@@ -36,6 +36,9 @@ pub(super) struct Limits<'a> {
     pub is_over: &'a dyn Fn() -> bool,
 }
 
+/// What it costs to find a monomial, in products of residues.
+const LOOK_UP: u64 = 16;
+
 /// A pair of elements of the basis, by their places.
 #[derive(Clone, Copy, Debug)]
 struct Pair {
@@ -116,7 +119,7 @@ impl Basis {
                 if !taken.insert((pair.lcm, place)) {
                     continue;
                 }
-                let row = self.multiple(place, pair.lcm);
+                let row = self.multiple(place, pair.lcm, limits);
                 if has_reducer.insert(pair.lcm) { reducers.push(row) } else { rows.push(row) }
             }
         }
@@ -133,11 +136,14 @@ impl Basis {
             if met.len() > limits.columns {
                 return Err(Stop::TooWide(met.len()));
             }
+            if (limits.is_over)() {
+                return Err(Stop::TimeIsUp);
+            }
             if has_reducer.contains(&monomial) {
                 continue;
             }
             if let Some(place) = self.divisor(monomial) {
-                let row = self.multiple(place, monomial);
+                let row = self.multiple(place, monomial, limits);
                 meet(&mut met, &mut waiting, &row);
                 has_reducer.insert(monomial);
                 reducers.push(row);
@@ -226,8 +232,10 @@ impl Basis {
     }
 
     /// An element times what its leading monomial lacks.
-    fn multiple(&mut self, place: usize, lead: u32) -> Row {
+    fn multiple(&mut self, place: usize, lead: u32, limits: &Limits) -> Row {
         let row = &self.elements[place];
+        // to find a monomial in the table takes as long as some products
+        limits.work.set(limits.work.get() + LOOK_UP * row.monomials.len() as u64);
         let factor = self.monomials.quotient(lead, row.monomials[0]);
         let monomials =
             row.monomials.iter().map(|monomial| self.monomials.product(*monomial, factor)).collect();

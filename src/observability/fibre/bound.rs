@@ -1,21 +1,27 @@
 //! How likely it is that a random point modulo a random prime shows fewer values than there are.
 //!
 //! Let `y_1 ... y_n` be derivatives of outputs whose differentials are independent in the `n` unknowns that are not held. On the states
-//! over which they are `N/R^m`, pairs of points with the same outputs are the zeros of `G_j = N_j(a) R(b)^m - N_j(b) R(a)^m`. Let two points with the same outputs,
-//! at almost all `a`, differ in the value that is asked for. Then there is a variety `C` of such pairs over the rationals whose projection to
-//! `a` is dense and has finite fibres, with a further coordinate `s`, `s R(b) (v(b) - v(a)) = 1`. It is a component of the zeros of `n + 1` polynomials, so that its degree
+//! over which they are `N/R^m`, pairs of points with the same outputs are the zeros of `G_j = N_j(a) R(b)^m - N_j(b) R(a)^m`.
+//! Let two points with the same outputs,
+//! at almost all `a`, differ in the value that is asked for. Then there is a variety `C` of such pairs over the rationals whose
+//! projection to
+//! `a` is dense and has finite fibres, with a further coordinate `s`, `s R(b) (v(b) - v(a)) = 1`. It is a component of the
+//! zeros of `n + 1` polynomials, so that its degree
 //! `D` is at most the product of theirs (Bezout). Each of the `n + 1` coordinates of `C` beside `a` satisfies over `Z[a]` an
 //! equation of degree at most `D`: that of the closure of the image of `C`. Where the leading coefficients of all of them do not
 //! vanish, modulo a prime or not, the coordinates are integral over `Z[a]`, and over `a` lies a point of `C`, modulo the same prime (Cohen
-//! and Seidenberg): a second value is met. The product of these coefficients has a degree of at most `(n + 1) D`, and [`failure_bound`] says how seldom it
+//! and Seidenberg): a second value is met. The product of these coefficients has a degree of at most `(n + 1) D`, and
+//! [`failure_bound`] says how seldom it
 //! vanishes. That so and so many values are met and no more is shown in the same way: of the polynomial whose roots are the values,
 //! of degree `D`, neither the leading coefficient nor the discriminant may vanish.
 //!
 //! Nothing of it depends on how many derivatives were taken: those that are left out can only tell more values apart.
 //!
 //! The coefficients are bounded by the arithmetic theorem of Bezout (T. Krick, L. M. Pardo and M. Sombra, *Sharp estimates for the
-//! arithmetic Nullstellensatz*, Duke Math. J. 109 (2001), corollary 2.11), with twice as much room for the logarithms of the dimension as Chow forms,
-//! their Mahler measures and their values at coordinates need there: what counts is the number of primes that divide them, and these are many.
+//! arithmetic Nullstellensatz*, Duke Math. J. 109 (2001), corollary 2.11), with twice as much room for the logarithms of the
+//! dimension as Chow forms,
+//! their Mahler measures and their values at coordinates need there: what counts is the number of primes that divide them, and
+//! these are many.
 
 use super::exact::Exact;
 use super::model::{Model, Motion, Quotient};
@@ -50,7 +56,7 @@ fn size(polynomial: &Exact) -> Size {
 
 /// The bounds for the value of an unknown, or of an expression.
 pub(super) fn bounds(model: &Model, orders: &Orders, asked: Option<&Quotient>) -> Option<Bounds> {
-    if !model.angles.is_empty() {
+    if !model.angles.is_empty() || model.is_on_a_set() {
         return None;
     }
     let rates = model.variables.iter().filter_map(|variable| match &variable.motion {

@@ -2,7 +2,8 @@
 //! times and all inputs.
 //!
 //! A map `X_v = e_v x_w`, `w` a permutation of the unknowns and `e_v` signs, takes solutions to solutions where `r_v(X) = e_v r_w(x)` for
-//! the rates, and leaves the outputs as they are where `h(X) = h(x)`. Both are equations between polynomials with integer coefficients, and are compared term by term: there is no
+//! the rates, and leaves the outputs as they are where `h(X) = h(x)`. Both are equations between polynomials with integer
+//! coefficients, and are compared term by term: there is no
 //! error. Permutations are found by refining a partition of the unknowns, the signs by linear algebra modulo 2.
 
 use super::exact::{Exact, Monomial};
@@ -256,7 +257,8 @@ impl Search<'_> {
         }
     }
 
-    /// The signs as a solution of linear equations modulo 2, and those of the equations without right sides: a bit for each variable, then one
+    /// The signs as a solution of linear equations modulo 2, and those of the equations without right sides: a bit for each
+    /// variable, then one
     /// for each top and bottom.
     fn solve(&self, permutation: &[usize]) -> Option<(Vec<bool>, Vec<Vec<bool>>)> {
         let count = permutation.len();

@@ -51,6 +51,9 @@ pub(super) struct Model {
     /// The values at the beginning that the file gives, as programs of known parameters.
     pub given: Vec<(usize, NodeId)>,
     pub angles: HashSet<Symbol>,
+    /// The rates and the outputs as expressions.
+    pub rates: Vec<(Symbol, NodeId)>,
+    pub seen: Vec<NodeId>,
 }
 
 /// A name that no file can give.
@@ -102,6 +105,8 @@ impl Model {
         roots.extend(asked);
         let roots = graph.substitute(&roots, &fixed);
         let roots = expand_angles(&mut graph, &roots, is_angle);
+        let expressions: Vec<(Symbol, NodeId)> = moved.iter().copied().zip(roots.iter().copied()).collect();
+        let seen = roots[moved.len()..moved.len() + system.outputs.len()].to_vec();
         let program = Program::with_unknown_functions(&graph, &roots, is_angle);
         if let Some(angle) = program.bare_angle() {
             let name = system.symbol_name(angle);
@@ -199,7 +204,7 @@ impl Model {
             of_it.iter().filter_map(|input| place.get(input).copied()).collect()
         };
         let unknowns = system.unknowns().into_iter().map(|symbol| (symbol, places(symbol))).collect();
-        Ok(Model { graph, variables, outputs, asked, unknowns, given, angles })
+        Ok(Model { graph, variables, outputs, asked, unknowns, given, angles, rates: expressions, seen })
     }
 
     /// Whether values at the beginning are numbers or expressions, and not anything.

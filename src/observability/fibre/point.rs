@@ -1,4 +1,5 @@
-//! The equations of a fibre: all values of the unknowns at the beginning, and of all derivatives, for which the outputs have the derivatives
+//! The equations of a fibre: all values of the unknowns at the beginning, and of all derivatives, for which the outputs have
+//! the derivatives
 //! that they have at one random point.
 
 use super::exact::Exact;
@@ -21,6 +22,26 @@ pub(super) enum Trouble {
     Pole,
     /// In words.
     TooLarge(String),
+}
+
+/// Where the values of a point come from.
+pub(super) struct Source<'a> {
+    pub rng: &'a mut ChaCha8Rng,
+    /// Values of variables; of those that are not among them they are random.
+    pub given: HashMap<u32, i64>,
+}
+
+impl Source<'_> {
+    fn value(&mut self, field: &PrimeField, jet: u32) -> u64 {
+        match self.given.get(&jet) {
+            Some(value) => field.integer(&(*value).into()),
+            None => field.draw(self.rng),
+        }
+    }
+
+    fn random(&mut self) -> &mut ChaCha8Rng {
+        self.rng
+    }
 }
 
 /// Polynomials that vanish on a fibre, and a point of it.
@@ -97,12 +118,12 @@ fn needed(model: &Model, orders: &Orders) -> Vec<Option<usize>> {
 }
 
 impl Fibre {
-    /// The fibre through a random point, with the unknowns that are free held at their values.
+    /// The fibre through a point, with the unknowns that are free held at their values.
     pub fn new(
         model: &Model,
         orders: &Orders,
         field: PrimeField,
-        rng: &mut ChaCha8Rng,
+        source: &mut Source,
     ) -> Result<Fibre, Trouble> {
         let numbering = Numbering { variables: model.variables.len(), asked: model.asked.len() };
         let needed = needed(model, orders);
@@ -113,12 +134,13 @@ impl Fibre {
                 _ => Some(jet + numbering.stride()),
             }
         };
-        let mut values: HashMap<u32, u64> = begin(model, field, rng)?;
+        let mut values: HashMap<u32, u64> = begin(model, field, source)?;
         // derivatives of drives are anything
         for (variable, order) in needed.iter().enumerate() {
             if let (Motion::Driven, Some(order)) = (&model.variables[variable].motion, order) {
                 for k in 0..=*order {
-                    values.entry(numbering.jet(variable, k)).or_insert_with(|| field.draw(rng));
+                    let jet = numbering.jet(variable, k);
+                    values.entry(jet).or_insert_with(|| source.value(&field, jet));
                 }
             }
         }
@@ -270,18 +292,18 @@ impl Fibre {
 }
 
 /// Random values at the beginning, or those that the file gives.
-fn begin(model: &Model, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<HashMap<u32, u64>, Trouble> {
+fn begin(model: &Model, field: PrimeField, source: &mut Source) -> Result<HashMap<u32, u64>, Trouble> {
     let mut values = HashMap::new();
     for (place, variable) in model.variables.iter().enumerate() {
         match variable.input {
             Input::Cosine(_) => {
-                let (sine, cosine) = field.draw_unit(rng);
+                let (sine, cosine) = field.draw_unit(source.random());
                 values.insert(place as u32, cosine);
                 values.insert(place as u32 + 1, sine);
             }
             Input::Sine(_) => {}
             _ => {
-                values.insert(place as u32, field.draw(rng));
+                values.insert(place as u32, source.value(&field, place as u32));
             }
         }
     }
@@ -292,7 +314,7 @@ fn begin(model: &Model, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<HashM
         .zip(0u32..)
         .map(|(variable, place)| (variable.input, values[&place]))
         .collect();
-    let drawn = draw_residues(&program, &field, rng);
+    let drawn = draw_residues(&program, &field, source.random());
     let inputs: Vec<u64> = program
         .inputs()
         .iter()

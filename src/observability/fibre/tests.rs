@@ -1,91 +1,68 @@
-use super::*;
+use super::basis::{Basis, Limits, Row};
+use super::monomials::Monomials;
+use super::quotient::{Algebra, NoAlgebra, distinct_roots};
+use crate::number::PrimeField;
+use std::cell::Cell;
 
-/// The number of values of each unknown, none where infinitely many.
-fn found(text: &str) -> Vec<(String, Option<usize>)> {
-    let mut system: System = format!("system \"s\" {text}").parse().unwrap();
-    let question = SolutionsQuestion {
-        conditions: Assignment::new(),
-        expressions: Vec::new(),
-        work: WORK,
-        interrupt: &AtomicBool::new(false),
-    };
-    let answer = solutions(&mut system, &question).unwrap();
-    let number = |of_it: &SolutionsOf| match &of_it.solutions {
-        Solutions::Finite(number) => Some(*number),
-        Solutions::Infinite => None,
-        Solutions::Undecided(why) => panic!("{}: {why}", of_it.name),
-    };
-    eprintln!("{answer:?}");
-    answer.unknowns.iter().map(|of_it| (of_it.name.clone(), number(of_it))).collect()
-}
+/// The least prime above 2^61.
+const PRIME: u64 = (1 << 61) + 15;
 
-fn is(text: &str, expected: &[(&str, Option<usize>)]) {
-    let expected: Vec<(String, Option<usize>)> =
-        expected.iter().map(|(name, n)| ((*name).to_owned(), *n)).collect();
-    assert_eq!(found(text), expected, "{text}");
-}
+/// Polynomials in so many variables: powers and coefficient of each term.
+type Terms<'a> = &'a [(&'a [(usize, u16)], i64)];
 
-#[test]
-fn a_square_has_two_roots() {
-    is("state x param k unknown drift f x' = k^2*x output x", &[("x", Some(1)), ("k", Some(2))]);
-    is("state x param k unknown drift f x' = k*x output x^2", &[("x", Some(2)), ("k", Some(1))]);
-    is("state x param a, b unknown drift f x' = a*b*x output x", &[("x", Some(1)), ("a", None), ("b", None)]);
-    is(
-        "state x param a, b unknown drift f x' = (a + b)*x + a*b output x",
-        &[("x", Some(1)), ("a", Some(2)), ("b", Some(2))],
-    );
-}
-
-#[test]
-#[ignore]
-fn all_models() {
-    let only = std::env::var("MODEL").unwrap_or_default();
-    let work: u64 = std::env::var("WORK").ok().and_then(|w| w.parse().ok()).unwrap_or(300_000_000);
-    let mut files: Vec<_> = std::fs::read_dir("tests/models").unwrap().map(|f| f.unwrap().path()).collect();
-    files.sort();
-    for file in files {
-        if file.extension().is_none_or(|e| e != "proof")
-            || !only.split(',').any(|o| file.to_str().unwrap().contains(o))
-        {
-            continue;
-        }
-        let begin = std::time::Instant::now();
-        let mut system = System::read(&file).unwrap();
-        let question = SolutionsQuestion {
-            conditions: Assignment::new(),
-            expressions: Vec::new(),
-            work,
-            interrupt: &AtomicBool::new(false),
-        };
-        let answer = solutions(&mut system, &question);
-        let name = file.file_stem().unwrap().to_string_lossy().into_owned();
-        match answer {
-            Err(why) => println!("{name}: {why}"),
-            Ok(answer) => {
-                let of = |s: &SolutionsOf| match &s.solutions {
-                    Solutions::Finite(n) => {
-                        format!("{}={n}{}", s.name, if s.at_most.is_some() { "!" } else { "" })
-                    }
-                    Solutions::Infinite => format!("{}=oo", s.name),
-                    Solutions::Undecided(why) => format!("{}=? ({why})", s.name),
-                };
-                let mut all: Vec<String> = answer.unknowns.iter().map(of).collect();
-                if let Some(why) = answer.unknowns.iter().find_map(|s| match &s.solutions {
-                    Solutions::Undecided(why) => Some(why.clone()),
-                    _ => None,
-                }) {
-                    all = vec![format!("UNDECIDED {why}")];
-                }
-                println!(
-                    "{name}: {:.1}s rounds {} work {:.1e} points {:?} orders {:?}: {}",
-                    begin.elapsed().as_secs_f64(),
-                    answer.rounds,
-                    answer.work as f64,
-                    answer.points,
-                    answer.orders,
-                    all.join(" ")
-                );
-            }
-        }
+fn algebra(variables: usize, polynomials: &[Terms]) -> Result<Algebra, NoAlgebra> {
+    let field = PrimeField::new(PRIME);
+    let mut monomials = Monomials::new(vec![1; variables]);
+    let mut rows = Vec::new();
+    for polynomial in polynomials {
+        let mut terms: Vec<(u32, u64)> = polynomial
+            .iter()
+            .map(|(powers, coefficient)| (monomials.of(powers), field.integer(&(*coefficient).into())))
+            .collect();
+        terms.sort_by(|a, b| monomials.compare(b.0, a.0));
+        let (monomials, coefficients) = terms.into_iter().unzip();
+        rows.push(Row { monomials, coefficients });
     }
+    let work = Cell::new(0);
+    let limits = Limits { columns: 10_000, degree: 50, work: &work, is_over: &|| false };
+    Algebra::new(Basis::of(field, monomials, rows, &limits).unwrap(), 200)
+}
+
+fn values(algebra: &mut Algebra, powers: &[(usize, u16)]) -> usize {
+    let field = PrimeField::new(PRIME);
+    distinct_roots(&field, &algebra.minimal_polynomial(&[(powers.to_vec(), field.one())]))
+}
+
+/// The elementary symmetric functions of three numbers leave their six orders: cyclic roots for n = 3.
+#[test]
+fn symmetric_functions_leave_six_points() {
+    let sum: Terms = &[(&[(0, 1)], 1), (&[(1, 1)], 1), (&[(2, 1)], 1), (&[], -6)];
+    let pairs: Terms = &[(&[(0, 1), (1, 1)], 1), (&[(1, 1), (2, 1)], 1), (&[(0, 1), (2, 1)], 1), (&[], -11)];
+    let product: Terms = &[(&[(0, 1), (1, 1), (2, 1)], 1), (&[], -6)];
+    let mut found = algebra(3, &[sum, pairs, product]).unwrap();
+    assert_eq!(found.dimension(), 6);
+    assert_eq!(values(&mut found, &[(0, 1)]), 3);
+    // of 1, 2 and 3 the products of two are 2, 3 and 6
+    assert_eq!(values(&mut found, &[(0, 1), (2, 1)]), 3);
+    assert_eq!(values(&mut found, &[(0, 1), (1, 1), (2, 1)]), 1);
+    // x^2 y has the values 2, 3, 4, 12, 9, 18
+    assert_eq!(values(&mut found, &[(0, 2), (1, 1)]), 6);
+}
+
+/// A double point counts twice as a point and once as a value.
+#[test]
+fn a_double_point_has_one_value() {
+    let square: Terms = &[(&[(0, 2)], 1), (&[(0, 1)], -2), (&[], 1)];
+    let line: Terms = &[(&[(1, 1)], 1), (&[(0, 1)], -1)];
+    let mut found = algebra(2, &[square, line]).unwrap();
+    assert_eq!((found.dimension(), values(&mut found, &[(1, 1)])), (2, 1));
+}
+
+/// A curve has infinitely many points; what contradicts itself has none.
+#[test]
+fn curves_and_contradictions() {
+    let curve: Terms = &[(&[(0, 1), (1, 1)], 1), (&[], -1)];
+    assert_eq!(algebra(2, &[curve]).err(), Some(NoAlgebra::Infinite));
+    let other: Terms = &[(&[(0, 1), (1, 1)], 1), (&[], -2)];
+    assert_eq!(algebra(2, &[curve, other]).map(|found| found.dimension()).ok(), Some(0));
 }

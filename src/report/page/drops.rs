@@ -1,5 +1,6 @@
 //! Where a rank drops, on the page: the sets as formulas, what the rank is on each, what proves the rest, what is open.
 
+use super::entry::raised;
 use crate::drops::{BoxShare, DropAnswer, DropSet, UsedMinor};
 use crate::observability::StateInWords;
 use crate::report::claims::outcomes::error_bound;
@@ -10,6 +11,8 @@ use maud::{Markup, PreEscaped, html};
 
 /// Longer formulas are cut off; the JSON has all of them.
 const LONGEST: usize = 400;
+/// In a table with other columns formulas that are longer than this stand as text, which is broken into lines.
+const SHORT: usize = 120;
 /// So many minors and open sets are shown.
 const MOST: usize = 60;
 
@@ -28,10 +31,9 @@ pub(super) fn drops(answer: &DropAnswer) -> Markup {
     html! {
         h3 { "Where the rank drops" }
         p {
-            "At almost all states the rank is " b { (rank) } " of " (dimension)
-            @if !answer.is_final { ", as far as was looked; longer words may add to it" }
-            "."
-            @if !answer.domain.is_empty() { " It is asked for where all terms exist: " (listed(&answer.domain)) "." }
+            @if answer.is_final { "At almost all states the rank is " b { (rank) } " of " (dimension) "." }
+            @else { "Asked for is the rank " b { (rank) } " of " (dimension) "; that almost all states have it is not decided." }
+            @if !answer.domain.is_empty() { " It is asked for where all terms exist: " (listed(&answer.domain, SHORT)) "." }
         }
         (conclusion(answer))
         @if !answer.sets.is_empty() { (sets(&answer.sets)) }
@@ -79,7 +81,7 @@ fn sets(sets: &[DropSet]) -> Markup {
                         td {
                             @match error_bound(set.log2_error).as_str() {
                                 "0" => { "certain" }
-                                bound => { "error below " (bound) }
+                                bound => { "error below " (raised(bound)) }
                             }
                         }
                         td.words { @if let Some(state) = &set.state { (at(state)) } }
@@ -111,7 +113,7 @@ fn on_the_box(share: &Result<BoxShare, String>, rank: usize) -> Markup {
             @match share {
                 Ok(share) => {
                     "Interval certificates prove the rank to be " (rank) " on " b { (share.percent()) " %" }
-                    " of the sample box (" (share.boxes) " boxes), which is no more than a part of all states."
+                    " of the sample box (" (share.boxes) @if share.boxes == 1 { " box" } @else { " boxes" } "), which is no more than a part of all states."
                     @if !share.by_default.is_empty() { " " (by_default_text(&share.by_default)) "." }
                 }
                 Err(why) => { "Interval certificates prove nothing on the sample box: " (why) "." }
@@ -125,11 +127,11 @@ fn minors(minors: &[UsedMinor]) -> Markup {
         details {
             summary { "the minors by which the rank is no lower elsewhere" }
             div.scroll { table {
-                thead { tr { th { "on the case" } th { "minor" } th { "is, up to a positive factor" } } }
+                thead { tr { th { "on the case" } th { "minor" } th { "is, up to a factor that does not vanish" } } }
                 tbody {
                     @for minor in minors.iter().take(MOST) {
                         tr {
-                            td { @if minor.equations.is_empty() { "all states" } @else { (listed(&minor.equations)) } }
+                            td { @if minor.equations.is_empty() { "all states" } @else { (listed(&minor.equations, SHORT)) } }
                             td.words { (minor.rows.join(", ")) }
                             td { (product(&minor.factors)) }
                         }
@@ -143,7 +145,7 @@ fn minors(minors: &[UsedMinor]) -> Markup {
 
 fn product(factors: &[(String, i64)]) -> Markup {
     let raised = |(factor, power): &(String, i64)| match power {
-        1 => format!("({factor})"),
+        -1 | 1 => format!("({factor})"),
         _ => format!("({factor})^{}", power.unsigned_abs()),
     };
     let part = |below: bool| {
@@ -157,10 +159,10 @@ fn product(factors: &[(String, i64)]) -> Markup {
 }
 
 fn expression(text: &str) -> Markup {
-    let formula = if text.len() <= LONGEST { formula_mathml(text) } else { None };
+    let formula = if text.len() <= SHORT { formula_mathml(text) } else { None };
     match formula {
         Some(formula) => html! { span.f { (PreEscaped(formula)) } },
-        None => html! { code { (in_short(text)) } },
+        None => html! { code { (in_short(text, LONGEST)) } },
     }
 }
 
@@ -169,26 +171,26 @@ fn place(set: &DropSet) -> Markup {
     if all.is_empty() {
         html! { "all states" }
     } else {
-        listed(&all)
+        listed(&all, LONGEST)
     }
 }
 
 /// Conditions as formulas, one after the other; each of those that are too long as it is written, in part.
-fn listed(conditions: &[String]) -> Markup {
+fn listed(conditions: &[String], longest: usize) -> Markup {
     html! {
         @for (place, condition) in conditions.iter().enumerate() {
             @if place > 0 { ", " }
-            @let formula = if condition.len() <= LONGEST { conditions_mathml(std::slice::from_ref(condition)) } else { None };
+            @let formula = if condition.len() <= longest { conditions_mathml(std::slice::from_ref(condition)) } else { None };
             @match formula {
                 Some(formula) => { span.f { (PreEscaped(formula)) } }
-                None => { code { (in_short(condition)) } }
+                None => { code { (in_short(condition, longest)) } }
             }
         }
     }
 }
 
-fn in_short(text: &str) -> String {
-    match text.char_indices().nth(LONGEST) {
+fn in_short(text: &str, longest: usize) -> String {
+    match text.char_indices().nth(longest) {
         Some((end, _)) => format!("{} ...", &text[..end]),
         None => text.to_owned(),
     }
@@ -198,7 +200,7 @@ fn at(state: &StateInWords) -> Markup {
     html! {
         @for (place, at) in state.iter().enumerate() {
             @if place > 0 { ", " }
-            (at.name) " = " (at.exact)
+            (at.name) @if at.exact.contains('=') { ": " } @else { " = " } (at.exact)
         }
     }
 }

@@ -133,7 +133,7 @@ fn certainty(log2_error: f64) -> Markup {
 }
 
 /// A power as it is written, its exponent above the line: `2⁻¹⁰¹` for `2^-101`.
-fn raised(power: &str) -> String {
+pub(super) fn raised(power: &str) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let Some((base, exponent)) = power.split_once('^') else { return power.to_owned() };
     let raise = |c: char| match c.to_digit(10) {

@@ -87,8 +87,13 @@ pub fn drops_text(answer: &DropAnswer) -> String {
     let _ = writeln!(out, "{title} ({file})");
     let _ = writeln!(
         out,
-        "rank {rank} of {dimension} at almost all states{}",
-        if answer.is_final { "" } else { ", as far as was looked; longer words may add to it" }
+        "{}",
+        match answer.is_final {
+            true => format!("rank {rank} of {dimension} at almost all states"),
+            false => format!(
+                "rank {rank} of {dimension} is asked for; whether almost all states have it is not decided"
+            ),
+        }
     );
     if !answer.domain.is_empty() {
         let _ = writeln!(out, "all words exist where {}", answer.domain.join(", "));

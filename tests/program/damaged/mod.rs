@@ -8,6 +8,7 @@ use palmistry::certificate::{Limits, Region, RegionRows};
 use palmistry::checker::{Effort, VerdictFile};
 use palmistry::claim::{Kept, decide_all_keeping};
 use palmistry::experiment::Scene;
+use palmistry::import::{ForeignFormat, ImportQuestion, import};
 use palmistry::observer::{FaultRules, OnFault, Record};
 use palmistry::system::System;
 use proptest::prelude::*;
@@ -196,13 +197,19 @@ impl Damage {
 
 /// All files of a folder with an extension.
 fn shipped(folder: &str, extension: &str) -> Vec<Vec<u8>> {
+    let files = some(folder, extension);
+    assert!(files.len() > 3, "{folder} has files");
+    files
+}
+
+/// The same, however few.
+fn some(folder: &str, extension: &str) -> Vec<Vec<u8>> {
     let mut files: Vec<PathBuf> = std::fs::read_dir(root().join(folder))
         .expect("a folder")
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.extension().is_some_and(|e| e == extension))
         .collect();
     files.sort();
-    assert!(files.len() > 3, "{folder} has files");
     files.iter().map(|file| std::fs::read(file).unwrap()).collect()
 }
 
@@ -228,6 +235,31 @@ fn proof() {
     // the long ones are as slow to read as they are long, and have no other entries
     let small = |file: &Vec<u8>| file.len() < 8000;
     reader.try_all(&shipped("proofs/moll2002", "proof").into_iter().filter(small).collect::<Vec<_>>());
+}
+
+/// Models of other programs, read as every format. What is read is written, and read back.
+#[test]
+fn foreign() {
+    let reader = Watched::new("foreign", |bytes| {
+        if let Ok(text) = std::str::from_utf8(bytes) {
+            // as what it says it is, and as one of the others
+            let other = ForeignFormat::ALL[bytes.len() % ForeignFormat::ALL.len()];
+            for format in [None, Some(other)] {
+                let question =
+                    ImportQuestion { format, model: Some("1".to_owned()), ..ImportQuestion::default() };
+                match import("damaged", text, &question) {
+                    Ok(imported) => {
+                        System::parse("written.proof", &imported.text, Path::new("")).expect("a proof file");
+                    }
+                    Err(why) => assert!(!why.message.is_empty()),
+                }
+            }
+        }
+    });
+    let whole: Vec<Vec<u8>> =
+        ["jl", "xml", "py", "m", "txt"].into_iter().flat_map(|end| some("tests/imports", end)).collect();
+    assert!(whole.len() >= 8, "{} files", whole.len());
+    reader.try_all(&whole);
 }
 
 #[test]

@@ -1,0 +1,1 @@
+ode = @ODEmodel(x'(t) = ((a*x(t), y(t) = x(t))

@@ -1,0 +1,224 @@
+//! How many values give the same outputs: by hand, by what was published (`values` and functions in
+//! `tests/models/expected.toml`), and the words in which it is told.
+
+use crate::common::{json, palmistry};
+use palmistry::observability::{Seen, Solutions, SolutionsOf, SolutionsQuestion, solutions};
+use palmistry::{System, answer_solutions};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+/// As much work as a test may be.
+const WORK: u64 = 4_000_000;
+/// Larger models are left to the table in the book.
+const MOST_UNKNOWNS: usize = 15;
+
+fn read(text: &str) -> System {
+    format!("system \"s\" {text}").parse().unwrap()
+}
+
+/// What is known of the unknowns, then of some expressions.
+fn ask(system: &System, expressions: &[String], work: u64) -> Vec<SolutionsOf> {
+    // each expression has a name of its own, so that it is read as the file would
+    let names: Vec<String> = (0..expressions.len()).map(|number| format!("asked_{number}")).collect();
+    let lines = names.iter().zip(expressions).map(|(name, text)| format!("\nlet {name} = {text}"));
+    let mut system: System = format!("{}{}", system.source, lines.collect::<String>()).parse().unwrap();
+    let node = |name: &String| system.definition(name).unwrap().as_number().unwrap();
+    let list = names.iter().zip(expressions).map(|(name, text)| (text.clone(), node(name))).collect();
+    let interrupt = AtomicBool::new(false);
+    let question =
+        SolutionsQuestion { conditions: Default::default(), expressions: list, work, interrupt: &interrupt };
+    solutions(&mut system, &question).unwrap().unknowns
+}
+
+fn number(of_it: &SolutionsOf) -> String {
+    match &of_it.solutions {
+        Solutions::Finite(count) => count.to_string(),
+        Solutions::Infinite => "infinity".to_owned(),
+        Solutions::Undecided(why) => format!("undecided: {why}"),
+    }
+}
+
+/// Each unknown with its number, and an exclamation mark where that is proved.
+fn table(text: &str) -> String {
+    let answer = answer_solutions(&mut read(text), WORK, &AtomicBool::new(false)).unwrap();
+    let word = |of_it: &SolutionsOf| {
+        format!("{} {}{}", of_it.name, number(of_it), if of_it.is_proved() { "!" } else { "" })
+    };
+    answer.solutions.unknowns.iter().map(word).collect::<Vec<_>>().join(", ")
+}
+
+/// By hand: a square has two roots; a product leaves its factors open; the coefficients of a quadratic polynomial leave its roots open
+/// up to their order; a third power has three roots over the complex numbers, of which one is real.
+#[test]
+fn answers_by_hand() {
+    let rows = [
+        ("state x param k unknown drift f x' = k^2*x output x", "x 1!, k 2!"),
+        ("state x param k unknown drift f x' = k^3*x output x", "x 1!, k 3"),
+        ("state x param k unknown drift f x' = k*x output x^2", "x 2!, k 1!"),
+        ("state x param a, b unknown drift f x' = a*b*x output x", "x 1!, a infinity!, b infinity!"),
+        ("state x param a, b unknown drift f x' = (a + b)*x + a*b output x", "x 1!, a 2!, b 2!"),
+        // the two peripheral compartments may be exchanged
+        (
+            "state x, y, z param a, b, c, d unknown drift f x' = -(a + b)*x + c*y + d*z y' = a*x - c*y z' = b*x - d*z \
+             input u x' = 1 others' = 0 output x",
+            "x 1!, y 2!, z 2!, a 2!, b 2!, c 2!, d 2!",
+        ),
+        // a known beginning tells the sign
+        ("state x param k unknown initial x = 1 drift f x' = k*x output x^2", "k 1"),
+        // what is known tells the scale
+        ("state x param a unknown param b drift f x' = a*b*x output x", "x 1!, a 1!"),
+        // H. Hong et al. (2020), example 2.14: one experiment leaves two values, two leave one
+        ("state x param a unknown drift f x' = 0 output x, a*x + a^2", "x 1!, a 2"),
+        ("state x param a unknown drift f x' = 0 output x, a*x + a^2 experiments 2", "x 1!, a 1!, x@2 1!"),
+        // a denominator
+        ("state x param v, k unknown drift f x' = -v*x/(k + x) output x", "x 1!, v 1!, k 1!"),
+    ];
+    for (text, expected) in rows {
+        assert_eq!(table(text), expected, "{text}");
+    }
+}
+
+/// An angle is a point of the circle: the sine of an angle leaves two of them, both its functions one.
+#[test]
+fn an_angle_is_a_point_of_the_circle() {
+    let text =
+        |rate: &str, output: &str| format!("state a, w angle a drift f a' = w w' = {rate} output {output}");
+    assert_eq!(table(&text("0", "sin(a)")), "a 2, w 2");
+    assert_eq!(table(&text("0", "sin(a), cos(a)")), "a 1, w 1");
+    // gravity tells which of the two it is
+    assert_eq!(table(&text("-sin(a)", "sin(a)")), "a 1, w 1");
+}
+
+#[test]
+fn what_is_no_rational_function_is_named() {
+    let system = read("state x param k unknown drift f x' = -k*x output exp(x)");
+    let found = ask(&system, &[], WORK);
+    assert!(found.iter().all(|of_it| of_it.local == Seen::Yes), "{found:?}");
+    assert!(number(&found[0]).contains("exp(x) is no rational function"), "{found:?}");
+    let steps = read("state x param k unknown drift f x+ = k*x output x");
+    assert!(number(&ask(&steps, &[], WORK)[0]).contains("steps"));
+}
+
+/// A limit is named, and what a symmetry shows stands without a basis.
+#[test]
+fn what_takes_too_long_is_undecided() {
+    let text = "state x, y, z param a, b, c, d unknown drift f x' = -(a + b)*x + c*y + d*z y' = a*x - c*y z' = b*x - d*z \
+                input u x' = 1 others' = 0 output x";
+    let found = ask(&read(text), &[], 10);
+    let of_y = found.iter().find(|of_it| of_it.name == "y").unwrap();
+    assert!(number(of_y).contains("takes"), "{of_y:?}");
+    assert_eq!(of_y.at_least.as_ref().map(|(least, _)| *least), Some(2));
+}
+
+/// What is proved is said to be, the rest with its number in the remark.
+#[test]
+fn claims_about_numbers_of_values() {
+    let system = read(
+        "state x, z param k, a, b, c unknown drift f x' = k^2*x + a*b*z z' = -c^3*z output x, z \
+         claim 1: solutions(x) = 1 claim 2: 1 = solutions(a*b) claim 3: solutions(k) = 2 \
+         claim 4: solutions(k) >= 2 claim 5: solutions(a) = infinity claim 6: solutions(a) > 100 \
+         claim 7: solutions(k) < infinity claim 8 expect refuted: solutions(k) = 1 \
+         claim 9 expect refuted: solutions(a) <= 3 claim 10 expect refuted: solutions(x) = infinity \
+         claim 11 expect undecided: solutions(c) = 3 claim 12: solutions(c) <= 3 claim 13 expect undecided: solutions(c) = 1 \
+         claim 14 expect undecided: solutions(k) = 2 where x = 1 claim 15: solutions(k*x) = 2 claim 16: solutions(c^3) = 1",
+    );
+    for outcome in palmistry::prove(&system) {
+        assert!(outcome.ok, "{} {}: {:?}", outcome.id, outcome.statement, outcome.verdict);
+        if outcome.id == "11" {
+            assert!(
+                format!("{:?}", outcome.verdict).contains("3 over the complex numbers"),
+                "{:?}",
+                outcome.verdict
+            );
+        }
+    }
+    for wrong in ["solutions(x, z) = 1", "x = infinity", "solutions(x) = solutions(z)", "solutions(y) = 1"] {
+        let text = format!("system \"s\" state x, z drift f x' = z z' = 0 output x claim 1: {wrong}");
+        assert!(text.parse::<System>().is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn the_command_tells_each_unknown() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("s.proof");
+    std::fs::write(&file, "system \"s\" state x param k, a, b unknown drift f x' = k^2*x + a*b output x")
+        .unwrap();
+    let file = file.to_str().unwrap();
+    let text = String::from_utf8(palmistry(&["rank", file, "--global"]).stdout).unwrap();
+    assert!(text.contains("2 over the complex numbers: proved, by k -> -k"), "{text}");
+    assert!(text.contains("1, globally observable: proved"), "{text}");
+    let found = json(&palmistry(&["rank", file, "--global", "--json"]));
+    let values: Vec<_> =
+        found["unknowns"].as_array().unwrap().iter().map(|of_it| of_it["values"].clone()).collect();
+    assert_eq!(values, [1.into(), 2.into(), "infinity".into(), "infinity".into()] as [serde_json::Value; 4]);
+    let larger = file_of("mammillary3");
+    let little = palmistry(&["rank", larger.to_str().unwrap(), "--global", "--work", "10"]);
+    assert_eq!(little.status.code(), Some(3), "{}", String::from_utf8_lossy(&little.stdout));
+    assert_eq!(palmistry(&["rank", file, "--global", "--at", "x=1"]).status.code(), Some(2));
+}
+
+#[derive(serde::Deserialize)]
+struct Expected {
+    #[serde(default)]
+    values: BTreeMap<String, usize>,
+    #[serde(default)]
+    functions: Vec<String>,
+    #[serde(default)]
+    functions_of_constants: Vec<String>,
+    not_seen: Vec<String>,
+    published: bool,
+}
+
+fn file_of(model: &str) -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let places = [root.join("tests/models"), root.join("proofs/benchmarks")];
+    places.iter().map(|place| place.join(model).with_extension("proof")).find(|file| file.exists()).unwrap()
+}
+
+/// Published numbers of values, and functions that were published as identifiable, which have one value each. What takes too
+/// much work for a test is
+/// undecided, and is counted.
+#[test]
+fn published_numbers_of_values() {
+    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models/expected.toml");
+    let table: BTreeMap<String, Expected> = toml::from_str(&std::fs::read_to_string(table).unwrap()).unwrap();
+    let (mut decided, mut open) = (0, Vec::new());
+    for (name, expected) in &table {
+        let mut functions = expected.functions.clone();
+        functions.extend(expected.functions_of_constants.iter().cloned());
+        let mut wanted = expected.values.clone();
+        if expected.published {
+            wanted.extend(functions.into_iter().map(|function| (function, 1)));
+        }
+        if wanted.is_empty() {
+            continue;
+        }
+        let system = System::read(&file_of(name)).unwrap();
+        if system.unknowns().len() > MOST_UNKNOWNS {
+            open.push(name.as_str());
+            continue;
+        }
+        let expressions: Vec<String> =
+            wanted.keys().filter(|text| system.find_symbol(text).is_none()).cloned().collect();
+        let found = ask(&system, &expressions, WORK);
+        let mut is_open = false;
+        for of_it in &found {
+            match (&of_it.solutions, wanted.get(&of_it.name)) {
+                (Solutions::Undecided(_), _) => is_open = true,
+                (_, None) => assert_eq!(
+                    of_it.solutions == Solutions::Infinite,
+                    expected.not_seen.contains(&of_it.name),
+                    "{name}: {of_it:?}"
+                ),
+                (solutions, Some(count)) => {
+                    assert_eq!(solutions, &Solutions::Finite(*count), "{name}: {of_it:?}")
+                }
+            }
+        }
+        if is_open { open.push(name.as_str()) } else { decided += 1 }
+    }
+    println!("{decided} models as published; too much work here: {open:?}");
+    assert!(decided >= 20, "{decided}; {open:?}");
+}
