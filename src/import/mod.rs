@@ -162,8 +162,8 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
     let mut model = match format {
         ForeignFormat::Julia => julia::read(&text, which),
         ForeignFormat::Sbml => sbml::read(&text),
-        ForeignFormat::StrikePy => scripts::read(&text, Dialect::Python),
-        ForeignFormat::StrikeGoldd => scripts::read(&text, Dialect::Matlab),
+        ForeignFormat::StrikePy => scripts::read(&text, Dialect::Python, which),
+        ForeignFormat::StrikeGoldd => scripts::read(&text, Dialect::Matlab, which),
         ForeignFormat::Formulas => formulas::read(&text, &roles),
     }
     .map_err(located)?;

@@ -38,13 +38,25 @@ const CONTROL: [&str; 17] = [
     "elif", "else", "classdef", "global", "assume",
 ];
 
-/// Reads a model file.
-pub(super) fn read(text: &str, dialect: Dialect) -> Result<ForeignModel, Problem> {
+/// Reads a model file: the model that it saves, or the one of several that has a name or number.
+pub(super) fn read(text: &str, dialect: Dialect, which: Option<&str>) -> Result<ForeignModel, Problem> {
     let (words, comments) = tokens(text, dialect)?;
-    let mut script =
-        Script { workspace: ScriptWorkspace::default(), dialect, saved: None, title: None, begin: None };
+    let mut script = Script {
+        workspace: ScriptWorkspace::default(),
+        dialect,
+        saved: None,
+        title: None,
+        which: which.map(str::to_owned),
+        saves: 0,
+        begin: None,
+    };
     script.workspace.plain.extend(VARIABLES.map(str::to_owned));
     script.all(&words)?;
+    if let Some(wanted) = script.which.as_ref().filter(|_| script.saves > 0 && script.title.is_none()) {
+        let message = format!("the file saves no model '{wanted}'");
+        return Err(Problem::new(&(0..text.len().min(1)), message, "the file")
+            .help("models are named by what 'save' calls them"));
+    }
     let mut model = script.model(text)?;
     model.title = script.title.clone();
     model.source = super::heading(text, &comments, script.begin.unwrap_or(text.len()));
@@ -57,6 +69,9 @@ struct Script {
     /// The variables that `save` names, and what the file is called.
     saved: Option<BTreeSet<String>>,
     title: Option<String>,
+    /// Which of several models is asked for, and how many were saved so far.
+    which: Option<String>,
+    saves: usize,
     /// Where the first assignment stands.
     begin: Option<usize>,
 }
@@ -101,8 +116,7 @@ impl Script {
             return self.symbols(parser);
         }
         if word.is_word("save") && self.dialect == Dialect::Matlab {
-            self.saving(parser);
-            return Ok(());
+            return self.saving(parser);
         }
         if let TokenKind::Text(_) = word.kind {
             // a text by itself is a remark
@@ -176,8 +190,8 @@ impl Script {
     }
 
     /// `save('name', 'x', 'p', ...)`, `save name x p`
-    fn saving(&mut self, parser: &mut Parser<'_>) {
-        parser.next();
+    fn saving(&mut self, parser: &mut Parser<'_>) -> Result<(), Problem> {
+        let span = parser.next().span.clone();
         let mut names = Vec::new();
         while !parser.at_end() && !parser.peek().newline && !parser.peek().is(";") {
             let word = parser.next();
@@ -187,12 +201,30 @@ impl Script {
                 _ => {}
             }
         }
-        self.title = names.first().cloned();
+        self.saves += 1;
+        let (count, name) = (self.saves.to_string(), names.first().cloned());
+        if self.which.is_none() && self.saves > 1 {
+            let message = format!("the file saves a second model, '{}'", name.unwrap_or_default());
+            return Err(Problem::new(&span, message, "the second one")
+                .help("say which with --model NAME or --model NUMBER; what is assigned behind the first belongs to the second"));
+        }
+        let is_asked = |which: &String| *which == count || Some(which) == name.as_ref();
+        if self.which.as_ref().is_some_and(|which| !is_asked(which)) {
+            return Ok(());
+        }
+        self.title = name;
         let names: BTreeSet<String> =
             names.into_iter().skip(1).filter(|name| !name.starts_with('-')).collect();
         if !names.is_empty() {
             self.saved.get_or_insert_default().extend(names);
         }
+        if self.which.is_some() {
+            // what stands below belongs to other models
+            while !parser.at_end() {
+                parser.next();
+            }
+        }
+        Ok(())
     }
 
     fn assigned(&mut self, targets: &[Syntax], right: &Syntax) -> Result<(), Problem> {

@@ -24,6 +24,7 @@ pub(crate) mod record;
 mod signal;
 mod suspect;
 mod task;
+mod trace;
 mod trust_region;
 mod window;
 
@@ -45,6 +46,6 @@ pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
 pub use newton::Newton;
 pub use record::{Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading};
 pub use signal::{SignalError, Signals};
-pub use suspect::Suspect;
+pub use suspect::{Suspect, SuspectKind};
 pub use task::{EstimateQuestion, Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
 pub use trust_region::TrustRegion;

@@ -2,8 +2,8 @@
 //! it best, from there on by the equations.
 
 use super::fit::{FALSE_ALARMS, Misfit, Noise};
-use super::suspect::{is_asked, suspects};
 use super::task::{Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
+use super::trace::{is_asked, suspects};
 use super::window::Window;
 use super::{Fit, Newton, Order, TrustRegion, cramer_rao};
 use argmin::core::{Executor, State, TerminationReason, TerminationStatus};

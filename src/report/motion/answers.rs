@@ -3,7 +3,7 @@
 use crate::experiment::{Answer, Basin, Experiment, NoiseLevel, error};
 use crate::mechanics::moving::Ended;
 use crate::observer::{Fault, Update, UpdateEnd};
-use crate::report::motion::fit::{fit_in_words, noise_from, suspect_json, suspects_in_words};
+use crate::report::motion::fit::{finite, fit_in_words, noise_from, suspect_json, suspects_in_words};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -58,11 +58,6 @@ pub fn fault_lines(faults: &[Fault]) -> Vec<String> {
     faults.iter().map(ToString::to_string).collect()
 }
 
-/// An infinite bound has no number in JSON.
-pub(super) fn finite(value: f64) -> Value {
-    if value.is_finite() { json!(value) } else { Value::Null }
-}
-
 /// States with what was recovered, what is true, the error and the bound, by name.
 fn states(observed: &Observed<'_>, time: f64, recovered: &[f64], bounds: Option<&[f64]>) -> Value {
     let truth = observed.experiment.truth_at(time);
@@ -108,7 +103,11 @@ fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
         });
     }
     if !update.suspects.is_empty() {
-        found["suspects"] = update.suspects.iter().map(|suspect| suspect_json(observed, suspect)).collect();
+        found["suspects"] = update
+            .suspects
+            .iter()
+            .map(|suspect| suspect_json(&observed.experiment.names(), suspect))
+            .collect();
     }
     found
 }

@@ -1,8 +1,12 @@
 //! Whether what an observer found explains the readings, in words and as JSON; and what would not be noticed.
 
 use crate::observer::{Fit, NoiseFrom, Suspect, Update, UpdateEnd};
-use crate::report::motion::answers::{Observed, finite};
 use serde_json::{Map, Value, json};
+
+/// An infinite bound has no number in JSON.
+pub(super) fn finite(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { Value::Null }
+}
 
 /// Where the size of the noise comes from, in a word.
 pub(super) fn noise_from(from: NoiseFrom) -> &'static str {
@@ -91,8 +95,7 @@ pub(super) fn suspects_in_words(update: &Update) -> Vec<String> {
 }
 
 /// A suspect as JSON.
-pub(super) fn suspect_json(observed: &Observed<'_>, suspect: &Suspect) -> Value {
-    let names = observed.experiment.names();
+pub(super) fn suspect_json(names: &[&str], suspect: &Suspect) -> Value {
     let shifts: Map<String, Value> =
         names.iter().zip(&suspect.shifts).map(|(name, shift)| ((*name).to_owned(), finite(*shift))).collect();
     json!({

@@ -117,6 +117,13 @@ fn what_cannot_be_read_is_named_with_its_place() {
             3,
             "mod(x1, 2)",
         ),
+        (
+            "a.m",
+            "syms z k\nx = z; p = k; f = k*z; h = z;\nsave('one', 'x', 'p', 'f', 'h');\np = [];\nsave('two', 'x', 'p', 'f', 'h');\n".to_owned(),
+            "the file saves a second model, 'two'",
+            5,
+            "save",
+        ),
         ("a.txt", "x' = E*x\n".to_owned(), "'E' may be Euler's number or a name", 1, "E"),
         (
             "a.txt",
