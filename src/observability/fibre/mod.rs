@@ -28,6 +28,7 @@ mod model;
 mod monomials;
 mod point;
 mod quotient;
+mod round;
 mod second;
 #[cfg(test)]
 mod tests;

@@ -5,9 +5,9 @@
 //! less the first ones. They are found modulo some primes and put together, and then the derivatives of the outputs at both points are
 //! compared in rational numbers: nothing that was found modulo primes is left in that.
 
-use super::count::{Course, analysed};
 use super::model::{Model, Motion};
 use super::point::{Fibre, Numbering, Source};
+use super::round::{Course, analysed};
 use super::{SecondPoint, SolutionsQuestion};
 use crate::expression::Input;
 use crate::number::{PrimeField, Rationals};
