@@ -5,6 +5,8 @@
 //! come in turn: both palms at one rate, palm 2 alone, both fixed (rates of up to 1 rad/s), both swinging. 81 samples over 0.28 s, which is a
 //! window of the thesis. Scenes that are not held by both palms all that time are drawn anew.
 
+use std::f64::consts::TAU;
+
 /// Marsaglia's generator: the same scenes everywhere.
 pub struct Draws(u64);
 
@@ -24,7 +26,7 @@ impl Draws {
 
     fn swing(&mut self) -> String {
         let (amplitude, frequency, phase) =
-            (self.between(0.0, 0.2), self.between(0.2, 1.0), self.between(0.0, 6.28));
+            (self.between(0.0, 0.2), self.between(0.2, 1.0), self.between(0.0, TAU));
         format!("swings = [{{ amplitude = {amplitude:?}, frequency = {frequency:?}, phase = {phase:?} }}]")
     }
 }
@@ -35,7 +37,7 @@ pub fn drawn(draws: &mut Draws, regime: usize, noise: f64, model: &str) -> Strin
     let mut harmonic = |most: f64| [0, 1].map(|_| size * draws.between(-most, most));
     let harmonics = [[0.0; 2], harmonic(0.1), harmonic(0.04), harmonic(0.02)];
     let (mass, orientation, rate) =
-        (draws.between(0.5, 2.0), draws.between(0.0, 6.28), draws.between(-3.0, 3.0));
+        (draws.between(0.5, 2.0), draws.between(0.0, TAU), draws.between(-3.0, 3.0));
     let inertia = [draws.between(0.2, 1.0), draws.between(0.2, 1.0)];
     let (first, second) = (draws.between(0.2, 1.2), draws.between(1.0, 2.2));
     let rates = [draws.between(-1.0, 1.0), draws.between(-1.0, 1.0)];

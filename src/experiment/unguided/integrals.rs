@@ -111,8 +111,8 @@ impl Integrals {
             (0..2).map(|p| forces[i][p] * sample.palms[p].normal[axis]).sum()
         };
         let gravity = [0.0, readings.gravity];
-        for axis in 0..2 {
-            let velocity = over(&samples, &|i, sample| pushed(i, sample, axis) / mass + gravity[axis]);
+        for (axis, weight) in gravity.into_iter().enumerate() {
+            let velocity = over(&samples, &|i, sample| pushed(i, sample, axis) / mass + weight);
             samples.iter_mut().zip(velocity).for_each(|(sample, value)| sample.velocity[axis] = value);
             let place = over(&samples, &|_, sample| sample.velocity[axis]);
             samples.iter_mut().zip(place).for_each(|(sample, value)| sample.place[axis] = value);

@@ -121,9 +121,7 @@ fn solve(normal: &Normal, places: &std::ops::Range<usize>, damping: f64) -> Opti
             if i == j {
                 value *= 1.0 + damping;
             }
-            for m in 0..j {
-                value -= l[i][m] * l[j][m];
-            }
+            value -= l[i][..j].iter().zip(&l[j][..j]).map(|(a, b)| a * b).sum::<f64>();
             l[i][j] = if i != j {
                 value / l[j][j]
             } else if value > 0.0 {

@@ -13,20 +13,26 @@ use maud::{Markup, PreEscaped, html};
 const LONGEST: usize = 400;
 /// In a table with other columns formulas that are longer than this stand as text, which is broken into lines.
 const SHORT: usize = 120;
-/// So many minors and open sets are shown.
+/// So many open sets are shown, and on a page of their own minors.
 const MOST: usize = 60;
+/// And minors beside the rest of a file: a page of a paper has many files.
+const FEW: usize = 3;
 
 /// The page as HTML.
 pub fn drops_page(answer: &DropAnswer) -> String {
     let content = html! {
         header { h1 { (answer.title) } p.y { (answer.file) } }
-        main { section { (drops(answer)) } }
+        main { section { (told(answer, MOST)) } }
     };
     document(&format!("{}: where the rank drops", answer.title), &content, false)
 }
 
 /// The same as a part of a file's section.
 pub(super) fn drops(answer: &DropAnswer) -> Markup {
+    told(answer, FEW)
+}
+
+fn told(answer: &DropAnswer, most_minors: usize) -> Markup {
     let DropAnswer { rank, dimension, .. } = answer;
     html! {
         h3 { "Where the rank drops" }
@@ -39,7 +45,7 @@ pub(super) fn drops(answer: &DropAnswer) -> Markup {
         @if !answer.sets.is_empty() { (sets(&answer.sets)) }
         @if !answer.open.is_empty() { (open(&answer.open)) }
         @if let Some(share) = &answer.on_the_box { (on_the_box(share, *rank)) }
-        @if !answer.minors.is_empty() { (minors(&answer.minors)) }
+        @if !answer.minors.is_empty() { (minors(&answer.minors, most_minors)) }
     }
 }
 
@@ -122,14 +128,14 @@ fn on_the_box(share: &Result<BoxShare, String>, rank: usize) -> Markup {
     }
 }
 
-fn minors(minors: &[UsedMinor]) -> Markup {
+fn minors(minors: &[UsedMinor], most: usize) -> Markup {
     html! {
         details {
             summary { "the minors by which the rank is no lower elsewhere" }
             div.scroll { table {
                 thead { tr { th { "on the case" } th { "minor" } th { "is, up to a factor that does not vanish" } } }
                 tbody {
-                    @for minor in minors.iter().take(MOST) {
+                    @for minor in minors.iter().take(most) {
                         tr {
                             td { @if minor.equations.is_empty() { "all states" } @else { (listed(&minor.equations, SHORT)) } }
                             td.words { (minor.rows.join(", ")) }
@@ -138,7 +144,9 @@ fn minors(minors: &[UsedMinor]) -> Markup {
                     }
                 }
             } }
-            @if minors.len() > MOST { p { "and " (minors.len() - MOST) " more, which the JSON has." } }
+            @if minors.len() > most {
+                p { "and " (minors.len() - most) " more, which the JSON has; " code { "rank --where-it-drops --out DIR" } " shows them." }
+            }
         }
     }
 }
