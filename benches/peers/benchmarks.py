@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 import tomllib
 from pathlib import Path
 
@@ -78,6 +79,30 @@ def answer(binary, path):
     return {"unknowns": report["dimension"], "rank": rank if final else None, "not_seen": unseen}
 
 
+def solutions(binary, path, limit):
+    """How many values of each unknown that is seen give the same outputs, in words, and the wall time."""
+    begin = time.monotonic()
+    try:
+        run = subprocess.run([binary, "rank", "--global", "--json", str(path)], capture_output=True, text=True, timeout=limit)
+    except subprocess.TimeoutExpired:
+        return f"more than {limit:g} s"
+    took = f"{figures(time.monotonic() - begin)} s"
+    if run.returncode not in (0, 3):
+        return "refused"
+    seen = [one for one in json.loads(run.stdout)["unknowns"] if "not" not in one["local"]]
+    if not seen:
+        return "nothing is seen"
+    if any(not isinstance(one["values"], int) for one in seen):
+        return f"undecided, {took}"
+    word = "proved" if all(one["verdict"] == "proved" for one in seen) else "computed"
+    several = {}
+    for one in seen:
+        if one["values"] > 1:
+            several.setdefault(one["values"], []).append(one["name"])
+    counts = [f"{count} of {', '.join(names)}" for count, names in sorted(several.items())]
+    return f"{'; '.join(counts) or 'one'} ({word}), {took}"
+
+
 def main():
     options = arguments()
     if options.binary == str(ROOT / "target/release/palmistry") and not options.only:
@@ -100,6 +125,8 @@ def main():
                 point |= answer(options.binary, bare)
             for program in (OURS, STRIKEPY) + ((CLAIMS,) if point["has_claims"] else ()):
                 point[program] = measure(program, name, path if program == CLAIMS else bare)
+            if told or not options.only:
+                point["global"] = solutions(options.binary, bare, options.limit)
             models.append(point)
     if options.only and not told:
         return 0
@@ -129,7 +156,7 @@ def table(report):
         claims = point["claims"] if point["has_claims"] else ""
         lines.append(
             f"| {point['model']} | {point['unknowns']} | {point['rank']} | {len(point['not_seen']) or ''} | "
-            f"{claims} | {seconds(point.get(CLAIMS))} | {seconds(point[OURS])} | {seconds(point[STRIKEPY])} | |"
+            f"{claims} | {seconds(point.get(CLAIMS))} | {seconds(point[OURS])} | {seconds(point[STRIKEPY])} | {point.get('global', '')} |"
         )
     measured = [point for point in report["models"] if point[STRIKEPY]]
     decided = [point for point in measured if point[STRIKEPY]["seconds"] is not None]
