@@ -16,7 +16,9 @@ const SHORT: usize = 120;
 /// So many open sets are shown, and on a page of their own minors.
 const MOST: usize = 60;
 /// And minors beside the rest of a file: a page of a paper has many files.
-const FEW: usize = 3;
+const FEW: usize = 1;
+/// So many conditions under which all terms exist.
+const CONDITIONS: usize = 8;
 
 /// The page as HTML.
 pub fn drops_page(answer: &DropAnswer) -> String {
@@ -39,7 +41,11 @@ fn told(answer: &DropAnswer, most_minors: usize) -> Markup {
         p {
             @if answer.is_final { "At almost all states the rank is " b { (rank) } " of " (dimension) "." }
             @else { "Asked for is the rank " b { (rank) } " of " (dimension) "; that almost all states have it is not decided." }
-            @if !answer.domain.is_empty() { " It is asked for where all terms exist: " (listed(&answer.domain, SHORT)) "." }
+            @if !answer.domain.is_empty() {
+                " It is asked for where all terms exist: "
+                (listed(&answer.domain[..answer.domain.len().min(CONDITIONS)], SHORT))
+                @if answer.domain.len() > CONDITIONS { ", and " (answer.domain.len() - CONDITIONS) " more" } "."
+            }
         }
         (conclusion(answer))
         @if !answer.sets.is_empty() { (sets(&answer.sets)) }
