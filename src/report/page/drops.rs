@@ -13,10 +13,8 @@ use maud::{Markup, PreEscaped, html};
 const LONGEST: usize = 400;
 /// In a table with other columns formulas that are longer than this stand as text, which is broken into lines.
 const SHORT: usize = 120;
-/// So many open sets are shown, and on a page of their own minors.
+/// So many open sets and minors are shown.
 const MOST: usize = 60;
-/// And minors beside the rest of a file: a page of a paper has many files.
-const FEW: usize = 1;
 /// So many conditions under which all terms exist.
 const CONDITIONS: usize = 8;
 
@@ -24,17 +22,18 @@ const CONDITIONS: usize = 8;
 pub fn drops_page(answer: &DropAnswer) -> String {
     let content = html! {
         header { h1 { (answer.title) } p.y { (answer.file) } }
-        main { section { (told(answer, MOST)) } }
+        main { section { (told(answer, true)) } }
     };
     document(&format!("{}: where the rank drops", answer.title), &content, false)
 }
 
 /// The same as a part of a file's section.
 pub(super) fn drops(answer: &DropAnswer) -> Markup {
-    told(answer, FEW)
+    told(answer, false)
 }
 
-fn told(answer: &DropAnswer, most_minors: usize) -> Markup {
+/// A page of a paper has many files: their minors stand on a page of their own.
+fn told(answer: &DropAnswer, with_minors: bool) -> Markup {
     let DropAnswer { rank, dimension, .. } = answer;
     html! {
         h3 { "Where the rank drops" }
@@ -47,16 +46,16 @@ fn told(answer: &DropAnswer, most_minors: usize) -> Markup {
                 @if answer.domain.len() > CONDITIONS { ", and " (answer.domain.len() - CONDITIONS) " more" } "."
             }
         }
-        (conclusion(answer))
+        (conclusion(answer, with_minors))
         @if !answer.sets.is_empty() { (sets(&answer.sets)) }
         @if !answer.open.is_empty() { (open(&answer.open)) }
         @if let Some(share) = &answer.on_the_box { (on_the_box(share, *rank)) }
-        @if !answer.minors.is_empty() { (minors(&answer.minors, most_minors)) }
+        @if with_minors && !answer.minors.is_empty() { (minors(&answer.minors)) }
     }
 }
 
 /// What the sets below are, in a sentence.
-fn conclusion(answer: &DropAnswer) -> Markup {
+fn conclusion(answer: &DropAnswer, with_minors: bool) -> Markup {
     let (cases, empty) = answer.cases;
     html! {
         p.lead {
@@ -75,7 +74,8 @@ fn conclusion(answer: &DropAnswer) -> Markup {
             (answer.minors.len()) @if answer.minors.len() == 1 { " minor" } @else { " minors" }
             ", each a product of factors that do not vanish on its case, "
             @if answer.minors.len() == 1 { "shows" } @else { "show" }
-            " the rank to be no lower there."
+            " the rank to be no lower there"
+            @if !with_minors { " (" code { "rank --where-it-drops --out DIR" } ")" } "."
             @if let Some(why) = &answer.out_of_reach { " " span.bad { "The search ended early: " (why) "." } }
         }
     }
@@ -134,14 +134,14 @@ fn on_the_box(share: &Result<BoxShare, String>, rank: usize) -> Markup {
     }
 }
 
-fn minors(minors: &[UsedMinor], most: usize) -> Markup {
+fn minors(minors: &[UsedMinor]) -> Markup {
     html! {
         details {
             summary { "the minors by which the rank is no lower elsewhere" }
             div.scroll { table {
                 thead { tr { th { "on the case" } th { "minor" } th { "is, up to a factor that does not vanish" } } }
                 tbody {
-                    @for minor in minors.iter().take(most) {
+                    @for minor in minors.iter().take(MOST) {
                         tr {
                             td { @if minor.equations.is_empty() { "all states" } @else { (listed(&minor.equations, SHORT)) } }
                             td.words { (minor.rows.join(", ")) }
@@ -150,9 +150,7 @@ fn minors(minors: &[UsedMinor], most: usize) -> Markup {
                     }
                 }
             } }
-            @if minors.len() > most {
-                p { "and " (minors.len() - most) " more, which the JSON has; " code { "rank --where-it-drops --out DIR" } " shows them." }
-            }
+            @if minors.len() > MOST { p { "and " (minors.len() - MOST) " more, which the JSON has." } }
         }
     }
 }
