@@ -22,18 +22,12 @@ const CONDITIONS: usize = 8;
 pub fn drops_page(answer: &DropAnswer) -> String {
     let content = html! {
         header { h1 { (answer.title) } p.y { (answer.file) } }
-        main { section { (told(answer, true)) } }
+        main { section { (told(answer)) } }
     };
     document(&format!("{}: where the rank drops", answer.title), &content, false)
 }
 
-/// The same as a part of a file's section.
-pub(super) fn drops(answer: &DropAnswer) -> Markup {
-    told(answer, false)
-}
-
-/// A page of a paper has many files: their minors stand on a page of their own.
-fn told(answer: &DropAnswer, with_minors: bool) -> Markup {
+fn told(answer: &DropAnswer) -> Markup {
     let DropAnswer { rank, dimension, .. } = answer;
     html! {
         h3 { "Where the rank drops" }
@@ -46,16 +40,16 @@ fn told(answer: &DropAnswer, with_minors: bool) -> Markup {
                 @if answer.domain.len() > CONDITIONS { ", and " (answer.domain.len() - CONDITIONS) " more" } "."
             }
         }
-        (conclusion(answer, with_minors))
+        (conclusion(answer))
         @if !answer.sets.is_empty() { (sets(&answer.sets)) }
         @if !answer.open.is_empty() { (open(&answer.open)) }
         @if let Some(share) = &answer.on_the_box { (on_the_box(share, *rank)) }
-        @if with_minors && !answer.minors.is_empty() { (minors(&answer.minors)) }
+        @if !answer.minors.is_empty() { (minors(&answer.minors)) }
     }
 }
 
 /// What the sets below are, in a sentence.
-fn conclusion(answer: &DropAnswer, with_minors: bool) -> Markup {
+fn conclusion(answer: &DropAnswer) -> Markup {
     let (cases, empty) = answer.cases;
     html! {
         p.lead {
@@ -74,8 +68,7 @@ fn conclusion(answer: &DropAnswer, with_minors: bool) -> Markup {
             (answer.minors.len()) @if answer.minors.len() == 1 { " minor" } @else { " minors" }
             ", each a product of factors that do not vanish on its case, "
             @if answer.minors.len() == 1 { "shows" } @else { "show" }
-            " the rank to be no lower there"
-            @if !with_minors { " (" code { "rank --where-it-drops --out DIR" } ")" } "."
+            " the rank to be no lower there."
             @if let Some(why) = &answer.out_of_reach { " " span.bad { "The search ended early: " (why) "." } }
         }
     }

@@ -128,7 +128,7 @@ pub(super) fn name(engine: usize) -> String {
 fn certainty(log2_error: f64) -> Markup {
     html! {
         @if log2_error == f64::NEG_INFINITY { "; certain" }
-        @else { "; error below " (raised(&error_bound(log2_error))) }
+        @else { "; but for " (raised(&error_bound(log2_error))) }
     }
 }
 

@@ -1,6 +1,5 @@
 //! What was found of one system beside its claims: ranks on sets, maps, lines, reductions, numbers in print, Lie derivatives.
 
-use super::drops::drops;
 use super::entry::{explain, formula};
 use super::findings::ranks_in_words;
 use super::motions::unseen_motions;
@@ -20,7 +19,6 @@ pub(super) type Units<'a> = &'a dyn Fn(&str) -> Option<String>;
 /// Whether there is something to show.
 pub(super) fn has_a_section(file: &FileFindings) -> bool {
     !file.ranks.is_empty()
-        || file.drops.is_some()
         || !file.printed.is_empty()
         || !file.left_out.is_empty()
         || !file.reductions.is_empty()
@@ -36,7 +34,6 @@ pub(super) fn file_section(anchor: &str, file: &FileFindings, units: Units<'_>) 
             @for left in &file.left_out { p.bad { "Not done: " (left.what) ": " (left.why) } }
             @for line in granted(file) { p { (line) "." } }
             @if !file.ranks.is_empty() { (unknowns(&file.ranks)) (ranks(&file.ranks)) (unseen_motions(&file.ranks)) }
-            @if let Some(found) = &file.drops { (drops(found)) }
             @for map in &file.maps { (maps(map, units)) }
             @if !file.lines.is_empty() { (lines(&file.lines, units)) }
             @for found in &file.printed { (printed(found, &file.outcomes)) }
