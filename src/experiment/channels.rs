@@ -3,7 +3,9 @@
 use super::run::NOMINAL;
 use super::scene::{Channel, Scene, SceneError};
 use super::simulation::TOUCH;
-use crate::observer::{CalibrationKind, ReadingErrors, SignalError, Signals, Task};
+use crate::observer::{
+    CalibrationKind, EstimateQuestion, ReadingErrors, SignalError, Signals, Task, not_told,
+};
 use crate::system::System;
 use std::collections::BTreeMap;
 
@@ -174,6 +176,28 @@ pub(super) fn tell(scene: &Scene, task: &mut Task<'_>, simulated: bool) -> Resul
         task.exact = false;
     }
     Ok(())
+}
+
+/// Whether the readings can tell the gains and biases that are sought at all.
+///
+/// # Errors
+/// What cannot be told from what.
+pub(super) fn are_told(
+    scene: &Scene,
+    system: &System,
+    question: &EstimateQuestion,
+    signals: &Signals,
+) -> Result<(), SceneError> {
+    let unseen = not_told(system, question, signals);
+    let Some(first) = unseen.iter().find(|name| CalibrationKind::of(name).is_some()) else { return Ok(()) };
+    let others: Vec<&str> = unseen.iter().filter(|name| *name != first).map(String::as_str).collect();
+    let message = match others.is_empty() {
+        true => format!("no readings tell '{first}': the rank does not count it"),
+        false => format!("no readings tell '{first}' from {}: the rank is short of them", others.join(", ")),
+    };
+    let place = scene.observer.estimate.iter().position(|name| name == first).unwrap_or(0);
+    let help = "leave it out of 'estimate', or tell one of the others under `known`";
+    Err(scene.error_at(&format!("observer.estimate[{place}]"), message, "sought here", help))
 }
 
 /// The true value of a sought gain or bias of a simulated sensor; none of any other name.

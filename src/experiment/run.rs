@@ -109,6 +109,7 @@ impl Experiment {
             scene.error_at("observer.known", error.to_string(), "readings without these", "")
         })?;
         let question = estimate_question(&scene, &system, simulation.as_ref(), known, &signals)?;
+        channels::are_told(&scene, &system, &question, &signals)?;
         let experiment = Experiment { scene, system, simulation, record, origin, faults, signals, question };
         // whether the model can be made at all is better known now
         experiment.task(&UNINTERRUPTED)?;

@@ -135,15 +135,9 @@ impl Trial {
 
 /// The signals of an experiment with other errors.
 fn noisy(experiment: &Experiment, simulation: &Simulation, noise: f64, seed: u64) -> Option<Signals> {
-    // the levels are those of the contacts; all other columns have the errors of the scene
+    // the levels are those of the contacts that have no noise of their own; all other columns have the errors of the scene
     let sensor = Sensor { noise, ..experiment.scene.sensor };
-    let mut channels = experiment.scene.channels.clone();
-    for name in TOUCH {
-        if let Some(channel) = channels.get_mut(name) {
-            channel.noise = None;
-        }
-    }
-    let record = simulation.read(&sensor, &channels, seed).ok()?;
+    let record = simulation.read(&sensor, &experiment.scene.channels, seed).ok()?;
     corrected(Signals::of_record(&record).ok()?, &experiment.scene.observer.known).ok()
 }
 
@@ -151,9 +145,14 @@ fn noisy(experiment: &Experiment, simulation: &Simulation, noise: f64, seed: u64
 fn at_level<'a>(experiment: &Experiment, task: &Task<'a>, noise: f64) -> Task<'a> {
     let mut task = task.clone();
     let rounding = experiment.scene.sensor.resolution;
+    if deviation(noise, rounding) == 0.0 && !task.errors.is_empty() {
+        // contacts without error, beside columns that have some
+        return task;
+    }
     (task.exact, task.sigma) = (false, deviation(noise, rounding));
     task.noise = Noise::Stated { normal: noise, rounding };
-    for name in TOUCH {
+    let has_own = |name: &str| experiment.scene.channels.get(name).is_some_and(|own| own.noise.is_some());
+    for name in TOUCH.into_iter().filter(|name| !has_own(name)) {
         if let Some(errors) = task.errors.get_mut(name) {
             errors.normal = noise;
         }

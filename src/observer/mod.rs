@@ -35,6 +35,7 @@ mod window;
 pub use bound::CramerRaoBound;
 pub(crate) use bound::cramer_rao;
 pub use calibration::CalibrationKind;
+pub(crate) use calibration::not_told;
 #[doc(hidden)]
 pub use chi_square::exceeded_with;
 pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom};

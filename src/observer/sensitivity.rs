@@ -177,3 +177,71 @@ fn linearise(flow: &ModelFlow<'_>, time: f64, state: &[f64], columns: &[usize]) 
     let part = |from: usize, count: usize| [&rates, &seen].map(|all| all.columns(from, count).into_owned());
     Ok(Linear { by_states: part(0, n), by_columns: part(n, columns.len()) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::{Model, ModelQuestion, Signals};
+    use crate::system::System;
+    use std::path::Path;
+
+    /// A pendulum that is pushed through a moving frame: the model and its curves, from a file and closed forms.
+    fn pushed() -> (System, Signals) {
+        let text = "system \"A pushed pendulum\"\nstate x, v\nparam a, u\ndrift f\n  x' = v\n  v' = -4*sin(x + a) - v*a^2\n\
+                    input g\n  v' = 1 + x^2\n  others' = 0\noutput x + a*u, v\n";
+        // uneven times, more than carry one curve
+        let times: Vec<f64> = (0..25).map(|i| 0.05 * f64::from(i) + 0.01 * f64::from(i * i % 5)).collect();
+        let column = |name: &str, at: &dyn Fn(f64) -> f64| (name.to_owned(), times.iter().map(|t| at(*t)).collect());
+        let columns = vec![
+            column("a", &|t| 0.3 * (2.0 * t).sin()),
+            column("u", &|t| (3.0 * t).cos()),
+            column("x + a*u", &|_| 0.0),
+            column("v", &|_| 0.0),
+        ];
+        let system = System::parse("pushed.proof", text, Path::new("")).unwrap();
+        (system, Signals::new(times.clone(), columns).unwrap())
+    }
+
+    /// The derivative by every sample against differences of the flow's own integrator, in a window within the recording.
+    #[test]
+    fn slopes_are_what_a_sample_changes() {
+        let (system, signals) = pushed();
+        let question = ModelQuestion {
+            followed: ["x", "v"].map(str::to_owned).to_vec(),
+            inputs: vec![("g".to_owned(), "u".to_owned())],
+            ..ModelQuestion::default()
+        };
+        let model = Model::new(&system, &question, &signals).unwrap();
+        assert_eq!(model.outputs, ["x + a*u", "v"]);
+        let flow = ModelFlow { model: &model, signals: &signals, tolerance: 1e-11 };
+        let times = signals.times()[6..18].to_vec();
+        let start = [0.4, -0.2];
+        let columns = vec![signals.find("a").unwrap(), signals.find("u").unwrap()];
+        let found = Sensitivity::of(&flow, &start, &times, columns.clone()).unwrap();
+        assert_eq!((found.first, found.rows), (3, 19));
+        let expected = |signals: &Signals| -> DVector<f64> {
+            let flow = ModelFlow { signals, ..flow };
+            let samples = flow.follow(&start, &[], &times, Order::Value).unwrap();
+            DVector::from_vec(samples.into_iter().flat_map(|sample| sample.outputs).collect())
+        };
+        const STEP: f64 = 1e-4;
+        let mut largest = 0.0f64;
+        for (place, column) in columns.iter().enumerate() {
+            for row in 0..signals.times().len() {
+                let moved = |by: f64| {
+                    let mut signals = signals.clone();
+                    signals.take_off(*column, row, &[-by]);
+                    expected(&signals)
+                };
+                let slope = (moved(STEP) - moved(-STEP)) / (2.0 * STEP);
+                let own = row.checked_sub(found.first).filter(|row| *row < found.rows);
+                let own = own.map(|row| found.slopes.column(place * found.rows + row).into_owned());
+                let own = own.unwrap_or_else(|| DVector::zeros(slope.len()));
+                largest = largest.max(slope.amax());
+                assert!((&slope - &own).amax() < 1e-5, "{column} {row}: {:e}", (slope - own).amax());
+            }
+        }
+        // outputs see their own sample at once, and what it did to the state later
+        assert!(largest > 0.5, "{largest}");
+    }
+}

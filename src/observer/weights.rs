@@ -270,3 +270,54 @@ fn runs(values: &[f64]) -> Vec<std::ops::Range<usize>> {
     }
     runs
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::{EstimateQuestion, MovingWindow, Noise};
+    use crate::system::System;
+    use std::path::Path;
+    use std::sync::atomic::AtomicBool;
+
+    static NEVER: AtomicBool = AtomicBool::new(false);
+
+    /// A point that is driven at a speed that is read: `x(t_i) = x(0) + sum of the steps`. With errors of the speed alone and two readings
+    /// of x the covariance is by hand; steps are of length one and the curves of two samples are straight, so that the second
+    /// reading errs by the mean of both speeds' errors.
+    #[test]
+    fn errors_of_a_speed_add_up_in_the_place() {
+        let text = "system \"A driven point\"\nstate x\nparam u\ndrift f\n  x' = 0\ninput g\n  x' = 1\noutput x\n";
+        let system = System::parse("point.proof", text, Path::new("")).unwrap();
+        let columns = vec![("x".to_owned(), vec![0.0, 3.0]), ("u".to_owned(), vec![2.0, 2.0])];
+        let signals = Signals::new(vec![0.0, 1.0], columns).unwrap();
+        let question = EstimateQuestion {
+            guess: vec![("x".to_owned(), 0.5)],
+            inputs: vec![("g".to_owned(), "u".to_owned())],
+            ..EstimateQuestion::default()
+        };
+        let mut task = Task::new(&system, &question, &signals, &NEVER).unwrap();
+        (task.exact, task.sigma) = (false, 0.1);
+        task.noise = Noise::Stated { normal: 0.1, rounding: 0.0 };
+        assert!(!are_needed(&task));
+        for (errors, variance) in [
+            (ReadingErrors { normal: 0.2, rounding: 0.0 }, 0.2 * 0.2 / 2.0),
+            // both samples are equal after rounding: they have one error
+            (ReadingErrors { normal: 0.0, rounding: 0.6 }, 0.6 * 0.6 / 12.0),
+        ] {
+            task.errors.insert("u".to_owned(), errors);
+            assert!(are_needed(&task));
+            let window = MovingWindow::window(&task, &[0.5], &(0..2), &[]);
+            let weights = Weights::of(&task, &window, None, &signals).unwrap();
+            let covariance = &weights.root * weights.root.transpose();
+            let by_hand = DMatrix::from_row_slice(2, 2, &[0.01, 0.0, 0.0, 0.01 + variance]);
+            assert!((&covariance - by_hand).amax() < 1e-9, "{covariance}");
+            // differences of (0, 1): the likely errors of the speed are those that regression gives
+            let differences = DVector::from_vec(vec![0.0, 1.0]);
+            let likely = weights.likely_errors(&weights.weighted(&differences));
+            let expected = variance / (0.01 + variance);
+            let mean = (likely[0] + likely[1]) / 2.0;
+            assert!((mean - expected).abs() < 1e-9, "{likely}");
+            assert!((weights.back(&weights.weighted(&differences))[1] - 0.01 / (0.01 + variance)).abs() < 1e-9);
+        }
+    }
+}

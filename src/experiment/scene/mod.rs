@@ -103,7 +103,11 @@ impl Scene {
             on_fault: self.data.on_fault,
             spike: self.data.spike,
             jitter: self.sensor.jitter,
-            resolution: ["s1", "s2"].map(|column| (column.to_owned(), resolution)).into(),
+            resolution: ["s1", "s2"]
+                .map(|column| (column.to_owned(), resolution))
+                .into_iter()
+                .chain(self.channels.iter().filter_map(|(name, own)| Some((name.clone(), own.resolution?))))
+                .collect(),
         }
     }
 }
