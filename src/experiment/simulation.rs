@@ -130,6 +130,9 @@ impl Simulation {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         for (place, (name, values)) in columns.iter_mut().enumerate() {
             let is_touch = TOUCH.contains(&name.as_str());
+            if !is_touch && !channels.contains_key(name) {
+                continue;
+            }
             let channel = channels.get(name).copied().unwrap_or_default();
             let common = if is_touch { *sensor } else { Sensor::default() };
             let noise = channel.noise.unwrap_or(common.noise);
