@@ -94,12 +94,14 @@ impl Experiment {
                 return Err(scene.error_at("title", "there is nothing to observe", "this scene", help));
             }
         };
-        let since = Since::first(&record);
-        let record = match file {
-            Some(_) => since.count(&scene, record)?,
-            None => record,
+        let (record, origin) = match file {
+            Some(_) => {
+                let since = Since::first(&record);
+                (since.count(&scene, record)?, since.origin)
+            }
+            // simulated times are counted from zero
+            None => (record, 0.0),
         };
-        let origin = since.origin;
         let signals = Signals::of_record(&record);
         let signals =
             signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
