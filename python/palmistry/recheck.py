@@ -189,7 +189,7 @@ def claimed_rank(system, statement, evidence, seed):
             return rank_of(of(at))
         rows, words, rank, columns = [], list(system.outputs), -1, system.columns()
         for order in range(len(columns) + 1):
-            rows += [slopes(word, columns)(at) for word in words]
+            rows += [slopes(word, columns)(at)[0] for word in words]
             before, rank = rank, rank_of(rows)
             if rank == len(columns) or rank == before and (order > len(conditions) + 1 or not conditions):
                 return rank
@@ -210,7 +210,7 @@ def certified_rank(system, evidence):
         if len(set(rows)) != state["rank"] or len(set(columns)) != state["rank"]:
             raise Doubt(f"state {place} has no minor of its rank")
         names = [evidence["columns"][column] for column in columns]
-        if rows and sign(determinant([slopes(words[row], names)(at) for row in rows])) == 0:
+        if rows and sign(determinant([slopes(words[row], names)(at)[0] for row in rows])) == 0:
             raise Doubt(f"the minor of state {place} is zero")
     return "confirmed", f"the rank is no less at {len(evidence['states'])} states"
 

@@ -77,7 +77,7 @@ pub enum Guess {
     /// `guess_off`: each state is off the truth by this part of it (0.1: ten percent more). Only where there is a
     /// truth, in a simulation.
     Off(f64),
-    /// `"none"`: the readings of the first window give it. Only between two flat palms.
+    /// `"none"`: the readings of the first window give it. Only between two palms.
     None,
 }
 
