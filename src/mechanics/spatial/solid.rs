@@ -62,17 +62,14 @@ impl ConvexSolid {
         positive_everywhere(curved, slope, 1e-13 * size).map_err(flat)?;
 
         let moments = |n: &Vector3<f64>| {
-            let Support { extent, point, .. } = form.support(n);
+            let here = form.support(n);
             // cones from the origin to patches of the surface
-            let cone = extent * form.support(n).area();
-            let [x, y, z] = [point.x, point.y, point.z];
-            [1.0 / 3.0, x / 4.0, y / 4.0, z / 4.0]
-                .into_iter()
-                .chain([x * x, y * y, z * z, x * y, x * z, y * z].map(|product| product / 5.0))
-                .map(|value| value * cone)
-                .collect::<Vec<_>>()
-                .try_into()
-                .unwrap_or([f64::NAN; 10])
+            let cone = here.extent * here.area();
+            let [x, y, z] = here.point.into();
+            let first = [x, y, z].map(|value| value / 4.0);
+            let second = [x * x, y * y, z * z, x * y, x * z, y * z].map(|product| product / 5.0);
+            let all = [&[1.0 / 3.0][..], &first, &second].concat();
+            std::array::from_fn(|i| all[i] * cone)
         };
         let all: [f64; 10] = over_all_directions(moments).map_err(SolidFormError::Quadrature)?;
         let volume = all[0];
