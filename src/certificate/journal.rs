@@ -9,31 +9,16 @@ use super::boxes::{DEEPEST, Side, Volume};
 use super::progress::{Progress, Searches};
 use super::region::Region;
 use super::search::{Cell, ProvedCell, Search, Turn};
+use crate::file::Checksum;
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write;
 
 const FORMAT: &str = "palmistry region 1";
 
-/// The 64-bit hash of Fowler, Noll and Vo (variant 1a): the same everywhere and for ever.
-#[derive(Clone, Copy)]
-struct Hash(u64);
-
-impl Hash {
-    fn new() -> Self {
-        Hash(0xcbf2_9ce4_8422_2325)
-    }
-
-    fn add(&mut self, text: &str) {
-        for byte in text.bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-}
-
 impl Region {
     /// What the boxes mean: all sides, tapes and lists, to the last bit.
     fn fingerprint(&self) -> u64 {
-        let mut hash = Hash::new();
+        let mut hash = Checksum::new();
         hash.add(env!("CARGO_PKG_VERSION"));
         let problem = &self.problem;
         hash.add(&format!(
@@ -56,7 +41,7 @@ impl Region {
             hash.add(&format!("{:?} {:?} {:?}", part.guards, part.common, part.alternatives));
         }
         hash.add(&format!("{:?}", self.map));
-        hash.0
+        hash.value()
     }
 
     /// Where the search stands, as text.
@@ -99,10 +84,10 @@ impl Region {
                 }
             }
         }
-        let mut hash = Hash::new();
+        let mut hash = Checksum::new();
         hash.add(&text);
         let lines = text.lines().count();
-        let _ = writeln!(text, "end {lines} {:016x}", hash.0);
+        let _ = writeln!(text, "end {lines} {:016x}", hash.value());
         text
     }
 
@@ -120,9 +105,9 @@ impl Region {
         let (body, end) = body.rsplit_once('\n').ok_or_else(|| damaged(1))?;
         let body = &text[..body.len() + 1];
         let lines = body.lines().count();
-        let mut hash = Hash::new();
+        let mut hash = Checksum::new();
         hash.add(body);
-        if end != format!("end {lines} {:016x}", hash.0) {
+        if end != format!("end {lines} {:016x}", hash.value()) {
             return Err(damaged(lines + 1));
         }
         if body.lines().nth(1) != Some(format!("question {:016x}", self.fingerprint()).as_str()) {
