@@ -150,6 +150,7 @@ impl Rank {
         let asked = RankPreparation::fingerprint(&system, question, nothing_asked);
         let parts = Parts {
             kind: "rank",
+            extension: ".json",
             read: &|text| RankPart::read(text).map_err(|why| why.to_string()),
             belongs: &|part: &RankPart| part.fingerprint() == asked,
         };

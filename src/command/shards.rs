@@ -62,10 +62,10 @@ fn count(text: &str) -> Option<u64> {
 
 impl Shard {
     /// The file of its part: `rank-07-of-64.json`.
-    fn file(self, folder: &Path, kind: &str) -> PathBuf {
+    fn file(self, folder: &Path, kind: &str, extension: &str) -> PathBuf {
         let Shard { number, of } = self;
         let width = of.to_string().len();
-        folder.join(format!("{kind}-{number:0width$}-of-{of}.json"))
+        folder.join(format!("{kind}-{number:0width$}-of-{of}{extension}"))
     }
 }
 
@@ -83,6 +83,8 @@ pub(crate) enum PartStanding<T> {
 /// What is asked of parts: what they are called, how they are read, and whether they belong to a question.
 pub(crate) struct Parts<'a, T> {
     pub kind: &'static str,
+    /// How their names end, as `.json`.
+    pub extension: &'static str,
     pub read: &'a dyn Fn(&str) -> Result<T, String>,
     pub belongs: &'a dyn Fn(&T) -> bool,
 }
@@ -128,7 +130,7 @@ impl<T> Parts<'_, T> {
         })?;
         let mut missing = Vec::new();
         for number in 1..=of {
-            if !self.is_there(&Shard { number, of }.file(Path::new(folder), self.kind))? {
+            if !self.is_there(&Shard { number, of }.file(Path::new(folder), self.kind, self.extension))? {
                 missing.push(number);
             }
         }
@@ -150,7 +152,7 @@ impl<T> Parts<'_, T> {
         form: Form,
         work: impl FnOnce(&mut Files) -> miette::Result<Option<String>>,
     ) -> miette::Result<Status> {
-        let path = shard.file(folder, self.kind);
+        let path = shard.file(folder, self.kind, self.extension);
         let was_there = self.is_there(&path)? && beside.is_none_or(Path::exists);
         let mut files = Files::default();
         let mut is_whole = was_there;
@@ -192,7 +194,7 @@ impl<T> Parts<'_, T> {
             let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
             if name
                 .strip_prefix(self.kind)
-                .is_some_and(|rest| rest.starts_with('-') && rest.ends_with(".json"))
+                .is_some_and(|rest| rest.starts_with('-') && rest.ends_with(self.extension))
             {
                 paths.push(path);
             }
@@ -211,7 +213,8 @@ impl<T> Parts<'_, T> {
             }
         }
         if parts.is_empty() {
-            let message = format!("there is no part '{}-K-of-N.json' in {}", self.kind, folder.display());
+            let message =
+                format!("there is no part '{}-K-of-N{}' in {}", self.kind, self.extension, folder.display());
             return Err(Unusable::report(message, "do the shards first, with --shard and --part"));
         }
         Ok(parts)
