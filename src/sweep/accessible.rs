@@ -2,8 +2,9 @@
 
 use super::asked::{RankQuestion, held_conditions};
 use super::certainty::Certainty;
+use super::prepared::sweep;
 use super::question::{RankError, guarded, held_parameters};
-use super::states::{SweepOptions, SweepReport, sweep};
+use super::states::{SweepOptions, SweepReport};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
     Accessibility, CodistributionError, Locus, RankBounds, Stop, parse_condition, solve_conditions,
