@@ -1,11 +1,12 @@
 //! A scene from beginning to end: bodies or a file, what is read of them, and what the observers make of it.
 
+use super::channels;
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{Simulation, TOUCH, body, constants, deviation};
 use super::since::Since;
 use super::unguided::{PalmReadings, Unguided, palm_readings};
 use crate::observer::{
-    EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
+    CalibrationKind, EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
     Signals, Task, Track, WindowSearch,
 };
 use crate::sweep::UNINTERRUPTED;
@@ -77,7 +78,7 @@ impl Experiment {
         let known = known_constants(&scene, &system, simulation.as_ref())?;
         let RecordReading { record, faults, .. } = match (&simulation, file) {
             (Some(simulation), _) => {
-                let record = simulation.readings(scene.sensor.noise, scene.sensor.resolution, scene.seed);
+                let record = simulation.read(&scene.sensor, &scene.channels, scene.seed);
                 let place =
                     |error: RecordError| scene.error_at("sensor", error.to_string(), "these readings", "");
                 RecordReading { record: record.map_err(place)?, faults: Vec::new(), left_out: Vec::new() }
@@ -105,7 +106,12 @@ impl Experiment {
         let signals = Signals::of_record(&record);
         let signals =
             signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
+        channels::are_columns(&scene, &signals)?;
+        let signals = channels::corrected(signals, &scene.observer.known).map_err(|error| {
+            scene.error_at("observer.known", error.to_string(), "readings without these", "")
+        })?;
         let question = estimate_question(&scene, &system, simulation.as_ref(), known, &signals)?;
+        channels::are_told(&scene, &system, &question, &signals)?;
         let experiment = Experiment { scene, system, simulation, record, origin, faults, signals, question };
         // whether the model can be made at all is better known now
         experiment.task(&UNINTERRUPTED)?;
@@ -138,6 +144,7 @@ impl Experiment {
         if !task.exact {
             task.noise = Noise::Stated { normal: sensor.noise, rounding: sensor.resolution };
         }
+        channels::tell(&self.scene, &mut task, self.simulation.is_some())?;
         task.timing = self.origin.abs() * f64::EPSILON * self.fastest(&task);
         Ok(task)
     }
@@ -210,7 +217,10 @@ impl Experiment {
     pub fn truth_at(&self, time: f64) -> Option<Vec<f64>> {
         let simulation = self.simulation.as_ref()?;
         let row = self.signals.times().iter().position(|other| *other == time)?;
-        self.names().iter().map(|name| Some(simulation.truth(name)?[row])).collect()
+        let truth = |name: &&str| {
+            channels::truth(&self.scene, name).or_else(|| simulation.truth(name)?.get(row).copied())
+        };
+        self.names().iter().map(truth).collect()
     }
 }
 
@@ -224,7 +234,7 @@ pub fn error(estimate: f64, truth: f64) -> f64 {
 fn known_states(scene: &Scene, system: &System) -> Result<(), SceneError> {
     let states: Vec<&str> = system.states.iter().map(|state| system.symbol_name(*state)).collect();
     for (index, name) in scene.observer.estimate.iter().enumerate() {
-        if !states.contains(&name.as_str()) {
+        if !states.contains(&name.as_str()) && !channels::is_sought(system, name) {
             let help = match nearest(name, states.iter().copied()) {
                 Some(near) => format!("perhaps you meant '{near}'"),
                 None => "an observer seeks states; constants are told".to_owned(),
@@ -256,7 +266,7 @@ fn known_constants(
     simulation: Option<&Simulation>,
 ) -> Result<BTreeMap<String, f64>, SceneError> {
     let settings = &scene.observer;
-    let mut known = settings.known.clone();
+    let mut known = channels::split(&settings.known).0;
     let mut give = |name: &str, value: f64| {
         if system.find_symbol(name).is_some() && !settings.estimate.iter().any(|other| other == name) {
             known.entry(name.to_owned()).or_insert(value);
@@ -318,8 +328,11 @@ fn estimate_question(
     for name in &settings.estimate {
         let truth = simulation.and_then(|simulation| simulation.truth(name)?.first().copied());
         let value = match (&settings.guess, truth) {
+            (Guess::Values(values), _) if values.contains_key(name) => values.get(name).copied(),
+            // a sensor is taken to be right at first
+            _ if CalibrationKind::of(name).is_some() => CalibrationKind::of(name).map(|(_, kind)| kind.nominal()),
             (Guess::None, _) => Some(unguided.value(scene, name)?),
-            (Guess::Values(values), _) => values.get(name).copied(),
+            (Guess::Values(_), _) => None,
             (Guess::Off(off), Some(truth)) => Some(truth * (1.0 + off)),
             (Guess::Off(_), None) => None,
         };

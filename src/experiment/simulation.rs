@@ -1,13 +1,13 @@
 //! The body of a scene set in motion, and what sensors and motors tell of it.
 
 use super::columns::{COLUMNS, Column, SeenAs};
-use super::scene::{self, Scene, SceneError, Simulated};
+use super::scene::{self, Channel, Scene, SceneError, Sensor, Simulated};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::{
     BodyForm, CentreOfMass, DEFAULT_TOLERANCE, Ended, FormError, MovingScene as Bodies,
     SceneError as Refused, Shape, SplineDraws, Trajectory, simulate as follow,
 };
-use crate::observer::{Record, RecordError};
+use crate::observer::{Record, RecordError, Signals};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -107,21 +107,60 @@ impl Simulation {
     /// # Errors
     /// None that a simulation could bring about.
     pub fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
+        self.read(&Sensor { noise, resolution, jitter: 0.0 }, &BTreeMap::new(), seed)
+    }
+
+    /// What sensors and motors tell, each column with its own errors: `gain * x(t - delay) + bias`, normal errors, rounding. What lies
+    /// before the first sample is extrapolated. The same seed gives each column the same errors, whatever their size and those of the
+    /// other columns.
+    ///
+    /// # Errors
+    /// None that a simulation could bring about.
+    pub fn read(
+        &self,
+        sensor: &Sensor,
+        channels: &BTreeMap<String, Channel>,
+        seed: u64,
+    ) -> Result<Record, RecordError> {
         let is_read = |column: &&Column| column.seen_as == SeenAs::Read;
         let mut read: Vec<&Column> = COLUMNS.iter().filter(is_read).collect();
         read.sort_by_key(|column| !TOUCH.contains(&column.name)); // stable: touch first
         let mut columns: Vec<(String, Vec<f64>)> =
             read.iter().map(|column| (column.name.to_owned(), self.values(column))).collect();
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        for (_, values) in columns.iter_mut().filter(|(name, _)| TOUCH.contains(&name.as_str())) {
+        for (place, (name, values)) in columns.iter_mut().enumerate() {
+            let is_touch = TOUCH.contains(&name.as_str());
+            let channel = channels.get(name).copied().unwrap_or_default();
+            let common = if is_touch { *sensor } else { Sensor::default() };
+            let noise = channel.noise.unwrap_or(common.noise);
+            let resolution = channel.resolution.unwrap_or(common.resolution);
+            if channel.delay > 0.0 {
+                *values = self.late(values, channel.delay);
+            }
+            // one stream for both contacts, and one for each other column
+            let mut own = ChaCha8Rng::seed_from_u64(seed);
+            own.set_stream(place as u64);
+            let random = if is_touch { &mut random } else { &mut own };
             for value in values {
-                *value += noise * normal(&mut random);
+                *value = channel.gain * *value + channel.bias + noise * normal(random);
                 if resolution > 0.0 {
                     *value = (*value / resolution).round() * resolution;
                 }
             }
         }
         Record::new(self.times(), columns)
+    }
+
+    /// What was true a moment before each sample, by the curves through the samples.
+    fn late(&self, values: &[f64], delay: f64) -> Vec<f64> {
+        let named = vec![(String::new(), values.to_vec())];
+        let Ok(curve) = Signals::new(self.times(), named) else { return values.to_vec() };
+        let before = |time: &f64| {
+            let mut value = [0.0];
+            curve.at(&[0], time - delay, &mut value);
+            value[0]
+        };
+        curve.times().iter().map(before).collect()
     }
 }
 

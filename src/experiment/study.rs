@@ -1,9 +1,10 @@
 //! An experiment many times over: with other errors of the readings, and from other first guesses.
 
 use super::run::{Experiment, error};
-use super::scene::{self, BasinStudy, NoiseStudy, SceneError};
-use super::simulation::{Simulation, deviation};
-use crate::observer::{MovingWindow, Noise, Order, Signals, Task, UpdateEnd, WindowSearch, cramer_rao};
+use super::scene::{self, BasinStudy, NoiseStudy, SceneError, Sensor};
+use super::channels::corrected;
+use super::simulation::{Simulation, TOUCH, deviation};
+use crate::observer::{MovingWindow, Noise, Signals, Task, UpdateEnd, WindowSearch};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -77,10 +78,7 @@ pub fn noise_study(
                 let seed = (level * study.seeds) as u64 + seed;
                 let seed = experiment.scene.seed.wrapping_add(1 + seed);
                 let signals = noisy(experiment, simulation, noise, seed)?;
-                let mut task = task.with_signals(&signals);
-                let rounding = experiment.scene.sensor.resolution;
-                (task.exact, task.sigma) = (false, deviation(noise, rounding));
-                task.noise = Noise::Stated { normal: noise, rounding };
+                let task = at_level(experiment, &task.with_signals(&signals), noise);
                 let rows = first_window(&task, &observer);
                 let update = observer.update(&task, &task.guess, &rows, &task.clamped);
                 let fits = update.fit.is_some_and(|fit| fit.fits);
@@ -107,7 +105,7 @@ pub fn noise_study(
                 .count(),
             seeds: trials.len(),
             errors: (0..truth.len()).map(error).collect(),
-            bounds: bounds(&task, &observer, &truth, noise),
+            bounds: bounds(&at_level(experiment, &task, noise), &observer, &truth),
         });
     }
     Ok(levels)
@@ -137,10 +135,29 @@ impl Trial {
 
 /// The signals of an experiment with other errors.
 fn noisy(experiment: &Experiment, simulation: &Simulation, noise: f64, seed: u64) -> Option<Signals> {
-    let record = simulation.readings(noise, experiment.scene.sensor.resolution, seed).ok()?;
-    let columns =
-        record.names().iter().filter_map(|name| Some((name.clone(), record.column(name)?.to_vec())));
-    Signals::new(record.times().to_vec(), columns.collect()).ok()
+    // the levels are those of the contacts that have no noise of their own; all other columns have the errors of the scene
+    let sensor = Sensor { noise, ..experiment.scene.sensor };
+    let record = simulation.read(&sensor, &experiment.scene.channels, seed).ok()?;
+    corrected(Signals::of_record(&record).ok()?, &experiment.scene.observer.known).ok()
+}
+
+/// A task whose contacts are read with errors of one level.
+fn at_level<'a>(experiment: &Experiment, task: &Task<'a>, noise: f64) -> Task<'a> {
+    let mut task = task.clone();
+    let rounding = experiment.scene.sensor.resolution;
+    if deviation(noise, rounding) == 0.0 && !task.errors.is_empty() {
+        // contacts without error, beside columns that have some
+        return task;
+    }
+    (task.exact, task.sigma) = (false, deviation(noise, rounding));
+    task.noise = Noise::Stated { normal: noise, rounding };
+    let has_own = |name: &str| experiment.scene.channels.get(name).is_some_and(|own| own.noise.is_some());
+    for name in TOUCH.into_iter().filter(|name| !has_own(name)) {
+        if let Some(errors) = task.errors.get_mut(name) {
+            errors.normal = noise;
+        }
+    }
+    task
 }
 
 fn first_window(task: &Task<'_>, observer: &MovingWindow) -> std::ops::Range<usize> {
@@ -148,22 +165,8 @@ fn first_window(task: &Task<'_>, observer: &MovingWindow) -> std::ops::Range<usi
 }
 
 /// The bound of Cramér and Rao for what is sought at the first sample, at the truth.
-fn bounds(task: &Task<'_>, observer: &MovingWindow, truth: &[f64], noise: f64) -> Vec<f64> {
-    let mut task = task.clone();
-    (task.exact, task.sigma) = (false, noise);
-    let window = MovingWindow::window(&task, truth, &first_window(&task, observer), &task.clamped);
-    let sizes = MovingWindow::sizes(&task, &window);
-    let mut bounds = vec![0.0; truth.len()];
-    let bound = match window.expand(&window.unknowns(&window.start), Order::First) {
-        Ok(expansion) => cramer_rao(&expansion.slopes, noise, &sizes).deviations,
-        Err(_) => vec![f64::INFINITY; window.free.len()],
-    };
-    for (place, deviation) in window.free.iter().zip(bound) {
-        if let Some(own) = bounds.get_mut(*place) {
-            *own = deviation;
-        }
-    }
-    bounds
+fn bounds(task: &Task<'_>, observer: &MovingWindow, truth: &[f64]) -> Vec<f64> {
+    observer.bounds(task, truth, &first_window(task, observer), &task.clamped)
 }
 
 /// From which first guesses of two states each method of the scene arrives: within [`ARRIVED`] of the truth, after their first

@@ -69,12 +69,12 @@ pub(super) struct Misfit<'a> {
 }
 
 impl Misfit<'_> {
-    fn degrees(&self) -> usize {
+    pub fn degrees(&self) -> usize {
         self.differences.len().saturating_sub(self.unknowns)
     }
 
     /// What is left of a reading that is right: by interpolation, and by the rounding of its time.
-    fn computed(&self) -> f64 {
+    pub fn computed(&self) -> f64 {
         COMPUTED * self.size + self.timing
     }
 

@@ -3,7 +3,7 @@
 mod observer;
 mod physics;
 
-use super::keys::SceneKeys;
+use super::keys::{SceneKeys, SensorKeys};
 use super::place::Places;
 use super::{Scene, Simulated};
 use crate::system::Problem;
@@ -107,7 +107,9 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
             ));
         }
     }
-    checks.sensor(&keys.sensor)?;
+    let SensorKeys { sensor, channels } = keys.sensor;
+    checks.sensor(&sensor)?;
+    checks.channels(&channels, keys.data.record.is_some())?;
     checks.positive("data.spike", keys.data.spike, "usual departures")?;
     let palm_forms = checks.forms(keys.palms.as_ref().and_then(|palms| palms.radii))?;
     let simulated = checks.simulated(keys.duration, keys.samples, keys.rate, keys.body, keys.palms)?;
@@ -126,7 +128,8 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         _ => {}
     }
     if let Some(simulated) = &simulated {
-        checks.jitter(keys.sensor.jitter, simulated)?;
+        checks.jitter(sensor.jitter, simulated)?;
+        checks.delays(&channels, simulated)?;
     }
     let observer = checks.observer(keys.observer, simulated.as_ref())?;
     checks.study(&keys.study, &observer, simulated.is_some())?;
@@ -139,7 +142,8 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         seed: keys.seed,
         simulated,
         palm_forms,
-        sensor: keys.sensor,
+        sensor,
+        channels,
         data,
         observer,
         study: keys.study,

@@ -2,6 +2,7 @@
 
 use super::super::keys::{GuessKeys, ObserverKeys};
 use super::super::{Guess, ObserverSettings, Study};
+use crate::observer::CalibrationKind;
 use super::{Checks, MOST_SAMPLES, Problem, Simulated};
 
 /// The most first guesses that a study may try.
@@ -104,7 +105,10 @@ impl Checks<'_> {
                     self.sought(&place, name, estimate)?;
                     self.finite(&place, *value)?;
                 }
-                if let Some(name) = estimate.iter().find(|name| !values.contains_key(*name)) {
+                // gains and biases have one by themselves
+                let is_missing =
+                    |name: &&String| !values.contains_key(*name) && CalibrationKind::of(name).is_none();
+                if let Some(name) = estimate.iter().find(is_missing) {
                     let message = format!("there is no first guess of '{name}'");
                     let help = format!("add {name} = ... to it");
                     return Err(self.wrong("observer.guess", message, help));
