@@ -112,16 +112,25 @@ impl Simulation {
         read.sort_by_key(|column| !TOUCH.contains(&column.name)); // stable: touch first
         let mut columns: Vec<(String, Vec<f64>)> =
             read.iter().map(|column| (column.name.to_owned(), self.values(column))).collect();
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        for (_, values) in columns.iter_mut().filter(|(name, _)| TOUCH.contains(&name.as_str())) {
-            for value in values {
-                *value += noise * normal(&mut random);
-                if resolution > 0.0 {
-                    *value = (*value / resolution).round() * resolution;
-                }
-            }
-        }
+        let touch = columns.iter_mut().filter(|(name, _)| TOUCH.contains(&name.as_str()));
+        read_with_errors(touch.map(|(_, values)| values), noise, resolution, seed);
         Record::new(self.times(), columns)
+    }
+}
+
+/// Adds normal errors of a standard deviation to columns, one after the other, and rounds them to multiples of a resolution.
+pub(super) fn read_with_errors<'c>(
+    columns: impl Iterator<Item = &'c mut Vec<f64>>,
+    noise: f64,
+    resolution: f64,
+    seed: u64,
+) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    for value in columns.flatten() {
+        *value += noise * normal(&mut random);
+        if resolution > 0.0 {
+            *value = (*value / resolution).round() * resolution;
+        }
     }
 }
 

@@ -3,14 +3,49 @@
 use super::run::{Experiment, error};
 use super::scene::{self, BasinStudy, NoiseStudy, SceneError};
 use super::simulation::{Simulation, deviation};
-use crate::observer::{MovingWindow, Noise, Order, Signals, Task, UpdateEnd, WindowSearch, cramer_rao};
+use super::system_motion::SystemMotion;
+use crate::observer::{
+    MovingWindow, Noise, Order, Record, RecordError, Signals, Task, UpdateEnd, WindowSearch, cramer_rao,
+};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What was simulated, as far as studies ask: what is true, and what is read with errors of any size.
+pub trait Truth: Sync {
+    /// The true values of a state, sample by sample.
+    fn truth(&self, name: &str) -> Option<Vec<f64>>;
+
+    /// What is read with errors of a standard deviation, rounded to multiples of a resolution.
+    ///
+    /// # Errors
+    /// None that a simulation could bring about.
+    fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError>;
+}
+
+impl Truth for Simulation {
+    fn truth(&self, name: &str) -> Option<Vec<f64>> {
+        self.truth(name)
+    }
+
+    fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
+        self.readings(noise, resolution, seed)
+    }
+}
+
+impl Truth for SystemMotion {
+    fn truth(&self, name: &str) -> Option<Vec<f64>> {
+        self.truth(name)
+    }
+
+    fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
+        self.readings(noise, resolution, seed)
+    }
+}
 
 /// The error over many seeds at one level of noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseLevel {
-    /// The standard deviation of the readings, in m.
+    /// The standard deviation of the readings, in their unit: in m of contacts.
     pub noise: f64,
     /// Estimates that converged, of how many seeds.
     pub converged: usize,
@@ -55,7 +90,7 @@ pub const ARRIVED: f64 = 0.01;
 /// As [`Experiment::task`].
 pub fn noise_study(
     experiment: &Experiment,
-    simulation: &Simulation,
+    simulation: &dyn Truth,
     study: &NoiseStudy,
     interrupt: &AtomicBool,
     done: &(dyn Fn() + Sync),
@@ -136,7 +171,7 @@ impl Trial {
 }
 
 /// The signals of an experiment with other errors.
-fn noisy(experiment: &Experiment, simulation: &Simulation, noise: f64, seed: u64) -> Option<Signals> {
+fn noisy(experiment: &Experiment, simulation: &dyn Truth, noise: f64, seed: u64) -> Option<Signals> {
     let record = simulation.readings(noise, experiment.scene.sensor.resolution, seed).ok()?;
     let columns =
         record.names().iter().filter_map(|name| Some((name.clone(), record.column(name)?.to_vec())));

@@ -25,6 +25,8 @@ pub(super) struct SceneKeys {
     pub rate: Option<f64>,
     pub body: Option<Body>,
     pub palms: Option<PalmsKeys>,
+    pub start: Option<BTreeMap<String, f64>>,
+    pub inputs: Option<BTreeMap<String, String>>,
     #[serde(default)]
     pub sensor: Sensor,
     #[serde(default)]

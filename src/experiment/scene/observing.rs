@@ -50,7 +50,8 @@ pub struct ObserverSettings {
     pub known: BTreeMap<String, f64>,
     /// `inputs`: input fields of the model and the columns that drive them, as in `{ g1 = "tau1" }`; none unless given.
     pub inputs: BTreeMap<String, String>,
-    /// `guess` or `guess_off`: where the search begins; where a body between palms is described, `"none"` unless given.
+    /// `guess` or `guess_off`: where the search begins; where a body between palms is described, `"none"` unless given, and
+    /// where another system is, `"sample"`.
     pub guess: Guess,
     /// `clamp`: sought states that keep their first guess in the first window; none unless given.
     pub clamp: Vec<String>,
@@ -79,6 +80,8 @@ pub enum Guess {
     Off(f64),
     /// `"none"`: the readings of the first window give it. Only between two flat palms.
     None,
+    /// `"sample"`: the middle of the model's sample box.
+    Sample,
 }
 
 /// A way to estimate a state.
