@@ -133,7 +133,7 @@ impl Observe {
         }
         // a window that cannot be seen is part of the answer; a method by windows that saw none has found nothing, and one that
         // contradicts the readings is wrong
-        let by_windows = |answer: &&Answer| answer.method.search().is_some();
+        let by_windows = |answer: &&Answer| answer.method.is_by_windows();
         let as_expected = answers.iter().filter(by_windows).all(|answer| match interrupted {
             true => !answer.track.is_contradicted(),
             false => answer.track.is_sound(),

@@ -258,6 +258,13 @@ fn arrives(experiment: &Experiment, task: &Task<'_>, method: scene::Method) -> O
             let update = observer.update(task, &task.guess, &first_window(task, &observer), &task.clamped);
             (update.from, update.estimate)
         }
+        None if method == scene::Method::MultipleShooting => {
+            let observer = experiment.scene.observer.multiple_shooting();
+            let found =
+                observer.solutions(task, &task.guess, &first_window(task, &observer.window), &task.clamped);
+            let update = found.into_iter().next()?;
+            (update.from, update.estimate)
+        }
         None => {
             let track = experiment.observer(method).observe(task);
             let last = track.last()?;

@@ -179,6 +179,12 @@ impl Model {
         Some(self.measured[place])
     }
 
+    /// Whether a followed state does not move, whatever the others are.
+    pub fn is_at_rest(&self, state: usize) -> bool {
+        let rate = self.rate_nodes.get(state).and_then(|node| self.system.graph.constant_value(*node));
+        rate.is_some_and(|rate| rate.is_zero())
+    }
+
     /// The operations of the equations.
     pub fn operations(&self) -> usize {
         self.rates.program.len()

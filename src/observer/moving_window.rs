@@ -118,7 +118,7 @@ impl MovingWindow {
     }
 
     /// The probability of a false alarm that an update may have for all of a run to have no more than [`FALSE_ALARMS`].
-    fn alarm(&self, task: &Task<'_>) -> f64 {
+    pub(super) fn alarm(&self, task: &Task<'_>) -> f64 {
         let updates = task.signals.times().len().div_ceil(self.window.max(1));
         FALSE_ALARMS / updates.max(1) as f64
     }
@@ -286,7 +286,7 @@ impl MovingWindow {
     }
 
     /// The moments of some rows from a state at the first of them; gives what is believed of what is sought at the last.
-    fn follow(
+    pub(super) fn follow(
         &self,
         task: &Task<'_>,
         start: &[f64],

@@ -4,7 +4,7 @@ use super::observing::{Data, Method, Sensor, Study};
 use super::place::Places;
 use super::simulated::Body;
 use crate::mechanics::moving::{Course, PushedPalm};
-use crate::observer::{HighGain, Kalman, WhenBlind};
+use crate::observer::{HighGain, Kalman, Shooting, WhenBlind};
 use crate::system::Problem;
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
@@ -69,6 +69,8 @@ pub(super) struct ObserverKeys {
     pub when_blind: WhenBlind,
     #[serde(default = "unity")]
     pub blind: f64,
+    #[serde(default)]
+    pub shooting: Shooting,
     #[serde(default)]
     pub kalman: Kalman,
     #[serde(default)]

@@ -144,6 +144,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
             "unseen_samples": answer.track.unseen,
             "remarks": answer.track.remarks,
             "updates": updates.collect::<Vec<_>>(),
+            "fits_as_well": answer.track.others.iter().map(|other| update_json(observed, other)).collect::<Vec<_>>(),
             "end": end,
         })
     });
@@ -260,6 +261,22 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         }
         if answer.track.unseen > 0 {
             let _ = writeln!(text, "  not seen for {} of {samples} samples", answer.track.unseen);
+        }
+        for other in &answer.track.others {
+            let _ = writeln!(
+                text,
+                "  from {:.3} s another state fits as well{}:",
+                other.from,
+                fit_in_words(other).replacen(" and fits", "", 1)
+            );
+            state_lines(
+                &mut text,
+                observed,
+                &names,
+                other.from,
+                &other.estimate,
+                Some(&other.deviations[..]),
+            );
         }
         for remark in &answer.track.remarks {
             let _ = writeln!(text, "  {remark}");

@@ -200,6 +200,15 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
         lines.extend(
             answer.track.updates.iter().flat_map(suspects_in_words).map(|line| format!("{name}: {line}")),
         );
+        for other in &answer.track.others {
+            let state = observed.experiment.names().into_iter().zip(&other.estimate);
+            let state: Vec<String> = state.map(|(name, value)| format!("{name} = {value:.6}")).collect();
+            lines.push(format!(
+                "{name} from {:.3} s: another state fits as well: {}",
+                other.from,
+                state.join(", ")
+            ));
+        }
         lines.extend(answer.track.remarks.iter().map(|remark| format!("{name}: {remark}")));
     }
     html! {

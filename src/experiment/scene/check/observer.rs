@@ -41,6 +41,8 @@ impl Checks<'_> {
         self.count("observer.window", window, 2..=samples)?;
         self.count("observer.steps", keys.steps, 1..=1000)?;
         self.positive("observer.blind", keys.blind, "")?;
+        self.count("observer.shooting.segments", keys.shooting.segments, 1..=1000)?;
+        self.count("observer.shooting.starts", keys.shooting.starts, 1..=1000)?;
         self.not_negative("observer.kalman.process_noise", keys.kalman.process_noise, "")?;
         self.positive("observer.kalman.prior", keys.kalman.prior, "")?;
         self.positive("observer.kalman.least_sigma", keys.kalman.least_sigma, "m")?;
@@ -56,6 +58,7 @@ impl Checks<'_> {
             steps: keys.steps,
             when_blind: keys.when_blind,
             blind: keys.blind,
+            shooting: keys.shooting,
             kalman: keys.kalman,
             high_gain: keys.high_gain,
         })
