@@ -5,7 +5,7 @@
 //! trust begins on the whole window, and its update is the answer, with its bound and its test of fit. Where several states fit as well, all are
 //! given: the outputs do not tell them apart, as where they leave a mirror image.
 
-use super::nodes::{Nodes, Segments};
+use super::nodes::{Bounds, Nodes, Segments};
 use super::stiff_joints::{Found, seek};
 use super::task::{Observer, Task, Track, Update, UpdateEnd};
 use super::trace::{is_asked, suspects};
@@ -26,7 +26,7 @@ use std::time::Instant;
 pub struct Shooting {
     /// Segments of a window, at most; no segment is shorter than from one sample to the next.
     pub segments: usize,
-    /// From how many states of the sample box it starts, the guess being the first.
+    /// How often it starts: from the guess and from states of the sample box, from each with signs kept and without.
     pub starts: usize,
 }
 
@@ -54,6 +54,9 @@ const TOLERANCE: f64 = 1e-8;
 /// Of the states that were found, so many of the best ones that are not one are followed to their end.
 const MOST_ENDS: usize = 4;
 
+/// A mean square of the differences, in units of the spreads, that is enough for a search, beside what noise leaves.
+const ENOUGH: f64 = 1e-8;
+
 /// Two states are one that are no farther apart than this part of the sizes, or than so many of their deviations.
 const SAME: (f64, f64) = (1e-5, 6.0);
 
@@ -68,6 +71,27 @@ impl MultipleShooting {
         MovingWindow { method: WindowSearch::TrustRegion, steps, ..self.window }
     }
 
+    /// The end of a search, on the whole window: by a region of trust, and along a valley that bends, where that takes all its steps, by
+    /// Newton's method, whose second derivatives know how it bends.
+    fn end(&self, task: &Task<'_>, state: &[f64], rows: &Range<usize>, clamped: &[usize]) -> Update {
+        let ending = self.ending();
+        let update = ending.update(task, state, rows, clamped);
+        if update.end != UpdateEnd::StepsSpent {
+            return update;
+        }
+        let newton = MovingWindow { method: WindowSearch::Newton, ..ending };
+        let again = newton.update(task, &update.estimate, rows, clamped);
+        match again.cost <= update.cost {
+            true => Update {
+                steps: update.steps + again.steps,
+                troubled: update.troubled + again.troubled,
+                seconds: update.seconds + again.seconds,
+                ..again
+            },
+            false => update,
+        }
+    }
+
     /// What explains the rows: the best state first, then others that fit as well.
     pub fn solutions(
         &self,
@@ -77,13 +101,18 @@ impl MultipleShooting {
         clamped: &[usize],
     ) -> Vec<Update> {
         let begin = Instant::now();
-        let ending = self.ending();
         let segments = self.segments(task, belief, rows, clamped);
         if segments.moving.is_empty() {
-            return vec![ending.update(task, belief, rows, clamped)];
+            return vec![self.end(task, belief, rows, clamped)];
         }
-        let first = |start: usize| first_nodes(task, &segments, belief, rows, clamped, start);
-        let one = |start: usize| seek(&segments, first(start), &|| task.interrupted()).ok();
+        let bounds = [true, false].map(|are_signs_kept| bounds(task, are_signs_kept));
+        let spreads = segments.spread.iter().map(|spread| (task.sigma / spread).powi(2));
+        let enough = ENOUGH + 2.0 * spreads.fold(0.0, f64::max);
+        let one = |start: usize| {
+            let bounds = &bounds[start % 2];
+            let nodes = first_nodes(task, &segments, bounds, (belief, rows, clamped), start / 2);
+            seek(&segments, nodes, bounds, enough, &|| task.interrupted()).ok()
+        };
         let found: Vec<Option<Found>> = (0..self.shooting.starts.max(1)).into_par_iter().map(one).collect();
         let mut found: Vec<Found> = found.into_iter().flatten().collect();
         found.sort_by(|a, b| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
@@ -97,7 +126,7 @@ impl MultipleShooting {
             if tried.iter().any(|other| is_near(task, other, &state, &[], 1e-3)) {
                 continue;
             }
-            let mut update = ending.update(task, &state, rows, clamped);
+            let mut update = self.end(task, &state, rows, clamped);
             tried.push(state);
             update.steps += found.steps;
             update.troubled += found.refused;
@@ -110,8 +139,8 @@ impl MultipleShooting {
                 updates.push(update);
             }
         }
-        if updates.is_empty() {
-            updates.push(ending.update(task, belief, rows, clamped));
+        if !updates.iter().any(Update::is_borne_out) {
+            updates.push(self.end(task, belief, rows, clamped));
         }
         let mut updates = best_first(task, updates);
         if let Some(update) = updates.first_mut() {
@@ -149,7 +178,9 @@ impl MultipleShooting {
                 let column = task.signals.column(model.column_of(place)?);
                 Some(spread_of(column[rows.clone()].to_vec()))
             };
-            sampled.or(own).or_else(column).filter(|size| *size > 0.0).unwrap_or(1.0)
+            // what is read may go far beyond where it begins
+            let size = sampled.or(own).unwrap_or(0.0).max(column().unwrap_or(0.0));
+            if size > 0.0 { size } else { 1.0 }
         };
         let steps = rows.len() - 1;
         let count = self.shooting.segments.clamp(1, steps.max(1));
@@ -163,7 +194,6 @@ impl MultipleShooting {
             moving,
             constant,
             sizes: (0..base.len()).map(size).collect(),
-            bounds: (0..base.len()).map(|place| bounds(task, place)).collect(),
             base,
         }
     }
@@ -185,26 +215,35 @@ fn is_angle(task: &Task<'_>, place: usize) -> bool {
     symbol.is_some_and(|symbol| system.is_angle(symbol))
 }
 
-/// Within what a state is sought: a range of the file, wider by its own width to both sides, since a motion may leave the box
-/// in which it begins, but on the same side of zero; whole turns are no bound.
-fn bounds(task: &Task<'_>, place: usize) -> [f64; 2] {
-    let Some(([low, high], true)) = range(task, place).filter(|_| !is_angle(task, place)) else {
-        return [f64::NEG_INFINITY, f64::INFINITY];
+/// Within what states are sought: at first within the ranges of the file, wider by their own width to both sides, later anywhere; where signs are
+/// kept, on the same side of zero all the time. Ranges say where states begin, and a motion may leave them and change sign: one half of the
+/// starts keeps signs, the other does not. Whole turns are no bound.
+fn bounds(task: &Task<'_>, are_signs_kept: bool) -> Bounds {
+    let one = |place: usize| {
+        let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
+        let Some(([low, high], true)) = range(task, place).filter(|_| !is_angle(task, place)) else {
+            return (anywhere, anywhere);
+        };
+        let width = high - low;
+        let (mut first, mut later) = ([low - width, high + width], anywhere);
+        if are_signs_kept && low >= 0.0 {
+            (first[0], later[0]) = (low / 100.0, low.min(width) / 100.0);
+        }
+        if are_signs_kept && high <= 0.0 {
+            (first[1], later[1]) = (high / 100.0, high.max(-width) / 100.0);
+        }
+        (first, later)
     };
-    let width = high - low;
-    [
-        if low >= 0.0 { low / 100.0 } else { low - width },
-        if high <= 0.0 { high / 100.0 } else { high + width },
-    ]
+    let (first, later) = (0..task.full.states.len()).map(one).unzip();
+    Bounds { first, later }
 }
 
 /// Where a start begins: from the guess, or from a state of the sample box; what is read is taken as it is read.
 fn first_nodes(
     task: &Task<'_>,
     segments: &Segments<'_>,
-    belief: &[f64],
-    rows: &Range<usize>,
-    clamped: &[usize],
+    bounds: &Bounds,
+    (belief, rows, clamped): (&[f64], &Range<usize>, &[usize]),
     start: usize,
 ) -> Nodes {
     let mut random = ChaCha8Rng::seed_from_u64(start as u64);
@@ -219,19 +258,18 @@ fn first_nodes(
             *value = low + part * (high - low);
         }
     }
-    let within = |place: usize, value: f64| value.clamp(segments.bounds[place][0], segments.bounds[place][1]);
-    let node = |segment: &Range<usize>| {
+    let node = |(node, segment): (usize, &Range<usize>)| {
         let row = rows.start + segment.start;
         let value = |place: &usize| match task.full.column_of(*place) {
             Some(column) => task.signals.column(column)[row],
             None => state[*place],
         };
-        let values = segments.moving.iter().map(|place| within(*place, value(place)));
+        let values = segments.moving.iter().map(|place| bounds.within(node, *place, value(place)));
         DVector::from_iterator(segments.moving.len(), values)
     };
-    let constant = segments.constant.iter().map(|place| within(*place, state[*place]));
+    let constant = segments.constant.iter().map(|place| bounds.within(0, *place, state[*place]));
     Nodes {
-        moving: segments.rows.iter().map(node).collect(),
+        moving: segments.rows.iter().enumerate().map(node).collect(),
         constant: DVector::from_iterator(segments.constant.len(), constant),
     }
 }

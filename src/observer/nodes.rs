@@ -27,8 +27,20 @@ pub(super) struct Segments<'a> {
     pub sizes: Vec<f64>,
     /// The magnitude of each output.
     pub spread: Vec<f64>,
-    /// What each state keeps within.
-    pub bounds: Vec<[f64; 2]>,
+}
+
+/// What each state keeps within: at the first node, constants among them, and at the others.
+pub(super) struct Bounds {
+    pub first: Vec<[f64; 2]>,
+    pub later: Vec<[f64; 2]>,
+}
+
+impl Bounds {
+    /// A value of a state at a node, moved to within.
+    pub fn within(&self, node: usize, state: usize, value: f64) -> f64 {
+        let [low, high] = if node == 0 { self.first[state] } else { self.later[state] };
+        value.clamp(low, high)
+    }
 }
 
 /// The states at the beginnings of all segments, and the constants.
@@ -106,18 +118,15 @@ impl Segments<'_> {
     }
 
     /// The nodes after a step in units of the sizes, kept within their bounds.
-    pub fn stepped(&self, nodes: &Nodes, step: &Nodes) -> Nodes {
-        let moved = |value: f64, state: usize, step: f64| {
-            let [low, high] = self.bounds[state];
-            (value + step * self.sizes[state]).clamp(low, high)
+    pub fn stepped(&self, nodes: &Nodes, step: &Nodes, bounds: &Bounds) -> Nodes {
+        let along = |node: usize, values: &DVector<f64>, steps: &DVector<f64>, states: &[usize]| {
+            let moved = |i: usize| values[i] + steps[i] * self.sizes[states[i]];
+            DVector::from_fn(values.len(), |i, _| bounds.within(node, states[i], moved(i)))
         };
-        let along = |values: &DVector<f64>, steps: &DVector<f64>, states: &[usize]| {
-            DVector::from_fn(values.len(), |i, _| moved(values[i], states[i], steps[i]))
-        };
-        let moving = nodes.moving.iter().zip(&step.moving);
+        let moving = nodes.moving.iter().zip(&step.moving).enumerate();
         Nodes {
-            moving: moving.map(|(values, steps)| along(values, steps, &self.moving)).collect(),
-            constant: along(&nodes.constant, &step.constant, &self.constant),
+            moving: moving.map(|(node, (values, steps))| along(node, values, steps, &self.moving)).collect(),
+            constant: along(0, &nodes.constant, &step.constant, &self.constant),
         }
     }
 

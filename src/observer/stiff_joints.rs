@@ -13,17 +13,17 @@
 //! Reference: J. Ye et al., Systematic variational method for statistical nonlinear state and parameter estimation, Phys. Rev. E 92, 052901, 2015.
 
 use super::Lost;
-use super::nodes::{Nodes, Segment, Segments};
+use super::nodes::{Bounds, Nodes, Segment, Segments};
 use nalgebra::{DMatrix, DVector};
 
 /// The weights of a gap of one size against a difference of one spread: from the first to the last, each so many times the one before.
-const WEIGHTS: (f64, f64, f64) = (0.1, 1e3, 3.0);
+const WEIGHTS: (f64, f64, f64) = (0.1, 100.0, 3.0);
 
 /// Steps at one weight, at most; the last weight may take more.
-const STEPS: (usize, usize) = (6, 30);
+const STEPS: (usize, usize) = (6, 12);
 
 /// A step that lowers the error by less than this part of it is the last one of its weight.
-const SETTLED: (f64, f64) = (1e-2, 1e-6);
+const SETTLED: (f64, f64) = (2e-2, 1e-4);
 
 /// Steps are refused so often at most, one after the other.
 const MOST_REFUSED: usize = 12;
@@ -39,13 +39,16 @@ pub(super) struct Found {
     pub refused: usize,
 }
 
-/// The nodes that explain the readings of the segments best, near some nodes.
+/// The nodes that explain the readings of the segments best, near some nodes and within bounds. A mean square of the differences, in units
+/// of the spreads, that is no more than `enough` ends the search where the gaps are narrow: the rest is for the whole window.
 ///
 /// # Errors
 /// Where a segment cannot be followed at the first nodes.
 pub(super) fn seek(
     segments: &Segments<'_>,
     first: Nodes,
+    bounds: &Bounds,
+    enough: f64,
     interrupted: &dyn Fn() -> bool,
 ) -> Result<Found, Lost> {
     let mut here = segments.expand(&first)?;
@@ -58,7 +61,7 @@ pub(super) fn seek(
         for _ in 0..most {
             let cost = cost(&here, weight);
             let Some((nodes, there)) =
-                step(segments, &found.nodes, &here, weight, &mut lambda, &mut found.refused)
+                step(segments, (&found.nodes, &here), bounds, weight, &mut lambda, &mut found.refused)
             else {
                 break;
             };
@@ -70,7 +73,7 @@ pub(super) fn seek(
                 break;
             }
         }
-        if is_last {
+        if is_last || is_enough(&here, enough) {
             break;
         }
         weight = (weight * growth).min(last);
@@ -82,6 +85,18 @@ pub(super) fn seek(
     Ok(found)
 }
 
+/// The root of the mean square of gaps, in units of the sizes, that a search on the whole window closes.
+const NARROW: f64 = 3e-3;
+
+fn is_enough(here: &[Segment], enough: f64) -> bool {
+    let mean = |squares: f64, count: usize| squares / count.max(1) as f64;
+    let differences = here.iter().map(|segment| segment.differences.len()).sum();
+    let gaps = here.iter().filter_map(|segment| Some(&segment.gap.as_ref()?.0));
+    let gap_count = gaps.clone().map(|gap| gap.len()).sum();
+    mean(here.iter().map(|segment| segment.differences.norm_squared()).sum(), differences) <= enough
+        && mean(gaps.map(|gap| gap.norm_squared()).sum(), gap_count) <= NARROW * NARROW
+}
+
 fn cost(segments: &[Segment], weight: f64) -> f64 {
     segments.iter().map(|segment| segment.cost(weight)).sum()
 }
@@ -89,8 +104,8 @@ fn cost(segments: &[Segment], weight: f64) -> f64 {
 /// A step that lowers the error, with what is found there; the damping is renewed. None where no step does.
 fn step(
     segments: &Segments<'_>,
-    nodes: &Nodes,
-    here: &[Segment],
+    (nodes, here): (&Nodes, &[Segment]),
+    bounds: &Bounds,
     weight: f64,
     lambda: &mut f64,
     refused: &mut usize,
@@ -99,7 +114,7 @@ fn step(
     let mut growth = 2.0;
     for _ in 0..MOST_REFUSED {
         let step = damped(here, weight, lambda.sqrt())?;
-        let there = segments.stepped(nodes, &step);
+        let there = segments.stepped(nodes, &step, bounds);
         // what the bounds let through of it
         let step = segments.step_between(nodes, &there);
         if step.longest() < 1e-14 {
