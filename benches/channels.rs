@@ -36,7 +36,9 @@ fn main() {
             }
         }
     }
-    println!("\nregime           column   gain found   error     bound     the least error over bound of the others");
+    println!(
+        "\nregime           column   gain found   error     bound     the least error over bound of the others"
+    );
     for regime in REGIMES {
         gain(regime, seeds.min(20) as u64);
     }

@@ -1,7 +1,8 @@
 //! Experiments, simulated or recorded.
 //!
 //! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
-//! from a TOML file and checked value by value. A [`Simulation`] moves its body; an [`Experiment`] is a scene with its readings, and
+//! from a TOML file and checked value by value. A [`Simulation`] moves its body, a [`SystemMotion`] any other system by its own equations; an
+//! [`Experiment`] is a scene with its readings, and
 //! runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`], [`basins`]).
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
@@ -13,6 +14,7 @@ mod scene;
 mod simulation;
 mod since;
 mod study;
+mod system_motion;
 #[doc(hidden)]
 pub mod unguided;
 
@@ -30,4 +32,5 @@ pub use simulation::Simulation;
 #[doc(hidden)]
 pub use study::ARRIVED;
 #[doc(hidden)]
-pub use study::{Basin, NoiseLevel, basins, noise_study};
+pub use study::{Basin, NoiseLevel, Truth, basins, noise_study};
+pub use system_motion::SystemMotion;

@@ -10,6 +10,7 @@ use maud::html;
 
 /// The page as HTML.
 pub fn observe_page(observed: &Observed<'_>) -> String {
+    let has_palms = observed.experiment.is_about_palms();
     let studied = !observed.noise.is_empty() || !observed.basins.is_empty();
     let content = html! {
         header {
@@ -17,7 +18,7 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
             (summary(observed))
             (faults(observed))
             nav {
-                a href="#body" { "The body" }
+                @if has_palms { a href="#body" { "The body" } }
                 a href="#found" { "What they found" }
                 a href="#states" { "States over time" }
                 a href="#sensors" { "Sensor errors" }
@@ -26,7 +27,7 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
             }
         }
         main {
-            section #body { h2 { "The body between its palms" } (body_pictures(observed, FRAMES)) }
+            @if has_palms { section #body { h2 { "The body between its palms" } (body_pictures(observed, FRAMES)) } }
             section #found { h2 { "What they found" } (ends(observed)) (notes(observed)) }
             section #states { h2 { "States over time" } (state_pictures(observed)) }
             section #sensors { h2 { "Sensor errors" } (sensor_pictures(observed)) }
