@@ -2,11 +2,13 @@
 //!
 //! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
 //! from a TOML file and checked value by value. A [`Simulation`] moves its body; an [`Experiment`] is a scene with its readings, and
-//! runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`], [`basins`]).
+//! runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`], [`basins`]); a [`Reconstruction`] is the shape that all of it tells.
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 
 mod columns;
+mod reconstruction;
+mod recovered;
 mod run;
 mod scene;
 mod simulation;
@@ -15,6 +17,9 @@ mod study;
 #[doc(hidden)]
 pub mod unguided;
 
+#[doc(hidden)]
+pub use reconstruction::{on_palm, shown, turned};
+pub use recovered::{Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
 #[doc(hidden)]
 pub use run::NOMINAL;
 #[doc(hidden)]

@@ -4,6 +4,7 @@ use crate::experiment::{Answer, Basin, Experiment, NoiseLevel, error};
 use crate::mechanics::moving::Ended;
 use crate::observer::{Fault, Update, UpdateEnd};
 use crate::report::motion::fit::{finite, fit_in_words, noise_from, suspect_json, suspects_in_words};
+use crate::report::motion::reconstruction::{shape_json, shape_text};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -159,6 +160,9 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
             "draws": simulation.draws,
         });
     }
+    if let Some(shape) = shape_json(observed) {
+        found["shape"] = shape;
+    }
     if !observed.noise.is_empty() {
         let names = experiment.names();
         let level = |level: &NoiseLevel| {
@@ -266,6 +270,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             basin.names[1]
         );
     }
+    text.push_str(&shape_text(observed));
     if observed.interrupted {
         text.push_str("\ninterrupted; this is what was done until then\n");
     }
