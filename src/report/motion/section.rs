@@ -1,11 +1,12 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
-use crate::experiment::{ARRIVED, Channel, NOMINAL, SceneOutline, error};
+use crate::experiment::{ARRIVED, Channel, NOMINAL, SceneOutline, error, shown};
 use crate::mechanics::Palm;
 use crate::report::motion::answers::{Observed, ended_in_words, fault_lines, noise_unit};
 use crate::report::motion::frames::{frames, recovered_outline};
 use crate::report::motion::plot::{errors, sensor_errors, state};
-use crate::report::motion::shape::{outline, shown};
+use crate::report::motion::reconstruction::shape_section;
+use crate::report::motion::shape::{departure, outline};
 use crate::report::motion::study_plot;
 use crate::report::motion::table::{ends, noise_table, notes, pace, updates};
 use maud::{Markup, PreEscaped, html};
@@ -29,6 +30,7 @@ pub(in crate::report) fn observed_section(experiments: &[Observed<'_>]) -> Marku
                 (summary(observed))
                 (faults(observed))
                 @if observed.experiment.is_about_palms() { (body_pictures(observed, FRAMES / 2)) }
+                (shape_section(observed))
                 (ends(observed))
                 (notes(observed))
                 details { summary { "states over time, and their errors" } (state_pictures(observed)) }
@@ -164,7 +166,7 @@ fn functions(functions: &BTreeMap<String, String>) -> String {
 
 /// In a sentence what the method whose outline is shown came to.
 fn headline(observed: &Observed<'_>) -> Markup {
-    let Some(answer) = shown(observed) else { return html! {} };
+    let Some(answer) = shown(observed.answers) else { return html! {} };
     let names = observed.experiment.names();
     let end = answer.track.last().and_then(|last| Some((last, observed.experiment.truth_at(last.time)?)));
     let largest = end.map(|(last, truth)| {
@@ -242,7 +244,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
             figcaption {
                 "Every recovered contact, turned back by the recovered orientation. "
                 @if let Some(shape) = shape {
-                    @match outline.departure(shape) {
+                    @match departure(&outline, shape) {
                         Some((largest, mean)) => {
                             @let size = (shape.area() / std::f64::consts::PI).sqrt();
                             "Where it could see, the points lie within " b { (length(largest)) } " of the true outline (root of the "
@@ -258,7 +260,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
 }
 
 /// A length in a unit in which it is easily read.
-fn length(metres: f64) -> String {
+pub(super) fn length(metres: f64) -> String {
     match metres {
         m if m < 1e-6 => format!("{:.2} nm", m * 1e9),
         m if m < 1e-3 => format!("{:.2} µm", m * 1e6),
