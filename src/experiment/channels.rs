@@ -74,7 +74,9 @@ pub(super) fn are_columns(scene: &Scene, signals: &Signals) -> Result<(), SceneE
         }
     }
     for (index, name) in scene.observer.estimate.iter().enumerate() {
-        if let Some((column, _)) = CalibrationKind::of(name).filter(|(column, _)| signals.find(column).is_none()) {
+        if let Some((column, _)) =
+            CalibrationKind::of(name).filter(|(column, _)| signals.find(column).is_none())
+        {
             let place = format!("observer.estimate[{index}]");
             let help = format!("the columns are {}", columns());
             return Err(scene.error_at(
@@ -128,7 +130,12 @@ fn stated(scene: &Scene, name: &str) -> Option<ReadingErrors> {
 ///
 /// # Errors
 /// Where a recording's columns err, and nothing is said of its outputs.
-pub(super) fn tell(scene: &Scene, task: &mut Task<'_>, simulated: bool) -> Result<(), SceneError> {
+pub(super) fn tell(
+    scene: &Scene,
+    task: &mut Task<'_>,
+    has_palms: bool,
+    simulated: bool,
+) -> Result<(), SceneError> {
     let sought = |name: &String| CalibrationKind::of(name).is_some();
     let is_one_sought = scene.observer.estimate.iter().any(sought);
     if scene.channels.is_empty() && !is_one_sought {
@@ -137,9 +144,9 @@ pub(super) fn tell(scene: &Scene, task: &mut Task<'_>, simulated: bool) -> Resul
     let sensors = split(&scene.observer.known).1;
     let outputs = task.full.outputs.clone();
     for name in task.signals.names() {
-        // an output of a recording is read with the errors of `[sensor]`, as all outputs are, unless it has its own
+        // an output is read with the errors of `[sensor]` unless it has its own; of a body between palms these are of the contacts
         let common = ReadingErrors { normal: scene.sensor.noise, rounding: scene.sensor.resolution };
-        let unsaid = if !simulated && outputs.contains(name) { common } else { ReadingErrors::default() };
+        let unsaid = if !has_palms && outputs.contains(name) { common } else { ReadingErrors::default() };
         let gain = sensors.get(name).map_or(1.0, |known| known.gain.abs());
         let ReadingErrors { normal, rounding } = stated(scene, name).unwrap_or(unsaid);
         let errors = ReadingErrors { normal: normal / gain, rounding: rounding / gain };
@@ -151,7 +158,8 @@ pub(super) fn tell(scene: &Scene, task: &mut Task<'_>, simulated: bool) -> Resul
     let driving = task.signals.names().iter().find(|name| drives(name));
     let silent = outputs.iter().find(|name| !task.errors.contains_key(*name));
     if let (false, Some(driving), Some(silent)) = (simulated, driving, silent) {
-        let message = format!("the errors of '{driving}' are stated, and those of the output '{silent}' are not");
+        let message =
+            format!("the errors of '{driving}' are stated, and those of the output '{silent}' are not");
         let help = format!("add [sensor.{silent}] with its noise: misfits are measured by both");
         return Err(scene.error_at(&format!("sensor.{driving}"), message, "this sensor", help));
     }
@@ -159,7 +167,8 @@ pub(super) fn tell(scene: &Scene, task: &mut Task<'_>, simulated: bool) -> Resul
     let largest = of_outputs().map(ReadingErrors::variance).fold(0.0, f64::max).sqrt();
     let errs = driving.is_some() || largest > 0.0;
     // the first readings of an output whose gain or bias is sought are not its first values
-    let is_output = |name: &String| CalibrationKind::of(name).is_some_and(|(c, _)| outputs.iter().any(|o| o == c));
+    let is_output =
+        |name: &String| CalibrationKind::of(name).is_some_and(|(c, _)| outputs.iter().any(|o| o == c));
     let reads_otherwise = scene.observer.estimate.iter().any(is_output);
     if errs {
         task.exact = false;

@@ -1,17 +1,66 @@
 //! An experiment many times over: with other errors of the readings, and from other first guesses.
 
-use super::run::{Experiment, error};
-use super::scene::{self, BasinStudy, NoiseStudy, SceneError, Sensor};
 use super::channels::corrected;
-use super::simulation::{Simulation, TOUCH, deviation};
-use crate::observer::{MovingWindow, Noise, Signals, Task, UpdateEnd, WindowSearch};
+use super::run::{Experiment, error};
+use super::scene::{self, BasinStudy, Channel, NoiseStudy, SceneError, Sensor};
+use super::simulation::{Simulation, deviation};
+use super::system_motion::SystemMotion;
+use crate::observer::{MovingWindow, Noise, Record, RecordError, Signals, Task, UpdateEnd, WindowSearch};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What was simulated, as far as studies ask: what is true, and what is read with errors of any size.
+pub trait Truth: Sync {
+    /// The true values of a state, sample by sample.
+    fn truth(&self, name: &str) -> Option<Vec<f64>>;
+
+    /// What is read, with the errors of the outputs that have none of their own, and with those of single columns.
+    ///
+    /// # Errors
+    /// None that a simulation could bring about.
+    fn read(
+        &self,
+        sensor: &Sensor,
+        channels: &BTreeMap<String, Channel>,
+        seed: u64,
+    ) -> Result<Record, RecordError>;
+}
+
+impl Truth for Simulation {
+    fn truth(&self, name: &str) -> Option<Vec<f64>> {
+        self.truth(name)
+    }
+
+    fn read(
+        &self,
+        sensor: &Sensor,
+        channels: &BTreeMap<String, Channel>,
+        seed: u64,
+    ) -> Result<Record, RecordError> {
+        self.read(sensor, channels, seed)
+    }
+}
+
+impl Truth for SystemMotion {
+    fn truth(&self, name: &str) -> Option<Vec<f64>> {
+        self.truth(name)
+    }
+
+    fn read(
+        &self,
+        sensor: &Sensor,
+        channels: &BTreeMap<String, Channel>,
+        seed: u64,
+    ) -> Result<Record, RecordError> {
+        self.read(sensor, channels, seed)
+    }
+}
 
 /// The error over many seeds at one level of noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseLevel {
-    /// The standard deviation of the readings, in m.
+    /// The standard deviation of the readings, in their unit: in m of contacts.
     pub noise: f64,
     /// Estimates that converged, of how many seeds.
     pub converged: usize,
@@ -56,7 +105,7 @@ pub const ARRIVED: f64 = 0.01;
 /// As [`Experiment::task`].
 pub fn noise_study(
     experiment: &Experiment,
-    simulation: &Simulation,
+    simulation: &dyn Truth,
     study: &NoiseStudy,
     interrupt: &AtomicBool,
     done: &(dyn Fn() + Sync),
@@ -134,25 +183,26 @@ impl Trial {
 }
 
 /// The signals of an experiment with other errors.
-fn noisy(experiment: &Experiment, simulation: &Simulation, noise: f64, seed: u64) -> Option<Signals> {
-    // the levels are those of the contacts that have no noise of their own; all other columns have the errors of the scene
+fn noisy(experiment: &Experiment, simulation: &dyn Truth, noise: f64, seed: u64) -> Option<Signals> {
+    // the levels are those of the outputs that have no noise of their own; all other columns have the errors of the scene
     let sensor = Sensor { noise, ..experiment.scene.sensor };
     let record = simulation.read(&sensor, &experiment.scene.channels, seed).ok()?;
     corrected(Signals::of_record(&record).ok()?, &experiment.scene.observer.known).ok()
 }
 
-/// A task whose contacts are read with errors of one level.
+/// A task whose outputs are read with errors of one level.
 fn at_level<'a>(experiment: &Experiment, task: &Task<'a>, noise: f64) -> Task<'a> {
     let mut task = task.clone();
     let rounding = experiment.scene.sensor.resolution;
     if deviation(noise, rounding) == 0.0 && !task.errors.is_empty() {
-        // contacts without error, beside columns that have some
+        // outputs without error, beside columns that have some
         return task;
     }
     (task.exact, task.sigma) = (false, deviation(noise, rounding));
     task.noise = Noise::Stated { normal: noise, rounding };
     let has_own = |name: &str| experiment.scene.channels.get(name).is_some_and(|own| own.noise.is_some());
-    for name in TOUCH.into_iter().filter(|name| !has_own(name)) {
+    let outputs = task.full.outputs.clone();
+    for name in outputs.iter().filter(|name| !has_own(name)) {
         if let Some(errors) = task.errors.get_mut(name) {
             errors.normal = noise;
         }
@@ -224,6 +274,13 @@ fn arrives(experiment: &Experiment, task: &Task<'_>, method: scene::Method) -> O
         Some(search) => {
             let observer = experiment.window(search);
             let update = observer.update(task, &task.guess, &first_window(task, &observer), &task.clamped);
+            (update.from, update.estimate)
+        }
+        None if method == scene::Method::MultipleShooting => {
+            let observer = experiment.scene.observer.multiple_shooting();
+            let found =
+                observer.solutions(task, &task.guess, &first_window(task, &observer.window), &task.clamped);
+            let update = found.into_iter().next()?;
             (update.from, update.estimate)
         }
         None => {

@@ -3,8 +3,8 @@
 //! A reading `r` of `x` is `gain x + bias`. Where `x` is followed that is what is expected of it; where it is taken from its column it
 //! is `(r - bias)/gain`.
 
-use super::task::EstimateQuestion;
 use super::Signals;
+use super::task::EstimateQuestion;
 use crate::expression::{NodeId, Symbol};
 use crate::number::{rational_from_f64, rational_to_f64};
 use crate::observability::{Ceiling, Seen, generic_answer};
@@ -40,7 +40,8 @@ impl CalibrationKind {
     /// The column and the kind of a name such as `tau1.gain`; none of any other.
     pub fn of(name: &str) -> Option<(&str, CalibrationKind)> {
         let (column, word) = name.split_once('.')?;
-        let kind = [CalibrationKind::Gain, CalibrationKind::Bias].into_iter().find(|kind| kind.word() == word)?;
+        let kind =
+            [CalibrationKind::Gain, CalibrationKind::Bias].into_iter().find(|kind| kind.word() == word)?;
         (!column.is_empty()).then_some((column, kind))
     }
 }
@@ -217,7 +218,8 @@ fn hold_constants(system: &mut System, names: &[String], wanted: &EstimateQuesti
             continue;
         }
         let default = || info.default.as_ref().map(rational_to_f64).filter(|_| signals.find(&name).is_none());
-        let Some(value) = wanted.known.get(&name).copied().or_else(default).and_then(rational_from_f64) else {
+        let Some(value) = wanted.known.get(&name).copied().or_else(default).and_then(rational_from_f64)
+        else {
             continue;
         };
         if info.is_angle && !value.is_zero() {

@@ -193,7 +193,7 @@ fn sample<J: Jet>(time: f64, states: usize, p: usize, size: usize, y: &[f64], ou
 }
 
 /// `f(t, y)`, written into the last argument.
-type RightHandSide<'f> = dyn Fn(f64, &[f64], &mut [f64]) + 'f;
+pub(crate) type RightHandSide<'f> = dyn Fn(f64, &[f64], &mut [f64]) + 'f;
 
 /// Equations with time as their last coordinate.
 ///
@@ -221,7 +221,7 @@ impl System<f64, DVector<f64>> for Equations<'_> {
 ///
 /// # Errors
 /// Where no step is small enough, as near a pole.
-pub(super) fn advance(
+pub(crate) fn advance(
     f: &RightHandSide<'_>,
     from: f64,
     to: f64,

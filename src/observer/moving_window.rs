@@ -351,7 +351,7 @@ impl MovingWindow {
     }
 
     /// The moments of some rows from a state at the first of them; gives what is believed of what is sought at the last.
-    fn follow(
+    pub(super) fn follow(
         &self,
         task: &Task<'_>,
         start: &[f64],

@@ -191,7 +191,8 @@ mod tests {
                     input g\n  v' = 1 + x^2\n  others' = 0\noutput x + a*u, v\n";
         // uneven times, more than carry one curve
         let times: Vec<f64> = (0..25).map(|i| 0.05 * f64::from(i) + 0.01 * f64::from(i * i % 5)).collect();
-        let column = |name: &str, at: &dyn Fn(f64) -> f64| (name.to_owned(), times.iter().map(|t| at(*t)).collect());
+        let column =
+            |name: &str, at: &dyn Fn(f64) -> f64| (name.to_owned(), times.iter().map(|t| at(*t)).collect());
         let columns = vec![
             column("a", &|t| 0.3 * (2.0 * t).sin()),
             column("u", &|t| (3.0 * t).cos()),

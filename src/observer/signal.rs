@@ -166,12 +166,7 @@ impl Signals {
         start
     }
 
-    fn basis_from<T: DualNum<Primitive = f64> + Copy>(
-        &self,
-        start: usize,
-        time: T,
-        basis: &mut [T; POINTS],
-    ) {
+    fn basis_from<T: DualNum<Primitive = f64> + Copy>(&self, start: usize, time: T, basis: &mut [T; POINTS]) {
         let nodes = &self.times[start..start + self.points];
         for (i, value) in basis.iter_mut().enumerate().take(self.points) {
             let mut product = T::from(self.weights[start][i]);

@@ -271,6 +271,8 @@ pub struct Track {
     pub estimates: Vec<SampleEstimate>,
     /// Its updates, where it works by windows.
     pub updates: Vec<Update>,
+    /// Other states that fit as well as those of the updates: the readings do not tell them apart.
+    pub others: Vec<Update>,
     /// Samples at which it could not see, or not follow its model, and held or integrated instead.
     pub unseen: usize,
     /// What else is to be said.

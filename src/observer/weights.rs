@@ -210,13 +210,7 @@ impl Weights {
     /// What rounding and computation add may hang together in the worst way: that much is taken off before normal errors have to explain
     /// the rest, as where the errors are white. Differences are weighted anew for it, with the computation's part as an
     /// error of each: weights that know of none would make much of it.
-    pub fn fit(
-        &self,
-        at_best: &WindowExpansion,
-        computed: f64,
-        degrees: usize,
-        alarm: f64,
-    ) -> Fit {
+    pub fn fit(&self, at_best: &WindowExpansion, computed: f64, degrees: usize, alarm: f64) -> Fit {
         let (left, slopes) = (&at_best.differences, &at_best.slopes);
         let chi_square = left.norm_squared() / (self.unit * self.unit);
         let rest = self.unexplained(left, slopes, computed).unwrap_or(f64::NAN);
@@ -286,7 +280,8 @@ mod tests {
     /// reading errs by the mean of both speeds' errors.
     #[test]
     fn errors_of_a_speed_add_up_in_the_place() {
-        let text = "system \"A driven point\"\nstate x\nparam u\ndrift f\n  x' = 0\ninput g\n  x' = 1\noutput x\n";
+        let text =
+            "system \"A driven point\"\nstate x\nparam u\ndrift f\n  x' = 0\ninput g\n  x' = 1\noutput x\n";
         let system = System::parse("point.proof", text, Path::new("")).unwrap();
         let columns = vec![("x".to_owned(), vec![0.0, 3.0]), ("u".to_owned(), vec![2.0, 2.0])];
         let signals = Signals::new(vec![0.0, 1.0], columns).unwrap();
@@ -317,7 +312,9 @@ mod tests {
             let expected = variance / (0.01 + variance);
             let mean = (likely[0] + likely[1]) / 2.0;
             assert!((mean - expected).abs() < 1e-9, "{likely}");
-            assert!((weights.back(&weights.weighted(&differences))[1] - 0.01 / (0.01 + variance)).abs() < 1e-9);
+            assert!(
+                (weights.back(&weights.weighted(&differences))[1] - 0.01 / (0.01 + variance)).abs() < 1e-9
+            );
         }
     }
 }

@@ -4,7 +4,7 @@ use super::observing::{Channel, Data, Method, Sensor, Study};
 use super::place::Places;
 use super::simulated::Body;
 use crate::mechanics::moving::{Course, PushedPalm};
-use crate::observer::{HighGain, Kalman, WhenBlind};
+use crate::observer::{HighGain, Kalman, Shooting, WhenBlind};
 use crate::system::Problem;
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
@@ -25,6 +25,8 @@ pub(super) struct SceneKeys {
     pub rate: Option<f64>,
     pub body: Option<Body>,
     pub palms: Option<PalmsKeys>,
+    pub start: Option<BTreeMap<String, f64>>,
+    pub inputs: Option<BTreeMap<String, String>>,
     #[serde(default)]
     pub sensor: SensorKeys,
     #[serde(default)]
@@ -64,7 +66,10 @@ impl<'de> Deserialize<'de> for SensorKeys {
                                 keys.channels.insert(key, channel);
                             }
                             ChannelKeys::Other => {
-                                return Err(A::Error::unknown_field(&key, &["noise", "resolution", "jitter"]));
+                                return Err(A::Error::unknown_field(
+                                    &key,
+                                    &["noise", "resolution", "jitter"],
+                                ));
                             }
                         },
                     }
@@ -149,6 +154,8 @@ pub(super) struct ObserverKeys {
     pub when_blind: WhenBlind,
     #[serde(default = "unity")]
     pub blind: f64,
+    #[serde(default)]
+    pub shooting: Shooting,
     #[serde(default)]
     pub kalman: Kalman,
     #[serde(default)]

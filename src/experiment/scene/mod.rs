@@ -11,7 +11,7 @@ mod simulated;
 
 pub use crate::system::ReadError as SceneError;
 pub use observing::{BasinStudy, Channel, Data, Guess, Method, NoiseStudy, ObserverSettings, Sensor, Study};
-pub use simulated::{Body, Palms, SceneOutline, Simulated};
+pub use simulated::{Body, Palms, SceneOutline, Simulated, SimulatedSystem};
 
 use crate::mechanics::Palm;
 use crate::observer::FaultRules;
@@ -33,6 +33,9 @@ pub struct Scene {
     pub seed: u64,
     /// `duration`, `samples` or `rate`, `[body]` and `[palms]`: what is simulated. Absent where the data is recorded.
     pub simulated: Option<Simulated>,
+    /// `duration`, `samples` or `rate`, `[start]` and `[inputs]`: a system that is simulated by its own equations. Absent where a body
+    /// is simulated or the data is recorded.
+    pub system: Option<SimulatedSystem>,
     /// `radii` of `[palms]`, in m: positive of a hollow circular palm, negative of a bulging one, infinite of a flat one, as both
     /// are unless given.
     pub palm_forms: [Palm<f64>; 2],

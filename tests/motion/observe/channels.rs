@@ -84,7 +84,8 @@ fn gains_biases_and_delays_of_sensors_are_found_or_undone() {
         let Some(sought) = sought else {
             let text = with_sensors("general", sensor);
             let knows = "inputs = { g1 = \"tau1\", g2 = \"tau2\" }\nknown = { \"s1.delay\" = 1e-3, \"s2.delay\" = 1e-3 }";
-            let knowing = first(&experiment(&text.replace("inputs = { g1 = \"tau1\", g2 = \"tau2\" }", knows)));
+            let knowing =
+                first(&experiment(&text.replace("inputs = { g1 = \"tau1\", g2 = \"tau2\" }", knows)));
             assert!(knowing.is_borne_out(), "{sensor}: {knowing:?}");
             continue;
         };
