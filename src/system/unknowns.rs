@@ -96,6 +96,16 @@ impl System {
         self.states.iter().copied().filter(kept).collect()
     }
 
+    /// The signals, each with those of its derivatives that are coordinates, itself first.
+    pub(crate) fn signal_chains(&self) -> Vec<Vec<Symbol>> {
+        self.coordinates.signals.iter().map(|signal| signal.chain.clone()).collect()
+    }
+
+    /// The value near which an unknown constant is drawn, where the file gives one.
+    pub(crate) fn hint(&self, symbol: Symbol) -> Option<&RBig> {
+        self.coordinates.hints.get(&symbol)
+    }
+
     /// The names of the unknown coordinates, in their order.
     pub(crate) fn column_names(&self) -> Vec<String> {
         self.unknowns().into_iter().map(|symbol| self.symbol_name(symbol).to_owned()).collect()
