@@ -69,7 +69,7 @@ pub struct ModelFlow<'a> {
 const MOST_EVALUATIONS: usize = 3000;
 
 /// The unknowns that one call can carry.
-pub const MOST_UNKNOWNS: usize = 10;
+pub const MOST_UNKNOWNS: usize = 32;
 
 impl ModelFlow<'_> {
     /// The model at some times, from a state at the first of them; `free` are the places of the states whose first values
@@ -96,7 +96,7 @@ impl ModelFlow<'_> {
                 }
             };
         }
-        sized!(3 4 6 10)
+        sized!(3 4 6 10 16 32)
     }
 
     fn integrate<J: Jet>(
@@ -188,7 +188,7 @@ fn sample<J: Jet>(time: f64, states: usize, p: usize, size: usize, y: &[f64], ou
 }
 
 /// `f(t, y)`, written into the last argument.
-type RightHandSide<'f> = dyn Fn(f64, &[f64], &mut [f64]) + 'f;
+pub(crate) type RightHandSide<'f> = dyn Fn(f64, &[f64], &mut [f64]) + 'f;
 
 /// Equations with time as their last coordinate.
 ///
@@ -216,7 +216,7 @@ impl System<f64, DVector<f64>> for Equations<'_> {
 ///
 /// # Errors
 /// Where no step is small enough, as near a pole.
-pub(super) fn advance(
+pub(crate) fn advance(
     f: &RightHandSide<'_>,
     from: f64,
     to: f64,

@@ -1,4 +1,4 @@
-//! The state of a body between two flat palms from a window of readings, without a first guess.
+//! The state of a body between two palms, flat or circular, from a window of readings, without a first guess.
 //!
 //! What palm `i` tells of a body of unknown shape is that the body's material point at the contact does not enter it,
 //!
@@ -25,6 +25,7 @@ mod search;
 
 pub(super) use scene::{Unguided, palm_readings};
 
+use crate::mechanics::Palm;
 use integrals::Integrals;
 
 /// Fewer samples than these give no state.
@@ -35,7 +36,9 @@ const FEWEST: usize = 12;
 pub struct PalmReadings {
     /// In s.
     pub times: Vec<f64>,
-    /// The contacts along the palms.
+    /// The palms' forms.
+    pub palms: [Palm<f64>; 2],
+    /// The contacts, by arc length along the palms.
     pub contacts: [Vec<f64>; 2],
     /// The palms' angles against the X axis, in rad, and their rates and accelerations.
     pub angles: [Vec<f64>; 2],
@@ -60,7 +63,7 @@ pub struct PalmReadings {
 /// The state at the first sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstState {
-    /// The distances of the centre of mass from the palms, `r1` and `r2`.
+    /// The distances of the centre of mass from the palms' tangents at the contacts, `r1` and `r2`.
     pub radii: [f64; 2],
     /// `omega0`.
     pub rate: f64,
@@ -89,6 +92,51 @@ impl PalmReadings {
         }
         search::search(&Integrals::of(self)?)
     }
+}
+
+impl PalmReadings {
+    /// Some of the rows.
+    ///
+    /// # Panics
+    /// When there are no such rows.
+    pub fn rows(&self, rows: std::ops::Range<usize>) -> PalmReadings {
+        let cut = |pair: &[Vec<f64>; 2]| [pair[0][rows.clone()].to_vec(), pair[1][rows.clone()].to_vec()];
+        PalmReadings {
+            times: self.times[rows.clone()].to_vec(),
+            contacts: cut(&self.contacts),
+            angles: cut(&self.angles),
+            rates: cut(&self.rates),
+            accelerations: cut(&self.accelerations),
+            torques: cut(&self.torques),
+            ..*self
+        }
+    }
+
+    /// The motion from a first state on, by the integrals of the readings; none where there are too few.
+    pub(super) fn motion(&self, first: &FirstState) -> Option<PalmMotion> {
+        if self.times.len() < FEWEST {
+            return None;
+        }
+        let all = Integrals::of(self)?;
+        let k = 1.0 / (self.mass * first.gyration * first.gyration);
+        let ([cx, cy], [vx, vy]) = (first.centre, first.velocity);
+        let mut motion = PalmMotion { radii: Vec::new(), rates: Vec::new() };
+        for sample in &all.samples {
+            let turned = sample.c - sample.a[0] * cx - sample.a[1] * cy - sample.b[0] * vx - sample.b[1] * vy;
+            let place = [cx + vx * sample.time + sample.place[0], cy + vy * sample.time + sample.place[1]];
+            motion.rates.push(first.rate + k * turned);
+            motion.radii.push(sample.palms.map(|palm| palm.normal[0] * place[0] + palm.normal[1] * place[1]));
+        }
+        Some(motion)
+    }
+}
+
+/// A motion, sample by sample.
+pub(super) struct PalmMotion {
+    /// The distances of the centre of mass from the palms.
+    pub radii: Vec<[f64; 2]>,
+    /// The body's rate.
+    pub rates: Vec<f64>,
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use crate::report::document::document;
 use crate::report::motion::answers::Observed;
+use crate::report::motion::reconstruction::{reconstruction, shape_section};
 use crate::report::motion::section::{
     FRAMES, body_pictures, faults, sensor_pictures, state_pictures, studies, summary,
 };
@@ -10,14 +11,17 @@ use maud::html;
 
 /// The page as HTML.
 pub fn observe_page(observed: &Observed<'_>) -> String {
+    let has_palms = observed.experiment.is_about_palms();
     let studied = !observed.noise.is_empty() || !observed.basins.is_empty();
+    let shape = reconstruction(observed).is_some();
     let content = html! {
         header {
             h1 { (observed.experiment.scene.title) }
             (summary(observed))
             (faults(observed))
             nav {
-                a href="#body" { "The body" }
+                @if has_palms { a href="#body" { "The body" } }
+                @if shape { a href="#shape" { "The shape" } }
                 a href="#found" { "What they found" }
                 a href="#states" { "States over time" }
                 a href="#sensors" { "Sensor errors" }
@@ -26,7 +30,8 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
             }
         }
         main {
-            section #body { h2 { "The body between its palms" } (body_pictures(observed, FRAMES)) }
+            @if has_palms { section #body { h2 { "The body between its palms" } (body_pictures(observed, FRAMES)) } }
+            @if shape { section #shape { h2 { "The shape" } (shape_section(observed)) } }
             section #found { h2 { "What they found" } (ends(observed)) (notes(observed)) }
             section #states { h2 { "States over time" } (state_pictures(observed)) }
             section #sensors { h2 { "Sensor errors" } (sensor_pictures(observed)) }
@@ -42,7 +47,7 @@ mod tests {
     use super::*;
     use crate::experiment::{BasinStudy, Experiment, NoiseStudy, Scene, basins, noise_study};
     use crate::report::motion::section::observed_section;
-    use crate::report::motion::shape::outline;
+    use crate::report::motion::shape::{departure, outline};
     use std::sync::atomic::AtomicBool;
 
     const SCENE: &str = r#"
@@ -120,7 +125,7 @@ steps = 20
                 assert!(turned.abs() < 1e-6, "{} s: {turned:e}", instant.time);
             }
             let turned = (0..moments.len()).map(|i| rule(i).abs()).fold(0.0, f64::max);
-            let (largest, mean) = outline.departure(&simulation.shape).unwrap();
+            let (largest, mean) = departure(&outline, &simulation.shape).unwrap();
             assert!(largest < 2e-6 + 1.2 * turned, "{largest:e} for {turned:e}");
             assert!(mean <= largest);
         });
