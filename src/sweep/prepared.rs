@@ -203,7 +203,7 @@ impl PreparedSweep {
         for (index, item) in indices.iter().zip(block) {
             let (state, decided) = item?;
             if wants_rows {
-                rows.push(StateRow::of(*index, &decided));
+                rows.push(row_of(*index, &decided));
             }
             counts.add(names, &self.decider, *index, &state, decided);
         }
@@ -298,6 +298,21 @@ impl PreparedSweep {
             _ => None,
         });
         Ok(decided.collect::<Vec<_>>().into_iter().flatten().collect())
+    }
+}
+
+/// The row of a table for a state.
+fn row_of(index: u64, decided: &StateDecision) -> StateRow {
+    match decided {
+        StateDecision::Pole(_) => StateRow::of_nothing(index),
+        StateDecision::Report(StateReport { rank, certainty, spectrum, .. }) => StateRow {
+            rank: Some(*rank),
+            certified: *certainty == Certainty::Certified,
+            // of a matrix without columns there are none
+            smallest_singular_value: spectrum.as_ref().and_then(|found| found.values.last().copied()),
+            condition: spectrum.as_ref().map(Spectrum::condition),
+            ..StateRow::of_nothing(index)
+        },
     }
 }
 

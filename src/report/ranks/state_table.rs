@@ -55,6 +55,8 @@ enum Sink<'w> {
     Groups {
         writer: SerializedFileWriter<&'w mut (dyn Write + Send)>,
         held: Vec<(usize, StateRow)>,
+        /// How many coordinates each row tells.
+        coordinates: usize,
     },
 }
 
