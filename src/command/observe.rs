@@ -156,7 +156,8 @@ impl Observe {
         if let Some(path) = &self.outline {
             let Some(table) = reconstruction.and_then(Reconstruction::outline_table) else {
                 let message = "there is no outline: no support radius was seen";
-                let help = "an outline takes two palms with the outputs s1 and s2, and r1 and r2 sought and seen";
+                let help =
+                    "an outline takes two palms with the outputs s1 and s2, and r1 and r2 sought and seen";
                 return Err(Unusable::report(message, help));
             };
             files.table(path, &table.map_err(unexpected)?);
@@ -164,7 +165,10 @@ impl Observe {
         }
         if let Some(path) = &self.track {
             let Some(answer) = shown(answers) else {
-                return Err(Unusable::report("there is no track: no observer was run", "let one run to its end"));
+                return Err(Unusable::report(
+                    "there is no track: no observer was run",
+                    "let one run to its end",
+                ));
             };
             files.table(path, &experiment.track_table(answer, reconstruction).map_err(unexpected)?);
             files.announce(path);

@@ -62,7 +62,8 @@ impl ShapeEstimate {
 
     /// The perimeter, `int r da`, in m.
     pub fn perimeter(&self) -> Measured {
-        let deviation = self.covariance.get((0, 0)).map_or(f64::INFINITY, |variance| variance.max(0.0).sqrt());
+        let deviation =
+            self.covariance.get((0, 0)).map_or(f64::INFINITY, |variance| variance.max(0.0).sqrt());
         Measured { value: self.support.perimeter(), deviation: TAU * deviation }
     }
 

@@ -55,7 +55,8 @@ pub fn convex_deviation(mean: f64, k: usize) -> f64 {
 /// The support function that explains samples best, with its covariance. Samples without a positive finite weight do not count. None where none does, or they
 /// tell no positive mean radius.
 ///
-/// The order is the one given, or else the one of [`ORDERS`] with the least criterion of H. Akaike (1974), corrected for few samples.
+/// The order is the one given, or else the one of [`ORDERS`] with the least criterion of G. Schwarz (1978): harmonics too small to be told are
+/// left out, and their part is not in the band.
 ///
 /// ```
 /// use palmistry::shape::{SupportSample, SupportWeights, fit_support};
@@ -154,10 +155,9 @@ impl Solution {
 
     fn criterion(&self, weights: SupportWeights) -> f64 {
         let (n, p) = (self.samples as f64, self.coefficients.len() as f64);
-        let corrected = 2.0 * p * n / (n - p - 1.0).max(1.0);
         match weights {
-            SupportWeights::InverseVariances => self.cost + 2.0 * p,
-            SupportWeights::Relative => n * (self.cost / n).max(f64::MIN_POSITIVE).ln() + corrected,
+            SupportWeights::InverseVariances => self.cost + p * n.ln(),
+            SupportWeights::Relative => n * (self.cost / n).max(f64::MIN_POSITIVE).ln() + p * n.ln(),
         }
     }
 }
@@ -289,8 +289,8 @@ mod tests {
         };
         assert!(worst(&found, TAU) < 1e-14, "{:e}", worst(&found, TAU));
 
-        let half =
-            fit_support(&read(&mut random, 400, PI, 1e-4), SupportWeights::InverseVariances, Some(24)).unwrap();
+        let half = fit_support(&read(&mut random, 400, PI, 1e-4), SupportWeights::InverseVariances, Some(24))
+            .unwrap();
         assert!(worst(&half, PI) < 2e-4);
         let gap = half.deviation(1.5 * PI);
         assert!(gap > 0.01 && gap < 0.5, "{gap}");

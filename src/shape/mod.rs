@@ -16,7 +16,7 @@ mod series;
 pub use convexity::{Convexity, convexity};
 pub use coverage::Coverage;
 pub use estimate::{Measured, ShapeEstimate};
-pub use fit::{SupportSample, SupportWeights, fit_support};
 #[doc(hidden)]
 pub use fit::{ORDERS, convex_deviation};
+pub use fit::{SupportSample, SupportWeights, fit_support};
 pub use series::SupportSeries;

@@ -114,8 +114,10 @@ mod tests {
                     format!("{head}{drive}{tail}")
                 }
             };
-            let scene = crate::experiment::Scene::parse("proofs/moll2002/scenes/general.toml", &text).unwrap();
-            let simulation = crate::experiment::Simulation::of(&scene, scene.simulated.as_ref().unwrap()).unwrap();
+            let scene =
+                crate::experiment::Scene::parse("proofs/moll2002/scenes/general.toml", &text).unwrap();
+            let simulation =
+                crate::experiment::Simulation::of(&scene, scene.simulated.as_ref().unwrap()).unwrap();
             let (shape, constants): (&Shape, _) = (&simulation.shape, &simulation.constants);
             for moment in simulation.trajectory.moments.iter().step_by(40) {
                 let palms = PalmsAt {

@@ -99,13 +99,13 @@ impl Experiment {
 /// The shape by what an observer believes of the radii. Samples of a window share their errors and count as one; where there are no windows, errors are taken for independent.
 fn from_track(track: &TouchTrack, by_windows: bool) -> (Option<ShapeEstimate>, Coverage) {
     let samples: Vec<SupportSample> = track.instants.iter().flat_map(|at| at.samples).collect();
-    let weights =
-        if by_windows { SupportWeights::InverseVariances } else { SupportWeights::Relative };
+    let weights = if by_windows { SupportWeights::InverseVariances } else { SupportWeights::Relative };
     let shape = fit_support(&samples, weights, None);
     // a path ends where the body was lost
     let runs = track.instants.split(|at| !at.seen);
-    let paths: Vec<Vec<f64>> =
-        runs.flat_map(|run| [0, 1].map(|palm| run.iter().map(|at| at.samples[palm].angle).collect())).collect();
+    let paths: Vec<Vec<f64>> = runs
+        .flat_map(|run| [0, 1].map(|palm| run.iter().map(|at| at.samples[palm].angle).collect()))
+        .collect();
     (shape, Coverage::of_paths(paths.iter().map(Vec::as_slice)))
 }
 

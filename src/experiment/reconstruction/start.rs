@@ -16,6 +16,13 @@ const FEWEST_SAMPLES: usize = 24;
 /// The highest order of the shape at the beginning.
 const ORDER: usize = 6;
 
+/// The order to which a disc is let go.
+const DISC_ORDER: usize = 3;
+
+/// Rates on the grid, and the fastest of them in units of `sqrt(g/R)`.
+const RATES: u32 = 40;
+const FASTEST: f64 = 2.0;
+
 impl WholeRecord {
     /// The readings of an experiment between flat palms; none where one of them is missing. `sigma` is the standard deviation of a contact.
     pub fn of(experiment: &Experiment, sigma: f64) -> Option<WholeRecord> {
@@ -47,9 +54,11 @@ impl WholeRecord {
         let sought = names.iter().position(|name| *name == "rho");
         let mut starts = Vec::new();
         let samples: Vec<SupportSample> = track.instants.iter().flat_map(|at| at.samples).collect();
-        let rate = track.instants.get(1).zip(track.instants.first()).map(|(second, first)| {
-            (second.orientation - first.orientation) / (second.time - first.time)
-        });
+        let rate = track
+            .instants
+            .get(1)
+            .zip(track.instants.first())
+            .map(|(second, first)| (second.orientation - first.orientation) / (second.time - first.time));
         let guess = sought.and_then(|place| experiment.question.guess.get(place)).map(|(_, value)| *value);
         starts.extend(self.start(&samples, rate, guess));
         if let Some(windows) = readings(experiment).map(|readings| self.by_windows(&readings, experiment)) {
@@ -58,12 +67,29 @@ impl WholeRecord {
         starts
     }
 
-    fn start(
-        &self,
-        samples: &[SupportSample],
-        rate: Option<f64>,
-        gyration: Option<f64>,
-    ) -> Option<Unknowns> {
+    /// Discs that turn at rates on a grid, where nobody knows anything: a disc between palms touches both at `R/tan(a/2)`, `a` being the angle between them, and bodies
+    /// that gravity turns have rates of the size of `sqrt(g/R)`.
+    pub fn discs(&self) -> Vec<Unknowns> {
+        let radii = self.times.iter().enumerate().map(|(i, time)| {
+            let palms = self.palms_at(*time);
+            let half = (palms.angles[1] - palms.angles[0]) / 2.0;
+            half.tan().abs() * f64::midpoint(self.contacts[0][i], self.contacts[1][i])
+        });
+        let radius = radii.sum::<f64>() / self.times.len() as f64;
+        let palms =
+            self.palms_at(self.times[0]).rates.into_iter().fold(0.0, |most: f64, rate| most.max(rate.abs()));
+        let most = FASTEST * (self.gravity.abs() / radius).sqrt() + palms;
+        if !(radius > 0.0 && most.is_finite()) {
+            return Vec::new();
+        }
+        let mut support = vec![0.0; 1 + 2 * DISC_ORDER];
+        support[0] = radius;
+        let gyration = self.gyration.unwrap_or(radius / 2f64.sqrt());
+        let rates = (0..RATES).map(|i| most * (2.0 * f64::from(i) / f64::from(RATES - 1) - 1.0));
+        rates.map(|rate| Unknowns { rate, gyration, support: support.clone() }).collect()
+    }
+
+    fn start(&self, samples: &[SupportSample], rate: Option<f64>, gyration: Option<f64>) -> Option<Unknowns> {
         let shape = fit_support(samples, SupportWeights::Relative, None)?;
         let shape = match shape.support.order() {
             ..=ORDER => shape,
@@ -71,7 +97,8 @@ impl WholeRecord {
         };
         let rate = rate.filter(|rate| rate.is_finite())?;
         // a disc's, where nobody knows
-        let gyration = gyration.filter(|gyration| *gyration > 0.0).unwrap_or(shape.support.mean / 2f64.sqrt());
+        let gyration =
+            gyration.filter(|gyration| *gyration > 0.0).unwrap_or(shape.support.mean / 2f64.sqrt());
         Some(self.unknowns(&shape, rate, gyration))
     }
 
@@ -93,10 +120,8 @@ impl WholeRecord {
             let turned = self.turned(&window.times, &motion.rates);
             found.rate = found.rate.or(motion.rates.first().copied());
             for (i, turned) in turned.iter().enumerate() {
-                let palms = PalmsAt {
-                    angles: [window.angles[0][i], window.angles[1][i]],
-                    ..PalmsAt::default()
-                };
+                let palms =
+                    PalmsAt { angles: [window.angles[0][i], window.angles[1][i]], ..PalmsAt::default() };
                 let normals = palms.normals(phi + turned);
                 let radii = motion.radii[i];
                 found.samples.extend([0, 1].map(|palm: usize| SupportSample {

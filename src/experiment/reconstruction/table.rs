@@ -46,7 +46,8 @@ impl Experiment {
     ) -> Result<Record, RecordError> {
         let (track, names) = (&answer.track, self.names());
         let times: Vec<f64> = track.estimates.iter().map(|moment| moment.time).collect();
-        let window = |time: f64| track.updates.iter().rfind(|update| update.from < time).or(track.updates.first());
+        let window =
+            |time: f64| track.updates.iter().rfind(|update| update.from < time).or(track.updates.first());
         let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
         for (place, name) in names.iter().enumerate() {
             let bound = |time: f64| window(time).map_or(f64::NAN, |update| update.deviations[place]);
@@ -57,7 +58,8 @@ impl Experiment {
         let seen = seen.map(|at| f64::from(u8::from(track.updates.is_empty() || !at.residual.is_empty())));
         columns.push(("seen".to_owned(), seen.collect()));
         if let Some(reconstruction) = reconstruction {
-            let orientation = reconstruction.track.instants.iter().map(|at| at.orientation).collect::<Vec<f64>>();
+            let orientation =
+                reconstruction.track.instants.iter().map(|at| at.orientation).collect::<Vec<f64>>();
             if orientation.len() == times.len() && reconstruction.track.method == answer.method {
                 columns.push(("orientation".to_owned(), orientation));
             }

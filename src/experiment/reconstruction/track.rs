@@ -163,8 +163,10 @@ fn orientations(experiment: &Experiment, answer: &Answer) -> Option<Vec<f64>> {
 /// for these.
 fn integral(times: &[f64], values: Vec<f64>) -> Vec<f64> {
     /// Abramowitz and Stegun, table 25.4.
-    const GAUSS: [(f64, f64); 2] =
-        [(0.339_981_043_584_856_26, 0.652_145_154_862_546_1), (0.861_136_311_594_052_6, 0.347_854_845_137_453_85)];
+    const GAUSS: [(f64, f64); 2] = [
+        (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
+        (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+    ];
     let Ok(signals) = Signals::new(times.to_vec(), vec![(String::new(), values)]) else {
         // a track that has run away has no orientation either
         return times.iter().map(|_| f64::NAN).collect();
@@ -178,7 +180,8 @@ fn integral(times: &[f64], values: Vec<f64>) -> Vec<f64> {
     let mut all = vec![0.0];
     for pair in times.windows(2) {
         let (middle, half) = (f64::midpoint(pair[0], pair[1]), (pair[1] - pair[0]) / 2.0);
-        let nodes = GAUSS.iter().map(|(node, weight)| weight * (at(middle - node * half) + at(middle + node * half)));
+        let nodes =
+            GAUSS.iter().map(|(node, weight)| weight * (at(middle - node * half) + at(middle + node * half)));
         sum += half * nodes.sum::<f64>();
         all.push(sum);
     }

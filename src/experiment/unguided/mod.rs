@@ -119,8 +119,7 @@ impl PalmReadings {
         let ([cx, cy], [vx, vy]) = (first.centre, first.velocity);
         let mut motion = PalmMotion { radii: Vec::new(), rates: Vec::new() };
         for sample in &all.samples {
-            let turned =
-                sample.c - sample.a[0] * cx - sample.a[1] * cy - sample.b[0] * vx - sample.b[1] * vy;
+            let turned = sample.c - sample.a[0] * cx - sample.a[1] * cy - sample.b[0] * vx - sample.b[1] * vy;
             let place = [cx + vx * sample.time + sample.place[0], cy + vy * sample.time + sample.place[1]];
             motion.rates.push(first.rate + k * turned);
             motion.radii.push(sample.palms.map(|palm| palm.normal[0] * place[0] + palm.normal[1] * place[1]));

@@ -1,10 +1,10 @@
 //! Pictures of the body between its palms, and of the outline that was recovered.
 
+use crate::experiment::{TouchInstant, TouchTrack, on_palm, turned};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::Shape;
 use crate::report::drawing::{Drawing, INK, svg};
 use crate::report::motion::answers::Observed;
-use crate::experiment::{TouchInstant, TouchTrack, on_palm, turned};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 

@@ -27,7 +27,8 @@ fn angle(i: usize) -> f64 {
 
 /// By what power of ten a band is drawn wider than it is, so that it can be seen: not wider than a twelfth of the radius.
 fn magnification(shape: &ShapeEstimate, counts: impl Fn(f64) -> bool) -> f64 {
-    let widest = (0..NORMALS).map(angle).filter(|angle| counts(*angle)).map(|angle| 2.0 * shape.deviation(angle));
+    let widest =
+        (0..NORMALS).map(angle).filter(|angle| counts(*angle)).map(|angle| 2.0 * shape.deviation(angle));
     let widest = widest.fold(0.0, f64::max);
     let most = shape.support.mean / 12.0 / widest;
     if most.is_finite() && most > 1.0 { 10f64.powf(most.log10().floor()).min(1e12) } else { 1.0 }
@@ -62,7 +63,8 @@ pub(super) fn outline_picture(
                 area.draw(&Polygon::new(out.chain(back).collect::<Vec<_>>(), colour.filled()))?;
             }
         }
-        let closed = |points: Vec<(i32, i32)>| points.first().copied().map(|first| [points, vec![first]].concat());
+        let closed =
+            |points: Vec<(i32, i32)>| points.first().copied().map(|first| [points, vec![first]].concat());
         if let Some(points) = closed(sides.iter().map(|place| pixel(*place)).collect()) {
             area.draw(&PathElement::new(points, TRUE_OUTLINE.stroke_width(7)))?;
         }

@@ -62,7 +62,9 @@ fn convexity_in_words(shape: &ShapeEstimate) -> String {
     };
     let band = match shape.convexity_within_band() {
         Convexity::Convex { .. } => "so is all of its band".to_owned(),
-        Convexity::NotConvex { angle, .. } => format!("nothing in its band is, at {:.1}°", angle.to_degrees()),
+        Convexity::NotConvex { angle, .. } => {
+            format!("nothing in its band is, at {:.1}°", angle.to_degrees())
+        }
         Convexity::Undecided { angle } => {
             format!("its band leaves it undecided, at {:.1}°", angle.to_degrees().rem_euclid(360.0))
         }
@@ -117,7 +119,9 @@ pub(super) fn shape_text(observed: &Observed<'_>) -> String {
     } else if shape.widened > EXPLAINED {
         let _ = writeln!(text, "  {}", widened_in_words(shape));
     }
-    if let Some((largest, rms)) = truth(observed.experiment).and_then(|truth| support_error(shape, truth, covered)) {
+    if let Some((largest, rms)) =
+        truth(observed.experiment).and_then(|truth| support_error(shape, truth, covered))
+    {
         let _ = writeln!(
             text,
             "  error where touched: at most {} ({:.1e} of the mean radius), rms {}",
@@ -191,7 +195,9 @@ pub(super) fn shape_json(observed: &Observed<'_>) -> Option<Value> {
             json["rho"] = measured(gyration);
         }
     }
-    if let Some((largest, rms)) = truth(observed.experiment).and_then(|truth| support_error(shape, truth, covered)) {
+    if let Some((largest, rms)) =
+        truth(observed.experiment).and_then(|truth| support_error(shape, truth, covered))
+    {
         json["error"] = json!({
             "largest": finite(largest),
             "root_mean_square": finite(rms),

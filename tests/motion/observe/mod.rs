@@ -11,6 +11,7 @@ mod random;
 mod recorded;
 mod recovered;
 mod refused;
+mod shape;
 mod witness;
 mod wrong;
 
