@@ -1,4 +1,4 @@
-//! `palmistry observe`: a body in motion, and observers that recover its shape.
+//! `palmistry observe`: a body or another system in motion, and observers that recover its state.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::{Files, Form, progress};
@@ -14,16 +14,16 @@ use palmistry::observer::RecordError;
 use palmistry::report::{Observed, ended_in_words, forget_seconds, observe_json, observe_page, observe_text};
 use std::path::PathBuf;
 
-/// Moves a body between two palms, hands on what touch sensors and motors tell, and has observers recover its shape and
-/// motion.
+/// Moves a system, hands on what its sensors tell, and has observers recover its state: the system of any proof file by its own
+/// equations, or a body between two palms by Newton's laws and the contacts.
 ///
-/// SCENE is a TOML file: the body, the palms and how they move, the sensors, and the observers with what they seek, what
-/// they are told and where they begin (the book has all keys). The motion follows from Newton's laws and the
-/// contacts; the observers know only the readings and the equations of the scene's proof file. For each update there are the true and
+/// SCENE is a TOML file: the state at the start and the inputs as functions of time, or the body, the palms and how they move;
+/// the sensors; and the observers with what they seek, what they are told and where they begin (the book has all keys). The
+/// observers know only the readings and the equations of the scene's proof file. For each update there are the true and
 /// the recovered states, the error, the bound of Cramér and Rao below which no unbiased estimate can be, steps and time.
 ///
-/// With --data the readings come from a CSV or Parquet file with the columns that the model needs (time, s1, s2, phi1, ...);
-/// faulty rows are reported by number and handled as the scene says. With --studies the scene's studies run as well: the
+/// With --data the readings come from a CSV or Parquet file with the columns that the model needs (time, outputs, inputs);
+/// faulty rows are reported by number and handled as the scene says, and what --record wrote gives the same answer. With --studies the scene's studies run as well: the
 /// error over many seeds at several levels of noise beside the bound, and the first guesses from which each method arrives.
 ///
 /// An update that converged is held against the noise that the scene states: what is left has to be what the noise explains. Where
@@ -74,9 +74,17 @@ impl Observe {
         let bar = progress(scene.observer.methods.len() as u64 + 1, "simulating");
         let experiment = Experiment::new(scene, self.data.as_deref())?;
         bar.inc(1);
-        if self.studies && experiment.simulation.is_none() {
+        if self.studies && experiment.simulated().is_none() {
             let message = "a study needs the truth, and readings from a file have none";
             return Err(Unusable::report(message, "leave out --studies, or simulate"));
+        }
+        let study = &experiment.scene.study;
+        if self.studies && study.noise.is_none() && study.basin.is_none() {
+            let message = "the scene has no studies";
+            return Err(Unusable::report(
+                message,
+                "add [study.noise] or [study.basin] to it, or leave out --studies",
+            ));
         }
         let mut files = Files::default();
         if let Some(path) = &self.record {
@@ -84,11 +92,15 @@ impl Observe {
             files.announce(path);
         }
         if let Some(path) = &self.motion {
-            let Some(simulation) = &experiment.simulation else {
-                let message = "readings from a file tell no motion";
-                return Err(Unusable::report(message, "leave out --motion, or --data"));
+            let table = match (&experiment.simulation, &experiment.motion) {
+                (Some(simulation), _) => simulation.table(),
+                (None, Some(motion)) => motion.table(),
+                (None, None) => {
+                    let message = "readings from a file tell no motion";
+                    return Err(Unusable::report(message, "leave out --motion, or --data"));
+                }
             };
-            let table = simulation.table().map_err(|error| Unusable::report(error.to_string(), ""))?;
+            let table = table.map_err(|error| Unusable::report(error.to_string(), ""))?;
             files.table(path, &table);
             files.announce(path);
         }
@@ -131,9 +143,12 @@ impl Observe {
         {
             note(&format!("the motion ended early: {}", ended_in_words(simulation.ended())));
         }
+        if let Some(lost) = experiment.motion.as_ref().and_then(|motion| motion.ended()) {
+            note(&format!("the motion ended early: {lost}"));
+        }
         // a window that cannot be seen is part of the answer; a method by windows that saw none has found nothing, and one that
         // contradicts the readings is wrong
-        let by_windows = |answer: &&Answer| answer.method.search().is_some();
+        let by_windows = |answer: &&Answer| answer.method.is_by_windows();
         let as_expected = answers.iter().filter(by_windows).all(|answer| match interrupted {
             true => !answer.track.is_contradicted(),
             false => answer.track.is_sound(),
@@ -187,7 +202,7 @@ fn studies(experiment: &Experiment) -> Result<(Vec<NoiseLevel>, Vec<Basin>), Sce
     let study = &experiment.scene.study;
     let counted = |length: usize, what: &'static str| -> ProgressBar { progress(length as u64, what) };
     let mut noise = Vec::new();
-    if let (Some(settings), Some(simulation)) = (&study.noise, &experiment.simulation) {
+    if let (Some(settings), Some(simulation)) = (&study.noise, experiment.simulated()) {
         let bar = counted(settings.levels.len() * settings.seeds, "seeds");
         noise = noise_study(experiment, simulation, settings, &INTERRUPTED, &|| bar.inc(1))?;
         bar.finish_and_clear();

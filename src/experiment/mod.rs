@@ -1,11 +1,13 @@
 //! Experiments, simulated or recorded.
 //!
 //! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
-//! from a TOML file and checked value by value. A [`Simulation`] moves its body; an [`Experiment`] is a scene with its readings, and
+//! from a TOML file and checked value by value. A [`Simulation`] moves its body, a [`SystemMotion`] any other system by its own equations; an
+//! [`Experiment`] is a scene with its readings, and
 //! runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`], [`basins`]); a [`Reconstruction`] is the shape that all of it tells.
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 
+mod channels;
 mod columns;
 mod reconstruction;
 mod recovered;
@@ -14,6 +16,7 @@ mod scene;
 mod simulation;
 mod since;
 mod study;
+mod system_motion;
 #[doc(hidden)]
 pub mod unguided;
 
@@ -29,9 +32,10 @@ pub use run::{Answer, Experiment};
 pub use scene::SceneOutline;
 #[doc(hidden)]
 pub use scene::{BasinStudy, NoiseStudy};
-pub use scene::{Data, Guess, Method, ObserverSettings, Scene, SceneError, Sensor};
+pub use scene::{Channel, Data, Guess, Method, ObserverSettings, Scene, SceneError, Sensor};
 pub use simulation::Simulation;
 #[doc(hidden)]
 pub use study::ARRIVED;
 #[doc(hidden)]
-pub use study::{Basin, NoiseLevel, basins, noise_study};
+pub use study::{Basin, NoiseLevel, Truth, basins, noise_study};
+pub use system_motion::SystemMotion;

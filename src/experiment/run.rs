@@ -1,13 +1,18 @@
 //! A scene from beginning to end: bodies or a file, what is read of them, and what the observers make of it.
 
+use super::channels;
 use super::recovered::Reconstruction;
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{Simulation, TOUCH, body, constants, deviation};
 use super::since::Since;
+use super::study::Truth;
+use super::system_motion::SystemMotion;
 use super::unguided::{PalmReadings, Unguided, palm_readings};
+use crate::expression::{NodeId, Symbol};
+use crate::number::rational_to_f64;
 use crate::observer::{
-    EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
-    Signals, Task, Track, WindowSearch,
+    CalibrationKind, EstimateQuestion, Fault, FaultRules, ModelError, MovingWindow, Noise, Observer, Record,
+    RecordError, RecordReading, Signals, Task, Track, WindowSearch,
 };
 use crate::sweep::UNINTERRUPTED;
 use crate::system::{Kind, System, nearest};
@@ -29,6 +34,8 @@ pub struct Experiment {
     pub system: System,
     /// Absent where the readings come from a file.
     pub simulation: Option<Simulation>,
+    /// Present where a system was simulated by its own equations.
+    pub motion: Option<SystemMotion>,
     /// The readings.
     pub record: Record,
     /// The time of the first sample where times are counted from there, because they were counted from another age; else zero. In s.
@@ -77,10 +84,18 @@ impl Experiment {
             _ => None,
         };
         known_states(&scene, &system)?;
-        let known = known_constants(&scene, &system, simulation.as_ref())?;
-        let RecordReading { record, faults, .. } = match (&simulation, file) {
-            (Some(simulation), _) => {
-                let record = simulation.readings(scene.sensor.noise, scene.sensor.resolution, scene.seed);
+        // a recording of what the scene describes is told the same constants
+        let described =
+            scene.system.as_ref().map(|own| SystemMotion::of(&scene, &system, own)).transpose()?;
+        let known = known_constants(&scene, &system, simulation.as_ref(), described.as_ref())?;
+        let motion = described.clone().filter(|_| file.is_none());
+        let simulated: Option<&dyn Truth> = match (&simulation, &motion) {
+            (Some(simulation), _) => Some(simulation),
+            (None, motion) => motion.as_ref().map(|motion| motion as &dyn Truth),
+        };
+        let RecordReading { record, faults, .. } = match (simulated, file) {
+            (Some(simulated), _) => {
+                let record = simulated.read(&scene.sensor, &scene.channels, scene.seed);
                 let place =
                     |error: RecordError| scene.error_at("sensor", error.to_string(), "these readings", "");
                 RecordReading { record: record.map_err(place)?, faults: Vec::new(), left_out: Vec::new() }
@@ -88,26 +103,39 @@ impl Experiment {
             (None, Some(file)) => {
                 let needed = needed(&scene, &system, &known);
                 let needed: Vec<&str> = needed.iter().map(String::as_str).collect();
-                Record::read_checked(file, &needed, &scene.fault_rules())
+                Record::read_checked(file, &needed, &fault_rules(&scene, &system))
                     .map_err(|error| unusable(&scene, &error))?
             }
             (None, None) => {
-                let help =
-                    "describe a body and palms, name a file under [data], or hand one over with --data";
+                let help = "give [start] with a value for each state, or a body and palms; or name a file under [data], or hand one over with --data";
                 return Err(scene.error_at("title", "there is nothing to observe", "this scene", help));
             }
         };
-        let since = Since::first(&record);
-        let record = match file {
-            Some(_) => since.count(&scene, record)?,
-            None => record,
+        let (record, origin) = match file {
+            Some(_) => {
+                let since = Since::first(&record);
+                (since.count(&scene, record)?, since.origin)
+            }
+            // simulated times are counted from zero
+            None => (record, 0.0),
         };
-        let origin = since.origin;
         let signals = Signals::of_record(&record);
         let signals =
             signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
-        let question = estimate_question(&scene, &system, simulation.as_ref(), known, &signals)?;
-        let experiment = Experiment { scene, system, simulation, record, origin, faults, signals, question };
+        channels::are_columns(&scene, &signals)?;
+        let signals = channels::corrected(signals, &scene.observer.known).map_err(|error| {
+            scene.error_at("observer.known", error.to_string(), "readings without these", "")
+        })?;
+        let question = {
+            let truth = |name: &str| match &simulation {
+                Some(simulation) => simulation.truth(name)?.first().copied(),
+                None => described.as_ref()?.truth(name)?.first().copied(),
+            };
+            estimate_question(&scene, &system, &truth, known, &signals)?
+        };
+        channels::are_told(&scene, &system, &question, &signals)?;
+        let experiment =
+            Experiment { scene, system, simulation, motion, record, origin, faults, signals, question };
         // whether the model can be made at all is better known now
         experiment.task(&UNINTERRUPTED)?;
         Ok(experiment)
@@ -132,6 +160,18 @@ impl Experiment {
                 "the model and the columns of the readings have to determine the rate of all that is sought";
             self.scene.error_at(place, error.to_string(), "asked for here", help)
         })?;
+        if self.scene.observer.guess == Guess::Sample {
+            let names = self.names();
+            let half = names
+                .iter()
+                .map(|name| sample_range(&self.system, name).map_or(0.0, |[low, high]| (high - low) / 2.0));
+            let sizes: Vec<f64> = half.zip(&task.guess).map(|(half, guess)| half.max(guess.abs())).collect();
+            task.sizes
+                .iter_mut()
+                .zip(sizes)
+                .filter(|(_, own)| *own > 0.0)
+                .for_each(|(size, own)| *size = own);
+        }
         let sensor = &self.scene.sensor;
         let sigma = deviation(sensor.noise, sensor.resolution);
         task.exact = sigma == 0.0;
@@ -139,6 +179,7 @@ impl Experiment {
         if !task.exact {
             task.noise = Noise::Stated { normal: sensor.noise, rounding: sensor.resolution };
         }
+        channels::tell(&self.scene, &mut task, self.simulation.is_some(), self.simulated().is_some())?;
         task.timing = self.origin.abs() * f64::EPSILON * self.fastest(&task);
         Ok(task)
     }
@@ -210,9 +251,32 @@ impl Experiment {
 
     /// The true values of what is sought at a time: none where the readings come from a file, or the time is no sample's.
     pub fn truth_at(&self, time: f64) -> Option<Vec<f64>> {
-        let simulation = self.simulation.as_ref()?;
         let row = self.signals.times().iter().position(|other| *other == time)?;
-        self.names().iter().map(|name| Some(simulation.truth(name)?[row])).collect()
+        let truth =
+            |name: &&str| channels::truth(&self.scene, name).or_else(|| self.truth(name)?.get(row).copied());
+        self.simulated()?;
+        self.names().iter().map(truth).collect()
+    }
+
+    /// The true values of a state, sample by sample: none where the readings come from a file.
+    pub fn truth(&self, name: &str) -> Option<Vec<f64>> {
+        self.simulated()?.truth(name)
+    }
+
+    /// What was simulated: none where the readings come from a file.
+    pub fn simulated(&self) -> Option<&dyn Truth> {
+        match (&self.simulation, &self.motion) {
+            (Some(simulation), _) => Some(simulation),
+            (None, motion) => motion.as_ref().map(|motion| motion as &dyn Truth),
+        }
+    }
+
+    /// Whether it is about a body between palms.
+    pub fn is_about_palms(&self) -> bool {
+        let outputs = &self.system.outputs;
+        let touches = TOUCH.iter().all(|name| outputs.iter().any(|(output, _)| output == name));
+        let sought = ["r1", "r2"].iter().all(|name| self.names().contains(name));
+        self.scene.simulated.is_some() || (touches && sought)
     }
 }
 
@@ -226,7 +290,7 @@ pub fn error(estimate: f64, truth: f64) -> f64 {
 fn known_states(scene: &Scene, system: &System) -> Result<(), SceneError> {
     let states: Vec<&str> = system.states.iter().map(|state| system.symbol_name(*state)).collect();
     for (index, name) in scene.observer.estimate.iter().enumerate() {
-        if !states.contains(&name.as_str()) {
+        if !states.contains(&name.as_str()) && !channels::is_sought(system, name) {
             let help = match nearest(name, states.iter().copied()) {
                 Some(near) => format!("perhaps you meant '{near}'"),
                 None => "an observer seeks states; constants are told".to_owned(),
@@ -256,9 +320,10 @@ fn known_constants(
     scene: &Scene,
     system: &System,
     simulation: Option<&Simulation>,
+    described: Option<&SystemMotion>,
 ) -> Result<BTreeMap<String, f64>, SceneError> {
     let settings = &scene.observer;
-    let mut known = settings.known.clone();
+    let mut known = channels::split(&settings.known).0;
     let mut give = |name: &str, value: f64| {
         if system.find_symbol(name).is_some() && !settings.estimate.iter().any(|other| other == name) {
             known.entry(name.to_owned()).or_insert(value);
@@ -273,6 +338,11 @@ fn known_constants(
         for (name, value) in constants(scene, simulated, &body(scene, simulated)?.0) {
             give(&name, value);
         }
+    } else if let Some(described) = described {
+        let read = |name: &str| described.response.outputs.iter().any(|(output, _)| output == name);
+        for (name, value) in described.response.constants.iter().filter(|(name, _)| !read(name)) {
+            give(name, *value);
+        }
     }
     Ok(known)
 }
@@ -283,6 +353,12 @@ fn needed(scene: &Scene, system: &System, known: &BTreeMap<String, f64>) -> Vec<
     let driven: Vec<&String> = settings.inputs.values().collect();
     let unknown =
         |name: &str| !known.contains_key(name) && !settings.estimate.iter().any(|other| other == name);
+    let is_sought =
+        |symbol: &Symbol| settings.estimate.iter().any(|name| system.symbol_name(*symbol) == name);
+    let is_read = |node: &NodeId| system.graph.symbols_of([*node]).iter().any(is_sought);
+    let outputs =
+        system.outputs.iter().filter(|(name, node)| system.find_symbol(name).is_none() && is_read(node));
+    let outputs: Vec<String> = outputs.map(|(name, _)| name.clone()).collect();
     let symbols = system.symbols().filter(|(symbol, info)| {
         let name = system.symbol_name(*symbol);
         unknown(name)
@@ -292,13 +368,28 @@ fn needed(scene: &Scene, system: &System, known: &BTreeMap<String, f64>) -> Vec<
                 Kind::Imported => false,
             }
     });
-    symbols.map(|(symbol, _)| system.symbol_name(symbol).to_owned()).collect()
+    symbols.map(|(symbol, _)| system.symbol_name(symbol).to_owned()).chain(outputs).collect()
+}
+
+/// The scene's rules for faulty rows, with the resolution of what this system's sensors read.
+fn fault_rules(scene: &Scene, system: &System) -> FaultRules {
+    let mut rules = scene.fault_rules();
+    let outputs = system.outputs.iter().map(|(name, _)| name.clone());
+    rules.resolution.extend(outputs.map(|name| (name, scene.sensor.resolution)));
+    rules
+}
+
+/// The range from which a state is drawn.
+fn sample_range(system: &System, name: &str) -> Option<[f64; 2]> {
+    let symbol = system.find_symbol(name)?;
+    let range = system.symbol_info(symbol)?.range.clone().or_else(|| system.default_range(symbol))?;
+    Some([&range.low, &range.high].map(rational_to_f64))
 }
 
 fn estimate_question(
     scene: &Scene,
     system: &System,
-    simulation: Option<&Simulation>,
+    truth: &dyn Fn(&str) -> Option<f64>,
     mut known: BTreeMap<String, f64>,
     signals: &Signals,
 ) -> Result<EstimateQuestion, SceneError> {
@@ -308,20 +399,27 @@ fn estimate_question(
         let column = signals.column(place);
         let steady = column.iter().all(|value| *value == column[0]);
         let met = system.find_symbol(name).is_some();
-        if met && steady && !TOUCH.contains(&name.as_str()) && !settings.estimate.contains(name) {
+        let is_output = system.outputs.iter().any(|(output, _)| output == name);
+        if met && steady && !is_output && !TOUCH.contains(&name.as_str()) && !settings.estimate.contains(name)
+        {
             known.entry(name.clone()).or_insert(column[0]);
         }
     }
     let unguided = match settings.guess {
         Guess::None => Unguided::of(scene, system, &known, signals)?,
-        Guess::Values(_) | Guess::Off(_) => Unguided::default(),
+        Guess::Values(_) | Guess::Off(_) | Guess::Sample => Unguided::default(),
     };
     let mut guess = Vec::new();
     for name in &settings.estimate {
-        let truth = simulation.and_then(|simulation| simulation.truth(name)?.first().copied());
-        let value = match (&settings.guess, truth) {
+        let value = match (&settings.guess, truth(name)) {
+            (Guess::Values(values), _) if values.contains_key(name) => values.get(name).copied(),
+            // a sensor is taken to be right at first
+            _ if CalibrationKind::of(name).is_some() => {
+                CalibrationKind::of(name).map(|(_, kind)| kind.nominal())
+            }
+            (Guess::Sample, _) => sample_range(system, name).map(|[low, high]| (low + high) / 2.0),
             (Guess::None, _) => Some(unguided.value(scene, name)?),
-            (Guess::Values(values), _) => values.get(name).copied(),
+            (Guess::Values(_), _) => None,
             (Guess::Off(off), Some(truth)) => Some(truth * (1.0 + off)),
             (Guess::Off(_), None) => None,
         };

@@ -4,13 +4,15 @@
 //! for constants or signals; a [`ModelFlow`] follows it through time with its exact first and second derivatives by the unknowns. A
 //! `Window` compares what the model expects with what was read, `cramer_rao` bounds how well that can tell the
 //! unknowns, and an [`Observer`] works through a [`Task`] and gives a [`Track`]: Newton's method and a region of trust
-//! ([`MovingWindow`]), [`Integration`], [`Kalman`], [`HighGain`]. Whether what is left is what the errors of the readings explain
+//! ([`MovingWindow`]), [`MultipleShooting`], [`Integration`], [`Kalman`], [`HighGain`]. Whether what is left is what the errors of the readings explain
 //! is a [`Fit`]; which errors of what is taken for known it would show, and which not, says a [`Suspect`].
 //!
 //! This floor knows systems, signals and numbers; it knows nothing of palms, bodies or scenes.
 
 mod bound;
+mod calibration;
 mod chi_square;
+mod errors_in_variables;
 mod fit;
 mod flow;
 mod high_gain;
@@ -19,17 +21,25 @@ mod jet;
 mod kalman;
 mod model;
 mod moving_window;
+mod multiple_shooting;
 mod newton;
+mod nodes;
 pub(crate) mod record;
+mod response;
+mod sensitivity;
 mod signal;
+mod stiff_joints;
 mod suspect;
 mod task;
 mod trace;
 mod trust_region;
+mod weights;
 mod window;
 
 pub use bound::CramerRaoBound;
 pub(crate) use bound::cramer_rao;
+pub use calibration::CalibrationKind;
+pub(crate) use calibration::not_told;
 #[doc(hidden)]
 pub use chi_square::exceeded_with;
 pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom};
@@ -44,9 +54,12 @@ pub use kalman::Kalman;
 pub use model::ModelQuestion;
 pub use model::{Model, ModelError};
 pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
+pub use multiple_shooting::{MultipleShooting, Shooting};
 pub use newton::Newton;
 pub use record::{Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading};
+pub use response::{Response, ResponseError, ResponseQuestion};
 pub use signal::{SignalError, Signals};
 pub use suspect::{Suspect, SuspectKind};
 pub use task::{EstimateQuestion, Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
 pub use trust_region::TrustRegion;
+pub use weights::ReadingErrors;

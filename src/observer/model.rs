@@ -1,6 +1,6 @@
 //! What an observer believes: the equations of some states of a system, everything else being given.
 
-use super::Signals;
+use super::{Signals, calibration};
 use crate::expression::{NodeId, Program, Symbol};
 use crate::number::{rational_from_f64, rational_to_f64};
 use crate::system::{Kind, Role, System};
@@ -102,8 +102,10 @@ impl Model {
     /// [`ModelError`].
     pub fn new(system: &System, question: &ModelQuestion, signals: &Signals) -> Result<Model, ModelError> {
         let mut system = system.clone();
+        calibration::declare(&mut system, &question.followed);
         let symbols = symbols_of(&system, &question.followed)?;
-        let (rates, outputs) = totals(&mut system, &symbols, &question.inputs)?;
+        let (mut rates, mut outputs) = totals(&mut system, &symbols, &question.inputs)?;
+        calibration::put_in(&mut system, &question.followed, &mut rates, &mut outputs);
         let values = values_of(&mut system, question, &symbols, signals)?;
         for (rate, name) in rates.iter().zip(&question.followed) {
             if system.graph.vanishing_divisor(&[*rate], &values).is_some() {
@@ -179,6 +181,12 @@ impl Model {
         Some(self.measured[place])
     }
 
+    /// Whether a followed state does not move, whatever the others are.
+    pub fn is_at_rest(&self, state: usize) -> bool {
+        let rate = self.rate_nodes.get(state).and_then(|node| self.system.graph.constant_value(*node));
+        rate.is_some_and(|rate| rate.is_zero())
+    }
+
     /// The operations of the equations.
     pub fn operations(&self) -> usize {
         self.rates.program.len()
@@ -197,7 +205,7 @@ fn symbols_of(system: &System, names: &[String]) -> Result<Vec<Symbol>, ModelErr
 type Outputs = Vec<(String, NodeId)>;
 
 /// The rates of some states along the drift and the driven input fields, and the outputs.
-fn totals(
+pub(super) fn totals(
     system: &mut System,
     symbols: &[Symbol],
     inputs: &[(String, String)],
@@ -244,21 +252,30 @@ fn values_of(
     followed: &[Symbol],
     signals: &Signals,
 ) -> Result<HashMap<Symbol, NodeId>, ModelError> {
+    let mut values = parameter_values(system, &question.known, |name| signals.find(name).is_some())?;
+    values.retain(|symbol, _| !followed.contains(symbol));
+    Ok(values)
+}
+
+/// What is told of symbols, and the file's own values of parameters of which nothing is told and that are not `given` otherwise.
+pub(super) fn parameter_values(
+    system: &mut System,
+    told: &BTreeMap<String, f64>,
+    given: impl Fn(&str) -> bool,
+) -> Result<HashMap<Symbol, NodeId>, ModelError> {
     let mut values = HashMap::new();
-    for (name, value) in &question.known {
+    for (name, value) in told {
         let missing = || ModelError::NoSymbol { name: name.clone() };
         let symbol = system.find_symbol(name).ok_or_else(missing)?;
         let exact = rational_from_f64(*value);
         let exact = exact.ok_or_else(|| ModelError::NotFinite { name: name.clone() })?;
-        if !followed.contains(&symbol) {
-            values.insert(symbol, system.graph.rational(exact));
-        }
+        values.insert(symbol, system.graph.rational(exact));
     }
     let defaults: Vec<_> = system
         .symbols()
         .filter(|(symbol, info)| info.kind == Kind::Parameter && !values.contains_key(symbol))
         .filter_map(|(symbol, info)| Some((symbol, info.default.clone()?)))
-        .filter(|(symbol, _)| signals.find(system.symbol_name(*symbol)).is_none())
+        .filter(|(symbol, _)| !given(system.symbol_name(*symbol)))
         .collect();
     for (symbol, value) in defaults {
         // the nearest double: what a column would have given

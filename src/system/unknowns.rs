@@ -96,6 +96,16 @@ impl System {
         self.states.iter().copied().filter(kept).collect()
     }
 
+    /// The signals, each with those of its derivatives that are coordinates, itself first.
+    pub(crate) fn signal_chains(&self) -> Vec<Vec<Symbol>> {
+        self.coordinates.signals.iter().map(|signal| signal.chain.clone()).collect()
+    }
+
+    /// The value near which an unknown constant is drawn, where the file gives one.
+    pub(crate) fn hint(&self, symbol: Symbol) -> Option<&RBig> {
+        self.coordinates.hints.get(&symbol)
+    }
+
     /// The names of the unknown coordinates, in their order.
     pub(crate) fn column_names(&self) -> Vec<String> {
         self.unknowns().into_iter().map(|symbol| self.symbol_name(symbol).to_owned()).collect()
@@ -161,6 +171,12 @@ impl System {
     pub(crate) fn derivative_of_signal(&self, symbol: Symbol) -> Option<usize> {
         let mut signals = self.coordinates.signals.iter();
         signals.find_map(|signal| signal.chain.iter().position(|link| *link == symbol))
+    }
+
+    /// The derivative of a signal, or of one of its derivatives, where there is a symbol for it.
+    pub(crate) fn next_derivative_of_signal(&self, symbol: Symbol) -> Option<Symbol> {
+        let mut pairs = self.coordinates.signals.iter().flat_map(|signal| signal.chain.windows(2));
+        pairs.find_map(|pair| (pair[0] == symbol).then_some(pair[1]))
     }
 
     /// Whether a symbol is the last derivative that is taken of a signal that outputs tie: its rate is nothing that is known.

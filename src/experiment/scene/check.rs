@@ -3,7 +3,7 @@
 mod observer;
 mod physics;
 
-use super::keys::SceneKeys;
+use super::keys::{SceneKeys, SensorKeys};
 use super::place::Places;
 use super::{Scene, Simulated};
 use crate::system::Problem;
@@ -13,6 +13,15 @@ use std::path::Path;
 
 /// The most samples that a scene may ask for: each takes about a kilobyte.
 const MOST_SAMPLES: usize = 1_000_000;
+
+/// Where the readings come from, as far as what is asked of them depends on it.
+#[derive(Clone, Copy)]
+pub(super) struct Source {
+    /// How many there are of each, where they are simulated.
+    pub samples: Option<usize>,
+    /// Whether a body between palms is described.
+    pub has_palms: bool,
+}
 
 /// Marks values that cannot be.
 pub(super) struct Checks<'a> {
@@ -107,29 +116,40 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
             ));
         }
     }
-    checks.sensor(&keys.sensor)?;
+    let SensorKeys { sensor, channels } = keys.sensor;
+    checks.sensor(&sensor)?;
+    checks.channels(&channels, keys.data.record.is_some())?;
     checks.positive("data.spike", keys.data.spike, "usual departures")?;
     let palm_forms = checks.forms(keys.palms.as_ref().and_then(|palms| palms.radii))?;
-    let simulated = checks.simulated(keys.duration, keys.samples, keys.rate, keys.body, keys.palms)?;
-    match &simulated {
+    let has_palms = keys.body.is_some() || keys.palms.is_some();
+    let span =
+        checks.span(keys.duration, keys.samples, keys.rate, keys.body.is_some(), keys.palms.is_some())?;
+    let system = checks.system(span, keys.start, keys.inputs, has_palms)?;
+    let simulated = match (span, &system) {
+        (Some(span), None) => Some(checks.held(span, keys.body, keys.palms)?),
+        _ => None,
+    };
+    match &span {
         None if keys.data.record.is_none() => {
             let message = "nothing is simulated and no data is recorded";
-            let help = "give duration, samples, [body] and [palms]; or name the recorded data in [data]: \
-                        record = \"run.csv\"";
+            let help = "give duration, samples and [start] with a value for each state, or [body] and [palms]; or name the \
+                        recorded data in [data]: record = \"run.csv\"";
             return Err(checks.wrong_key("title", message, help));
         }
         Some(_) if keys.data.record.is_some() => {
             let message = "the data is both simulated and recorded";
-            let help = "leave out 'record'; or leave out duration, samples or rate, [body] and [palms]";
+            let help = "leave out 'record'; or leave out duration, samples or rate, and [start] or [body] and [palms]";
             return Err(checks.wrong_key("data.record", message, help));
         }
         _ => {}
     }
-    if let Some(simulated) = &simulated {
-        checks.jitter(keys.sensor.jitter, simulated)?;
+    if let Some(span) = span {
+        checks.jitter(sensor.jitter, span)?;
+        checks.delays(&channels, span)?;
     }
-    let observer = checks.observer(keys.observer, simulated.as_ref())?;
-    checks.study(&keys.study, &observer, simulated.is_some())?;
+    let source = Source { samples: span.map(|(_, samples)| samples), has_palms: simulated.is_some() };
+    let observer = checks.observer(keys.observer, source)?;
+    checks.study(&keys.study, &observer, span.is_some())?;
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
     let mut data = keys.data;
     data.record = data.record.map(|record| folder.join(record));
@@ -138,8 +158,10 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         model: folder.join(keys.model),
         seed: keys.seed,
         simulated,
+        system,
         palm_forms,
-        sensor: keys.sensor,
+        sensor,
+        channels,
         data,
         observer,
         study: keys.study,

@@ -1,7 +1,8 @@
 //! What is measured, and what is to be found out from it.
 
 use crate::observer::{
-    HighGain, Integration, Kalman, MovingWindow, Observer, OnFault, WhenBlind, WindowSearch,
+    HighGain, Integration, Kalman, MovingWindow, MultipleShooting, Observer, OnFault, Shooting, WhenBlind,
+    WindowSearch,
 };
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
@@ -10,7 +11,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 /// How well the sensors read. All zero unless given.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Sensor {
     /// `noise`: the standard deviation of s1 and s2, in m.
@@ -19,6 +20,29 @@ pub struct Sensor {
     pub resolution: f64,
     /// `jitter`: the standard deviation of the time from one sample to the next, in s.
     pub jitter: f64,
+}
+
+/// `[sensor.NAME]`: how one column is read. A reading is `gain * x(t - delay) + bias`, with normal errors, rounded.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Channel {
+    /// `noise`: the standard deviation of a reading, in the column's unit; that of `[sensor]` for s1 and s2 unless given, and zero for
+    /// all others.
+    pub noise: Option<f64>,
+    /// `resolution`: readings are rounded to multiples of it; as for the noise unless given.
+    pub resolution: Option<f64>,
+    /// `bias`: what is added, in the column's unit; 0 unless given. Of a simulated sensor: observers are not told.
+    pub bias: f64,
+    /// `gain`: by what it is multiplied; 1 unless given. Of a simulated sensor: observers are not told.
+    pub gain: f64,
+    /// `delay`: by how much the reading is late, in s; 0 unless given. Of a simulated sensor: observers are not told.
+    pub delay: f64,
+}
+
+impl Default for Channel {
+    fn default() -> Self {
+        Channel { noise: None, resolution: None, bias: 0.0, gain: 1.0, delay: 0.0 }
+    }
 }
 
 /// Recorded data, and what to do with a faulty row of it.
@@ -50,7 +74,8 @@ pub struct ObserverSettings {
     pub known: BTreeMap<String, f64>,
     /// `inputs`: input fields of the model and the columns that drive them, as in `{ g1 = "tau1" }`; none unless given.
     pub inputs: BTreeMap<String, String>,
-    /// `guess` or `guess_off`: where the search begins; where a body between palms is described, `"none"` unless given.
+    /// `guess` or `guess_off`: where the search begins; where a body between palms is described, `"none"` unless given, and
+    /// where another system is, `"sample"`.
     pub guess: Guess,
     /// `clamp`: sought states that keep their first guess in the first window; none unless given.
     pub clamp: Vec<String>,
@@ -63,6 +88,8 @@ pub struct ObserverSettings {
     /// `blind`: the relative standard deviation (its bound by the size of the state) beyond which a state is not seen;
     /// 1 unless given.
     pub blind: f64,
+    /// `[observer.shooting]`.
+    pub shooting: Shooting,
     /// `[observer.kalman]`.
     pub kalman: Kalman,
     /// `[observer.high_gain]`.
@@ -77,8 +104,10 @@ pub enum Guess {
     /// `guess_off`: each state is off the truth by this part of it (0.1: ten percent more). Only where there is a
     /// truth, in a simulation.
     Off(f64),
-    /// `"none"`: the readings of the first window give it. Only between two flat palms.
+    /// `"none"`: the readings of the first window give it. Only between two palms.
     None,
+    /// `"sample"`: the middle of the model's sample box.
+    Sample,
 }
 
 /// A way to estimate a state.
@@ -89,6 +118,8 @@ pub enum Method {
     Newton,
     /// `trust-region`: the same error, with steps no longer than the quadratic model is trusted.
     TrustRegion,
+    /// `multiple-shooting`: the same error, from several states of the sample box, by segments that are joined in the end.
+    MultipleShooting,
     /// `integration`: the first guess, carried along by the model; the reference without observer.
     Integration,
     /// `kalman`: the extended Kalman filter.
@@ -103,10 +134,16 @@ impl ObserverSettings {
         match method {
             Method::Newton => Box::new(self.window(WindowSearch::Newton)),
             Method::TrustRegion => Box::new(self.window(WindowSearch::TrustRegion)),
+            Method::MultipleShooting => Box::new(self.multiple_shooting()),
             Method::Integration => Box::new(Integration),
             Method::Kalman => Box::new(self.kalman),
             Method::HighGain => Box::new(self.high_gain),
         }
+    }
+
+    /// The observer by multiple shooting.
+    pub fn multiple_shooting(&self) -> MultipleShooting {
+        MultipleShooting { window: self.window(WindowSearch::TrustRegion), shooting: self.shooting }
     }
 
     /// The observer by windows.
@@ -127,6 +164,7 @@ impl Method {
         match self {
             Method::Newton => "newton",
             Method::TrustRegion => "trust-region",
+            Method::MultipleShooting => "multiple-shooting",
             Method::Integration => "integration",
             Method::Kalman => "kalman",
             Method::HighGain => "high-gain",
@@ -138,8 +176,13 @@ impl Method {
         match self {
             Method::Newton => Some(WindowSearch::Newton),
             Method::TrustRegion => Some(WindowSearch::TrustRegion),
-            Method::Integration | Method::Kalman | Method::HighGain => None,
+            Method::MultipleShooting | Method::Integration | Method::Kalman | Method::HighGain => None,
         }
+    }
+
+    /// Whether it works by windows, with a verdict on each.
+    pub fn is_by_windows(self) -> bool {
+        self.search().is_some() || self == Method::MultipleShooting
     }
 }
 

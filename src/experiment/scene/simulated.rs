@@ -1,9 +1,10 @@
-//! What is simulated: a body, two palms, and for how long. Lengths in metres, masses in kilograms, angles in radians.
+//! What is simulated, and for how long: a body and two palms (lengths in metres, masses in kilograms, angles in radians), or any system.
 
 use crate::mechanics::moving::{Drive, Knots};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// A body between palms, and when its contacts are read.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,26 +28,51 @@ impl Simulated {
     /// three bands. All steps are then scaled by one factor that keeps the duration. A jitter of more than 0.8 steps
     /// counts as that, so that time does not run backwards; a scene cannot ask for more.
     pub fn times(&self, jitter: f64, seed: u64) -> Vec<f64> {
-        let steps = self.samples.saturating_sub(1);
-        let even = self.duration / steps.max(1) as f64;
-        if jitter <= 0.0 {
-            return (0..=steps).map(|i| self.duration * i as f64 / steps.max(1) as f64).collect();
-        }
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        // three equally likely values -b, 0, b have the variance 2/3 b^2
-        let band = jitter.min(MOST_JITTER * even) * 1.5_f64.sqrt();
-        let mut times = vec![0.0];
-        let mut time = 0.0;
-        for _ in 0..steps {
-            time += even + band * f64::from(random.random_range(-1..=1_i8));
-            times.push(time);
-        }
-        let scale = if time > 0.0 { self.duration / time } else { 1.0 };
-        times.iter_mut().for_each(|time| *time *= scale);
-        if let Some(last) = times.last_mut() {
-            *last = self.duration;
-        }
-        times
+        sample_times(self.duration, self.samples, jitter, seed)
+    }
+}
+
+/// The times of so many samples, as [`Simulated::times`].
+fn sample_times(duration: f64, samples: usize, jitter: f64, seed: u64) -> Vec<f64> {
+    let steps = samples.saturating_sub(1);
+    let even = duration / steps.max(1) as f64;
+    if jitter <= 0.0 {
+        return (0..=steps).map(|i| duration * i as f64 / steps.max(1) as f64).collect();
+    }
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    // three equally likely values -b, 0, b have the variance 2/3 b^2
+    let band = jitter.min(MOST_JITTER * even) * 1.5_f64.sqrt();
+    let mut times = vec![0.0];
+    let mut time = 0.0;
+    for _ in 0..steps {
+        time += even + band * f64::from(random.random_range(-1..=1_i8));
+        times.push(time);
+    }
+    let scale = if time > 0.0 { duration / time } else { 1.0 };
+    times.iter_mut().for_each(|time| *time *= scale);
+    if let Some(last) = times.last_mut() {
+        *last = duration;
+    }
+    times
+}
+
+/// A system that moves by the equations of its proof file, from a state that is given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulatedSystem {
+    /// `duration`: the time of the last sample, in seconds; as of [`Simulated`].
+    pub duration: f64,
+    /// `samples`, or what follows from `rate`: the number of samples, both ends included.
+    pub samples: usize,
+    /// `[start]`: the value of each state at the first sample, and values of constants that are others than in the file.
+    pub start: BTreeMap<String, f64>,
+    /// `[inputs]`: functions of the time `t` in seconds, by the names of known signals or of parameters that they stand for.
+    pub inputs: BTreeMap<String, String>,
+}
+
+impl SimulatedSystem {
+    /// The times of the samples, as [`Simulated::times`].
+    pub fn times(&self, jitter: f64, seed: u64) -> Vec<f64> {
+        sample_times(self.duration, self.samples, jitter, seed)
     }
 }
 

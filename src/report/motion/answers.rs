@@ -3,6 +3,7 @@
 use crate::experiment::{Answer, Basin, Experiment, NoiseLevel, error};
 use crate::mechanics::moving::Ended;
 use crate::observer::{Fault, Update, UpdateEnd};
+use crate::report::axis::unit_of;
 use crate::report::motion::fit::{finite, fit_in_words, noise_from, suspect_json, suspects_in_words};
 use crate::report::motion::reconstruction::{shape_json, shape_text};
 use serde_json::{Map, Value, json};
@@ -52,6 +53,19 @@ pub fn ended_in_words(ended: &Ended) -> String {
         Ended::OutOfPalm { palm, time } => format!("contact ran off palm {palm} at {time:.6} s"),
         Ended::Failed { time, why } => format!("failed at {time:.6} s: {why}"),
     }
+}
+
+/// The unit of the readings' errors, with a space before it: metres of contacts, and of other systems that of all outputs where they
+/// have one.
+pub(super) fn noise_unit(observed: &Observed<'_>) -> String {
+    let experiment = observed.experiment;
+    if experiment.is_about_palms() {
+        return " m".to_owned();
+    }
+    let mut units = experiment.system.outputs.iter().map(|(name, _)| unit_of(&experiment.system, name));
+    let first = units.next().flatten();
+    let same = first.filter(|first| units.all(|unit| unit.as_ref() == Some(first)));
+    same.map_or_else(String::new, |unit| format!(" {unit}"))
 }
 
 /// The faults of a file, as lines.
@@ -113,10 +127,35 @@ fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
     found
 }
 
+/// What is known of the sensors: the contacts' noise and resolution, and the columns that have their own.
+fn sensor_json(experiment: &Experiment) -> Value {
+    let sensor = &experiment.scene.sensor;
+    let mut found = json!({ "noise": sensor.noise, "resolution": sensor.resolution });
+    let columns: Map<String, Value> = experiment
+        .scene
+        .channels
+        .iter()
+        .map(|(name, own)| {
+            let column = json!({
+                "noise": own.noise,
+                "resolution": own.resolution,
+                "bias": own.bias,
+                "gain": own.gain,
+                "delay": own.delay,
+            });
+            (name.clone(), column)
+        })
+        .collect();
+    if !columns.is_empty() {
+        found["columns"] = Value::Object(columns);
+    }
+    found
+}
+
 /// An experiment as JSON: true and recovered states, errors, the bound of Cramér and Rao, iterations and time.
 ///
 /// An `error` is relative, or absolute where the truth is less than a millionth; a `bound` is a standard deviation in the unit of its
-/// state, for the readings' own errors or, where they have none, for errors of a nanometre; what is not seen has none.
+/// state, for the readings' own errors or, where they have none, for errors of 1e-9 (contacts: a nanometre); what is not seen has none.
 pub fn observe_json(observed: &Observed<'_>) -> Value {
     let experiment = observed.experiment;
     let times = experiment.signals.times();
@@ -131,6 +170,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
             "unseen_samples": answer.track.unseen,
             "remarks": answer.track.remarks,
             "updates": updates.collect::<Vec<_>>(),
+            "fits_as_well": answer.track.others.iter().map(|other| update_json(observed, other)).collect::<Vec<_>>(),
             "end": end,
         })
     });
@@ -142,7 +182,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         "seed": experiment.scene.seed,
         "samples": times.len(),
         "duration": times.last(),
-        "sensor": { "noise": experiment.scene.sensor.noise, "resolution": experiment.scene.sensor.resolution },
+        "sensor": sensor_json(experiment),
         "first_guess": guess,
         "clamped": experiment.question.clamped,
         "told": experiment.question.known,
@@ -162,6 +202,10 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
     }
     if let Some(shape) = shape_json(observed) {
         found["shape"] = shape;
+    }
+    if let Some(motion) = &experiment.motion {
+        let ended = motion.ended().map_or_else(|| "completed".to_owned(), |lost| format!("ended {lost}"));
+        found["simulation"] = json!({ "ended": ended });
     }
     if !observed.noise.is_empty() {
         let names = experiment.names();
@@ -209,6 +253,9 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             ended_in_words(simulation.ended()),
             simulation.trajectory.energy_drift()
         );
+    } else if let Some(motion) = &experiment.motion {
+        let ended = motion.ended().map_or_else(|| "completed".to_owned(), |lost| format!("ended {lost}"));
+        let _ = writeln!(text, "{samples} samples; {ended}");
     } else {
         let _ = writeln!(text, "{samples} samples from a file; faults: {}", experiment.faults.len());
     }
@@ -244,6 +291,22 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         if answer.track.unseen > 0 {
             let _ = writeln!(text, "  not seen for {} of {samples} samples", answer.track.unseen);
         }
+        for other in &answer.track.others {
+            let _ = writeln!(
+                text,
+                "  from {:.3} s another state fits as well{}:",
+                other.from,
+                fit_in_words(other).replacen(" and fits", "", 1)
+            );
+            state_lines(
+                &mut text,
+                observed,
+                &names,
+                other.from,
+                &other.estimate,
+                Some(&other.deviations[..]),
+            );
+        }
         for remark in &answer.track.remarks {
             let _ = writeln!(text, "  {remark}");
         }
@@ -251,8 +314,12 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
     for level in observed.noise {
         let _ = writeln!(
             text,
-            "\nnoise {:.1e} m: {} of {} seeds converged, of {} it was said that they do not fit",
-            level.noise, level.converged, level.seeds, level.unfit
+            "\nnoise {:.1e}{}: {} of {} seeds converged, of {} it was said that they do not fit",
+            level.noise,
+            noise_unit(observed),
+            level.converged,
+            level.seeds,
+            level.unfit
         );
         for ((name, error), bound) in names.iter().zip(&level.errors).zip(&level.bounds) {
             let ratio = error / bound;
@@ -286,7 +353,11 @@ fn state_lines(
     bounds: Option<&[f64]>,
 ) {
     let truth = observed.experiment.truth_at(time);
+    // of palms all is in SI units; other systems say what theirs are
+    let is_named = !observed.experiment.is_about_palms();
     for (i, name) in names.iter().enumerate() {
+        let unit = unit_of(&observed.experiment.system, name).filter(|_| is_named);
+        let name = unit.map_or_else(|| (*name).to_owned(), |unit| format!("{name}, {unit}"));
         let _ = write!(text, "    {name:<8} {:>15.9}", recovered[i]);
         if let Some(truth) = &truth {
             let _ = write!(text, "  true {:>15.9}  error {:.1e}", truth[i], error(recovered[i], truth[i]));

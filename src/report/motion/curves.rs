@@ -46,6 +46,7 @@ fn look(shown: Shown) -> (RGBColor, u32, Option<usize>) {
         Shown::Truth => (TRUTH, 6, None),
         Shown::Method(Method::Newton) => (RGBColor(0, 114, 178), 2, Some(0)),
         Shown::Method(Method::TrustRegion) => (RGBColor(230, 159, 0), 1, Some(1)),
+        Shown::Method(Method::MultipleShooting) => (RGBColor(86, 180, 233), 1, Some(0)),
         Shown::Method(Method::Integration) => (RGBColor(110, 110, 110), 1, Some(2)),
         Shown::Method(Method::Kalman) => (RGBColor(0, 158, 115), 1, Some(3)),
         Shown::Method(Method::HighGain) => (RGBColor(204, 80, 150), 1, Some(4)),

@@ -11,6 +11,7 @@ use maud::html;
 
 /// The page as HTML.
 pub fn observe_page(observed: &Observed<'_>) -> String {
+    let has_palms = observed.experiment.is_about_palms();
     let studied = !observed.noise.is_empty() || !observed.basins.is_empty();
     let shape = reconstruction(observed).is_some();
     let content = html! {
@@ -19,7 +20,7 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
             (summary(observed))
             (faults(observed))
             nav {
-                a href="#body" { "The body" }
+                @if has_palms { a href="#body" { "The body" } }
                 @if shape { a href="#shape" { "The shape" } }
                 a href="#found" { "What they found" }
                 a href="#states" { "States over time" }
@@ -29,7 +30,7 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
             }
         }
         main {
-            section #body { h2 { "The body between its palms" } (body_pictures(observed, FRAMES)) }
+            @if has_palms { section #body { h2 { "The body between its palms" } (body_pictures(observed, FRAMES)) } }
             @if shape { section #shape { h2 { "The shape" } (shape_section(observed)) } }
             section #found { h2 { "What they found" } (ends(observed)) (notes(observed)) }
             section #states { h2 { "States over time" } (state_pictures(observed)) }

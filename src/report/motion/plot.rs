@@ -30,7 +30,7 @@ fn limits(observed: &Observed<'_>) -> Vec<f64> {
 
 /// The truth of a state, over time.
 fn truth(observed: &Observed<'_>, name: &str) -> Vec<(f64, f64)> {
-    let values = observed.experiment.simulation.as_ref().and_then(|simulation| simulation.truth(name));
+    let values = observed.experiment.truth(name);
     observed.experiment.signals.times().iter().copied().zip(values.unwrap_or_default()).collect()
 }
 

@@ -1,8 +1,8 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
-use crate::experiment::{ARRIVED, NOMINAL, SceneOutline, error, shown};
+use crate::experiment::{ARRIVED, Channel, NOMINAL, SceneOutline, error, shown};
 use crate::mechanics::Palm;
-use crate::report::motion::answers::{Observed, ended_in_words, fault_lines};
+use crate::report::motion::answers::{Observed, ended_in_words, fault_lines, noise_unit};
 use crate::report::motion::frames::{frames, recovered_outline};
 use crate::report::motion::plot::{errors, sensor_errors, state};
 use crate::report::motion::reconstruction::shape_section;
@@ -10,6 +10,7 @@ use crate::report::motion::shape::{departure, outline};
 use crate::report::motion::study_plot;
 use crate::report::motion::table::{ends, noise_table, notes, pace, updates};
 use maud::{Markup, PreEscaped, html};
+use std::collections::BTreeMap;
 
 /// At most so many samples are drawn.
 pub(super) const FRAMES: usize = 12;
@@ -28,7 +29,7 @@ pub(in crate::report) fn observed_section(experiments: &[Observed<'_>]) -> Marku
                 h3 { (observed.experiment.scene.title) }
                 (summary(observed))
                 (faults(observed))
-                (body_pictures(observed, FRAMES / 2))
+                @if observed.experiment.is_about_palms() { (body_pictures(observed, FRAMES / 2)) }
                 (shape_section(observed))
                 (ends(observed))
                 (notes(observed))
@@ -94,6 +95,21 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
                     @if sensor.resolution > 0.0 { ", rounded to multiples of " (format!("{:.1e} m", sensor.resolution)) }
                     ". "
                 }
+                @for (name, own) in &scene.channels { (channel_in_words(name, own)) " " }
+                @if sensor.jitter > 0.0 { "Steps in time vary by " (format!("{:.1e} s", sensor.jitter)) ". " }
+            } @else if let (Some(motion), Some(simulated)) = (&experiment.motion, &scene.system) {
+                "Simulated by its own equations, from " code { (values(&simulated.start)) }
+                @if !simulated.inputs.is_empty() { ", driven by " code { (functions(&simulated.inputs)) } }
+                "; " b { (times.len()) " samples over " (shortest(last - first)) " s" } ". "
+                @if let Some(lost) = motion.ended() { "The motion " b { "ended early: " (lost.to_string()) } ". " }
+                @if sensor.noise == 0.0 && sensor.resolution == 0.0 {
+                    "The outputs were read without error; bounds are for readings good to " (format!("{NOMINAL:.0e}")) ". "
+                } @else {
+                    "The outputs were read with errors of " (format!("{:.1e}{}", sensor.noise, noise_unit(observed)))
+                    " (standard deviation, seed " (scene.seed) ")"
+                    @if sensor.resolution > 0.0 { ", rounded to multiples of " (format!("{:.1e}{}", sensor.resolution, noise_unit(observed))) }
+                    ". "
+                }
                 @if sensor.jitter > 0.0 { "Steps in time vary by " (format!("{:.1e} s", sensor.jitter)) ". " }
             } @else {
                 "Recorded: " b { (times.len()) " samples from " (shortest(first)) " s to " (shortest(last)) " s" }
@@ -113,6 +129,39 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
         }
         @if observed.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
     }
+}
+
+/// How a column is read that has its own sensor.
+fn channel_in_words(name: &str, own: &Channel) -> String {
+    let mut parts = Vec::new();
+    if let Some(noise) = own.noise.filter(|noise| *noise > 0.0) {
+        parts.push(format!("errors of {noise:.1e}"));
+    }
+    if let Some(resolution) = own.resolution.filter(|resolution| *resolution > 0.0) {
+        parts.push(format!("rounding to multiples of {resolution:.1e}"));
+    }
+    if own.gain != 1.0 {
+        parts.push(format!("a gain of {}", own.gain));
+    }
+    if own.bias != 0.0 {
+        parts.push(format!("a bias of {}", own.bias));
+    }
+    if own.delay > 0.0 {
+        parts.push(format!("a delay of {:.1e} s", own.delay));
+    }
+    if parts.is_empty() {
+        format!("{name} was read without error.")
+    } else {
+        format!("{name} was read with {}.", parts.join(", "))
+    }
+}
+
+fn values(values: &BTreeMap<String, f64>) -> String {
+    values.iter().map(|(name, value)| format!("{name} = {}", shortest(*value))).collect::<Vec<_>>().join(", ")
+}
+
+fn functions(functions: &BTreeMap<String, String>) -> String {
+    functions.iter().map(|(name, text)| format!("{name}(t) = {text}")).collect::<Vec<_>>().join(", ")
 }
 
 /// In a sentence what the method whose outline is shown came to.
@@ -158,7 +207,7 @@ pub(super) fn faults(observed: &Observed<'_>) -> Markup {
                 summary { (lines.len()) " faults in the file; their rows were left out, unless the fault is a gap" }
                 ul.faults { @for line in &lines { li { code { (line) } } } }
             }
-        } @else if observed.experiment.simulation.is_none() {
+        } @else if observed.experiment.simulated().is_none() {
             p { "No row of the file is faulty." }
         }
     }
@@ -223,7 +272,7 @@ pub(super) fn length(metres: f64) -> String {
 /// As figure 4.4b and c: each state over time, and its errors beside the bound.
 pub(super) fn state_pictures(observed: &Observed<'_>) -> Markup {
     let places = 0..observed.experiment.names().len();
-    let known = observed.experiment.simulation.is_some();
+    let known = observed.experiment.simulated().is_some();
     html! {
         figure {
             div.two {
@@ -256,7 +305,7 @@ pub(super) fn sensor_pictures(observed: &Observed<'_>) -> Markup {
             figure {
                 div.two { @for picture in &pictures { (PreEscaped(picture)) } }
                 figcaption {
-                    "The contact that the model expects minus the one that was read. What an observer that is right has "
+                    (if observed.experiment.is_about_palms() { "The contact" } else { "The output" }) " that the model expects minus the one that was read. What an observer that is right has "
                     "left is the error of the sensor, without a trend; a curve that bends within a window tells of a wrong state or "
                     "model. A method that compares nothing has no curve."
                 }
@@ -279,7 +328,7 @@ pub(super) fn studies(observed: &Observed<'_>) -> Markup {
                     "above it: the search did not find the best state. By chance they are off by a part of about one in the root of twice "
                     "the number of seeds. "
                     @for level in observed.noise {
-                        (format!("{:.0e} m: {} of {} converged. ", level.noise, level.converged, level.seeds))
+                        (format!("{:.0e}{}: {} of {} converged. ", level.noise, noise_unit(observed), level.converged, level.seeds))
                     }
                 }
             }

@@ -3,7 +3,7 @@
 use crate::experiment::Basin;
 use crate::report::axis::number;
 use crate::report::drawing::{Canvas, INK, MESH, svg};
-use crate::report::motion::answers::Observed;
+use crate::report::motion::answers::{Observed, noise_unit};
 use crate::report::motion::plot::with_unit;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -17,6 +17,7 @@ const FAILS: RGBColor = RGBColor(236, 226, 205);
 pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
     let names = observed.experiment.names();
     let Some(name) = names.get(place) else { return String::new() };
+    let unit = noise_unit(observed);
     let drawn = |value: &f64| value.is_finite() && *value > 0.0;
     let points = |of: fn(&crate::experiment::NoiseLevel) -> &Vec<f64>| -> Vec<(f64, f64)> {
         let levels = observed.noise.iter().map(|level| (level.noise, of(level)[place]));
@@ -59,7 +60,7 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
             .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_label_formatter(&|v| format!("{v:.0e}"))
             .y_label_formatter(&|v| format!("{v:.0e}"))
-            .x_desc("standard deviation of a reading, m")
+            .x_desc(format!("standard deviation of a reading{}", unit.replacen(' ', ", ", 1)))
             .y_desc(with_unit(observed, name))
             .axis_desc_style(("sans-serif", 12))
             .draw()?;

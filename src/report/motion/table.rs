@@ -3,7 +3,7 @@
 use crate::experiment::{Answer, error};
 use crate::observer::{Update, UpdateEnd};
 use crate::report::axis::unit_of;
-use crate::report::motion::answers::{Observed, end_name};
+use crate::report::motion::answers::{Observed, end_name, noise_unit};
 use crate::report::motion::fit::{suspects_in_words, unexplained};
 use maud::{Markup, html};
 
@@ -56,7 +56,7 @@ pub(super) fn pace(observed: &Observed<'_>, answer: &Answer) -> Option<String> {
 pub(super) fn ends(observed: &Observed<'_>) -> Markup {
     let names = observed.experiment.names();
     let timed = is_timed(observed);
-    let known = observed.experiment.simulation.is_some();
+    let known = observed.experiment.simulated().is_some();
     html! {
         div.scroll { table {
             thead { tr {
@@ -126,7 +126,7 @@ pub(super) fn updates(observed: &Observed<'_>) -> Markup {
 fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
     let names = observed.experiment.names();
     let timed = is_timed(observed);
-    let known = observed.experiment.simulation.is_some();
+    let known = observed.experiment.simulated().is_some();
     let bound = |value: f64| if value.is_finite() { format!("{value:.1e}") } else { "not seen".to_owned() };
     html! {
         div.scroll { table {
@@ -200,6 +200,15 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
         lines.extend(
             answer.track.updates.iter().flat_map(suspects_in_words).map(|line| format!("{name}: {line}")),
         );
+        for other in &answer.track.others {
+            let state = observed.experiment.names().into_iter().zip(&other.estimate);
+            let state: Vec<String> = state.map(|(name, value)| format!("{name} = {value:.6}")).collect();
+            lines.push(format!(
+                "{name} from {:.3} s: another state fits as well: {}",
+                other.from,
+                state.join(", ")
+            ));
+        }
         lines.extend(answer.track.remarks.iter().map(|remark| format!("{name}: {remark}")));
     }
     html! {
@@ -235,11 +244,12 @@ fn blind(observed: &Observed<'_>, update: &Update, weakest: &[f64]) -> String {
 
 /// The error over noise beside its bound.
 pub(super) fn noise_table(observed: &Observed<'_>) -> Markup {
+    let unit = noise_unit(observed);
     let names = observed.experiment.names();
     html! {
         div.scroll { table {
             thead { tr {
-                th { "noise, m" } th { "converged" }
+                th { "noise" @if !unit.is_empty() { "," (unit) } } th { "converged" }
                 @for name in &names { th { (name) ", rms error" } th { "bound" @if let Some(unit) = unit_of(&observed.experiment.system, name) { ", " (unit) } } th { "ratio" } }
             } }
             tbody { @for level in observed.noise { tr {

@@ -2,19 +2,16 @@
 
 use super::super::keys::{GuessKeys, ObserverKeys};
 use super::super::{Guess, ObserverSettings, Study};
-use super::{Checks, MOST_SAMPLES, Problem, Simulated};
+use super::{Checks, MOST_SAMPLES, Problem, Source};
+use crate::observer::CalibrationKind;
 
 /// The most first guesses that a study may try.
 const MOST_GUESSES: usize = 10_000_000;
 
 impl Checks<'_> {
-    pub(super) fn observer(
-        &self,
-        keys: ObserverKeys,
-        simulated: Option<&Simulated>,
-    ) -> Result<ObserverSettings, Problem> {
+    pub(super) fn observer(&self, keys: ObserverKeys, source: Source) -> Result<ObserverSettings, Problem> {
         if keys.methods.is_empty() {
-            let help = "name one or more: newton, trust-region, integration, kalman, high-gain";
+            let help = "name one or more: newton, trust-region, multiple-shooting, integration, kalman, unscented, high-gain";
             return Err(self.wrong("observer.methods", "there is no method", help));
         }
         self.names("observer.methods", &keys.methods, |method| format!("{method:?}"))?;
@@ -31,7 +28,7 @@ impl Checks<'_> {
                 return Err(self.wrong_key(&place, message, "leave it out here or in 'estimate'"));
             }
         }
-        let guess = self.guess(keys.guess, keys.guess_off, &keys.estimate, simulated)?;
+        let guess = self.guess(keys.guess, keys.guess_off, &keys.estimate, source)?;
         self.names("observer.clamp", &keys.clamp, |name| format!("'{name}'"))?;
         for (index, name) in keys.clamp.iter().enumerate() {
             self.sought(&format!("observer.clamp[{index}]"), name, &keys.estimate)?;
@@ -40,11 +37,13 @@ impl Checks<'_> {
             let message = "all that is sought is clamped: the first window has nothing to change";
             return Err(self.wrong("observer.clamp", message, "leave at least one state free"));
         }
-        let samples = simulated.map_or(MOST_SAMPLES, |s| s.samples);
+        let samples = source.samples.unwrap_or(MOST_SAMPLES);
         let window = keys.window.unwrap_or(samples.min(80));
         self.count("observer.window", window, 2..=samples)?;
         self.count("observer.steps", keys.steps, 1..=1000)?;
         self.positive("observer.blind", keys.blind, "")?;
+        self.count("observer.shooting.segments", keys.shooting.segments, 1..=1000)?;
+        self.count("observer.shooting.starts", keys.shooting.starts, 1..=1000)?;
         self.not_negative("observer.kalman.process_noise", keys.kalman.process_noise, "")?;
         self.positive("observer.kalman.prior", keys.kalman.prior, "")?;
         self.positive("observer.kalman.least_sigma", keys.kalman.least_sigma, "m")?;
@@ -60,6 +59,7 @@ impl Checks<'_> {
             steps: keys.steps,
             when_blind: keys.when_blind,
             blind: keys.blind,
+            shooting: keys.shooting,
             kalman: keys.kalman,
             high_gain: keys.high_gain,
         })
@@ -70,7 +70,7 @@ impl Checks<'_> {
         values: Option<GuessKeys>,
         off: Option<f64>,
         estimate: &[String],
-        simulated: Option<&Simulated>,
+        source: Source,
     ) -> Result<Guess, Problem> {
         match (values, off) {
             (Some(_), Some(_)) => {
@@ -78,20 +78,24 @@ impl Checks<'_> {
                 Err(self.wrong_key("observer.guess_off", message, "leave one out"))
             }
             (Some(GuessKeys::Word(word)), None) if word == "none" => Ok(Guess::None),
+            (Some(GuessKeys::Word(word)), None) if word == "sample" => Ok(Guess::Sample),
             (Some(GuessKeys::Word(word)), None) => {
-                let help = "write guess = \"none\", or a table of values";
+                let help = "write guess = \"none\", guess = \"sample\" (the middle of the sample box), or a table of values";
                 Err(self.wrong("observer.guess", format!("'{word}' is no first guess"), help))
             }
             // a body between palms tells its state by itself
-            (None, None) if simulated.is_some() => Ok(Guess::None),
+            (None, None) if source.has_palms => Ok(Guess::None),
+            (None, None) if source.samples.is_some() => Ok(Guess::Sample),
             (None, None) => {
-                let help =
-                    "add, for instance: guess = { r1 = 2.0, r2 = 2.0 }, or guess = \"none\" between palms";
+                let first = estimate.first().map_or("x", String::as_str);
+                let help = format!(
+                    "add, for instance: guess = {{ {first} = 2.0, ... }}, or guess = \"sample\" for the middle of the sample box"
+                );
                 Err(self.wrong_key("observer", "there is no first guess", help))
             }
             (None, Some(off)) => {
                 self.finite("observer.guess_off", off)?;
-                if simulated.is_none() {
+                if source.samples.is_none() {
                     let message = "recorded data has no truth from which a guess could be off";
                     let help = "give the first guess itself: guess = { r1 = 2.0, ... }";
                     return Err(self.wrong_key("observer.guess_off", message, help));
@@ -104,7 +108,10 @@ impl Checks<'_> {
                     self.sought(&place, name, estimate)?;
                     self.finite(&place, *value)?;
                 }
-                if let Some(name) = estimate.iter().find(|name| !values.contains_key(*name)) {
+                // gains and biases have one by themselves
+                let is_missing =
+                    |name: &&String| !values.contains_key(*name) && CalibrationKind::of(name).is_none();
+                if let Some(name) = estimate.iter().find(is_missing) {
                     let message = format!("there is no first guess of '{name}'");
                     let help = format!("add {name} = ... to it");
                     return Err(self.wrong("observer.guess", message, help));

@@ -2,11 +2,15 @@
 
 use super::super::keys::PalmsKeys;
 use super::super::simulated::MOST_JITTER;
-use super::super::{Body, Palms, SceneOutline, Sensor};
+use super::super::{Body, Channel, Palms, SceneOutline, Sensor, SimulatedSystem};
 use super::{Checks, MOST_SAMPLES, Problem, Simulated};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::{Drive, Oscillation};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
+
+/// The largest delay, in steps of time: eight samples carry a curve so far beyond the first.
+pub(super) const MOST_DELAY: f64 = 4.0;
 
 impl Checks<'_> {
     pub(super) fn sensor(&self, sensor: &Sensor) -> Result<(), Problem> {
@@ -15,8 +19,61 @@ impl Checks<'_> {
         self.not_negative("sensor.jitter", sensor.jitter, "s")
     }
 
-    pub(super) fn jitter(&self, jitter: f64, simulated: &Simulated) -> Result<(), Problem> {
-        let step = simulated.duration / simulated.samples.saturating_sub(1).max(1) as f64;
+    pub(super) fn channels(
+        &self,
+        channels: &BTreeMap<String, Channel>,
+        recorded: bool,
+    ) -> Result<(), Problem> {
+        for (name, channel) in channels {
+            let place = |key: &str| format!("sensor.{name}.{key}");
+            self.not_negative(&place("noise"), channel.noise.unwrap_or(0.0), "the unit of the column")?;
+            self.not_negative(
+                &place("resolution"),
+                channel.resolution.unwrap_or(0.0),
+                "the unit of the column",
+            )?;
+            self.finite(&place("bias"), channel.bias)?;
+            self.finite(&place("gain"), channel.gain)?;
+            self.not_negative(&place("delay"), channel.delay, "s")?;
+            if channel.gain == 0.0 {
+                let help = "give a number that is not zero, 1 for a sensor that is right";
+                return Err(self.wrong(&place("gain"), "a gain of zero reads nothing", help));
+            }
+            let given =
+                [("bias", channel.bias, 0.0), ("gain", channel.gain, 1.0), ("delay", channel.delay, 0.0)];
+            if let Some((key, value, _)) = given.iter().find(|(_, value, none)| recorded && value != none) {
+                let message = format!("the {key} of a recorded column is not simulated");
+                let help = format!(
+                    "give what is known of it to the observers, known = {{ \"{name}.{key}\" = {value} }}, or let them seek it"
+                );
+                return Err(self.wrong(&place(key), message, help));
+            }
+        }
+        Ok(())
+    }
+
+    /// What a late sensor reads at the first sample lies before the simulation: it is extrapolated, and not far.
+    pub(super) fn delays(
+        &self,
+        channels: &BTreeMap<String, Channel>,
+        (duration, samples): (f64, usize),
+    ) -> Result<(), Problem> {
+        let step = duration / samples.saturating_sub(1).max(1) as f64;
+        for (name, channel) in channels {
+            if channel.delay > MOST_DELAY * step {
+                let message =
+                    format!("a delay of {} s is too much for samples {step:.3e} s apart", channel.delay);
+                let help = format!(
+                    "give at most {MOST_DELAY} steps: what was before the first sample is not simulated"
+                );
+                return Err(self.wrong(&format!("sensor.{name}.delay"), message, help));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn jitter(&self, jitter: f64, (duration, samples): (f64, usize)) -> Result<(), Problem> {
+        let step = duration / samples.saturating_sub(1).max(1) as f64;
         if jitter <= MOST_JITTER * step {
             return Ok(());
         }
@@ -25,21 +82,21 @@ impl Checks<'_> {
         Err(self.wrong("sensor.jitter", message, help))
     }
 
-    /// What is simulated, if anything is said of it: then all has to be there.
-    pub(super) fn simulated(
+    /// Duration and samples, if anything is said of what is simulated: then both have to be there.
+    pub(super) fn span(
         &self,
         duration: Option<f64>,
         samples: Option<usize>,
         rate: Option<f64>,
-        body: Option<Body>,
-        palms: Option<PalmsKeys>,
-    ) -> Result<Option<Simulated>, Problem> {
+        body: bool,
+        palms: bool,
+    ) -> Result<Option<(f64, usize)>, Problem> {
         let given = [
             ("duration", duration.is_some()),
             ("samples", samples.is_some()),
             ("rate", rate.is_some()),
-            ("body", body.is_some()),
-            ("palms", palms.is_some()),
+            ("body", body),
+            ("palms", palms),
         ];
         let Some((first, _)) = given.into_iter().find(|(_, there)| *there) else { return Ok(None) };
         let beside = |missing: &str, example: &str| {
@@ -77,10 +134,70 @@ impl Checks<'_> {
                 (periods / rate, periods as usize + 1)
             }
         };
+        Ok(Some((duration, samples)))
+    }
+
+    /// A body between palms: both have to be there.
+    pub(super) fn held(
+        &self,
+        (duration, samples): (f64, usize),
+        body: Option<Body>,
+        palms: Option<PalmsKeys>,
+    ) -> Result<Simulated, Problem> {
+        let beside = |missing: &str, example: &str| {
+            self.wrong_key(
+                "duration",
+                format!("'duration' is given without {missing}"),
+                format!(
+                    "add, for instance: {example}; or [start], for a system that moves by its own equations"
+                ),
+            )
+        };
         let body = body.ok_or_else(|| beside("[body]", "[body] with shape and mass"))?;
         self.body(&body)?;
         let palms = palms.ok_or_else(|| beside("[palms]", "[palms] with inertia and prescribed"))?;
-        Ok(Some(Simulated { duration, samples, body, palms: self.palms(palms)? }))
+        Ok(Simulated { duration, samples, body, palms: self.palms(palms)? })
+    }
+
+    /// A system that moves by its own equations, if anything is said of one.
+    pub(super) fn system(
+        &self,
+        span: Option<(f64, usize)>,
+        start: Option<BTreeMap<String, f64>>,
+        inputs: Option<BTreeMap<String, String>>,
+        has_palms: bool,
+    ) -> Result<Option<SimulatedSystem>, Problem> {
+        let Some(start) = start else {
+            let Some(inputs) = inputs else { return Ok(None) };
+            let help = match inputs.is_empty() {
+                true => "leave it out",
+                false => {
+                    "add [start] with a value for each state; or leave it out, and name the columns of the inputs under [observer]"
+                }
+            };
+            return Err(self.wrong_key("inputs", "'inputs' is given without [start]", help));
+        };
+        if has_palms {
+            let message = "both a body between palms and a system with [start] are described";
+            return Err(self.wrong_key("start", message, "leave one out"));
+        }
+        let Some((duration, samples)) = span else {
+            let message = "'start' is given without 'duration'";
+            return Err(self.wrong_key(
+                "start",
+                message,
+                "add, for instance: duration = 10 and samples = 201",
+            ));
+        };
+        for (name, value) in &start {
+            self.finite(&format!("start.{name}"), *value)?;
+        }
+        let inputs = inputs.unwrap_or_default();
+        if let Some(name) = start.keys().find(|name| inputs.contains_key(*name)) {
+            let message = format!("'{name}' has a value and a function of time");
+            return Err(self.wrong_key(&format!("inputs.{name}"), message, "leave one out"));
+        }
+        Ok(Some(SimulatedSystem { duration, samples, start, inputs }))
     }
 
     fn body(&self, body: &Body) -> Result<(), Problem> {

@@ -1,0 +1,361 @@
+//! The observer that needs no guess near the truth: multiple shooting from several places of the sample box, and all that fits.
+//!
+//! A window is cut into segments (`nodes`), whose states are sought with joints that stiffen (`stiff_joints`): from the guess, and from
+//! states drawn from the model's sample box, whose ranges bound the search and not the answer. What they come to is where the region of
+//! trust begins on the whole window, and its update is the answer, with its bound and its test of fit. Where several states fit as well, all are
+//! given: the outputs do not tell them apart, as where they leave a mirror image.
+
+use super::nodes::{Bounds, Nodes, Segments};
+use super::stiff_joints::{Found, seek};
+use super::task::{Observer, Task, Track, Update, UpdateEnd};
+use super::trace::{is_asked, suspects};
+use super::{MovingWindow, WindowSearch};
+use crate::number::rational_to_f64;
+use nalgebra::DVector;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use serde::Deserialize;
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+use std::time::Instant;
+
+/// Segments and starts of multiple shooting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Shooting {
+    /// Segments of a window, at most; no segment is shorter than from one sample to the next.
+    pub segments: usize,
+    /// How often it starts: from the guess and from states of the sample box, from each with signs kept and without.
+    pub starts: usize,
+}
+
+impl Default for Shooting {
+    fn default() -> Self {
+        Shooting { segments: 24, starts: 8 }
+    }
+}
+
+/// The observer by multiple shooting.
+#[derive(Clone, Copy, Debug)]
+pub struct MultipleShooting {
+    /// Windows, and what ends the search on each: by a region of trust, with so many steps at least as [`LAST_STEPS`].
+    pub window: MovingWindow,
+    /// Segments and starts.
+    pub shooting: Shooting,
+}
+
+/// Steps of the region of trust that are allowed at the end of a search.
+pub const LAST_STEPS: u64 = 50;
+
+/// The tolerance of the integration while nodes are sought.
+const TOLERANCE: f64 = 1e-8;
+
+/// Of the states that were found, so many of the best ones that are not one are followed to their end.
+const MOST_ENDS: usize = 4;
+
+/// A mean square of the differences, in units of the spreads, that is enough for a search, beside what noise leaves.
+const ENOUGH: f64 = 1e-8;
+
+/// Two states are one that are no farther apart than this part of the sizes, or than so many of their deviations.
+const SAME: (f64, f64) = (1e-5, 6.0);
+
+impl MultipleShooting {
+    /// Windows of so many samples, with the segments and starts that are taken where nothing else is said.
+    pub fn new(window: usize) -> MultipleShooting {
+        MultipleShooting { window: MovingWindow::new(window), shooting: Shooting::default() }
+    }
+
+    fn ending(&self) -> MovingWindow {
+        let steps = self.window.steps.max(LAST_STEPS);
+        MovingWindow { method: WindowSearch::TrustRegion, steps, ..self.window }
+    }
+
+    /// The end of a search, on the whole window: by a region of trust, and along a valley that bends, where that takes all its steps, by
+    /// Newton's method, whose second derivatives know how it bends.
+    fn end(&self, task: &Task<'_>, state: &[f64], rows: &Range<usize>, clamped: &[usize]) -> Update {
+        let ending = self.ending();
+        let update = ending.update(task, state, rows, clamped);
+        if update.end != UpdateEnd::StepsSpent {
+            return update;
+        }
+        let newton = MovingWindow { method: WindowSearch::Newton, ..ending };
+        let again = newton.update(task, &update.estimate, rows, clamped);
+        match again.cost <= update.cost {
+            true => Update {
+                steps: update.steps + again.steps,
+                troubled: update.troubled + again.troubled,
+                seconds: update.seconds + again.seconds,
+                ..again
+            },
+            false => update,
+        }
+    }
+
+    /// What explains the rows: the best state first, then others that fit as well.
+    pub fn solutions(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &Range<usize>,
+        clamped: &[usize],
+    ) -> Vec<Update> {
+        let begin = Instant::now();
+        let segments = self.segments(task, belief, rows, clamped);
+        if segments.moving.is_empty() {
+            return vec![self.end(task, belief, rows, clamped)];
+        }
+        let bounds = [true, false].map(|are_signs_kept| bounds(task, are_signs_kept));
+        let spreads = segments.spread.iter().map(|spread| (task.sigma / spread).powi(2));
+        let enough = ENOUGH + 2.0 * spreads.fold(0.0, f64::max);
+        let one = |start: usize| {
+            let bounds = &bounds[start % 2];
+            let nodes = first_nodes(task, &segments, bounds, (belief, rows, clamped), start / 2);
+            seek(&segments, nodes, bounds, enough, &|| task.interrupted()).ok()
+        };
+        let found: Vec<Option<Found>> = (0..self.shooting.starts.max(1)).into_par_iter().map(one).collect();
+        let mut found: Vec<Found> = found.into_iter().flatten().collect();
+        found.sort_by(|a, b| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
+        let mut updates: Vec<Update> = Vec::new();
+        let mut tried: Vec<Vec<f64>> = Vec::new();
+        for found in found {
+            if tried.len() >= MOST_ENDS || (task.interrupted() && !updates.is_empty()) {
+                break;
+            }
+            let state = segments.state(&found.nodes, 0)[..task.estimated()].to_vec();
+            if tried.iter().any(|other| is_near(task, other, &state, &[], 1e-3)) {
+                continue;
+            }
+            let mut update = self.end(task, &state, rows, clamped);
+            tried.push(state);
+            update.steps += found.steps;
+            update.troubled += found.refused;
+            let near = |other: &Update| {
+                let deviations: Vec<f64> =
+                    other.deviations.iter().zip(&update.deviations).map(|(a, b)| a + b).collect();
+                is_near(task, &other.estimate, &update.estimate, &deviations, SAME.0)
+            };
+            if !updates.iter().any(near) {
+                updates.push(update);
+            }
+        }
+        if !updates.iter().any(Update::is_borne_out) {
+            updates.push(self.end(task, belief, rows, clamped));
+        }
+        let mut updates = best_first(task, updates);
+        if let Some(update) = updates.first_mut() {
+            update.seconds = begin.elapsed().as_secs_f64();
+        }
+        updates
+    }
+
+    fn segments<'t>(
+        &self,
+        task: &'t Task<'_>,
+        belief: &[f64],
+        rows: &Range<usize>,
+        clamped: &[usize],
+    ) -> Segments<'t> {
+        let (model, times) = (&task.full, task.signals.times());
+        let base = task.full_state(belief, rows.start);
+        let at_rest = |place: &usize| model.is_at_rest(*place);
+        let free: Vec<usize> =
+            (0..base.len()).filter(|place| !clamped.contains(place) || !at_rest(place)).collect();
+        let (constant, moving) = free.into_iter().partition(at_rest);
+        let read: Vec<Vec<f64>> = rows.clone().map(|row| task.readings(row)).collect();
+        let spread_of = |values: Vec<f64>| {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let least = (1e-6 * low.abs().max(high.abs())).max(task.sigma);
+            ((high - low) / 2.0).max(least)
+        };
+        let spread =
+            (0..model.outputs.len()).map(|output| spread_of(read.iter().map(|row| row[output]).collect()));
+        let size = |place: usize| {
+            let own = task.sizes.get(place).copied();
+            let sampled = range(task, place).map(|([low, high], _)| (high - low) / 2.0);
+            let column = || {
+                let column = task.signals.column(model.column_of(place)?);
+                Some(spread_of(column[rows.clone()].to_vec()))
+            };
+            // what is read may go far beyond where it begins
+            let size = sampled.or(own).unwrap_or(0.0).max(column().unwrap_or(0.0));
+            if size > 0.0 { size } else { 1.0 }
+        };
+        let steps = rows.len() - 1;
+        let count = self.shooting.segments.clamp(1, steps.max(1));
+        let joint = |i: usize| steps * i / count;
+        Segments {
+            flow: super::ModelFlow { tolerance: TOLERANCE.max(task.tolerance), ..task.full_flow() },
+            times: &times[rows.clone()],
+            spread: spread.collect(),
+            measured: read,
+            rows: (0..count).map(|i| joint(i)..joint(i + 1) + 1).collect(),
+            moving,
+            constant,
+            sizes: (0..base.len()).map(size).collect(),
+            base,
+        }
+    }
+}
+
+/// The range from which a state is drawn, and whether the file says it; none where there is no such state.
+fn range(task: &Task<'_>, place: usize) -> Option<([f64; 2], bool)> {
+    let system = &task.source.0;
+    let symbol = system.find_symbol(task.full.states.get(place)?)?;
+    let own = system.symbol_info(symbol)?.range.clone();
+    let is_own = own.is_some();
+    let range = own.or_else(|| system.default_range(symbol))?;
+    Some(([&range.low, &range.high].map(rational_to_f64), is_own))
+}
+
+fn is_angle(task: &Task<'_>, place: usize) -> bool {
+    let system = &task.source.0;
+    let symbol = task.full.states.get(place).and_then(|name| system.find_symbol(name));
+    symbol.is_some_and(|symbol| system.is_angle(symbol))
+}
+
+/// Within what states are sought: at first within the ranges of the file, wider by their own width to both sides, later anywhere; where signs are
+/// kept, on the same side of zero all the time. Ranges say where states begin, and a motion may leave them and change sign: one half of the
+/// starts keeps signs, the other does not. Whole turns are no bound.
+fn bounds(task: &Task<'_>, are_signs_kept: bool) -> Bounds {
+    let one = |place: usize| {
+        let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
+        let Some(([low, high], true)) = range(task, place).filter(|_| !is_angle(task, place)) else {
+            return (anywhere, anywhere);
+        };
+        let width = high - low;
+        let (mut first, mut later) = ([low - width, high + width], anywhere);
+        if are_signs_kept && low >= 0.0 {
+            (first[0], later[0]) = (low / 100.0, low.min(width) / 100.0);
+        }
+        if are_signs_kept && high <= 0.0 {
+            (first[1], later[1]) = (high / 100.0, high.max(-width) / 100.0);
+        }
+        (first, later)
+    };
+    let (first, later) = (0..task.full.states.len()).map(one).unzip();
+    Bounds { first, later }
+}
+
+/// Where a start begins: from the guess, or from a state of the sample box; what is read is taken as it is read.
+fn first_nodes(
+    task: &Task<'_>,
+    segments: &Segments<'_>,
+    bounds: &Bounds,
+    (belief, rows, clamped): (&[f64], &Range<usize>, &[usize]),
+    start: usize,
+) -> Nodes {
+    let mut random = ChaCha8Rng::seed_from_u64(start as u64);
+    let mut state = task.full_state(belief, rows.start);
+    for (place, value) in state.iter_mut().enumerate() {
+        let part = random.random::<f64>();
+        if start > 0
+            && place < task.estimated()
+            && !clamped.contains(&place)
+            && let Some(([low, high], _)) = range(task, place)
+        {
+            *value = low + part * (high - low);
+        }
+    }
+    let node = |(node, segment): (usize, &Range<usize>)| {
+        let row = rows.start + segment.start;
+        let value = |place: &usize| match task.full.column_of(*place) {
+            Some(column) => task.signals.column(column)[row],
+            None => state[*place],
+        };
+        let values = segments.moving.iter().map(|place| bounds.within(node, *place, value(place)));
+        DVector::from_iterator(segments.moving.len(), values)
+    };
+    let constant = segments.constant.iter().map(|place| bounds.within(0, *place, state[*place]));
+    Nodes {
+        moving: segments.rows.iter().enumerate().map(node).collect(),
+        constant: DVector::from_iterator(segments.constant.len(), constant),
+    }
+}
+
+/// Whether two states are one: within a part of the sizes, or some deviations; angles but for whole turns.
+fn is_near(task: &Task<'_>, a: &[f64], b: &[f64], deviations: &[f64], part: f64) -> bool {
+    (0..a.len()).all(|i| {
+        let apart = a[i] - b[i];
+        let apart = if is_angle(task, i) { (apart + PI).rem_euclid(TAU) - PI } else { apart };
+        let deviation = deviations.get(i).copied().unwrap_or(0.0);
+        let room = part * task.sizes[i] + if deviation.is_finite() { SAME.1 * deviation } else { 0.0 };
+        apart.abs() <= room
+    })
+}
+
+/// How far a state lies outside of the sample box, in widths of it.
+fn outside(task: &Task<'_>, update: &Update) -> f64 {
+    let one = |(place, value): (usize, &f64)| match range(task, place).filter(|_| !is_angle(task, place)) {
+        Some(([low, high], true)) => {
+            let deviation =
+                update.deviations.get(place).copied().filter(|own| own.is_finite()).unwrap_or(0.0);
+            let room = SAME.1 * deviation + SAME.0 * (high - low);
+            ((low - value).max(value - high) - room).max(0.0) / (high - low)
+        }
+        _ => 0.0,
+    };
+    update.estimate.iter().enumerate().map(one).fold(0.0, f64::max)
+}
+
+/// What fits first, of it what lies in the sample box; by the least error. What fits outside of the box is given only where nothing
+/// fits inside, and what does not fit only where nothing does.
+fn best_first(task: &Task<'_>, mut updates: Vec<Update>) -> Vec<Update> {
+    let key = |update: &Update| {
+        let is_out = outside(task, update) > 0.0;
+        let standing = match update.end {
+            _ if update.is_borne_out() => 0,
+            UpdateEnd::DoesNotFit | UpdateEnd::Stuck | UpdateEnd::Converged => 1,
+            UpdateEnd::StepsSpent => 2,
+            UpdateEnd::Blind { .. } => 3,
+            UpdateEnd::Lost(_) => 4,
+        };
+        (standing, is_out)
+    };
+    updates.sort_by(|a, b| key(a).cmp(&key(b)).then(a.cost.total_cmp(&b.cost)));
+    let Some(best) = updates.first().map(key) else { return updates };
+    updates.retain(|update| key(update) == best);
+    if best.0 > 0 {
+        updates.truncate(1);
+    }
+    updates
+}
+
+impl Observer for MultipleShooting {
+    fn observe(&self, task: &Task<'_>) -> Track {
+        let mut track = Track::default();
+        let ending = self.ending();
+        let samples = task.signals.times().len();
+        let mut belief = task.guess.clone();
+        let mut are_suspects_known = false;
+        let (mut row, mut sees) = (0, true);
+        while row + 1 < samples && !task.interrupted() {
+            let rows = row..(row + ending.window.max(2)).min(samples - 1) + 1;
+            let clamped: &[usize] = if row == 0 { &task.clamped } else { &[] };
+            let mut start = task.full_state(&belief, row);
+            if rows.len() >= ending.window.min(samples) {
+                // what was learned is where the next window begins; it starts anew where that does not fit
+                let inherited = (row > 0 && sees).then(|| ending.update(task, &belief, &rows, clamped));
+                let mut found = match inherited.filter(Update::is_borne_out) {
+                    Some(update) => vec![update],
+                    None => self.solutions(task, &belief, &rows, clamped),
+                };
+                let mut update = found.remove(0);
+                if !are_suspects_known && is_asked(&update) {
+                    let window = MovingWindow::window(task, &belief, &rows, clamped);
+                    update.suspects = suspects(task, &window, &update, ending.alarm(task));
+                    are_suspects_known = true;
+                }
+                sees = !matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
+                belief.clone_from(&update.estimate);
+                start = [&update.estimate[..], &update.outputs].concat();
+                track.updates.push(update);
+                track.others.extend(found);
+            }
+            belief = ending.follow(task, &start, &rows, sees, &mut track);
+            row = rows.end - 1;
+        }
+        track
+    }
+}
