@@ -2,8 +2,8 @@
 //!
 //! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
 //! from a TOML file and checked value by value. A [`Simulation`] moves its body, a [`SystemMotion`] any other system by its own equations; an
-//! [`Experiment`] is a scene with its readings, and
-//! runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`], [`basins`]); a [`Reconstruction`] is the shape that all of it tells.
+//! [`Experiment`] is a scene with its readings, and runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`],
+//! [`basins`]); a [`Reconstruction`] is the shape that all of it tells.
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 

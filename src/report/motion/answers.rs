@@ -200,12 +200,12 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
             "draws": simulation.draws,
         });
     }
-    if let Some(shape) = shape_json(observed) {
-        found["shape"] = shape;
-    }
     if let Some(motion) = &experiment.motion {
         let ended = motion.ended().map_or_else(|| "completed".to_owned(), |lost| format!("ended {lost}"));
         found["simulation"] = json!({ "ended": ended });
+    }
+    if let Some(shape) = shape_json(observed) {
+        found["shape"] = shape;
     }
     if !observed.noise.is_empty() {
         let names = experiment.names();
