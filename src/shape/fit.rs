@@ -4,8 +4,8 @@
 //!
 //! `r + r''` is not negative, so that none of its Fourier coefficients is larger than twice its mean, which is that of `r`: a body of the mean radius
 //! `a_0` has `|a_k|, |b_k| <= 2 a_0/(k^2 - 1)`, and `<= 2 a_0` for `k = 1`, since its point of reference lies inside. The fit takes these bounds for standard
-//! deviations of the coefficients about zero. That is all the regularisation there is. Where normals were touched it moves nothing that the samples tell; where they were not, the
-//! band is as wide as convexity leaves it, instead of infinite.
+//! deviations of the coefficients about zero. That is all the regularisation there is. Where normals were touched it moves nothing that the samples tell; where they were not, it keeps
+//! the deviations of the coefficients finite. What the band is in a gap says [`ShapeEstimate::band`], without it.
 
 use super::{ShapeEstimate, SupportSeries};
 use nalgebra::{DMatrix, DVector};
