@@ -169,6 +169,7 @@ fn every_key_arrives_where_it_belongs() {
         blind: 0.5,
         kalman: Kalman { prior: 0.2, ..Kalman::default() },
         high_gain: HighGain { gain: 30.0 },
+        shooting: Default::default(),
     };
     assert_eq!(scene.observer, observer);
     assert_eq!(scene.study.noise, Some(NoiseStudy { levels: vec![1e-5, 1e-4], seeds: 500 }));
