@@ -11,6 +11,7 @@ mod random;
 mod recorded;
 mod recovered;
 mod refused;
+mod systems;
 mod witness;
 mod wrong;
 
