@@ -20,16 +20,19 @@ fn main() {
     println!(
         "noise, of the size   scenes   blind   arrived of those that see   microseconds: median, nine of ten"
     );
-    for noise in [0.0, 1e-3] {
-        row(noise, count as usize, seed);
+    for is_circular in [false, true] {
+        println!("{} palms", if is_circular { "circular" } else { "flat" });
+        for noise in [0.0, 1e-3] {
+            row(noise, count as usize, seed, is_circular);
+        }
     }
 }
 
-fn row(noise: f64, count: usize, seed: u64) {
+fn row(noise: f64, count: usize, seed: u64, is_circular: bool) {
     let mut draws = scenes::Draws::new(seed);
     let (mut held, mut blind, mut arrived, mut times, mut missed) = (0, 0, 0, Vec::new(), Vec::new());
     while held < count {
-        let text = scenes::drawn(&mut draws, held % 4, noise, "proofs/moll2002/general.proof");
+        let text = scenes::drawn(&mut draws, held % 4, noise, is_circular);
         let Some(experiment) = experiment(&text) else { continue };
         held += 1;
         let truth = experiment.truth_at(0.0).expect("a simulation has a truth");

@@ -2,8 +2,9 @@
 //!
 //! A body between half a metre and two metres in size whose support function has three harmonics (up to a tenth, a twenty-fifth and a fiftieth of its mean),
 //! a mass of 0.5 to 2 kg, any orientation, a rate of up to 3 rad/s either way. Palm 1 stands at 0.2 to 1.2 rad, palm 2 at 1 to 2.2 rad from it. The four regimes
-//! come in turn: both palms at one rate, palm 2 alone, both fixed (rates of up to 1 rad/s), both swinging. 81 samples over 0.28 s, which is a
-//! window of the thesis. Scenes that are not held by both palms all that time are drawn anew.
+//! come in turn: both palms at one rate, palm 2 alone, both fixed (rates of up to 1 rad/s), both swinging. Circular palms are hollow or bulging, with
+//! radii of 2 to 8 of the body's size. 81 samples over 0.28 s, which is a window of the thesis. Scenes that are not held by both palms all that time are
+//! drawn anew.
 
 use std::f64::consts::TAU;
 
@@ -31,8 +32,9 @@ impl Draws {
     }
 }
 
-/// The text of a scene of a regime, 0 to 3; `model` is the path of its proof file.
-pub fn drawn(draws: &mut Draws, regime: usize, noise: f64, model: &str) -> String {
+/// The text of a scene of a regime, 0 to 3, between flat or circular palms.
+pub fn drawn(draws: &mut Draws, regime: usize, noise: f64, is_circular: bool) -> String {
+    let model = if is_circular { "constraint/circular_palms" } else { "general" };
     let size = draws.between(0.5, 2.0);
     let mut harmonic = |most: f64| [0, 1].map(|_| size * draws.between(-most, most));
     let harmonics = [[0.0; 2], harmonic(0.1), harmonic(0.04), harmonic(0.02)];
@@ -47,15 +49,25 @@ pub fn drawn(draws: &mut Draws, regime: usize, noise: f64, model: &str) -> Strin
         2 => ["rate = 0.0".to_owned(), "rate = 0.0".to_owned()],
         _ => [0, 1].map(|palm| format!("rate = {:?}, {}", rates[palm], draws.swing())),
     };
+    let radii = match is_circular {
+        false => String::new(),
+        true => {
+            let mut radius = || {
+                let side = if draws.between(-1.0, 1.0) > 0.0 { 1.0 } else { -1.0 };
+                side * size * draws.between(2.0, 8.0)
+            };
+            format!("radii = [{:?}, {:?}]\n", radius(), radius())
+        }
+    };
     let sensor = match noise {
         0.0 => String::new(),
         noise => format!("[sensor]\nnoise = {:?}\n", noise * size),
     };
     format!(
-        "title = \"A drawn scene\"\nmodel = \"{model}\"\nduration = 0.28\nsamples = 81\n\
+        "title = \"A drawn scene\"\nmodel = \"proofs/moll2002/{model}.proof\"\nduration = 0.28\nsamples = 81\n\
          [body]\nshape = {{ kind = \"harmonics\", mean = {size:?}, harmonics = {harmonics:?} }}\n\
          mass = {mass:?}\norientation = {orientation:?}\nrate = {rate:?}\n\
-         [palms]\ninertia = {inertia:?}\nprescribed = [{{ start = {first:?}, {} }}, {{ start = {second:?}, {} }}]\n\
+         [palms]\n{radii}inertia = {inertia:?}\nprescribed = [{{ start = {first:?}, {} }}, {{ start = {second:?}, {} }}]\n\
          {sensor}[observer]\nmethods = [\"trust-region\"]\ninputs = {{ g1 = \"tau1\", g2 = \"tau2\" }}\n\
          estimate = [\"r1\", \"r2\", \"omega0\", \"rho\"]\nguess_off = 0.0\nwindow = 80\nsteps = 50\n",
         moving[0], moving[1]

@@ -4,7 +4,8 @@ import os
 import re
 from fractions import Fraction
 
-from .values import Dual, NotRead, Turn, apply, determinant, each, inverse, invert, matrix, number, raised, refuse, times, total
+from .values import (Dual, NotRead, Row, Turn, apply, determinant, each, inverse, invert, matrix, number, raised, refuse, times,
+                     total)
 
 NAME = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*'*")
 SPACE = re.compile(r"(?:\s+|#[^\n]*)*")
@@ -52,8 +53,14 @@ def lie(rates, of):
 
 
 def slopes(of, columns):
-    """The row of derivatives by some symbols."""
-    return lambda at: [number(lie({column: lambda at: Fraction(1)}, of)(at)) for column in columns]
+    """The rows of derivatives by some symbols, of a number or of each entry of a column."""
+    units = [[Fraction(i == j) for j in range(len(columns))] for i in range(len(columns))]
+    rates = {column: lambda at, unit=unit: Row(unit) for column, unit in zip(columns, units)}
+
+    def derivatives(at):
+        found = [row[0] for row in matrix(lie(rates, of)(at))]
+        return [row.entries if isinstance(row, Row) else [Fraction(0)] * len(columns) for row in found]
+    return derivatives
 
 
 class ProofFile:
@@ -430,12 +437,7 @@ class ProofFile:
             return lambda at: [[number(rates[column](at)) if column in rates else Fraction(0)] for column in columns]
         arguments = [self.sum()]
         if name == "d":
-            of, columns = arguments[0], self.by() or self.columns()
-
-            def differential(at):
-                found = [matrix(lie({column: lambda at: Fraction(1)}, of)(at)) for column in columns]
-                return [[by[row][0] for by in found] for row in range(len(found[0]))]
-            return differential
+            return slopes(arguments[0], self.by() or self.columns())
         while self.take(","):
             arguments.append(self.sum())
         self.need(")")

@@ -20,6 +20,7 @@ from .values import Arc, NotRead, Residue, apply, determinant, matrix, number, r
 
 PRIMES = [(1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1]
 POINTS, TRIES, WORDS = 4, 60, 150  # points that are compared; draws; words of a rank
+WORK = 5_000  # evaluations of a word that a derivative of words may take
 HOLDS = {"=": lambda s: s == 0, "!=": lambda s: s != 0, "<": lambda s: s < 0, "<=": lambda s: s <= 0, ">": lambda s: s > 0,
          ">=": lambda s: s >= 0}
 
@@ -189,13 +190,16 @@ def claimed_rank(system, statement, evidence, seed):
             return rank_of(of(at))
         rows, words, rank, columns = [], list(system.outputs), -1, system.columns()
         for order in range(len(columns) + 1):
-            rows += [slopes(word, columns)(at) for word in words]
+            rows += [slopes(word, columns)(at)[0] for word in words]
             before, rank = rank, rank_of(rows)
             if rank == len(columns) or rank == before and (order > len(conditions) + 1 or not conditions):
                 return rank
             words = [lie(system.fields[field], word) for word in words for field, _ in system.moving]
             if len(words) + len(rows) > WORDS:
                 refuse(f"more than {WORDS} words")
+            # a derivative along a field is taken of the one before anew
+            if len(words) * 2 ** order * len(columns) > WORK:
+                refuse(f"derivatives of order {order + 1} take too long here")
         return rank
     ranks = compared(system, conditions, seed, rank_here)
     if (max(ranks) == claimed) != (evidence["word"] == "proved"):
@@ -210,7 +214,7 @@ def certified_rank(system, evidence):
         if len(set(rows)) != state["rank"] or len(set(columns)) != state["rank"]:
             raise Doubt(f"state {place} has no minor of its rank")
         names = [evidence["columns"][column] for column in columns]
-        if rows and sign(determinant([slopes(words[row], names)(at) for row in rows])) == 0:
+        if rows and sign(determinant([slopes(words[row], names)(at)[0] for row in rows])) == 0:
             raise Doubt(f"the minor of state {place} is zero")
     return "confirmed", f"the rank is no less at {len(evidence['states'])} states"
 

@@ -217,7 +217,7 @@ class Dual(Number):
 
     def inverse(self):
         one = invert(self.value)
-        return Dual(self.level, one, -(one * one) * self.slope)
+        return Dual(self.level, one, self.slope * -(one * one))
 
     def function(self, name):
         x, one = self.value, Fraction(1)
@@ -225,7 +225,19 @@ class Dual(Number):
         slope = {"sin": lambda: apply("cos", x), "cos": lambda: -apply("sin", x), "exp": lambda: own, "log": lambda: invert(x),
                  "sqrt": lambda: invert(Fraction(2) * own), "atan": lambda: invert(one + x * x),
                  "asin": lambda: invert(apply("sqrt", one - x * x)), "acos": lambda: -invert(apply("sqrt", one - x * x))}[name]
-        return Dual(self.level, own, slope() * self.slope)
+        return Dual(self.level, own, self.slope * slope())
+
+
+class Row(Number):
+    """Derivatives by several symbols: what a dual number has in place of one slope. It stands on the left of what it is multiplied by."""
+
+    def __init__(self, entries): self.entries = entries
+
+    def plus(self, other):
+        return Row([x + y for x, y in zip(self.entries, other.entries)]) if isinstance(other, Row) else self
+
+    def times(self, other):
+        return Row([x if isinstance(x, Fraction) and x == 0 else x * other for x in self.entries])
 
 
 def refuse(why):

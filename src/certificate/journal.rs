@@ -9,31 +9,16 @@ use super::boxes::{DEEPEST, Side, Volume};
 use super::progress::{Progress, Searches};
 use super::region::Region;
 use super::search::{Cell, ProvedCell, Search, Turn};
+use crate::file::Checksum;
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write;
 
 const FORMAT: &str = "palmistry region 1";
 
-/// The 64-bit hash of Fowler, Noll and Vo (variant 1a): the same everywhere and for ever.
-#[derive(Clone, Copy)]
-struct Hash(u64);
-
-impl Hash {
-    fn new() -> Self {
-        Hash(0xcbf2_9ce4_8422_2325)
-    }
-
-    fn add(&mut self, text: &str) {
-        for byte in text.bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-}
-
 impl Region {
     /// What the boxes mean: all sides, tapes and lists, to the last bit.
-    fn fingerprint(&self) -> u64 {
-        let mut hash = Hash::new();
+    pub(super) fn fingerprint(&self) -> u64 {
+        let mut hash = Checksum::new();
         hash.add(env!("CARGO_PKG_VERSION"));
         let problem = &self.problem;
         hash.add(&format!(
@@ -56,7 +41,7 @@ impl Region {
             hash.add(&format!("{:?} {:?} {:?}", part.guards, part.common, part.alternatives));
         }
         hash.add(&format!("{:?}", self.map));
-        hash.0
+        hash.value()
     }
 
     /// Where the search stands, as text.
@@ -70,40 +55,8 @@ impl Region {
         for point in &searches.curve {
             let _ = writeln!(text, "curve {} {} {}", point.boxes, point.seconds, point.proved);
         }
-        for search in &searches.searches {
-            let _ = write!(text, "part {} proved", search.boxes);
-            for count in search.proved.counts() {
-                let _ = write!(text, " {count}");
-            }
-            text.push('\n');
-            for [x, y] in &search.sections {
-                let _ = writeln!(text, "section {}/{} {}/{}", x.index, x.depth, y.index, y.depth);
-            }
-            for cell in &search.kept {
-                let _ = match cell.minor {
-                    Some(minor) => write!(text, "box {minor}"),
-                    None => write!(text, "box -"),
-                };
-                for side in &cell.sides {
-                    let _ = write!(text, " {}/{}", side.index, side.depth);
-                }
-                text.push('\n');
-            }
-            for (word, cells) in [("left", search.left.iter().collect::<Vec<_>>()), ("open", open(search))] {
-                for cell in cells {
-                    let _ = write!(text, "{word} {:x}", cell.known);
-                    for side in &cell.sides {
-                        let _ = write!(text, " {}/{}", side.index, side.depth);
-                    }
-                    text.push('\n');
-                }
-            }
-        }
-        let mut hash = Hash::new();
-        hash.add(&text);
-        let lines = text.lines().count();
-        let _ = writeln!(text, "end {lines} {:016x}", hash.0);
-        text
+        write_boxes(searches, &mut text);
+        sealed(text)
     }
 
     /// Takes up a search where a text says that it stood.
@@ -111,32 +64,11 @@ impl Region {
     /// # Errors
     /// In words: the text is no saved search, is damaged, or belongs to another question.
     pub fn resume(&mut self, text: &str) -> Result<(), String> {
-        if text.lines().next() != Some(FORMAT) {
-            return Err("this is no saved search of 'certify' (its first line is another)".to_owned());
-        }
-        let damaged =
-            |line: usize| format!("the saved search is damaged at line {line}: it was cut or changed");
-        let body = text.trim_end_matches('\n');
-        let (body, end) = body.rsplit_once('\n').ok_or_else(|| damaged(1))?;
-        let body = &text[..body.len() + 1];
-        let lines = body.lines().count();
-        let mut hash = Hash::new();
-        hash.add(body);
-        if end != format!("end {lines} {:016x}", hash.0) {
-            return Err(damaged(lines + 1));
-        }
+        let body = unsealed(text, FORMAT)?;
         if body.lines().nth(1) != Some(format!("question {:016x}", self.fingerprint()).as_str()) {
-            return Err(
-                "the saved search belongs to another question: another file, box, choice of rows or map, \
-                        or another version of this program"
-                    .to_owned(),
-            );
+            return Err(OTHER_QUESTION.to_owned());
         }
-        let mut reader = Reader { region: self, found: Searches::new(&[]) };
-        for (number, line) in body.lines().enumerate().skip(2) {
-            reader.line(line).ok_or_else(|| damaged(number + 1))?;
-        }
-        let found = reader.found;
+        let found = self.read_lines(body, 2)?;
         let fits = found.searches.len() == self.searches.searches.len()
             && found.turn.is_none_or(|(part, _)| part < found.searches.len())
             && found.searches.iter().all(fills_the_box);
@@ -146,9 +78,80 @@ impl Region {
         self.searches = found;
         Ok(())
     }
+
+    /// What the lines of a text say, but for the first of them.
+    pub(super) fn read_lines(&self, body: &str, after: usize) -> Result<Searches, String> {
+        let mut reader = Reader { region: self, found: Searches::new(&[]) };
+        for (number, line) in body.lines().enumerate().skip(after) {
+            reader.line(line).ok_or_else(|| damaged(number + 1))?;
+        }
+        Ok(reader.found)
+    }
 }
 
-fn open(search: &Search) -> Vec<&Cell> {
+/// Why a text of this format is refused.
+pub(super) const OTHER_QUESTION: &str = "the saved search belongs to another question: another file, box, choice of rows or map, \
+                                         or another version of this program";
+
+fn damaged(line: usize) -> String {
+    format!("the saved search is damaged at line {line}: it was cut or changed")
+}
+
+/// A text with its number of lines and its checksum.
+pub(super) fn sealed(mut text: String) -> String {
+    let (lines, sum) = (text.lines().count(), Checksum::of(&text));
+    let _ = writeln!(text, "end {lines} {sum:016x}");
+    text
+}
+
+/// A text of a format without these.
+pub(super) fn unsealed<'t>(text: &'t str, format: &str) -> Result<&'t str, String> {
+    if text.lines().next() != Some(format) {
+        return Err("this is no saved search of 'certify' (its first line is another)".to_owned());
+    }
+    let (body, end) = text.trim_end_matches('\n').rsplit_once('\n').ok_or_else(|| damaged(1))?;
+    let body = &text[..body.len() + 1];
+    let lines = body.lines().count();
+    if end != format!("end {lines} {:016x}", Checksum::of(body)) {
+        return Err(damaged(lines + 1));
+    }
+    Ok(body)
+}
+
+/// The boxes of all parts, a line each.
+pub(super) fn write_boxes(searches: &Searches, text: &mut String) {
+    for search in &searches.searches {
+        let _ = write!(text, "part {} proved", search.boxes);
+        for count in search.proved.counts() {
+            let _ = write!(text, " {count}");
+        }
+        text.push('\n');
+        for [x, y] in &search.sections {
+            let _ = writeln!(text, "section {}/{} {}/{}", x.index, x.depth, y.index, y.depth);
+        }
+        for cell in &search.kept {
+            let _ = match cell.minor {
+                Some(minor) => write!(text, "box {minor}"),
+                None => write!(text, "box -"),
+            };
+            for side in &cell.sides {
+                let _ = write!(text, " {}/{}", side.index, side.depth);
+            }
+            text.push('\n');
+        }
+        for (word, cells) in [("left", search.left.iter().collect::<Vec<_>>()), ("open", open(search))] {
+            for cell in cells {
+                let _ = write!(text, "{word} {:x}", cell.known);
+                for side in &cell.sides {
+                    let _ = write!(text, " {}/{}", side.index, side.depth);
+                }
+                text.push('\n');
+            }
+        }
+    }
+}
+
+pub(super) fn open(search: &Search) -> Vec<&Cell> {
     search.open.values().flatten().collect()
 }
 

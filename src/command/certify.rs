@@ -3,12 +3,13 @@
 use super::arguments::number;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::{Files, Form, fraction_bar};
+use super::shards::{NO_WHOLE, Parts, Shards};
 use super::{Status, Unusable};
 use clap::{Args, ValueEnum};
 use dashu::rational::RBig;
 use indicatif::ProgressBar;
 use palmistry::System;
-use palmistry::certificate::{Limits, Progress, Region, RegionAnswer, RegionRows};
+use palmistry::certificate::{Limits, Progress, Region, RegionAnswer, RegionPart, RegionRows};
 use palmistry::evidence::{WrittenBoxes, certificate_file};
 use palmistry::expression::Symbol;
 use palmistry::file::{note, read_text};
@@ -17,6 +18,7 @@ use palmistry::system::Kind;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Proves full rank on boxes of states, and says on which part of the sample box.
@@ -28,7 +30,10 @@ use std::time::Instant;
 /// what the file says to avoid is part of the box, and the fraction is given without it, too.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  palmistry certify proofs/martinelli2005/polar.proof --box r=1/10..10 --budget 30")]
+  palmistry certify proofs/martinelli2005/polar.proof --box r=1/10..10 --budget 30
+  palmistry certify general.proof --boxes 20000 --state open.txt                  a search that has open boxes
+  palmistry certify general.proof --boxes 100000 --state open.txt --shard 3/64 --part parts    a share of them
+  palmistry certify general.proof --state open.txt --merge parts --merged next.txt")]
 pub(crate) struct Certify {
     /// The proof file.
     file: PathBuf,
@@ -55,6 +60,11 @@ pub(crate) struct Certify {
     /// Keep the open boxes in this file, and go on from it if it is there.
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
+    #[command(flatten)]
+    shards: Shards,
+    /// With '--merge': write where the merged search stands to a file, from which '--state' goes on.
+    #[arg(long, value_name = "FILE", requires = "merge")]
+    merged: Option<PathBuf>,
     /// The two coordinates of the map; two that matter if none are named.
     #[arg(long, value_name = "X,Y", value_delimiter = ',')]
     map: Vec<String>,
@@ -124,7 +134,12 @@ impl Certify {
             resume(&mut region, file)?;
         }
         let mut files = Files::default();
-        self.work(&mut region, begin, &mut files);
+        if let Some(status) = self.of_shards(&mut region, begin, &mut files)? {
+            return Ok(status);
+        }
+        if self.shards.merge.is_none() {
+            self.work(&mut region, begin, &mut files);
+        }
         begin_to_tell();
         let answer = region.answer();
         let mut object = region_json(&answer);
@@ -154,13 +169,63 @@ impl Certify {
         files.print(Form::of(self.json), object, in_words, status)
     }
 
-    /// Spends the budget, and keeps the state on the way.
+    /// Does a share of the open boxes, or tells which are missing; where parts are to be merged the region is the merged one.
+    fn of_shards(
+        &self,
+        region: &mut Region,
+        begin: Instant,
+        files: &mut Files,
+    ) -> miette::Result<Option<Status>> {
+        let Shards { shard, part, merge, missing } = &self.shards;
+        if shard.is_none() && merge.is_none() && missing.is_none() {
+            return Ok(None);
+        }
+        if !self.state.as_ref().is_some_and(|file| file.exists()) {
+            return Err(Unusable::report(
+                "the open boxes of a search are dealt out, and '--state' names none",
+                "search for a while with --state FILE first, without --shard",
+            ));
+        }
+        let base = region.standing_sum();
+        let reader = Mutex::new(region);
+        let parts = Parts {
+            kind: "certify",
+            extension: ".part",
+            read: &|text| reader.lock().unwrap_or_else(PoisonError::into_inner).read_part(text),
+            belongs: &|part: &RegionPart| part.is_of(base),
+        };
+        let form = Form::of(self.json);
+        if let Some(missing) = missing {
+            return parts.tell_missing(missing, form).map(Some);
+        }
+        if let Some((shard, folder)) = shard.zip(part.as_ref()) {
+            let work = |files: &mut Files| {
+                let mut region = reader.lock().unwrap_or_else(PoisonError::into_inner);
+                let base = region.take_share(shard.number, shard.of);
+                self.work(&mut region, begin, files);
+                Ok(Some(region.part_text(base, shard.number, shard.of)))
+            };
+            return parts.do_shard(shard, folder, None, form, work).map(Some);
+        }
+        if let Some(folder) = merge {
+            let found = parts.all(folder)?;
+            let region = reader.into_inner().unwrap_or_else(PoisonError::into_inner);
+            region.merge(found).map_err(|why| Unusable::report(why, NO_WHOLE))?;
+            if let Some(file) = &self.merged {
+                files.text(file, &region.saved());
+            }
+        }
+        Ok(None)
+    }
+
+    /// Spends the budget, and keeps the state on the way; not that of a share, whose search begins where the state stands.
     fn work(&self, region: &mut Region, begin: Instant, files: &mut Files) {
         let bar = fraction_bar("proving");
         let mut left = self.boxes;
+        let state = self.state.as_ref().filter(|_| self.shards.shard.is_none());
         while !interrupted() && !region.is_finished() {
             let rest = self.budget - begin.elapsed().as_secs_f64();
-            let slice = if self.state.is_some() { SECONDS_BETWEEN_SAVES } else { f64::INFINITY };
+            let slice = if state.is_some() { SECONDS_BETWEEN_SAVES } else { f64::INFINITY };
             let limits = match left {
                 Some(left) => Limits { seconds: Some(slice), boxes: Some(left) },
                 None => Limits { seconds: Some(rest.min(slice)), boxes: None },
@@ -172,7 +237,7 @@ impl Certify {
             region.run(limits, &INTERRUPTED, &|now| show(&bar, now));
             let done = region.boxes() - before;
             left = left.map(|left| left - done.min(left));
-            if let Some(file) = &self.state {
+            if let Some(file) = state {
                 let mut saved = Files::default();
                 saved.text(file, &region.saved());
                 if !saved.whole() {
@@ -184,7 +249,7 @@ impl Certify {
             }
         }
         bar.finish_and_clear();
-        if let Some(file) = &self.state {
+        if let Some(file) = state {
             files.text(file, &region.saved());
         }
     }

@@ -22,6 +22,7 @@ mod prove;
 mod rank;
 mod recheck;
 mod reparametrise;
+mod shards;
 mod stress;
 mod terminal;
 mod threads;

@@ -6,6 +6,7 @@ use miette::Report;
 use palmistry::observer::Record;
 use palmistry::{ReadError, file};
 use serde_json::{Value, json};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The version of all objects that are printed and written as JSON: another one where a field goes, or means something else. A
@@ -75,6 +76,16 @@ impl Files {
     /// Writes a record, CSV or Parquet by the extension.
     pub fn table(&mut self, path: &Path, table: &Record) {
         self.note(path, table.write(path).map_err(|error| error.to_string()));
+    }
+
+    /// Writes a file as it is found.
+    pub fn table_of(
+        &mut self,
+        path: &Path,
+        fill: impl FnOnce(&mut (dyn Write + Send)) -> std::io::Result<()>,
+    ) {
+        let written = file::write_whole(path, fill);
+        self.note(path, written.map_err(|error| format!("cannot write {}: {error}", path.display())));
     }
 
     fn note(&mut self, path: &Path, written: Result<(), String>) {

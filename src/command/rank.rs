@@ -4,6 +4,7 @@ use super::arguments::{Wanted, assignments};
 use super::interrupt::{INTERRUPTED, begin_to_tell};
 use super::output::{Files, Form, progress};
 use super::reparametrise::reparametrisation;
+use super::shards::{NO_WHOLE, Parts, Shards};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
@@ -11,13 +12,14 @@ use palmistry::drops::where_it_drops;
 use palmistry::evidence::rank_records;
 use palmistry::observability::SOLUTIONS_WORK;
 use palmistry::report::{
-    accessibility_json, accessibility_text, drops_json, drops_page, drops_text, global_json, global_text,
-    rank_json, rank_text,
+    StateTableWriter, TableForm, accessibility_json, accessibility_text, drops_json, drops_page, drops_text,
+    global_json, global_text, rank_json, rank_text,
 };
-use palmistry::sweep::{MOST_DIGITS, answer_rank_at_once};
-use palmistry::{RankQuestion, System, answer_accessibility, answer_rank, answer_solutions};
+use palmistry::sweep::{MOST_DIGITS, RankError, RankPart, RankPreparation, StateRow, StateTable, shard_of};
+use palmistry::{RankQuestion, System, answer_accessibility, answer_solutions};
 use serde_json::json;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// Decides the rank of the observability codistribution at sampled states.
@@ -36,7 +38,9 @@ use std::path::PathBuf;
   palmistry rank mysystem.proof --where-it-drops           the exact set, with a proof that it drops nowhere else
   palmistry rank mysystem.proof --global                   how many values of each unknown give the same outputs
   palmistry rank mysystem.proof --digits 40                the worst state's singular values, all digits certain
-  palmistry rank mysystem.proof --accessible               what the inputs can move, by brackets")]
+  palmistry rank mysystem.proof --accessible               what the inputs can move, by brackets
+  palmistry rank mysystem.proof --samples 1000000 --shard 3/64 --part parts    one of 64 shards, on any machine
+  palmistry rank mysystem.proof --samples 1000000 --merge parts                and the answer of all")]
 pub(crate) struct Rank {
     /// The proof file.
     file: PathBuf,
@@ -76,7 +80,7 @@ pub(crate) struct Rank {
     /// Ask the dual question instead: whether the drift and the inputs can move the state in every direction. That is the rank of
     /// the distribution that they and their brackets span (accessibility), and without the drift itself (strong
     /// accessibility), at almost all states and at the sampled ones. Outputs play no part.
-    #[arg(long, conflicts_with_all = ["digits", "verdicts"])]
+    #[arg(long, conflicts_with_all = ["digits", "verdicts", "shard", "merge", "missing"])]
     accessible: bool,
     /// Write a proof file of the system without what is not seen: its states are the functions that are seen, its claims, which are
     /// proved, that they move as this file says and that the outputs are the same.
@@ -84,7 +88,7 @@ pub(crate) struct Rank {
     reparametrise: Option<PathBuf>,
     /// Instead of sampled states: the sets on which the rank drops, each by its equations, and a proof that off them it is what
     /// it is at almost all states. The parameters may have any values.
-    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts"])]
+    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "shard", "merge", "missing"])]
     where_it_drops: bool,
     /// Write a page with these sets and their proof (index.html), and drops.json, into this folder.
     #[arg(long, value_name = "DIR", requires = "where_it_drops")]
@@ -93,11 +97,23 @@ pub(crate) struct Rank {
     /// observable), finitely many over the complex numbers, or infinitely many. For rational systems, at almost all states, by
     /// Groebner bases at
     /// random points modulo random primes; each number says whether it is proved or computed.
-    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "accessible", "where_it_drops", "reparametrise"])]
+    #[arg(long, conflicts_with_all = ["samples", "order", "at", "conditions", "digits", "verdicts", "accessible", "where_it_drops", "reparametrise", "shard", "merge", "missing"])]
     global: bool,
     /// With '--global': how much work may be done, in products of residues; what takes more is undecided.
     #[arg(long, default_value_t = SOLUTIONS_WORK, value_name = "N", requires = "global")]
     work: u64,
+    /// Write a row for each sampled state to a file, CSV or Parquet by its extension: index, rank, certified, smallest singular value,
+    /// condition. With '--shard' those of its states.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["accessible", "where_it_drops", "global", "merge", "missing"])]
+    table: Option<PathBuf>,
+    /// Add the coordinates of each state to that table, angles in radians.
+    #[arg(long, requires = "table")]
+    coordinates: bool,
+    #[command(flatten)]
+    shards: Shards,
+    /// Tell no times: two runs with one seed then print the same to the last byte, as a merge does, which knows none.
+    #[arg(long)]
+    no_times: bool,
     /// Print one JSON object with 'samples', 'rank_histogram', 'certified', 'seconds' and more.
     #[arg(long)]
     pub json: bool,
@@ -131,12 +147,48 @@ impl Rank {
             return accessible(&mut system, question, &bar, self.json);
         }
         let nothing_asked = self.samples.is_none() && self.order.is_none() && self.verdicts.is_none();
-        let answer_rank = if nothing_asked { answer_rank_at_once } else { answer_rank };
-        let answer = answer_rank(&mut system, question);
+        let asked = RankPreparation::fingerprint(&system, question, nothing_asked);
+        let parts = Parts {
+            kind: "rank",
+            extension: ".json",
+            read: &|text| RankPart::read(text).map_err(|why| why.to_string()),
+            belongs: &|part: &RankPart| part.fingerprint() == asked,
+        };
+        let form = Form::of(self.json);
+        if let Some(missing) = &self.shards.missing {
+            begin_to_tell();
+            return parts.tell_missing(missing, form);
+        }
+        let prepare = |system: &mut System| {
+            let prepared = match nothing_asked {
+                true => RankPreparation::at_once(system, question),
+                false => RankPreparation::new(system, question),
+            };
+            prepared.map_err(|why| Unusable::report(why.to_string(), ""))
+        };
+        if let (Some(shard), Some(folder)) = (self.shards.shard, &self.shards.part) {
+            return parts.do_shard(shard, folder, self.table.as_deref(), form, |files| {
+                let states = shard_of(samples, shard.number, shard.of);
+                bar.set_length(states.end - states.start);
+                let prepared = prepare(&mut system)?;
+                let part = self.sweep(&system, &prepared, states, files)?;
+                bar.finish_and_clear();
+                Ok(part.text())
+            });
+        }
+        let (mut files, prepared) = (Files::default(), prepare(&mut system)?);
+        let parts = match &self.shards.merge {
+            Some(folder) => parts.all(folder)?,
+            None => vec![(String::new(), self.sweep(&system, &prepared, 0..samples, &mut files)?)],
+        };
+        let answer = prepared.answer(&mut system, parts);
         bar.finish_and_clear();
-        let answer = answer.map_err(|why| Unusable::report(why.to_string(), ""))?;
+        let help = if self.shards.merge.is_some() { NO_WHOLE } else { "" };
+        let mut answer = answer.map_err(|why| Unusable::report(why.to_string(), help))?;
+        if self.no_times {
+            answer.forget_times();
+        }
         begin_to_tell();
-        let mut files = Files::default();
         if let Some(path) = &self.verdicts {
             let records = rank_records(&mut system, &answer, &self.conditions);
             let text = records.map_err(|why| why.to_string()).and_then(|records| {
@@ -159,7 +211,49 @@ impl Rank {
         };
         let status =
             if answer.interrupted() || answer.cut_off() { Status::CutOff } else { Status::AsExpected };
-        files.print(Form::of(self.json), object, text, status)
+        files.print(form, object, text, status)
+    }
+
+    /// Looks at some states, and writes the table of them where one is wanted.
+    fn sweep(
+        &self,
+        system: &System,
+        prepared: &RankPreparation<'_>,
+        states: Range<u64>,
+        files: &mut Files,
+    ) -> miette::Result<RankPart> {
+        let unusable = |why: RankError| Unusable::report(why.to_string(), "");
+        let Some(path) = &self.table else { return prepared.sweep(system, states).map_err(unusable) };
+        let form =
+            TableForm::of(path).map_err(|why| Unusable::report(why, "as in --table states.parquet"))?;
+        let coordinates = if self.coordinates { prepared.coordinates() } else { Vec::new() };
+        let names: Vec<String> =
+            coordinates.iter().map(|symbol| system.symbol_name(*symbol).to_owned()).collect();
+        let mut found = None;
+        files.table_of(path, |file| {
+            let mut table = StateTableWriter::new(file, form, prepared.branches(), &names)?;
+            let mut written = Ok(());
+            let mut take = |branch: usize, rows: &[StateRow]| {
+                if written.is_ok() {
+                    written = table.add(branch, rows);
+                }
+            };
+            let sink = &mut StateTable { coordinates, take: &mut take };
+            let part = prepared.sweep_with(system, states.clone(), Some(sink));
+            let is_whole = part.as_ref().is_ok_and(RankPart::is_whole);
+            found = Some(part);
+            written?;
+            if is_whole {
+                table.finish()
+            } else {
+                Err(std::io::Error::other("not all states were looked at"))
+            }
+        });
+        match found {
+            Some(part) => part.map_err(unusable),
+            // the file could not be begun, and the answer does not need it
+            None => prepared.sweep(system, states).map_err(unusable),
+        }
     }
 
     /// How many values of each unknown give the same outputs.

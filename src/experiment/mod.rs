@@ -7,6 +7,7 @@
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 
+mod channels;
 mod columns;
 mod run;
 mod scene;
@@ -26,7 +27,7 @@ pub use run::{Answer, Experiment};
 pub use scene::SceneOutline;
 #[doc(hidden)]
 pub use scene::{BasinStudy, NoiseStudy};
-pub use scene::{Data, Guess, Method, ObserverSettings, Scene, SceneError, Sensor};
+pub use scene::{Channel, Data, Guess, Method, ObserverSettings, Scene, SceneError, Sensor};
 pub use simulation::Simulation;
 #[doc(hidden)]
 pub use study::ARRIVED;

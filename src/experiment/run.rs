@@ -1,5 +1,6 @@
 //! A scene from beginning to end: bodies or a file, what is read of them, and what the observers make of it.
 
+use super::channels;
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{Simulation, TOUCH, body, constants, deviation};
 use super::since::Since;
@@ -9,8 +10,8 @@ use super::unguided::{PalmReadings, Unguided, palm_readings};
 use crate::expression::{NodeId, Symbol};
 use crate::number::rational_to_f64;
 use crate::observer::{
-    EstimateQuestion, Fault, FaultRules, ModelError, MovingWindow, Noise, Observer, Record, RecordError,
-    RecordReading, Signals, Task, Track, WindowSearch,
+    CalibrationKind, EstimateQuestion, Fault, FaultRules, ModelError, MovingWindow, Noise, Observer, Record,
+    RecordError, RecordReading, Signals, Task, Track, WindowSearch,
 };
 use crate::sweep::UNINTERRUPTED;
 use crate::system::{Kind, System, nearest};
@@ -91,7 +92,7 @@ impl Experiment {
         };
         let RecordReading { record, faults, .. } = match (simulated, file) {
             (Some(simulated), _) => {
-                let record = simulated.readings(scene.sensor.noise, scene.sensor.resolution, scene.seed);
+                let record = simulated.read(&scene.sensor, &scene.channels, scene.seed);
                 let place =
                     |error: RecordError| scene.error_at("sensor", error.to_string(), "these readings", "");
                 RecordReading { record: record.map_err(place)?, faults: Vec::new(), left_out: Vec::new() }
@@ -107,15 +108,21 @@ impl Experiment {
                 return Err(scene.error_at("title", "there is nothing to observe", "this scene", help));
             }
         };
-        let since = Since::first(&record);
-        let record = match file {
-            Some(_) => since.count(&scene, record)?,
-            None => record,
+        let (record, origin) = match file {
+            Some(_) => {
+                let since = Since::first(&record);
+                (since.count(&scene, record)?, since.origin)
+            }
+            // simulated times are counted from zero
+            None => (record, 0.0),
         };
-        let origin = since.origin;
         let signals = Signals::of_record(&record);
         let signals =
             signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
+        channels::are_columns(&scene, &signals)?;
+        let signals = channels::corrected(signals, &scene.observer.known).map_err(|error| {
+            scene.error_at("observer.known", error.to_string(), "readings without these", "")
+        })?;
         let question = {
             let truth = |name: &str| match &simulation {
                 Some(simulation) => simulation.truth(name)?.first().copied(),
@@ -123,6 +130,7 @@ impl Experiment {
             };
             estimate_question(&scene, &system, &truth, known, &signals)?
         };
+        channels::are_told(&scene, &system, &question, &signals)?;
         let experiment =
             Experiment { scene, system, simulation, motion, record, origin, faults, signals, question };
         // whether the model can be made at all is better known now
@@ -168,6 +176,7 @@ impl Experiment {
         if !task.exact {
             task.noise = Noise::Stated { normal: sensor.noise, rounding: sensor.resolution };
         }
+        channels::tell(&self.scene, &mut task, self.simulation.is_some(), self.simulated().is_some())?;
         task.timing = self.origin.abs() * f64::EPSILON * self.fastest(&task);
         Ok(task)
     }
@@ -239,7 +248,10 @@ impl Experiment {
     /// The true values of what is sought at a time: none where the readings come from a file, or the time is no sample's.
     pub fn truth_at(&self, time: f64) -> Option<Vec<f64>> {
         let row = self.signals.times().iter().position(|other| *other == time)?;
-        self.names().iter().map(|name| self.truth(name)?.get(row).copied()).collect()
+        let truth =
+            |name: &&str| channels::truth(&self.scene, name).or_else(|| self.truth(name)?.get(row).copied());
+        self.simulated()?;
+        self.names().iter().map(truth).collect()
     }
 
     /// The true values of a state, sample by sample: none where the readings come from a file.
@@ -274,7 +286,7 @@ pub fn error(estimate: f64, truth: f64) -> f64 {
 fn known_states(scene: &Scene, system: &System) -> Result<(), SceneError> {
     let states: Vec<&str> = system.states.iter().map(|state| system.symbol_name(*state)).collect();
     for (index, name) in scene.observer.estimate.iter().enumerate() {
-        if !states.contains(&name.as_str()) {
+        if !states.contains(&name.as_str()) && !channels::is_sought(system, name) {
             let help = match nearest(name, states.iter().copied()) {
                 Some(near) => format!("perhaps you meant '{near}'"),
                 None => "an observer seeks states; constants are told".to_owned(),
@@ -307,7 +319,7 @@ fn known_constants(
     described: Option<&SystemMotion>,
 ) -> Result<BTreeMap<String, f64>, SceneError> {
     let settings = &scene.observer;
-    let mut known = settings.known.clone();
+    let mut known = channels::split(&settings.known).0;
     let mut give = |name: &str, value: f64| {
         if system.find_symbol(name).is_some() && !settings.estimate.iter().any(|other| other == name) {
             known.entry(name.to_owned()).or_insert(value);
@@ -396,9 +408,14 @@ fn estimate_question(
     let mut guess = Vec::new();
     for name in &settings.estimate {
         let value = match (&settings.guess, truth(name)) {
+            (Guess::Values(values), _) if values.contains_key(name) => values.get(name).copied(),
+            // a sensor is taken to be right at first
+            _ if CalibrationKind::of(name).is_some() => {
+                CalibrationKind::of(name).map(|(_, kind)| kind.nominal())
+            }
             (Guess::Sample, _) => sample_range(system, name).map(|[low, high]| (low + high) / 2.0),
             (Guess::None, _) => Some(unguided.value(scene, name)?),
-            (Guess::Values(values), _) => values.get(name).copied(),
+            (Guess::Values(_), _) => None,
             (Guess::Off(off), Some(truth)) => Some(truth * (1.0 + off)),
             (Guess::Off(_), None) => None,
         };

@@ -1,13 +1,13 @@
 //! The body of a scene set in motion, and what sensors and motors tell of it.
 
 use super::columns::{COLUMNS, Column, SeenAs};
-use super::scene::{self, Scene, SceneError, Simulated};
+use super::scene::{self, Channel, Scene, SceneError, Sensor, Simulated};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::{
     BodyForm, CentreOfMass, DEFAULT_TOLERANCE, Ended, FormError, MovingScene as Bodies,
     SceneError as Refused, Shape, SplineDraws, Trajectory, simulate as follow,
 };
-use crate::observer::{Record, RecordError};
+use crate::observer::{Record, RecordError, Signals};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -107,31 +107,76 @@ impl Simulation {
     /// # Errors
     /// None that a simulation could bring about.
     pub fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
+        self.read(&Sensor { noise, resolution, jitter: 0.0 }, &BTreeMap::new(), seed)
+    }
+
+    /// What sensors and motors tell, each column with its own errors: `gain * x(t - delay) + bias`, normal errors, rounding. What lies
+    /// before the first sample is extrapolated. The same seed gives each column the same errors, whatever their size and those of the
+    /// other columns.
+    ///
+    /// # Errors
+    /// None that a simulation could bring about.
+    pub fn read(
+        &self,
+        sensor: &Sensor,
+        channels: &BTreeMap<String, Channel>,
+        seed: u64,
+    ) -> Result<Record, RecordError> {
         let is_read = |column: &&Column| column.seen_as == SeenAs::Read;
         let mut read: Vec<&Column> = COLUMNS.iter().filter(is_read).collect();
         read.sort_by_key(|column| !TOUCH.contains(&column.name)); // stable: touch first
         let mut columns: Vec<(String, Vec<f64>)> =
             read.iter().map(|column| (column.name.to_owned(), self.values(column))).collect();
-        let touch = columns.iter_mut().filter(|(name, _)| TOUCH.contains(&name.as_str()));
-        read_with_errors(touch.map(|(_, values)| values), noise, resolution, seed);
+        let is_touch = |name: &str| TOUCH.contains(&name);
+        read_with_errors(&self.times(), &mut columns, &is_touch, sensor, channels, seed);
         Record::new(self.times(), columns)
     }
 }
 
-/// Adds normal errors of a standard deviation to columns, one after the other, and rounds them to multiples of a resolution.
-pub(super) fn read_with_errors<'c>(
-    columns: impl Iterator<Item = &'c mut Vec<f64>>,
-    noise: f64,
-    resolution: f64,
+/// What the sensors of some columns make of them: `gain * x(t - delay) + bias`, normal errors, rounding. What lies before the first
+/// sample is extrapolated. Outputs have the common errors where they have none of their own; the same seed gives each column the same errors,
+/// whatever their size and those of the other columns.
+pub(super) fn read_with_errors(
+    times: &[f64],
+    columns: &mut [(String, Vec<f64>)],
+    is_output: &dyn Fn(&str) -> bool,
+    sensor: &Sensor,
+    channels: &BTreeMap<String, Channel>,
     seed: u64,
 ) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    for value in columns.flatten() {
-        *value += noise * normal(&mut random);
-        if resolution > 0.0 {
-            *value = (*value / resolution).round() * resolution;
+    for (place, (name, values)) in columns.iter_mut().enumerate() {
+        let is_output = is_output(name);
+        let channel = channels.get(name).copied().unwrap_or_default();
+        let common = if is_output { *sensor } else { Sensor::default() };
+        let noise = channel.noise.unwrap_or(common.noise);
+        let resolution = channel.resolution.unwrap_or(common.resolution);
+        if channel.delay > 0.0 {
+            *values = late(times, values, channel.delay);
+        }
+        // one stream for all outputs, and one for each other column
+        let mut own = ChaCha8Rng::seed_from_u64(seed);
+        own.set_stream(place as u64);
+        let random = if is_output { &mut random } else { &mut own };
+        for value in values {
+            *value = channel.gain * *value + channel.bias + noise * normal(random);
+            if resolution > 0.0 {
+                *value = (*value / resolution).round() * resolution;
+            }
         }
     }
+}
+
+/// What was true a moment before each sample, by the curves through the samples.
+fn late(times: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
+    let named = vec![(String::new(), values.to_vec())];
+    let Ok(curve) = Signals::new(times.to_vec(), named) else { return values.to_vec() };
+    let before = |time: &f64| {
+        let mut value = [0.0];
+        curve.at(&[0], time - delay, &mut value);
+        value[0]
+    };
+    curve.times().iter().map(before).collect()
 }
 
 /// The standard deviation of a reading's error: noise, and the rounding to multiples of the resolution, which is even

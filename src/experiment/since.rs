@@ -22,10 +22,12 @@ pub(super) struct Since {
 impl Since {
     /// From the first sample of a record where that is long after the beginning of its age; else from that beginning.
     pub fn first(record: &Record) -> Since {
-        let times = record.times();
-        let span = |first: f64| times.last().map_or(0.0, |last| last - first);
-        let origin = times.first().copied().filter(|first| first.abs() > LONG_AGO * span(*first));
-        Since { origin: origin.unwrap_or(0.0) }
+        let origin = match record.times() {
+            [first, .., last] if first.abs() > LONG_AGO * (last - first) => *first,
+            // a single sample lasts no time that its age could be compared with
+            _ => 0.0,
+        };
+        Since { origin }
     }
 
     /// The record with its times counted from there.

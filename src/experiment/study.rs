@@ -1,13 +1,13 @@
 //! An experiment many times over: with other errors of the readings, and from other first guesses.
 
+use super::channels::corrected;
 use super::run::{Experiment, error};
-use super::scene::{self, BasinStudy, NoiseStudy, SceneError};
+use super::scene::{self, BasinStudy, Channel, NoiseStudy, SceneError, Sensor};
 use super::simulation::{Simulation, deviation};
 use super::system_motion::SystemMotion;
-use crate::observer::{
-    MovingWindow, Noise, Order, Record, RecordError, Signals, Task, UpdateEnd, WindowSearch, cramer_rao,
-};
+use crate::observer::{MovingWindow, Noise, Record, RecordError, Signals, Task, UpdateEnd, WindowSearch};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What was simulated, as far as studies ask: what is true, and what is read with errors of any size.
@@ -15,11 +15,16 @@ pub trait Truth: Sync {
     /// The true values of a state, sample by sample.
     fn truth(&self, name: &str) -> Option<Vec<f64>>;
 
-    /// What is read with errors of a standard deviation, rounded to multiples of a resolution.
+    /// What is read, with the errors of the outputs that have none of their own, and with those of single columns.
     ///
     /// # Errors
     /// None that a simulation could bring about.
-    fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError>;
+    fn read(
+        &self,
+        sensor: &Sensor,
+        channels: &BTreeMap<String, Channel>,
+        seed: u64,
+    ) -> Result<Record, RecordError>;
 }
 
 impl Truth for Simulation {
@@ -27,8 +32,13 @@ impl Truth for Simulation {
         self.truth(name)
     }
 
-    fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
-        self.readings(noise, resolution, seed)
+    fn read(
+        &self,
+        sensor: &Sensor,
+        channels: &BTreeMap<String, Channel>,
+        seed: u64,
+    ) -> Result<Record, RecordError> {
+        self.read(sensor, channels, seed)
     }
 }
 
@@ -37,8 +47,13 @@ impl Truth for SystemMotion {
         self.truth(name)
     }
 
-    fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
-        self.readings(noise, resolution, seed)
+    fn read(
+        &self,
+        sensor: &Sensor,
+        channels: &BTreeMap<String, Channel>,
+        seed: u64,
+    ) -> Result<Record, RecordError> {
+        self.read(sensor, channels, seed)
     }
 }
 
@@ -112,10 +127,7 @@ pub fn noise_study(
                 let seed = (level * study.seeds) as u64 + seed;
                 let seed = experiment.scene.seed.wrapping_add(1 + seed);
                 let signals = noisy(experiment, simulation, noise, seed)?;
-                let mut task = task.with_signals(&signals);
-                let rounding = experiment.scene.sensor.resolution;
-                (task.exact, task.sigma) = (false, deviation(noise, rounding));
-                task.noise = Noise::Stated { normal: noise, rounding };
+                let task = at_level(experiment, &task.with_signals(&signals), noise);
                 let rows = first_window(&task, &observer);
                 let update = observer.update(&task, &task.guess, &rows, &task.clamped);
                 let fits = update.fit.is_some_and(|fit| fit.fits);
@@ -142,7 +154,7 @@ pub fn noise_study(
                 .count(),
             seeds: trials.len(),
             errors: (0..truth.len()).map(error).collect(),
-            bounds: bounds(&task, &observer, &truth, noise),
+            bounds: bounds(&at_level(experiment, &task, noise), &observer, &truth),
         });
     }
     Ok(levels)
@@ -172,10 +184,30 @@ impl Trial {
 
 /// The signals of an experiment with other errors.
 fn noisy(experiment: &Experiment, simulation: &dyn Truth, noise: f64, seed: u64) -> Option<Signals> {
-    let record = simulation.readings(noise, experiment.scene.sensor.resolution, seed).ok()?;
-    let columns =
-        record.names().iter().filter_map(|name| Some((name.clone(), record.column(name)?.to_vec())));
-    Signals::new(record.times().to_vec(), columns.collect()).ok()
+    // the levels are those of the outputs that have no noise of their own; all other columns have the errors of the scene
+    let sensor = Sensor { noise, ..experiment.scene.sensor };
+    let record = simulation.read(&sensor, &experiment.scene.channels, seed).ok()?;
+    corrected(Signals::of_record(&record).ok()?, &experiment.scene.observer.known).ok()
+}
+
+/// A task whose outputs are read with errors of one level.
+fn at_level<'a>(experiment: &Experiment, task: &Task<'a>, noise: f64) -> Task<'a> {
+    let mut task = task.clone();
+    let rounding = experiment.scene.sensor.resolution;
+    if deviation(noise, rounding) == 0.0 && !task.errors.is_empty() {
+        // outputs without error, beside columns that have some
+        return task;
+    }
+    (task.exact, task.sigma) = (false, deviation(noise, rounding));
+    task.noise = Noise::Stated { normal: noise, rounding };
+    let has_own = |name: &str| experiment.scene.channels.get(name).is_some_and(|own| own.noise.is_some());
+    let outputs = task.full.outputs.clone();
+    for name in outputs.iter().filter(|name| !has_own(name)) {
+        if let Some(errors) = task.errors.get_mut(name) {
+            errors.normal = noise;
+        }
+    }
+    task
 }
 
 fn first_window(task: &Task<'_>, observer: &MovingWindow) -> std::ops::Range<usize> {
@@ -183,22 +215,8 @@ fn first_window(task: &Task<'_>, observer: &MovingWindow) -> std::ops::Range<usi
 }
 
 /// The bound of Cramér and Rao for what is sought at the first sample, at the truth.
-fn bounds(task: &Task<'_>, observer: &MovingWindow, truth: &[f64], noise: f64) -> Vec<f64> {
-    let mut task = task.clone();
-    (task.exact, task.sigma) = (false, noise);
-    let window = MovingWindow::window(&task, truth, &first_window(&task, observer), &task.clamped);
-    let sizes = MovingWindow::sizes(&task, &window);
-    let mut bounds = vec![0.0; truth.len()];
-    let bound = match window.expand(&window.unknowns(&window.start), Order::First) {
-        Ok(expansion) => cramer_rao(&expansion.slopes, noise, &sizes).deviations,
-        Err(_) => vec![f64::INFINITY; window.free.len()],
-    };
-    for (place, deviation) in window.free.iter().zip(bound) {
-        if let Some(own) = bounds.get_mut(*place) {
-            *own = deviation;
-        }
-    }
-    bounds
+fn bounds(task: &Task<'_>, observer: &MovingWindow, truth: &[f64]) -> Vec<f64> {
+    observer.bounds(task, truth, &first_window(task, observer), &task.clamped)
 }
 
 /// From which first guesses of two states each method of the scene arrives: within [`ARRIVED`] of the truth, after their first

@@ -3,10 +3,11 @@
 //! Observers that know the same equations are tried on it: what they recover is held against the state that the motion had. It is no
 //! second witness of the equations, as a body between palms is.
 
-use super::scene::{Scene, SceneError, SimulatedSystem};
+use super::scene::{Channel, Scene, SceneError, Sensor, SimulatedSystem};
 use super::simulation::read_with_errors;
 use crate::observer::{Lost, ModelError, Record, RecordError, Response, ResponseError, ResponseQuestion};
 use crate::system::System;
+use std::collections::BTreeMap;
 
 /// A system's motion.
 #[derive(Clone, Debug)]
@@ -90,16 +91,22 @@ impl SystemMotion {
         Record::new(response.times.clone(), columns)
     }
 
-    /// What is read: the outputs with normal errors of the standard deviation `noise`, rounded to multiples of `resolution`, both in
-    /// their own unit; the inputs as they are. The same seed gives the same errors, whatever their size.
+    /// What is read: the outputs with the errors of the sensor, in their own unit, the inputs as they are; columns that have a sensor of
+    /// their own with its errors. The same seed gives the same errors, whatever their size.
     ///
     /// # Errors
     /// Where two columns have one name.
-    pub fn readings(&self, noise: f64, resolution: f64, seed: u64) -> Result<Record, RecordError> {
+    pub fn read(
+        &self,
+        sensor: &Sensor,
+        channels: &BTreeMap<String, Channel>,
+        seed: u64,
+    ) -> Result<Record, RecordError> {
         let response = &self.response;
-        let mut columns = response.outputs.clone();
-        read_with_errors(columns.iter_mut().map(|(_, values)| values), noise, resolution, seed);
-        columns.extend(response.inputs.iter().cloned());
+        let mut columns: Vec<(String, Vec<f64>)> =
+            response.outputs.iter().chain(&response.inputs).cloned().collect();
+        let is_output = |name: &str| response.outputs.iter().any(|(output, _)| output == name);
+        read_with_errors(&response.times, &mut columns, &is_output, sensor, channels, seed);
         Record::new(response.times.clone(), columns)
     }
 }

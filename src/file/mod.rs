@@ -3,11 +3,13 @@
 //!
 //! This floor knows nothing of what stands in a file.
 
+mod checksum;
 mod packed;
 mod read;
 mod standard;
 mod write;
 
+pub(crate) use checksum::Checksum;
 #[doc(hidden)]
 pub use packed::{PACKED, PackedFile, pack, packed_folders};
 pub(crate) use packed::{files_in, identity, is_file, is_folder};

@@ -18,7 +18,7 @@
 //! ones there are in the plane, flat ones in space.
 //!
 //! Left out here: friction, contact that breaks (the sign of a contact force is reported, not enforced), and time: a motion is known at one moment, with its first two derivatives there. Through time
-//! and in double precision bodies are moved by [`moving`], for which this is the witness.
+//! and in double precision bodies are moved by [`moving`] in the plane and by [`spatial`] in space, for which this is the witness.
 
 mod body;
 mod contact;
@@ -35,6 +35,7 @@ mod precise;
 mod quasistatics;
 mod rest;
 mod solid;
+pub mod spatial;
 mod tumbling;
 
 #[doc(hidden)]

@@ -1,7 +1,7 @@
 //! The ladder of numbers, by name: from those that are fast to those that are certain.
 
 /// A rung of the ladder: the numbers with which a value or a rank was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Rung {
     /// f64.
     Doubles,

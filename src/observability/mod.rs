@@ -11,6 +11,7 @@ mod codistribution;
 mod composition;
 mod conditions;
 mod defined;
+mod driven;
 mod elimination;
 mod equilibrate;
 mod fibre;

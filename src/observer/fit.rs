@@ -69,12 +69,12 @@ pub(super) struct Misfit<'a> {
 }
 
 impl Misfit<'_> {
-    fn degrees(&self) -> usize {
+    pub fn degrees(&self) -> usize {
         self.differences.len().saturating_sub(self.unknowns)
     }
 
     /// What is left of a reading that is right: by interpolation, and by the rounding of its time.
-    fn computed(&self) -> f64 {
+    pub fn computed(&self) -> f64 {
         COMPUTED * self.size + self.timing
     }
 
@@ -112,7 +112,7 @@ impl Misfit<'_> {
             probability,
             sigma,
             from: NoiseFrom::Stated,
-            fits: probability >= self.alarm,
+            fits: degrees > 0 && probability >= self.alarm,
         }
     }
 
@@ -200,6 +200,16 @@ mod tests {
         let unknown = DVector::from_element(160, f64::NAN);
         for noise in [Noise::Unstated, Noise::Stated { normal: 1.0, rounding: 1.0 }] {
             assert!(!misfit(&unknown, 1e-4).fit(noise).fits, "{noise:?}");
+        }
+    }
+
+    /// As many unknowns as readings: any model goes through them, and nothing bears it out.
+    #[test]
+    fn nothing_fits_that_nothing_is_left_to_check() {
+        let differences = DVector::from_element(160, 0.0);
+        for noise in [Noise::Stated { normal: 1e-4, rounding: 0.0 }, Noise::Unstated] {
+            let fits = |unknowns| Misfit { unknowns, ..misfit(&differences, 1e-4) }.fit(noise).fits;
+            assert!(fits(159) && !fits(160) && !fits(161), "{noise:?}");
         }
     }
 

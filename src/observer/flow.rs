@@ -69,7 +69,7 @@ pub struct ModelFlow<'a> {
 const MOST_EVALUATIONS: usize = 3000;
 
 /// The unknowns that one call can carry.
-pub const MOST_UNKNOWNS: usize = 10;
+pub const MOST_UNKNOWNS: usize = 32;
 
 impl ModelFlow<'_> {
     /// The model at some times, from a state at the first of them; `free` are the places of the states whose first values
@@ -96,7 +96,7 @@ impl ModelFlow<'_> {
                 }
             };
         }
-        sized!(3 4 6 10)
+        sized!(3 4 6 10 16 32)
     }
 
     fn integrate<J: Jet>(

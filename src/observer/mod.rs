@@ -10,7 +10,9 @@
 //! This floor knows systems, signals and numbers; it knows nothing of palms, bodies or scenes.
 
 mod bound;
+mod calibration;
 mod chi_square;
+mod errors_in_variables;
 mod fit;
 mod flow;
 mod high_gain;
@@ -24,6 +26,7 @@ mod newton;
 mod nodes;
 pub(crate) mod record;
 mod response;
+mod sensitivity;
 mod signal;
 mod stiff_joints;
 mod suspect;
@@ -31,10 +34,13 @@ mod task;
 mod trace;
 mod trust_region;
 mod unscented;
+mod weights;
 mod window;
 
 pub use bound::CramerRaoBound;
 pub(crate) use bound::cramer_rao;
+pub use calibration::CalibrationKind;
+pub(crate) use calibration::not_told;
 #[doc(hidden)]
 pub use chi_square::exceeded_with;
 pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom};
@@ -57,3 +63,4 @@ pub use suspect::{Suspect, SuspectKind};
 pub use task::{EstimateQuestion, Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
 pub use trust_region::TrustRegion;
 pub use unscented::Unscented;
+pub use weights::ReadingErrors;

@@ -1,6 +1,6 @@
 //! What an observer believes: the equations of some states of a system, everything else being given.
 
-use super::Signals;
+use super::{Signals, calibration};
 use crate::expression::{NodeId, Program, Symbol};
 use crate::number::{rational_from_f64, rational_to_f64};
 use crate::system::{Kind, Role, System};
@@ -102,8 +102,10 @@ impl Model {
     /// [`ModelError`].
     pub fn new(system: &System, question: &ModelQuestion, signals: &Signals) -> Result<Model, ModelError> {
         let mut system = system.clone();
+        calibration::declare(&mut system, &question.followed);
         let symbols = symbols_of(&system, &question.followed)?;
-        let (rates, outputs) = totals(&mut system, &symbols, &question.inputs)?;
+        let (mut rates, mut outputs) = totals(&mut system, &symbols, &question.inputs)?;
+        calibration::put_in(&mut system, &question.followed, &mut rates, &mut outputs);
         let values = values_of(&mut system, question, &symbols, signals)?;
         for (rate, name) in rates.iter().zip(&question.followed) {
             if system.graph.vanishing_divisor(&[*rate], &values).is_some() {

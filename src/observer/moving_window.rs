@@ -4,8 +4,8 @@
 use super::fit::{FALSE_ALARMS, Misfit, Noise};
 use super::task::{Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
 use super::trace::{is_asked, suspects};
-use super::window::Window;
-use super::{Fit, Newton, Order, TrustRegion, cramer_rao};
+use super::window::{Window, WindowExpansion};
+use super::{Fit, Newton, Order, TrustRegion, cramer_rao, weights};
 use argmin::core::{Executor, State, TerminationReason, TerminationStatus};
 use nalgebra::DVector;
 use serde::Deserialize;
@@ -68,13 +68,9 @@ impl Observer for MovingWindow {
             let rows = row..(row + self.window.max(2)).min(samples - 1) + 1;
             let clamped: &[usize] = if row == 0 { &task.clamped } else { &[] };
             // too few samples to compare are only followed, and seen if those before were
-            let mut update =
-                (rows.len() >= self.window.min(samples)).then(|| self.update(task, &belief, &rows, clamped));
-            if let Some(update) = update.as_mut().filter(|update| !are_suspects_known && is_asked(update)) {
-                let window = Self::window(task, &belief, &rows, clamped);
-                update.suspects = suspects(task, &window, update, self.alarm(task));
-                are_suspects_known = true;
-            }
+            let update = (rows.len() >= self.window.min(samples))
+                .then(|| self.update_and_ask(task, &belief, &rows, clamped, !are_suspects_known));
+            are_suspects_known |= update.as_ref().is_some_and(is_asked);
             let mut start = task.full_state(&belief, row);
             if let Some(update) = update {
                 sees = !matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
@@ -105,6 +101,7 @@ impl MovingWindow {
             measured: rows.clone().map(|row| task.readings(row)).collect(),
             start: task.full_state(belief, rows.start),
             free: sought.chain(read).collect(),
+            weights: None,
         }
     }
 
@@ -134,6 +131,36 @@ impl MovingWindow {
         rows: &std::ops::Range<usize>,
         clamped: &[usize],
     ) -> Update {
+        self.update_and_ask(task, belief, rows, clamped, false)
+    }
+
+    /// The same, with the suspects of an update of which they are asked.
+    fn update_and_ask(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &std::ops::Range<usize>,
+        clamped: &[usize],
+        ask: bool,
+    ) -> Update {
+        if weights::are_needed(task) {
+            return self.weighted_update(task, belief, rows, clamped, ask);
+        }
+        let mut update = self.unweighted_update(task, belief, rows, clamped);
+        if ask && is_asked(&update) {
+            let window = Self::window(task, belief, rows, clamped);
+            update.suspects = suspects(task, &window, &update, self.alarm(task));
+        }
+        update
+    }
+
+    fn unweighted_update(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &std::ops::Range<usize>,
+        clamped: &[usize],
+    ) -> Update {
         let update = self.attempt(task, belief, rows, clamped);
         let exactly = task.exact && task.noise == Noise::Unstated;
         let at_best = matches!(update.end, UpdateEnd::Converged | UpdateEnd::DoesNotFit | UpdateEnd::Stuck);
@@ -146,16 +173,27 @@ impl MovingWindow {
         Update { seconds: update.seconds + again.seconds, steps: update.steps + again.steps, ..again }
     }
 
-    fn attempt(
+    pub(super) fn attempt(
         &self,
         task: &Task<'_>,
         belief: &[f64],
         rows: &std::ops::Range<usize>,
         clamped: &[usize],
     ) -> Update {
-        let begin = Instant::now();
         let window = Self::window(task, belief, rows, clamped);
-        let sizes = Self::sizes(task, &window);
+        self.attempt_in(task, &window, belief).0
+    }
+
+    /// An attempt in a window; `belief` is what stays believed where there is none. With the differences of what was found.
+    pub(super) fn attempt_in(
+        &self,
+        task: &Task<'_>,
+        window: &Window<'_>,
+        belief: &[f64],
+    ) -> (Update, Option<DVector<f64>>) {
+        let begin = Instant::now();
+        let mut left = None;
+        let sizes = Self::sizes(task, window);
         let mut update = Update {
             from: window.times[0],
             to: window.times[window.times.len() - 1],
@@ -177,18 +215,23 @@ impl MovingWindow {
             Err(lost) => UpdateEnd::Lost(lost),
             Ok(expansion) => {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
-                match self.see(task, task.sigma, &window, &expansion.slopes, &sizes, &mut update) {
+                match self.see(task, task.sigma, window, &expansion.slopes, &sizes, &mut update) {
                     Some(blind) => blind,
-                    None => self.search(task, &window, guess, &sizes, &mut update),
+                    None => {
+                        let (end, found) = self.search(task, window, guess, &sizes, &mut update);
+                        left = found;
+                        end
+                    }
                 }
             }
         };
         update.seconds = begin.elapsed().as_secs_f64();
-        update
+        (update, left)
     }
 
     /// How well a state explains a window.
-    fn fit(&self, task: &Task<'_>, window: &Window<'_>, differences: &DVector<f64>) -> Fit {
+    fn fit(&self, task: &Task<'_>, window: &Window<'_>, expansion: &WindowExpansion) -> Fit {
+        let differences = &expansion.differences;
         let read = || window.measured.iter().flatten();
         let square: f64 = read().map(|value| value * value).sum();
         let taken = if task.exact { task.full.states.len() - task.estimated() } else { 0 };
@@ -201,7 +244,10 @@ impl MovingWindow {
             least: task.sigma,
             timing: task.timing,
         };
-        misfit.fit(task.noise)
+        match &window.weights {
+            Some(weights) => weights.fit(expansion, misfit.computed(), misfit.degrees(), misfit.alarm),
+            None => misfit.fit(task.noise),
+        }
     }
 
     /// Sets the bound; says so where something that is sought is not seen.
@@ -234,7 +280,7 @@ impl MovingWindow {
         guess: DVector<f64>,
         sizes: &[f64],
         update: &mut Update,
-    ) -> UpdateEnd {
+    ) -> (UpdateEnd, Option<DVector<f64>>) {
         macro_rules! run {
             ($solver:expr) => {
                 Executor::new(window.clone(), $solver)
@@ -249,40 +295,42 @@ impl MovingWindow {
                     let troubled = result.solver.not_convex + result.solver.halved;
                     (result.state, troubled)
                 }
-                Err(error) => return lost(error, update.from),
+                Err(error) => return (lost(error, update.from), None),
             },
             WindowSearch::TrustRegion => match run!(TrustRegion::new(sizes.to_vec())) {
                 Ok(result) => (result.state, result.solver.refused),
-                Err(error) => return lost(error, update.from),
+                Err(error) => return (lost(error, update.from), None),
             },
         };
         update.steps = state.get_iter();
         update.troubled = troubled;
-        let Some(found) = state.get_param() else { return UpdateEnd::Stuck };
+        let Some(found) = state.get_param() else { return (UpdateEnd::Stuck, None) };
         let whole = window.state(found);
         update.estimate = whole[..task.estimated()].to_vec();
         update.outputs = whole[task.estimated()..].to_vec();
         // the bound belongs to where one is
-        match window.expand(found, Order::First) {
-            Err(lost) => return UpdateEnd::Lost(lost),
+        let left = match window.expand(found, Order::First) {
+            Err(lost) => return (UpdateEnd::Lost(lost), None),
             Ok(expansion) => {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
-                let fit = self.fit(task, window, &expansion.differences);
+                let fit = self.fit(task, window, &expansion);
                 update.fit = Some(fit);
                 if let Some(blind) = self.see(task, fit.sigma, window, &expansion.slopes, sizes, update) {
                     update.estimate = window.start[..task.estimated()].to_vec();
                     update.outputs = window.start[task.estimated()..].to_vec();
-                    return blind;
+                    return (blind, None);
                 }
+                expansion.differences
             }
-        }
+        };
         let fits = update.fit.is_some_and(|fit| fit.fits);
-        match state.get_termination_status() {
+        let end = match state.get_termination_status() {
             TerminationStatus::Terminated(TerminationReason::SolverConverged) if fits => UpdateEnd::Converged,
             TerminationStatus::Terminated(TerminationReason::SolverConverged) => UpdateEnd::DoesNotFit,
             TerminationStatus::Terminated(TerminationReason::MaxItersReached) => UpdateEnd::StepsSpent,
             _ => UpdateEnd::Stuck,
-        }
+        };
+        (end, Some(left))
     }
 
     /// The moments of some rows from a state at the first of them; gives what is believed of what is sought at the last.

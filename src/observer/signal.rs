@@ -113,6 +113,32 @@ impl Signals {
         scaled
     }
 
+    /// The same with something taken off a column, from a row on.
+    pub(super) fn take_off(&mut self, place: usize, first: usize, errors: &[f64]) {
+        for (value, error) in self.columns[place][first..].iter_mut().zip(errors) {
+            *value -= error;
+        }
+    }
+
+    /// How many samples carry the curve at a time.
+    pub(super) fn carriers(&self) -> usize {
+        self.points
+    }
+
+    /// The first of the samples that carry the curves just after a time.
+    pub(super) fn first_carrier(&self, time: f64) -> usize {
+        let last = self.times.len() - self.points;
+        let after = self.times.partition_point(|other| *other <= time);
+        after.saturating_sub(self.points / 2).min(last)
+    }
+
+    /// The weight of each of the samples from `start` on in the value of their curve at a time.
+    pub(super) fn weights_from(&self, start: usize, time: f64) -> Vec<f64> {
+        let mut basis = [0.0; POINTS];
+        self.basis_from(start, time, &mut basis);
+        basis[..self.points].to_vec()
+    }
+
     /// The values of some columns at a time; outside the samples, of the polynomials at the nearest end.
     pub fn at(&self, places: &[usize], time: f64, values: &mut [f64]) {
         let mut basis = [0.0; POINTS];
@@ -135,9 +161,12 @@ impl Signals {
 
     /// The values of Lagrange's polynomials at a time, and the first of the samples that they belong to.
     fn basis<T: DualNum<Primitive = f64> + Copy>(&self, time: T, basis: &mut [T; POINTS]) -> usize {
-        let last = self.times.len() - self.points;
-        let after = self.times.partition_point(|other| *other <= time.re());
-        let start = after.saturating_sub(self.points / 2).min(last);
+        let start = self.first_carrier(time.re());
+        self.basis_from(start, time, basis);
+        start
+    }
+
+    fn basis_from<T: DualNum<Primitive = f64> + Copy>(&self, start: usize, time: T, basis: &mut [T; POINTS]) {
         let nodes = &self.times[start..start + self.points];
         for (i, value) in basis.iter_mut().enumerate().take(self.points) {
             let mut product = T::from(self.weights[start][i]);
@@ -148,7 +177,6 @@ impl Signals {
             }
             *value = product;
         }
-        start
     }
 }
 

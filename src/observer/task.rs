@@ -2,7 +2,9 @@
 
 use super::fit::{Fit, Noise};
 use super::suspect::Suspect;
-use super::{Lost, Model, ModelError, ModelFlow, ModelQuestion, Order, Signals};
+use super::{
+    CalibrationKind, Lost, Model, ModelError, ModelFlow, ModelQuestion, Order, ReadingErrors, Signals,
+};
 use crate::system::System;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -28,6 +30,9 @@ pub struct Task<'a> {
     pub sigma: f64,
     /// What is known of the readings' errors: by it a misfit is judged.
     pub noise: Noise,
+    /// What is known of the errors of single columns, by name: of an output in the place of `noise`, of a column that drives the model
+    /// beside it. A column that is not there drives the model without error.
+    pub errors: BTreeMap<String, ReadingErrors>,
     /// What the rounding of the samples' times may add to a reading, in the outputs' unit.
     pub timing: f64,
     /// Whether the readings are taken as they are for the first values of the outputs, because they have no error.
@@ -97,17 +102,27 @@ impl<'a> Task<'a> {
         }
         let guess: Vec<f64> = wanted.guess.iter().map(|(_, value)| *value).collect();
         let largest = guess.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-        let size =
-            |value: &f64| if *value == 0.0 { if largest > 0.0 { largest } else { 1.0 } } else { value.abs() };
+        let size = |(name, value): &(String, f64)| match CalibrationKind::of(name) {
+            // a bias is held against what is read
+            Some((column, CalibrationKind::Bias)) => {
+                let read = signals.find(column).map_or(&[][..], |place| signals.column(place));
+                let most = read.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+                if most > 0.0 { most } else { 1.0 }
+            }
+            _ if *value != 0.0 => value.abs(),
+            _ if largest > 0.0 => largest,
+            _ => 1.0,
+        };
         Ok(Task {
             signals,
             full: Arc::new(full),
             reduced: Arc::new(reduced),
-            sizes: guess.iter().map(size).collect(),
+            sizes: wanted.guess.iter().map(size).collect(),
             clamped: (0..names.len()).filter(|i| wanted.clamped.contains(&names[*i])).collect(),
             guess,
             sigma: 1e-9,
             noise: Noise::Unstated,
+            errors: BTreeMap::new(),
             timing: 0.0,
             exact: true,
             tolerance: TOLERANCE,
@@ -122,6 +137,14 @@ impl<'a> Task<'a> {
         'a: 'b,
     {
         Task { signals, ..self.clone() }
+    }
+
+    /// The errors of an output of which nothing else is known.
+    pub(super) fn common_errors(&self) -> ReadingErrors {
+        match self.noise {
+            Noise::Stated { normal, rounding } => ReadingErrors { normal, rounding },
+            Noise::Unstated => ReadingErrors { normal: self.sigma, rounding: 0.0 },
+        }
     }
 
     /// How many states are estimated.

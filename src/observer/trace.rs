@@ -41,7 +41,10 @@ pub(super) fn suspects(task: &Task<'_>, window: &Window<'_>, update: &Update, al
     let Some(unseen) = Remainder::of(&here, &window, task) else { return Vec::new() };
     let needed = noncentrality(alarm, POWER, fit.degrees as f64);
     let directions = directions(task, &window, &here);
-    let judged = |direction: Direction| unseen.judge(direction, &here, &fit, needed);
+    let judged = |direction: Direction| {
+        let slope = window.weighted(direction.slope);
+        unseen.judge(Direction { slope, ..direction }, &here, &fit, needed)
+    };
     let mut judged: Vec<(Suspect, DVector<f64>)> = directions.into_iter().filter_map(judged).collect();
     let names: Vec<String> = judged.iter().map(|(suspect, _)| suspect.to_string()).collect();
     let traces: Vec<DVector<f64>> = judged.iter().map(|(_, trace)| trace.clone()).collect();
@@ -155,8 +158,12 @@ fn directions(task: &Task<'_>, window: &Window<'_>, here: &WindowExpansion) -> V
         let Some(column) = task.signals.find(symbol).filter(|_| !wanted.known.contains_key(symbol)) else {
             continue;
         };
+        // a gain that is sought is under no suspicion
+        if task.full.find(&format!("{symbol}.gain")).is_some() {
+            continue;
+        }
         let slope = difference(|factor| {
-            let signals = task.signals.scaled(column, factor);
+            let signals = window.flow.signals.scaled(column, factor);
             expected(window, &ModelFlow { signals: &signals, ..window.flow }).ok()
         });
         if let Some(slope) = &slope {
@@ -171,10 +178,13 @@ fn directions(task: &Task<'_>, window: &Window<'_>, here: &WindowExpansion) -> V
     let outputs = task.full.outputs.len().max(1);
     let read: Vec<f64> = window.measured.concat();
     for (place, name) in task.full.outputs.iter().enumerate() {
+        if task.full.find(&format!("{name}.gain")).is_some() {
+            continue;
+        }
         let own = |i: usize, _| if i % outputs == place { read[i] } else { 0.0 };
         add(name, SuspectKind::OutputGain, Some(DVector::from_fn(read.len(), own)));
     }
-    let modelled: Vec<f64> = here.differences.iter().zip(&read).map(|(off, read)| off + read).collect();
+    let modelled: Vec<f64> = here.left.iter().zip(&read).map(|(off, read)| off + read).collect();
     add(
         &task.full.outputs.join(", "),
         SuspectKind::Delay,

@@ -1,7 +1,9 @@
 //! The error of the output over a window of samples (4.77), as a function of the unknown parts of the first state.
 
+use super::weights::Weights;
 use super::{Lost, ModelFlow, Order, Sample};
 use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 
 /// Some samples, and the state at the first of them, of which a part is unknown.
 ///
@@ -18,6 +20,8 @@ pub struct Window<'a> {
     pub start: Vec<f64>,
     /// The places of what is unknown.
     pub free: Vec<usize>,
+    /// The weights of the differences, where their errors are not independent and alike.
+    pub(super) weights: Option<Arc<Weights>>,
 }
 
 /// The error and its derivatives at one guess, `p` unknowns and `n` differences.
@@ -25,9 +29,11 @@ pub struct Window<'a> {
 pub struct WindowExpansion {
     /// `k` of 4.77.
     pub cost: f64,
-    /// The differences `h - y`, sample by sample.
+    /// The differences `h - y`, sample by sample, as they are.
+    pub left: DVector<f64>,
+    /// The same, weighted where they have weights: what the error is made of.
     pub differences: DVector<f64>,
-    /// Their derivatives, n by p.
+    /// Their derivatives, n by p, weighted as they are.
     pub slopes: DMatrix<f64>,
     /// The derivative of `k`.
     pub gradient: DVector<f64>,
@@ -40,9 +46,9 @@ pub struct WindowExpansion {
 }
 
 impl WindowExpansion {
-    /// The root of the mean square of the differences.
+    /// The root of the mean square of the differences as they are.
     pub fn misfit(&self) -> f64 {
-        self.differences.norm() / (self.differences.len().max(1) as f64).sqrt()
+        self.left.norm() / (self.left.len().max(1) as f64).sqrt()
     }
 }
 
@@ -73,14 +79,27 @@ impl Window<'_> {
     /// Where the model cannot be followed to the end of the window.
     pub fn cost(&self, unknowns: &DVector<f64>) -> Result<f64, Lost> {
         let samples = self.flow.follow(&self.state(unknowns), &self.free, self.times, Order::Value)?;
-        Ok(0.5 * self.step() * self.differences(&samples).norm_squared())
+        let differences = self.differences(&samples);
+        Ok(0.5 * self.step() * self.weighted(differences).norm_squared())
     }
 
     fn differences(&self, samples: &[Sample]) -> DVector<f64> {
         let rows = samples.iter().zip(&self.measured);
         let all =
             rows.flat_map(|(sample, row)| sample.outputs.iter().zip(row).map(|(seen, read)| seen - read));
-        DVector::from_vec(all.collect())
+        let differences = DVector::from_vec(all.collect());
+        match &self.weights {
+            Some(weights) => differences + &weights.offset,
+            None => differences,
+        }
+    }
+
+    /// Differences in units in which their errors are independent and alike.
+    pub(super) fn weighted(&self, differences: DVector<f64>) -> DVector<f64> {
+        match &self.weights {
+            Some(weights) => weights.weighted(&differences),
+            None => differences,
+        }
     }
 
     /// `k` with its derivatives.
@@ -90,16 +109,22 @@ impl Window<'_> {
     pub fn expand(&self, unknowns: &DVector<f64>, order: Order) -> Result<WindowExpansion, Lost> {
         let samples = self.flow.follow(&self.state(unknowns), &self.free, self.times, order)?;
         let p = self.free.len();
-        let differences = self.differences(&samples);
+        let left = self.differences(&samples);
+        let differences = self.weighted(left.clone());
         let mut slopes = DMatrix::zeros(differences.len(), p);
         let rows = samples.iter().flat_map(|sample| sample.output_slopes.row_iter());
         for (i, row) in rows.enumerate() {
             slopes.set_row(i, &row);
         }
+        let mut pull = differences.clone();
+        if let Some(weights) = &self.weights {
+            slopes = weights.weighted_slopes(&slopes);
+            pull = weights.back(&differences);
+        }
         let mut hessian = slopes.tr_mul(&slopes);
         let bends = samples.iter().flat_map(|sample| &sample.output_bends);
-        for (difference, bend) in differences.iter().zip(bends) {
-            hessian += bend * *difference;
+        for (pull, bend) in pull.iter().zip(bends) {
+            hessian += bend * *pull;
         }
         let step = self.step();
         let end = samples.last();
@@ -109,6 +134,7 @@ impl Window<'_> {
             hessian: hessian * step,
             end: end.map(|sample| sample.state.clone()).unwrap_or_default(),
             end_slopes: end.map(|sample| sample.slopes.clone()).unwrap_or_default(),
+            left,
             differences,
             slopes,
         })

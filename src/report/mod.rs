@@ -40,8 +40,8 @@ pub use page::{drops_page, findings_json, findings_text, page};
 #[doc(hidden)]
 pub use page::{forget_seconds, forget_times};
 pub use ranks::{
-    accessibility_json, accessibility_text, drops_json, drops_text, global_json, global_text, rank_json,
-    rank_text, unseen_field_text,
+    StateTableWriter, TableForm, accessibility_json, accessibility_text, drops_json, drops_text, global_json,
+    global_text, rank_json, rank_text, unseen_field_text,
 };
 #[doc(hidden)]
 pub use stress::{stress_json, stress_pictures, stress_text};

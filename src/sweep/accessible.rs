@@ -1,9 +1,10 @@
 //! The whole question of accessibility, from a system and some conditions to sweeps of every branch.
 
-use super::asked::{RankQuestion, held_by_the_file};
+use super::asked::{RankQuestion, held_conditions};
 use super::certainty::Certainty;
+use super::prepared::sweep;
 use super::question::{RankError, guarded, held_parameters};
-use super::states::{SweepOptions, SweepReport, sweep};
+use super::states::{SweepOptions, SweepReport};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
     Accessibility, CodistributionError, Locus, RankBounds, Stop, parse_condition, solve_conditions,
@@ -108,20 +109,7 @@ pub fn answer_accessibility(
             }
         }
         branch.check_codistribution(system).map_err(RankError::Condition)?;
-        let mut conditions = branch.values.clone();
-        for (symbol, value) in &question.fixed {
-            if !system.is_angle(*symbol) || value.is_zero() {
-                conditions.insert(*symbol, system.graph.rational(value.clone()));
-            }
-        }
-        for (symbol, value) in held_by_the_file(system, question) {
-            let value = system.graph.rational(value);
-            conditions.entry(symbol).or_insert(value);
-        }
-        for known in conditions.clone().keys() {
-            let value = system.graph.substitute(&[conditions[known]], &conditions)[0];
-            conditions.insert(*known, value);
-        }
+        let conditions = held_conditions(system, question, &branch);
         let found = Accessibility::new(system, &conditions, question.order)?;
         let leave = |system: &mut System, columns: &[Symbol]| {
             system.known = system.states.iter().copied().filter(|state| !columns.contains(state)).collect();

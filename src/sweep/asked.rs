@@ -52,7 +52,7 @@ impl Default for RankQuestion<'_> {
 }
 
 /// Symbols that every drawn state has the same value of: parameters with a value and no range, and ranges of no width.
-pub(super) fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol, RBig)> {
+fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol, RBig)> {
     let held = |(symbol, info): (Symbol, &SymbolInfo)| {
         let value = match &info.range {
             Some(range) => (range.low == range.high).then(|| range.low.clone()),

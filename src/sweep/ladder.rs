@@ -18,6 +18,7 @@ use crate::expression::{Failure, Graph, Loaded, NodeId, Program, Symbol};
 use crate::number::{Arithmetic, Enclosure, Enclosures, Floats, Interval, PrimeField, Rationals, Rung};
 use crate::observability::{Defined, Reduction, Spectrum, State, certain_rank, kernel, singular_values};
 use dashu::rational::RBig;
+use std::borrow::Cow;
 
 /// The bits of enclosures, one after the other.
 const PRECISE: [usize; 2] = [128, 512];
@@ -139,7 +140,7 @@ struct ResidueRank {
 
 /// Decides the rank of some rows at any state.
 pub struct RankDecider<'g> {
-    graph: &'g Graph,
+    graph: Cow<'g, Graph>,
     defined: Defined,
     quick: Rows,
     all: Rows,
@@ -163,7 +164,7 @@ impl<'g> RankDecider<'g> {
         let DecidedRows { quick, all, columns } = rows;
         let ProofWanted { field, wanted } = proof;
         RankDecider {
-            graph,
+            graph: Cow::Borrowed(graph),
             defined,
             quick: Rows::new(graph, quick, columns, is_angle),
             all: Rows::new(graph, all, columns, is_angle),
@@ -181,6 +182,11 @@ impl<'g> RankDecider<'g> {
         RankDecider { most: most.min(self.columns), ..self }
     }
 
+    /// The same with a graph of its own.
+    pub(super) fn owning(self) -> RankDecider<'static> {
+        RankDecider { graph: Cow::Owned(self.graph.into_owned()), ..self }
+    }
+
     /// Rows and columns of what remains of the quick rows without unit rows.
     pub fn remaining(&self) -> (usize, usize) {
         (self.quick.reduction.rows.len(), self.quick.reduction.columns.len())
@@ -193,7 +199,7 @@ impl<'g> RankDecider<'g> {
 
     /// The rank at a state.
     pub fn decide(&self, state: &State) -> StateDecision {
-        if let Some(undefined) = self.defined.failure(self.graph, state) {
+        if let Some(undefined) = self.defined.failure(&self.graph, state) {
             return StateDecision::Pole(undefined);
         }
         let full = self.columns;

@@ -1,16 +1,12 @@
-//! The whole question of a rank, from a system and some conditions to sweeps of every branch.
+//! What is answered to the question of a rank, and what stands in the way of an answer.
 
-use super::asked::{RankQuestion, held_conditions};
-use super::cells::by_signs;
-use super::deviation::{StandardDeviations, standard_deviations};
-use super::series::sweep_by_series;
-use super::states::{SweepOptions, SweepReport, sweep};
-use crate::expression::{Guard, NodeId, Symbol};
-use crate::observability::{
-    Branch, Codistribution, CodistributionError, Frame, GenericAnswer, Length, Locus, LocusError, OWN_ROWS,
-    Probe, Stop, UnseenMotions, Unsolved, in_sign_cell, parse_condition, solve_conditions, unseen_motions,
-};
-use crate::system::{Assignment, FieldRole, Range, SymbolInfo, System, Time, UnknownKind, Value};
+use super::asked::RankQuestion;
+use super::deviation::StandardDeviations;
+use super::part::MergeError;
+use super::states::SweepReport;
+use crate::expression::{NodeId, Symbol};
+use crate::observability::{CodistributionError, GenericAnswer, LocusError, Stop, UnseenMotions, Unsolved};
+use crate::system::{Assignment, FieldRole, Range, SymbolInfo, System, Time, UnknownKind};
 use dashu::rational::RBig;
 use std::collections::HashSet;
 
@@ -95,6 +91,14 @@ impl RankAnswer {
 }
 
 impl RankAnswer {
+    /// Tells no times.
+    pub fn forget_times(&mut self) {
+        for branch in &mut self.branches {
+            branch.full.seconds = f64::NAN;
+            branch.rows.iter_mut().for_each(|rows| rows.seconds = f64::NAN);
+        }
+    }
+
     /// Whether a search ended before its end: longer words might say more, and no series did.
     pub fn cut_off(&self) -> bool {
         self.branches.iter().any(|branch| branch.cut_off)
@@ -122,6 +126,9 @@ pub enum RankError {
     /// No state can be drawn.
     #[error(transparent)]
     Locus(#[from] LocusError),
+    /// Parts that do not make a whole.
+    #[error(transparent)]
+    Merge(#[from] MergeError),
 }
 
 /// The parameters with a value in the file, and no other from the question, that outputs, fields and own rows mention.
@@ -170,203 +177,4 @@ pub(super) fn named_unknowns(system: &System) -> Vec<(String, UnknownKind)> {
         (system.symbol_name(symbol).to_owned(), kind)
     };
     system.unknowns().into_iter().map(named).collect()
-}
-
-/// The unseen fields, where something is unseen and all conditions are on parameters; `given` are those of the question.
-fn motions(
-    system: &mut System,
-    codistribution: &Codistribution,
-    conditions: &Assignment,
-    given: &[Symbol],
-) -> Option<UnseenMotions> {
-    let found = codistribution.generic.rank().unwrap_or(codistribution.generic_rank());
-    let unseen = found < system.unknown_count();
-    let of_states = |system: &System, symbol: &Symbol, value: NodeId| {
-        let mentioned = system.graph.symbols_of([value]);
-        [*symbol].iter().chain(&mentioned).any(|symbol| system.states.contains(symbol))
-    };
-    if !unseen || conditions.iter().any(|(symbol, value)| of_states(system, symbol, *value)) {
-        return None;
-    }
-    let given = given.iter().map(|symbol| (*symbol, conditions[symbol])).collect();
-    let found = unseen_motions(system, Some(codistribution), conditions, &given)?;
-    (found.directions() > 0).then_some(found)
-}
-
-/// Answers a question about the rank of a system's observability codistribution.
-///
-/// # Errors
-/// No states or outputs, no drift or input, conditions that cannot be solved, a pole everywhere, an empty sample box.
-pub fn answer_rank(system: &mut System, question: &RankQuestion<'_>) -> Result<RankAnswer, RankError> {
-    answer(system, question, false)
-}
-
-/// The same, but states are drawn only where the words that show what is seen are short enough to be written down in a moment.
-///
-/// # Errors
-/// As for [`answer_rank`].
-pub fn answer_rank_at_once(
-    system: &mut System,
-    question: &RankQuestion<'_>,
-) -> Result<RankAnswer, RankError> {
-    answer(system, question, true)
-}
-
-fn answer(
-    system: &mut System,
-    question: &RankQuestion<'_>,
-    only_if_short: bool,
-) -> Result<RankAnswer, RankError> {
-    if system.unknown_count() == 0 || system.outputs.is_empty() {
-        return Err(RankError::NothingToSee(system.name.clone()));
-    }
-    system.require_motion().map_err(CodistributionError::NoMotion)?;
-    let mut equations = Vec::new();
-    for text in &question.conditions {
-        equations.extend(parse_condition(text).map_err(RankError::Condition)?);
-    }
-    equations.extend(system.initial_conditions().iter().cloned());
-    let mut branches = Vec::new();
-    for branch in solve_conditions(system, &equations)? {
-        branches.push(branch.tied_by_outputs(system)?);
-    }
-    for branch in &mut branches {
-        for symbol in question.fixed.keys() {
-            if branch.values.contains_key(symbol) {
-                return Err(RankError::HeldAndSolved(system.symbol_name(*symbol).to_owned()));
-            }
-        }
-    }
-    let own = match system.definition(OWN_ROWS) {
-        Some(Value::Matrix(matrix)) if matrix.columns == system.unknown_count() => {
-            Some(matrix.entries.clone())
-        }
-        _ => None,
-    };
-    let own_guards = system.definition_guards(OWN_ROWS);
-    let mut answers = Vec::new();
-    let mut left_out = Vec::new();
-    for part in by_signs(system, question, branches, own.as_deref().unwrap_or_default()) {
-        let unsampled =
-            RankQuestion { samples: 0, conditions: Vec::new(), fixed: question.fixed.clone(), ..*question };
-        let question = if part.without_states.is_some() { &unsampled } else { question };
-        left_out.extend(part.without_states);
-        let work = |system: &mut System| {
-            answer_branch(system, question, only_if_short, &part.branch, own.as_deref(), &own_guards)
-        };
-        answers.push(in_sign_cell(system, &part.cell, work)?);
-    }
-    Ok(RankAnswer {
-        file: system.name.clone(),
-        title: system.title.clone(),
-        outputs: system.outputs.len(),
-        fields: system.roles(),
-        seed: question.seed,
-        dimension: system.unknown_count(),
-        known: system.known_names(),
-        assumed: system.assumed_of_signals(),
-        branches: answers,
-        left_out,
-    })
-}
-
-/// The answer on one branch.
-fn answer_branch(
-    system: &mut System,
-    question: &RankQuestion<'_>,
-    only_if_short: bool,
-    branch: &Branch,
-    own: Option<&[NodeId]>,
-    own_guards: &[Guard],
-) -> Result<BranchAnswer, RankError> {
-    branch.check_codistribution(system).map_err(RankError::Condition)?;
-    let conditions = held_conditions(system, question, branch);
-    let given = |symbol: &Symbol| branch.values.contains_key(symbol) || question.fixed.contains_key(symbol);
-    let given: Vec<Symbol> = conditions.keys().copied().filter(given).collect();
-    let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
-    let frame = Frame::new(system, &conditions)?;
-    let wanted = question.samples > 0 && (!only_if_short || frame.words_are_short(system));
-    let samples = if wanted { question.samples } else { 0 };
-    let codistribution = match wanted {
-        true => Codistribution::within(system, &conditions, length, frame)?,
-        false => Codistribution::without_words(frame),
-    };
-    let all = codistribution.entries();
-    let mut mentioned: Vec<NodeId> = all.clone();
-    mentioned.extend(own.into_iter().flatten());
-    mentioned.extend(guarded(system));
-    let locus = Locus::new(system, branch, &question.fixed, &mentioned)?;
-    let options = SweepOptions {
-        samples,
-        seed: question.seed,
-        most: None,
-        guards: &[],
-        wanted: question.wanted,
-        digits: question.digits,
-        recorded: question.recorded,
-        interrupt: question.interrupt,
-        progress: question.progress,
-    };
-    // words that somebody asked for are looked at as they are; functions have no residues at a state
-    let by_series =
-        codistribution.is_cut_off() && question.order.is_none() && system.time == Time::Continuous;
-    let probe = by_series.then(|| Probe::new(system, &conditions)).filter(|probe| !probe.has_functions());
-    let full = if let Some(probe) = &probe {
-        let options = SweepOptions { most: Some(codistribution.most()), ..options };
-        sweep_by_series(system, &locus, probe, &options)?
-    } else {
-        codistribution.sweep(system, &locus, options)?
-    };
-    let deviations = match full.interrupted || probe.is_some() || !wanted {
-        true => None,
-        false => standard_deviations(system, &locus, &codistribution, &full, question.seed, samples)?,
-    };
-    let rows = match own {
-        Some(own) if wanted => {
-            let silent = SweepOptions { guards: own_guards, progress: &|_| (), ..options };
-            Some(sweep(system, &locus, own, own, silent)?)
-        }
-        _ => None,
-    };
-    let mut codistribution = codistribution;
-    codistribution.generic.seen_at_states(system, &full);
-    let known = codistribution.generic.is_final() && question.order.is_none();
-    let motions = motions(system, &codistribution, &conditions, &given);
-    let generic_rank =
-        codistribution.generic.rank().filter(|_| known).unwrap_or(codistribution.generic_rank());
-    // fields settle what the rank of all words is, and these words may be fewer
-    let settled = motions.as_ref().is_some_and(|found| {
-        found.settles_the_rank && generic_rank + found.directions() == system.unknown_count()
-    });
-    let word = |(word, entries): (&crate::observability::Word, &Vec<NodeId>)| TakenRow {
-        word: word.text(system),
-        entries: entries.clone(),
-    };
-    let numbered = |(index, entries): (usize, &[NodeId])| TakenRow {
-        word: format!("row {}", index + 1),
-        entries: entries.to_vec(),
-    };
-    let own_rows = own.unwrap_or_default().chunks(system.unknown_count());
-    Ok(BranchAnswer {
-        taken: codistribution.words.iter().zip(&codistribution.rows).map(word).collect(),
-        own: own_rows.enumerate().map(numbered).collect(),
-        conditions: locus.conditions.clone(),
-        by_default: locus.by_default.clone(),
-        held: held_parameters(system, question, &branch.values, own.into_iter().flatten()),
-        words: codistribution.needed.iter().map(|i| codistribution.words[*i].text(system)).collect(),
-        unknowns: named_unknowns(system),
-        order: codistribution.order,
-        stop: codistribution.stop,
-        generic_rank,
-        is_final: codistribution.is_final() || known || settled,
-        motions,
-        cut_off: question.order.is_none()
-            && !known
-            && !codistribution.is_final()
-            && !codistribution.has_rested(),
-        generic: codistribution.generic,
-        full,
-        deviations,
-        rows,
-    })
 }

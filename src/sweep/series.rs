@@ -1,6 +1,8 @@
 //! The rank at many states by power series: where the words of Lie derivatives that it takes are too long to be written down.
 
-use super::states::{SweepOptions, SweepReport};
+use super::counts::SweepCounts;
+use super::states::{Stretch, SweepOptions, SweepReport, Told};
+use super::table::{StateRow, TableOf};
 use crate::number::{PrimeField, Rung};
 use crate::observability::{Defined, Locus, LocusError, Probe};
 use crate::system::System;
@@ -14,72 +16,105 @@ use std::time::Instant;
 /// States are swept in blocks of this size; between blocks it can be interrupted.
 const BLOCK: u64 = 256;
 
-/// The rank at every state drawn from a locus, modulo a prime: no less for certain, and no more where it is that of almost all states.
-///
-/// # Errors
-/// Where states cannot be drawn.
-pub(super) fn sweep_by_series(
-    system: &mut System,
-    locus: &Locus,
-    probe: &Probe,
-    options: &SweepOptions<'_>,
-) -> Result<SweepReport, LocusError> {
-    let begin = Instant::now();
-    let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-    let field = PrimeField::random(&mut rng);
-    let guards = system.smooth_guards(&system.moving_fields());
-    let defined = Defined::new(system, &guards);
-    let most = options.most.unwrap_or(system.unknown_count());
-    let mut report = SweepReport {
-        samples: 0,
-        rank_histogram: BTreeMap::new(),
-        computed_histogram: BTreeMap::new(),
-        certified: 0,
-        disagreements: 0,
-        rungs: BTreeMap::new(),
-        first: Rung::Residues,
-        remaining: (0, 0),
-        poles: BTreeMap::new(),
-        worst: None,
-        digits: options.digits.map(|_| Err(super::NoDigits::NoState)),
-        unseen: Vec::new(),
-        smallest_gap: f64::INFINITY,
-        interrupted: false,
-        recorded: Vec::new(),
-        seconds: 0.0,
-    };
-    let graph = &system.graph;
-    let mut done = 0;
-    while done < options.samples && !options.interrupt.load(Ordering::Relaxed) {
-        let end = (done + BLOCK).min(options.samples);
-        let block: Vec<Result<Result<usize, String>, LocusError>> = (done..end)
-            .into_par_iter()
-            .map(|index| {
-                let state = locus.draw(options.seed, index)?;
-                if let Some(undefined) = defined.failure(graph, &state) {
-                    return Ok(Err(undefined));
+/// Power series made ready for being looked at, at any states of a locus.
+pub(super) struct PreparedSeries {
+    locus: Locus,
+    probe: Probe,
+    field: PrimeField,
+    defined: Defined,
+    seed: u64,
+    most: usize,
+}
+
+impl PreparedSeries {
+    pub fn new(system: &mut System, locus: &Locus, probe: Probe, options: &SweepOptions<'_>) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
+        let field = PrimeField::random(&mut rng);
+        let guards = system.smooth_guards(&system.moving_fields());
+        let defined = Defined::new(system, &guards);
+        let most = options.most.unwrap_or(system.unknown_count());
+        PreparedSeries { locus: locus.clone(), probe, field, defined, seed: options.seed, most }
+    }
+
+    /// The rank at some of the states, modulo a prime: no less for certain, and no more where it is that of almost all states.
+    ///
+    /// # Errors
+    /// Where states cannot be drawn.
+    pub fn over(
+        &self,
+        system: &System,
+        stretch: &Stretch<'_>,
+        table: &mut TableOf<'_, '_>,
+    ) -> Result<SweepCounts, LocusError> {
+        let Stretch { range, interrupt, progress } = stretch;
+        let begin = Instant::now();
+        let (graph, most) = (&system.graph, self.most);
+        let mut counts = SweepCounts::default();
+        let mut next = range.start;
+        while next < range.end && !interrupt.load(Ordering::Relaxed) {
+            let end = range.end.min(next.saturating_add(BLOCK));
+            let block: Vec<Result<Result<usize, String>, LocusError>> = (next..end)
+                .into_par_iter()
+                .map(|index| {
+                    let state = self.locus.draw(self.seed, index)?;
+                    if let Some(undefined) = self.defined.failure(graph, &state) {
+                        return Ok(Err(undefined));
+                    }
+                    let pole = || "a divisor is zero modulo the prime, or a value is not rational".to_owned();
+                    Ok(self.probe.rank_at(&state, self.field, index, most).ok_or_else(pole))
+                })
+                .collect();
+            let mut rows = Vec::new();
+            for (index, found) in (next..end).zip(block) {
+                let found = found?;
+                if table.is_wanted() {
+                    rows.push(StateRow {
+                        index,
+                        rank: found.as_ref().ok().copied(),
+                        certified: found.as_ref().is_ok_and(|rank| *rank == most),
+                        smallest_singular_value: None,
+                        condition: None,
+                        coordinates: Vec::new(),
+                    });
                 }
-                let pole = || "a divisor is zero modulo the prime, or a value is not rational".to_owned();
-                Ok(probe.rank_at(&state, field, index, most).ok_or_else(pole))
-            })
-            .collect();
-        for found in block {
-            match found? {
-                Ok(rank) => {
-                    report.samples += 1;
-                    *report.rank_histogram.entry(rank).or_insert(0) += 1;
-                    report.certified += u64::from(rank == most);
+                match found {
+                    Ok(rank) => {
+                        counts.samples += 1;
+                        *counts.ranks.entry(rank).or_insert(0) += 1;
+                        *counts.rungs.entry(Rung::Residues).or_insert(0) += 1;
+                        counts.certified += u64::from(rank == most);
+                    }
+                    Err(pole) => *counts.poles.entry(pole).or_insert(0) += 1,
                 }
-                Err(pole) => *report.poles.entry(pole).or_insert(0) += 1,
             }
+            table.write(rows, |index| self.locus.draw(self.seed, index))?;
+            progress(end - range.start);
+            next = end;
         }
-        done = end;
-        (options.progress)(done);
+        counts.interrupted = next < range.end;
+        counts.seconds = Some(begin.elapsed().as_secs_f64());
+        Ok(counts)
     }
-    if report.samples > 0 {
-        report.rungs.insert(Rung::Residues, report.samples);
+
+    /// What a whole sweep has found.
+    pub fn report(&self, counts: SweepCounts, told: Told<'_>) -> SweepReport {
+        SweepReport {
+            samples: counts.samples,
+            rank_histogram: counts.ranks,
+            computed_histogram: BTreeMap::new(),
+            certified: counts.certified,
+            disagreements: 0,
+            rungs: counts.rungs,
+            first: Rung::Residues,
+            remaining: (0, 0),
+            poles: counts.poles,
+            worst: None,
+            digits: told.digits.map(|_| Err(super::NoDigits::NoState)),
+            unseen: Vec::new(),
+            smallest_gap: f64::INFINITY,
+            interrupted: counts.interrupted,
+            recorded: Vec::new(),
+            seconds: counts.seconds.unwrap_or(f64::NAN),
+        }
     }
-    report.interrupted = done < options.samples;
-    report.seconds = begin.elapsed().as_secs_f64();
-    Ok(report)
 }

@@ -1,8 +1,7 @@
 //! Directions in the state space that no row sees, at a state at which that is so.
 
 use crate::number::rational_to_f64;
-use crate::observability::{State, StateInWords};
-use crate::system::System;
+use crate::observability::StateInWords;
 use dashu::base::{Abs, Gcd};
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
@@ -31,44 +30,90 @@ pub struct UnseenDirection {
 /// Integers up to this are small.
 const SMALL: u32 = 100;
 
-/// The directions of a sweep, by the states that take part.
-#[derive(Debug, Default)]
-pub(super) struct UnseenDirections(BTreeMap<Vec<String>, UnseenDirection>);
+/// Directions of one kind, as they are counted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct UnseenKind {
+    /// At how many states.
+    pub count: u64,
+    /// The first of them, where it could be written down.
+    pub example: Option<UnseenExample>,
+}
+
+/// A direction at the state at which it is not seen.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct UnseenExample {
+    /// The index of the draw.
+    pub index: u64,
+    /// As `1 r1 - 0.5 omega0`.
+    pub text: String,
+    /// As [`UnseenDirection::vector`].
+    pub vector: Vec<RBig>,
+    /// As [`UnseenDirection::exact`].
+    pub exact: bool,
+}
+
+/// The directions of a sweep, by the states that take part. What is counted does not depend on where a sweep is cut into parts:
+/// every state counts, and the example is that of the first state of which one can be given.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct UnseenDirections(pub BTreeMap<Vec<String>, UnseenKind>);
 
 impl UnseenDirections {
     /// Counts a direction that is not seen at a state, the draw of an index.
-    pub fn add(&mut self, system: &System, direction: &[RBig], exact: bool, state: &State, index: u64) {
-        let parts: Vec<(&RBig, String)> = direction
-            .iter()
-            .zip(system.unknowns())
-            .filter(|(part, _)| !part.is_zero())
-            .map(|(part, symbol)| (part, system.symbol_name(symbol).to_owned()))
-            .collect();
-        let (parts, names): (Vec<&RBig>, Vec<String>) = parts.into_iter().unzip();
-        let entry = self.0.entry(names.clone()).or_insert_with(|| UnseenDirection {
-            count: 0,
-            example: combination(&names, &parts.iter().map(|part| rational_to_f64(part)).collect::<Vec<_>>()),
-            states: names,
-            index,
-            at: state.describe(system),
-            vector: in_proportion(&parts),
-            exact,
-        });
-        entry.count += 1;
+    pub fn add(&mut self, unknowns: &[String], direction: &[RBig], index: u64) {
+        let takes_part: Vec<bool> = direction.iter().map(|part| !part.is_zero()).collect();
+        self.count(unknowns, &takes_part);
+        self.give_example(unknowns, direction, true, index);
     }
 
     /// Counts a direction of which only the unknowns that take part are known; whether there is an example of such.
-    pub fn count(&mut self, system: &System, parts: &[bool]) -> bool {
-        let part_of = parts.iter().zip(system.unknowns()).filter(|(takes_part, _)| **takes_part);
-        let names: Vec<String> = part_of.map(|(_, symbol)| system.symbol_name(symbol).to_owned()).collect();
-        let known = self.0.get_mut(&names);
-        known.map(|direction| direction.count += 1).is_some()
+    pub fn count(&mut self, unknowns: &[String], takes_part: &[bool]) -> bool {
+        let kind = self.0.entry(names_of(unknowns, takes_part)).or_default();
+        kind.count += 1;
+        kind.example.is_some()
     }
 
-    /// All of them, in order of the names.
-    pub fn into_list(self) -> Vec<UnseenDirection> {
-        self.0.into_values().collect()
+    /// Takes a direction for the example of its kind, where that was counted and has none.
+    pub fn give_example(&mut self, unknowns: &[String], direction: &[RBig], exact: bool, index: u64) {
+        let takes_part: Vec<bool> = direction.iter().map(|part| !part.is_zero()).collect();
+        let names = names_of(unknowns, &takes_part);
+        if let Some(kind) = self.0.get_mut(&names).filter(|kind| kind.example.is_none()) {
+            let parts: Vec<&RBig> = direction.iter().filter(|part| !part.is_zero()).collect();
+            let near: Vec<f64> = parts.iter().map(|part| rational_to_f64(part)).collect();
+            let (text, vector) = (combination(&names, &near), in_proportion(&parts));
+            kind.example = Some(UnseenExample { index, text, vector, exact });
+        }
     }
+
+    /// Adds what was counted at later states.
+    pub fn append(&mut self, later: UnseenDirections) {
+        for (names, kind) in later.0 {
+            let mine = self.0.entry(names).or_default();
+            mine.count = mine.count.saturating_add(kind.count);
+            mine.example = mine.example.take().or(kind.example);
+        }
+    }
+
+    /// All of them of which there is an example, in order of the names; `at` is the state of an index in words.
+    ///
+    /// # Errors
+    /// Those of `at`.
+    pub fn into_list<E>(
+        self,
+        at: impl Fn(u64) -> Result<StateInWords, E>,
+    ) -> Result<Vec<UnseenDirection>, E> {
+        let with_example = |(states, kind): (Vec<String>, UnseenKind)| {
+            let UnseenExample { index, text, vector, exact } = kind.example?;
+            let whole =
+                |at| UnseenDirection { states, count: kind.count, example: text, index, at, vector, exact };
+            Some(at(index).map(whole))
+        };
+        self.0.into_iter().filter_map(with_example).collect()
+    }
+}
+
+/// The names of the unknowns that take part.
+fn names_of(unknowns: &[String], takes_part: &[bool]) -> Vec<String> {
+    unknowns.iter().zip(takes_part).filter(|(_, part)| **part).map(|(name, _)| name.clone()).collect()
 }
 
 /// A vector along another one, none of whose parts is zero.

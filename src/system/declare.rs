@@ -7,9 +7,9 @@
 //! link stands still. In a second experiment each state, signal, input and output has a copy, `x@2`; constants have none.
 
 use super::error::Problem;
-use super::grammar::Item;
 use super::model::{Assignment, Field, FieldPlace, Kind, Range, Role, SymbolInfo, System, Time, Value};
 use super::signals::{DeclaredInitial, DeclaredSignal, Derivatives, Knowledge, NOWHERE};
+use super::syntax::Item;
 use super::unknowns::{Signal, UnknownKind, next_derivative};
 use super::written::Written;
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Relation, Span};

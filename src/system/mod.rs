@@ -6,6 +6,7 @@
 //!
 //! This floor knows nothing of ranks, verdicts or palms.
 
+mod comparable;
 mod components;
 mod declare;
 mod determinant;
@@ -14,7 +15,9 @@ mod discrete;
 mod domain;
 mod drawn;
 mod elaborate;
+mod enter_field;
 mod error;
+mod examine;
 mod extent;
 mod format;
 mod functions;
@@ -32,6 +35,7 @@ mod restates;
 mod signals;
 mod source_text;
 mod standing;
+mod syntax;
 mod unknowns;
 mod views;
 mod visible;
@@ -45,21 +49,21 @@ pub use error::ReadError;
 #[cfg(feature = "cli")]
 pub(crate) use error::boundary;
 pub(crate) use error::{Problem, line_and_column, nearest};
+pub use examine::Examination;
 pub use format::format_text;
-pub use grammar::Expectation;
 #[doc(hidden)]
 pub use grammar::parse_statement;
-#[doc(hidden)]
-pub use grammar::{ClaimBody, ClaimSyntax, Statement};
 pub use model::{Assignment, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Time, Value};
 #[cfg(feature = "cli")]
 pub(crate) use outline::{Declaration, DeclarationKind, Outline};
 #[doc(hidden)]
 pub use problems::MOST_PROBLEMS;
-pub use read::Examination;
 pub(crate) use source_text::load;
 pub(crate) use source_text::with_plain_line_ends;
 pub use standing::{Basis, Flaw, Reference};
+pub use syntax::Expectation;
+#[doc(hidden)]
+pub use syntax::{ClaimBody, ClaimSyntax, Statement};
 pub use unknowns::UnknownKind;
 #[doc(hidden)]
 pub use views::{CoordinateRange, LineEnd};

@@ -3,7 +3,7 @@
 use super::dimension::{Dimensions, Import};
 use super::domain::Domain;
 use super::error::Problem;
-use super::grammar::{ClaimBody, ClaimSyntax};
+use super::syntax::{ClaimBody, ClaimSyntax};
 use super::unknowns::Coordinates;
 use super::views::{LineView, MapView, NamedSet, ReductionTo};
 use super::written::{Insert, Mention, Place, Scope, Written, places_in_equation};

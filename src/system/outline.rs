@@ -1,10 +1,11 @@
 //! What a text declares and where, for editors: read by the one grammar, also where some of it cannot be read, and without
 //! the meaning of names.
 
-use super::grammar::{ClaimBody, Entries, Item, OutputSyntax, parse_entries};
+use super::grammar::{Entries, parse_entries};
 use super::model::Role;
 use super::signals::Knowledge;
 use super::standing::{Basis, Reference};
+use super::syntax::{ClaimBody, Item, OutputSyntax};
 use super::views::View;
 use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Name, Span};

@@ -7,9 +7,10 @@
 
 use super::elaborate::Wanted;
 use super::error::Problem;
-use super::grammar::{ENTRIES, Item, Statement};
+use super::grammar::ENTRIES;
 use super::model::System;
 use super::signals;
+use super::syntax::{Item, Statement};
 use crate::expression::parse::ends_a_line;
 use crate::expression::syntax::{Equation, Expr, ExprKind, Span};
 use std::collections::HashSet;

@@ -1,11 +1,12 @@
 //! Names behind `restates` and `follows`: each has to be there, and none may lead back to itself.
 
 use super::error::{Problem, nearest};
-use super::grammar::{ClaimBody, ClaimSyntax, Item, parse_file};
+use super::grammar::parse_file;
 use super::model::System;
 use super::problems::{Cause, Full, Problems};
 use super::source_text::{load, with_plain_line_ends};
 use super::standing::{Basis, Reference};
+use super::syntax::{ClaimBody, ClaimSyntax, Item};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,8 @@
 //! Whether a statement says the same thing twice: its two sides are one expression once names are put in. A paper that
 //! writes down a field again after it was derived does so; no calculation stands behind such an equation.
 
-use super::grammar::Statement;
 use super::model::{System, Value};
+use super::syntax::Statement;
 use super::written::in_one_line;
 use crate::expression::COMPOSED;
 use crate::expression::syntax::{Expr, ExprKind, Relation};

@@ -4,7 +4,7 @@
 //! The words that begin these entries are names too, where nothing follows that makes an entry of them.
 
 use super::dimension::{DeclaredDimension, DeclaredTarget, annotation};
-use super::grammar::{Item, Statement};
+use super::syntax::{Item, Statement};
 use super::views::View;
 use crate::expression::parse::{Read, Text, keyword, loops, name, repeat, sign, stop, sum, target};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};

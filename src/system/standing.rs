@@ -1,7 +1,8 @@
 //! What an entry says of itself beside its statements: whose doing a fault is, on what a claim rests, from which other
 //! entry an error follows.
 
-use super::grammar::{ClaimBody, Statement, identifier, quoted, statement};
+use super::grammar::{identifier, quoted, statement};
+use super::syntax::{ClaimBody, Statement};
 use crate::expression::parse::{Read, Text, keyword, sign, stop};
 use crate::expression::syntax::Span;
 use winnow::combinator::{alt, cut_err, opt, preceded, separated};

@@ -173,6 +173,12 @@ impl System {
         signals.find_map(|signal| signal.chain.iter().position(|link| *link == symbol))
     }
 
+    /// The derivative of a signal, or of one of its derivatives, where there is a symbol for it.
+    pub(crate) fn next_derivative_of_signal(&self, symbol: Symbol) -> Option<Symbol> {
+        let mut pairs = self.coordinates.signals.iter().flat_map(|signal| signal.chain.windows(2));
+        pairs.find_map(|pair| (pair[0] == symbol).then_some(pair[1]))
+    }
+
     /// Whether a symbol is the last derivative that is taken of a signal that outputs tie: its rate is nothing that is known.
     pub(crate) fn is_cut_off(&self, symbol: Symbol) -> bool {
         let last = |signal: &Signal| signal.is_known && signal.chain.last() == Some(&symbol);

@@ -3,9 +3,10 @@
 
 use super::elaborate::Wanted;
 use super::error::Problem;
-use super::grammar::{Item, quoted};
+use super::grammar::quoted;
 use super::model::System;
 use super::signals;
+use super::syntax::Item;
 use super::written::in_one_line;
 use crate::expression::parse::{
     Read, Text, assignments, conditions, equations, keyword, name, range, repeat, sign, stop, sum, target,

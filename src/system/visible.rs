@@ -2,8 +2,8 @@
 //! `identifiable(a*b)`, `unidentifiable(k)`. They stand by themselves, with no relation behind them.
 
 use super::error::Problem;
-use super::grammar::Statement;
 use super::model::{System, Time, Value};
+use super::syntax::Statement;
 use crate::expression::parse::{Read, Text, blank, name, relation, stop, sum};
 use crate::expression::syntax::{Equation, Expr, ExprKind, Relation, Span};
 use crate::expression::{NodeId, Symbol};

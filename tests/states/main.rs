@@ -13,6 +13,7 @@ mod discrete;
 mod models;
 mod neighbours;
 mod observable;
+mod parts;
 mod rank_edges;
 mod region_edges;
 mod solutions;

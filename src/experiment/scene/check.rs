@@ -3,7 +3,7 @@
 mod observer;
 mod physics;
 
-use super::keys::SceneKeys;
+use super::keys::{SceneKeys, SensorKeys};
 use super::place::Places;
 use super::{Scene, Simulated};
 use crate::system::Problem;
@@ -116,7 +116,9 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
             ));
         }
     }
-    checks.sensor(&keys.sensor)?;
+    let SensorKeys { sensor, channels } = keys.sensor;
+    checks.sensor(&sensor)?;
+    checks.channels(&channels, keys.data.record.is_some())?;
     checks.positive("data.spike", keys.data.spike, "usual departures")?;
     let palm_forms = checks.forms(keys.palms.as_ref().and_then(|palms| palms.radii))?;
     let has_palms = keys.body.is_some() || keys.palms.is_some();
@@ -142,7 +144,8 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         _ => {}
     }
     if let Some(span) = span {
-        checks.jitter(keys.sensor.jitter, span)?;
+        checks.jitter(sensor.jitter, span)?;
+        checks.delays(&channels, span)?;
     }
     let source = Source { samples: span.map(|(_, samples)| samples), has_palms: simulated.is_some() };
     let observer = checks.observer(keys.observer, source)?;
@@ -157,7 +160,8 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         simulated,
         system,
         palm_forms,
-        sensor: keys.sensor,
+        sensor,
+        channels,
         data,
         observer,
         study: keys.study,

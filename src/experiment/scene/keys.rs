@@ -1,6 +1,6 @@
 //! The file as it is written: what serde reads, before it is known whether the values go together.
 
-use super::observing::{Data, Method, Sensor, Study};
+use super::observing::{Channel, Data, Method, Sensor, Study};
 use super::place::Places;
 use super::simulated::Body;
 use crate::mechanics::moving::{Course, PushedPalm};
@@ -8,7 +8,7 @@ use crate::observer::{HighGain, Kalman, Shooting, Unscented, WhenBlind};
 use crate::system::Problem;
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
@@ -28,12 +28,97 @@ pub(super) struct SceneKeys {
     pub start: Option<BTreeMap<String, f64>>,
     pub inputs: Option<BTreeMap<String, String>>,
     #[serde(default)]
-    pub sensor: Sensor,
+    pub sensor: SensorKeys,
     #[serde(default)]
     pub data: Data,
     pub observer: ObserverKeys,
     #[serde(default)]
     pub study: Study,
+}
+
+/// `[sensor]` and the tables in it.
+#[derive(Default)]
+pub(super) struct SensorKeys {
+    pub sensor: Sensor,
+    pub channels: BTreeMap<String, Channel>,
+}
+
+/// By hand, because every key that holds a table is the name of a column.
+impl<'de> Deserialize<'de> for SensorKeys {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Keys;
+        impl<'de> Visitor<'de> for Keys {
+            type Value = SensorKeys;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a map")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<SensorKeys, A::Error> {
+                let mut keys = SensorKeys::default();
+                while let Some(key) = map.next_key::<String>()? {
+                    match key.as_str() {
+                        "noise" => keys.sensor.noise = map.next_value()?,
+                        "resolution" => keys.sensor.resolution = map.next_value()?,
+                        "jitter" => keys.sensor.jitter = map.next_value()?,
+                        _ => match map.next_value()? {
+                            ChannelKeys::Table(channel) => {
+                                keys.channels.insert(key, channel);
+                            }
+                            ChannelKeys::Other => {
+                                return Err(A::Error::unknown_field(
+                                    &key,
+                                    &["noise", "resolution", "jitter"],
+                                ));
+                            }
+                        },
+                    }
+                }
+                Ok(keys)
+            }
+        }
+        deserializer.deserialize_map(Keys)
+    }
+}
+
+/// What stands behind a key of `[sensor]` that is none of its own.
+enum ChannelKeys {
+    Table(Channel),
+    Other,
+}
+
+impl<'de> Deserialize<'de> for ChannelKeys {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = ChannelKeys;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a map")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ChannelKeys, A::Error> {
+                Channel::deserialize(MapAccessDeserializer::new(map)).map(ChannelKeys::Table)
+            }
+
+            fn visit_f64<E>(self, _: f64) -> Result<ChannelKeys, E> {
+                Ok(ChannelKeys::Other)
+            }
+
+            fn visit_i64<E>(self, _: i64) -> Result<ChannelKeys, E> {
+                Ok(ChannelKeys::Other)
+            }
+
+            fn visit_bool<E>(self, _: bool) -> Result<ChannelKeys, E> {
+                Ok(ChannelKeys::Other)
+            }
+
+            fn visit_str<E>(self, _: &str) -> Result<ChannelKeys, E> {
+                Ok(ChannelKeys::Other)
+            }
+        }
+        deserializer.deserialize_any(Either)
+    }
 }
 
 fn one() -> u64 {

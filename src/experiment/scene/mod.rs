@@ -10,13 +10,14 @@ mod place;
 mod simulated;
 
 pub use crate::system::ReadError as SceneError;
-pub use observing::{BasinStudy, Data, Guess, Method, NoiseStudy, ObserverSettings, Sensor, Study};
+pub use observing::{BasinStudy, Channel, Data, Guess, Method, NoiseStudy, ObserverSettings, Sensor, Study};
 pub use simulated::{Body, Palms, SceneOutline, Simulated, SimulatedSystem};
 
 use crate::mechanics::Palm;
 use crate::observer::FaultRules;
 use crate::system::{Problem, load};
 use place::Places;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// An experiment: what is held and how it moves, or where it was recorded; what the sensors read; and the observers
@@ -40,6 +41,8 @@ pub struct Scene {
     pub palm_forms: [Palm<f64>; 2],
     /// `[sensor]`: how well the sensors read.
     pub sensor: Sensor,
+    /// `[sensor.NAME]`: how well single columns are read, by name.
+    pub channels: BTreeMap<String, Channel>,
     /// `[data]`: recorded data, and what to do with a faulty row.
     pub data: Data,
     /// `[observer]`: what is to be found out, and how.
@@ -103,7 +106,11 @@ impl Scene {
             on_fault: self.data.on_fault,
             spike: self.data.spike,
             jitter: self.sensor.jitter,
-            resolution: ["s1", "s2"].map(|column| (column.to_owned(), resolution)).into(),
+            resolution: ["s1", "s2"]
+                .map(|column| (column.to_owned(), resolution))
+                .into_iter()
+                .chain(self.channels.iter().filter_map(|(name, own)| Some((name.clone(), own.resolution?))))
+                .collect(),
         }
     }
 }

@@ -11,7 +11,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 /// How well the sensors read. All zero unless given.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Sensor {
     /// `noise`: the standard deviation of s1 and s2, in m.
@@ -20,6 +20,29 @@ pub struct Sensor {
     pub resolution: f64,
     /// `jitter`: the standard deviation of the time from one sample to the next, in s.
     pub jitter: f64,
+}
+
+/// `[sensor.NAME]`: how one column is read. A reading is `gain * x(t - delay) + bias`, with normal errors, rounded.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Channel {
+    /// `noise`: the standard deviation of a reading, in the column's unit; that of `[sensor]` for s1 and s2 unless given, and zero for
+    /// all others.
+    pub noise: Option<f64>,
+    /// `resolution`: readings are rounded to multiples of it; as for the noise unless given.
+    pub resolution: Option<f64>,
+    /// `bias`: what is added, in the column's unit; 0 unless given. Of a simulated sensor: observers are not told.
+    pub bias: f64,
+    /// `gain`: by what it is multiplied; 1 unless given. Of a simulated sensor: observers are not told.
+    pub gain: f64,
+    /// `delay`: by how much the reading is late, in s; 0 unless given. Of a simulated sensor: observers are not told.
+    pub delay: f64,
+}
+
+impl Default for Channel {
+    fn default() -> Self {
+        Channel { noise: None, resolution: None, bias: 0.0, gain: 1.0, delay: 0.0 }
+    }
 }
 
 /// Recorded data, and what to do with a faulty row of it.
@@ -83,7 +106,7 @@ pub enum Guess {
     /// `guess_off`: each state is off the truth by this part of it (0.1: ten percent more). Only where there is a
     /// truth, in a simulation.
     Off(f64),
-    /// `"none"`: the readings of the first window give it. Only between two flat palms.
+    /// `"none"`: the readings of the first window give it. Only between two palms.
     None,
     /// `"sample"`: the middle of the model's sample box.
     Sample,

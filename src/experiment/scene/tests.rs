@@ -111,6 +111,24 @@ fn shown(text: &str) -> String {
     out
 }
 
+/// Single columns in tables of their own, in either way that TOML has for them.
+#[test]
+fn columns_have_sensors_of_their_own() {
+    let table = SHORT.replace("[observer]", "[sensor.tau1]\nnoise = 0.01\ngain = 1.01\n[observer]");
+    let inline = SHORT.replace(
+        "[observer]",
+        "[sensor]\nnoise = 1e-5\ntau1 = { noise = 0.01, gain = 1.01 }\ns1 = { resolution = 1e-4 }\n[observer]",
+    );
+    let torque = Channel { noise: Some(0.01), gain: 1.01, ..Channel::default() };
+    let scene = Scene::parse("scenes/a.toml", &table).unwrap();
+    assert_eq!(scene.channels, [("tau1".to_owned(), torque)].into());
+    assert_eq!(scene.sensor, Sensor::default());
+    let scene = Scene::parse("scenes/a.toml", &inline).unwrap();
+    let contact = Channel { resolution: Some(1e-4), ..Channel::default() };
+    assert_eq!(scene.channels, [("tau1".to_owned(), torque), ("s1".to_owned(), contact)].into());
+    assert_eq!((scene.sensor.noise, scene.fault_rules().resolution["s1"]), (1e-5, 1e-4));
+}
+
 #[test]
 fn every_key_arrives_where_it_belongs() {
     let scene = parse(WHOLE);

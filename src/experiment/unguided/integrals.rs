@@ -9,7 +9,12 @@ pub(super) struct PalmSample {
     pub normal: [f64; 2],
     /// `c_i x n_i`, the lever of the contact force about the hinge.
     pub lever: f64,
+    /// `c_i . n_i`, zero of a flat palm.
+    pub height: f64,
     pub rate: f64,
+    /// By how much the normal turns in a metre of contact, counterclockwise; and which way the contact goes round the body, 1 or -1.
+    pub bend: f64,
+    pub side: f64,
 }
 
 /// What the constraint needs at one sample.
@@ -87,7 +92,7 @@ impl Rule {
 impl Integrals {
     /// Of a window with at least four samples; none where a contact lies on the hinge or palms are parallel.
     pub fn of(readings: &PalmReadings) -> Option<Integrals> {
-        let PalmReadings { times, contacts, angles, mass, .. } = readings;
+        let PalmReadings { times, contacts, angles, mass, palms, .. } = readings;
         let n = times.len();
         let rule = Rule::of(times);
         let mut samples = vec![Sample::default(); n];
@@ -96,12 +101,21 @@ impl Integrals {
             sample.time = times[i] - times[0];
             for p in 0..2 {
                 let (sine, cosine) = angles[p][i].sin_cos();
+                // palm 2 is palm 1 in a mirror
                 let side = if p == 0 { 1.0 } else { -1.0 };
-                let lever = side * contacts[p][i];
-                sample.palms[p] =
-                    PalmSample { normal: [-side * sine, side * cosine], lever, rate: readings.rates[p][i] };
+                let point = palms[p].at(&contacts[p][i]);
+                let ([along, above], [nx, ny]) = (point.place, point.normal);
+                let palm = PalmSample {
+                    normal: [nx * cosine - side * ny * sine, nx * sine + side * ny * cosine],
+                    lever: side * (along * ny - above * nx),
+                    height: along * nx + above * ny,
+                    rate: readings.rates[p][i],
+                    bend: side * point.curvature,
+                    side,
+                };
                 let torque = readings.torques[p][i] - readings.inertia[p] * readings.accelerations[p][i];
-                forces[i][p] = torque / lever;
+                forces[i][p] = torque / palm.lever;
+                sample.palms[p] = palm;
             }
         }
         let over = |samples: &[Sample], of: &dyn Fn(usize, &Sample) -> f64| -> Vec<f64> {
@@ -158,9 +172,11 @@ impl Integrals {
         })
     }
 
-    /// The distances of a point from the palms at the first sample.
+    /// The distances of a point from the palms' tangents at the first contacts.
     pub fn radii(&self, centre: [f64; 2]) -> [f64; 2] {
-        self.samples[0].palms.map(|palm| palm.normal[0] * centre[0] + palm.normal[1] * centre[1])
+        self.samples[0]
+            .palms
+            .map(|palm| palm.normal[0] * centre[0] + palm.normal[1] * centre[1] - palm.height)
     }
 }
 

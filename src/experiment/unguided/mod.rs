@@ -1,4 +1,4 @@
-//! The state of a body between two flat palms from a window of readings, without a first guess.
+//! The state of a body between two palms, flat or circular, from a window of readings, without a first guess.
 //!
 //! What palm `i` tells of a body of unknown shape is that the body's material point at the contact does not enter it,
 //!
@@ -25,6 +25,7 @@ mod search;
 
 pub(super) use scene::{Unguided, palm_readings};
 
+use crate::mechanics::Palm;
 use integrals::Integrals;
 
 /// Fewer samples than these give no state.
@@ -35,7 +36,9 @@ const FEWEST: usize = 12;
 pub struct PalmReadings {
     /// In s.
     pub times: Vec<f64>,
-    /// The contacts along the palms.
+    /// The palms' forms.
+    pub palms: [Palm<f64>; 2],
+    /// The contacts, by arc length along the palms.
     pub contacts: [Vec<f64>; 2],
     /// The palms' angles against the X axis, in rad, and their rates and accelerations.
     pub angles: [Vec<f64>; 2],
@@ -60,7 +63,7 @@ pub struct PalmReadings {
 /// The state at the first sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstState {
-    /// The distances of the centre of mass from the palms, `r1` and `r2`.
+    /// The distances of the centre of mass from the palms' tangents at the contacts, `r1` and `r2`.
     pub radii: [f64; 2],
     /// `omega0`.
     pub rate: f64,

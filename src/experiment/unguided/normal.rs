@@ -1,6 +1,6 @@
 //! The constraint's residuals at all samples, and steps that make them smaller.
 
-use super::integrals::{Integrals, Sample};
+use super::integrals::{Integrals, PalmSample, Sample};
 
 /// `c0`, `v0`, `omega0` and the logarithm of `k`.
 pub(super) type Unknowns = [f64; 6];
@@ -17,8 +17,8 @@ struct Normal {
 pub(super) struct Look {
     /// Every so many samples.
     pub stride: usize,
-    /// A residual is the palm's distance of where a contact is from where it had to be: the constraint over `omega - w_i`, rates
-    /// below this one softened.
+    /// A residual is the palm's distance of where a contact is from where it had to be: the constraint over its rate of change by that,
+    /// which is `omega - w_i` of a flat palm; rates below this one are softened.
     pub softened: f64,
 }
 
@@ -50,6 +50,25 @@ fn looked_at(all: &Integrals, look: Look) -> impl Iterator<Item = &Sample> {
     all.samples.iter().step_by(look.stride)
 }
 
+/// The derivative of the constraint by a contact's place along its palm, up to its sign: the palm turns with its own rate against the body, and
+/// where it is bent its normal turns along it, so that the speed of sliding counts.
+fn swept(palm: &PalmSample, place: [f64; 2], velocity: [f64; 2], omega: f64) -> f64 {
+    let turned = omega - palm.rate;
+    if palm.bend == 0.0 {
+        return turned;
+    }
+    // along the palm, away from the hinge
+    let [tx, ty] = [palm.side * palm.normal[1], -palm.side * palm.normal[0]];
+    let [nx, ny] = palm.normal;
+    let along = palm.side * palm.lever;
+    let contact = [along * tx + palm.height * nx, along * ty + palm.height * ny];
+    let [x, y] = [contact[0] - place[0], contact[1] - place[1]];
+    let body = [velocity[0] - omega * y, velocity[1] + omega * x];
+    let own = [-palm.rate * contact[1], palm.rate * contact[0]];
+    let sliding = tx * (body[0] - own[0]) + ty * (body[1] - own[1]);
+    turned - palm.bend * sliding
+}
+
 /// The sum of the squares alone.
 pub(super) fn cost(all: &Integrals, x: &Unknowns, look: Look) -> f64 {
     let [cx, cy, vx, vy, rate, log_k] = *x;
@@ -64,7 +83,7 @@ pub(super) fn cost(all: &Integrals, x: &Unknowns, look: Look) -> f64 {
             let [nx, ny] = palm.normal;
             let arm = palm.lever - ny * place[0] + nx * place[1];
             let off = nx * velocity[0] + ny * velocity[1] + omega * arm - palm.rate * palm.lever;
-            let swept = omega - palm.rate;
+            let swept = swept(palm, place, velocity, omega);
             cost += off * off / (swept * swept + look.softened * look.softened);
         }
     }
@@ -87,7 +106,7 @@ fn expand(all: &Integrals, x: &Unknowns, look: Look) -> Normal {
             let [nx, ny] = palm.normal;
             let arm = palm.lever - ny * place[0] + nx * place[1];
             let off = nx * velocity[0] + ny * velocity[1] + omega * arm - palm.rate * palm.lever;
-            let swept = omega - palm.rate;
+            let swept = swept(palm, place, velocity, omega);
             let weight = 1.0 / (swept * swept + look.softened * look.softened);
             let root = weight.sqrt();
             let bend = arm - off * swept * weight;

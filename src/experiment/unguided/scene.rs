@@ -26,10 +26,6 @@ impl Unguided {
         known: &BTreeMap<String, f64>,
         signals: &Signals,
     ) -> Result<Unguided, SceneError> {
-        if scene.palm_forms.iter().any(|form| *form != Palm::Flat) {
-            let help = "a state is found without a first guess between flat palms only";
-            return Err(refuse(scene, "there is no first guess, and a palm is circular".to_owned(), help));
-        }
         let rows = (scene.observer.window + 1).min(signals.times().len());
         let readings = palm_readings(scene, system, known, signals, rows).map_err(|name| {
             let help = "give it under `known`, hand over a column of that name, or give a first guess";
@@ -96,9 +92,15 @@ pub(in crate::experiment) fn palm_readings(
         Ok([first, sum])
     };
     let sensor = &scene.sensor;
+    // a recording's palms are those that the model knows
+    let form = |form: Palm<f64>, name: &str| match (form, constant(name)) {
+        (Palm::Flat, Some(radius)) if radius.is_finite() => Palm::Circular { radius },
+        (form, _) => form,
+    };
     let is_sought = |name: &str| scene.observer.estimate.iter().any(|other| other == name);
     Ok(PalmReadings {
         times: signals.times()[..rows].to_vec(),
+        palms: [form(scene.palm_forms[0], "b1"), form(scene.palm_forms[1], "b2")],
         contacts: [column(TOUCH[0])?, column(TOUCH[1])?],
         angles: world("phi1", "phi2")?,
         rates: world("omega1", "omega2")?,

@@ -39,7 +39,9 @@ pub(crate) mod fixtures;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use drive::{Course, Drive, Oscillation, PushedPalm};
+pub(crate) use drive::Drive;
+#[doc(hidden)]
+pub use drive::{Course, Oscillation, PushedPalm};
 pub(crate) use form::{BodyForm, CentreOfMass, FormError, Knots};
 pub(crate) use random::SplineDraws;
 pub(crate) use scene::{DEFAULT_TOLERANCE, MovingScene, SceneError};

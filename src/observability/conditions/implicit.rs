@@ -27,10 +27,11 @@ impl Branch {
             self.steps.push(quote(system, zero, *node));
         }
         let drift = system.drift();
+        let mut solved: Vec<Option<Symbol>> = vec![None; outputs.len()];
         let mut current = outputs;
         for order in 0..=system.longest_word().unwrap_or(0) + 1 {
-            for node in &current {
-                self.meet(system, *node, order)?;
+            for (node, solved) in current.iter().zip(&mut solved) {
+                *solved = self.meet(system, *node, order, *solved)?;
             }
             let Some(drift) = drift else { break };
             current = current.iter().map(|node| system.lie_derivative(drift, *node)).collect();
@@ -38,11 +39,26 @@ impl Branch {
         Ok(self)
     }
 
-    /// Meets one more equation, a derivative of an output.
-    fn meet(&mut self, system: &mut System, output: NodeId, order: usize) -> Result<(), Unsolved> {
+    /// Meets one more equation, a derivative of an output, and tells what it was solved for. `before` is what the derivative before
+    /// it was.
+    fn meet(
+        &mut self,
+        system: &mut System,
+        output: NodeId,
+        order: usize,
+        before: Option<Symbol>,
+    ) -> Result<Option<Symbol>, Unsolved> {
         let here = system.graph.substitute(&[output], &self.values)[0];
+        if let Some((symbol, slope)) = before.and_then(|before| next_in_line(system, here, before)) {
+            let zero = system.graph.integer(0);
+            let rest = system.graph.substitute(&[here], &Assignment::from([(symbol, zero)]))[0];
+            let quotient = system.graph.div(rest, slope);
+            let value = system.graph.neg(quotient);
+            self.put(system, symbol, value, slope);
+            return Ok(Some(symbol));
+        }
         if vanishes(system, here) {
-            return Ok(());
+            return Ok(None);
         }
         let zero = system.graph.integer(0);
         let text = quote(system, zero, here);
@@ -57,18 +73,39 @@ impl Branch {
                 return Err(Unsolved::Several(text));
             }
             let slope = system.partial(here, symbol);
-            add_guard(&system.graph, &mut self.guards, Guard { node: slope, need: Need::NotZero });
-            let single = Assignment::from([(symbol, value)]);
-            for values in [&mut self.values, &mut self.before_turns] {
-                for known in values.values_mut() {
-                    *known = system.graph.substitute(&[*known], &single)[0];
-                }
-                values.insert(symbol, value);
-            }
-            return Ok(());
+            self.put(system, symbol, value, slope);
+            return Ok(Some(symbol));
         }
         Err(Unsolved::NotLinear(text))
     }
+
+    /// Puts the value of a symbol into all that is known, where the slope that it was divided by does not vanish.
+    fn put(&mut self, system: &mut System, symbol: Symbol, value: NodeId, slope: NodeId) {
+        add_guard(&system.graph, &mut self.guards, Guard { node: slope, need: Need::NotZero });
+        let single = Assignment::from([(symbol, value)]);
+        for values in [&mut self.values, &mut self.before_turns] {
+            let (symbols, nodes): (Vec<Symbol>, Vec<NodeId>) =
+                values.iter().map(|(symbol, node)| (*symbol, *node)).unzip();
+            let images = system.graph.substitute(&nodes, &single);
+            values.extend(symbols.into_iter().zip(images));
+            values.insert(symbol, value);
+        }
+    }
+}
+
+/// The next derivative of a signal that the derivative before was solved for, and its slope, where an equation is visibly linear
+/// in it: the slope does not mention it. The slope is that of the derivative before (Faa di Bruno), which was tested for zero, so that
+/// none of the tests is made again on expressions that grow with each order.
+fn next_in_line(system: &mut System, equation: NodeId, before: Symbol) -> Option<(Symbol, NodeId)> {
+    if !system.known.contains(&before) {
+        return None;
+    }
+    let next = system.next_derivative_of_signal(before)?;
+    if !system.graph.symbols_of([equation]).contains(&next) {
+        return None;
+    }
+    let slope = system.partial(equation, next);
+    (!system.graph.symbols_of([slope]).contains(&next)).then_some((next, slope))
 }
 
 /// The coordinates that an equation may be solved for: known signals, their highest derivatives first, then all others.

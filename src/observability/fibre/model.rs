@@ -5,6 +5,7 @@
 use super::exact::Exact;
 use crate::expression::{Graph, Input, NodeId, Program, Symbol, expand_angles};
 use crate::number::{Arithmetic, Fraction, Fractions, Function, Refusal};
+use crate::observability::driven::{Driven, driven, told_constants};
 use crate::system::{Assignment, System, Time};
 
 use std::collections::{HashMap, HashSet};
@@ -56,9 +57,6 @@ pub(super) struct Model {
     pub seen: Vec<NodeId>,
 }
 
-/// A name that no file can give.
-const DRIVE: &str = "\u{1}drive";
-
 impl Model {
     /// The model where the conditions are met, with expressions that are asked for.
     ///
@@ -75,32 +73,10 @@ impl Model {
         let mut graph = system.graph.clone();
         let angles = system.angles();
         let is_angle = |symbol: Symbol| angles.contains(&symbol);
-        let is_fixed = |(symbol, value): (&Symbol, &NodeId)| {
-            (!system.states.contains(symbol) && graph.symbols_of([*value]).is_empty())
-                .then_some((*symbol, *value))
-        };
-        let fixed: Assignment = conditions.iter().filter_map(is_fixed).collect();
-        let mut rates: HashMap<Symbol, NodeId> = HashMap::new();
-        let mut drives = HashSet::new();
-        for (number, place) in system.moving_fields().into_iter().enumerate() {
-            let field = &system.fields[place];
-            let drive = (Some(place) != system.drift()).then(|| graph.intern(&format!("{DRIVE}{number}")));
-            drives.extend(drive);
-            for (symbol, component) in &field.components {
-                let term = match drive {
-                    Some(drive) => {
-                        let signal = graph.symbol(drive);
-                        graph.mul(signal, *component)
-                    }
-                    None => *component,
-                };
-                let sum = rates.get(symbol).map_or(term, |sum| graph.add(*sum, term));
-                rates.insert(*symbol, sum);
-            }
-        }
-        let moved: Vec<Symbol> =
-            system.states.iter().copied().filter(|state| rates.contains_key(state)).collect();
-        let mut roots: Vec<NodeId> = moved.iter().map(|state| rates[state]).collect();
+        let fixed = told_constants(system, &graph, conditions);
+        let Driven { rates, drives } = driven(system, &mut graph);
+        let moved: Vec<Symbol> = rates.iter().map(|(state, _)| *state).collect();
+        let mut roots: Vec<NodeId> = rates.iter().map(|(_, rate)| *rate).collect();
         roots.extend(system.outputs.iter().map(|(_, node)| *node));
         roots.extend(asked);
         let roots = graph.substitute(&roots, &fixed);

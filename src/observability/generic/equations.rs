@@ -7,12 +7,13 @@ use crate::expression::{
     normal_form, substitute_guards,
 };
 use crate::number::{Coefficients, Function, PrimeField, Refusal};
+use crate::observability::driven::{Driven, driven, told_constants};
 use crate::observability::flow::Flow;
 use crate::system::{Assignment, System};
 use dashu::rational::RBig;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// The equations, ready to be run modulo primes.
 pub(super) struct Equations {
@@ -53,46 +54,16 @@ pub(super) struct Trajectory {
     pub entries: Vec<Entry>,
 }
 
-/// A name that no file can give.
-const DRIVE: &str = "\u{1}drive";
-
 impl Equations {
     /// The equations, and the differentials of functions that are asked for.
     pub fn new(system: &System, conditions: &Assignment, asked: &[NodeId]) -> Equations {
         let mut graph = system.graph.clone();
         let angles = system.angles();
         // constants that are given are put in; everything else that a condition says is where the flow begins
-        let fixed: Assignment = conditions
-            .iter()
-            .filter(|(symbol, value)| {
-                !system.states.contains(symbol) && graph.symbols_of([**value]).is_empty()
-            })
-            .map(|(symbol, value)| (*symbol, *value))
-            .collect();
-        let mut rates: HashMap<Symbol, NodeId> = HashMap::new();
-        let mut drives = Vec::new();
-        for (number, place) in system.moving_fields().into_iter().enumerate() {
-            let field = &system.fields[place];
-            let drive = (Some(place) != system.drift()).then(|| graph.intern(&format!("{DRIVE}{number}")));
-            drives.extend(drive);
-            for (symbol, component) in &field.components {
-                let term = match drive {
-                    Some(drive) => {
-                        let signal = graph.symbol(drive);
-                        graph.mul(signal, *component)
-                    }
-                    None => *component,
-                };
-                let sum = match rates.get(symbol) {
-                    Some(sum) => graph.add(*sum, term),
-                    None => term,
-                };
-                rates.insert(*symbol, sum);
-            }
-        }
-        let moved: Vec<Symbol> =
-            system.states.iter().copied().filter(|state| rates.contains_key(state)).collect();
-        let mut written: Vec<NodeId> = moved.iter().map(|state| rates[state]).collect();
+        let fixed = told_constants(system, &graph, conditions);
+        let Driven { rates, drives } = driven(system, &mut graph);
+        let moved: Vec<Symbol> = rates.iter().map(|(state, _)| *state).collect();
+        let mut written: Vec<NodeId> = rates.iter().map(|(_, rate)| *rate).collect();
         written.extend(system.outputs.iter().map(|(_, node)| *node).chain(asked.iter().copied()));
         let written = graph.substitute(&written, &fixed);
         let written = expand_angles(&mut graph, &written, |symbol| angles.contains(&symbol));
@@ -121,7 +92,6 @@ impl Equations {
         let entries = table(&mut graph, &of_rates);
 
         let flow = Flow::new(&graph, &components, &roots, |symbol| angles.contains(&symbol));
-        let drives: HashSet<Symbol> = drives.into_iter().collect();
         let given = flow.inputs().to_vec();
         let driven = given.iter().enumerate().filter_map(|(place, input)| {
             input.symbol().is_some_and(|symbol| drives.contains(&symbol)).then_some(place)

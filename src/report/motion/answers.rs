@@ -126,6 +126,31 @@ fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
     found
 }
 
+/// What is known of the sensors: the contacts' noise and resolution, and the columns that have their own.
+fn sensor_json(experiment: &Experiment) -> Value {
+    let sensor = &experiment.scene.sensor;
+    let mut found = json!({ "noise": sensor.noise, "resolution": sensor.resolution });
+    let columns: Map<String, Value> = experiment
+        .scene
+        .channels
+        .iter()
+        .map(|(name, own)| {
+            let column = json!({
+                "noise": own.noise,
+                "resolution": own.resolution,
+                "bias": own.bias,
+                "gain": own.gain,
+                "delay": own.delay,
+            });
+            (name.clone(), column)
+        })
+        .collect();
+    if !columns.is_empty() {
+        found["columns"] = Value::Object(columns);
+    }
+    found
+}
+
 /// An experiment as JSON: true and recovered states, errors, the bound of Cramér and Rao, iterations and time.
 ///
 /// An `error` is relative, or absolute where the truth is less than a millionth; a `bound` is a standard deviation in the unit of its
@@ -156,7 +181,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         "seed": experiment.scene.seed,
         "samples": times.len(),
         "duration": times.last(),
-        "sensor": { "noise": experiment.scene.sensor.noise, "resolution": experiment.scene.sensor.resolution },
+        "sensor": sensor_json(experiment),
         "first_guess": guess,
         "clamped": experiment.question.clamped,
         "told": experiment.question.known,

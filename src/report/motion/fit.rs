@@ -39,12 +39,12 @@ fn explained(fit: &Fit) -> String {
 pub(super) fn unexplained(update: &Update, fit: &Fit) -> String {
     let (misfit, probability) = (update.misfit, fit.probability);
     match fit.from {
+        _ if fit.degrees == 0 => "there are no more readings than unknowns".to_owned(),
         NoiseFrom::Stated => {
             let bound =
                 if probability > 0.0 { format!("{probability:.1e}") } else { "below 1e-300".to_owned() };
             format!("a misfit of {misfit:.1e} for a noise of {:.1e} has the probability {bound}", fit.sigma)
         }
-        _ if fit.degrees == 0 => "there are no more readings than unknowns".to_owned(),
         _ => format!(
             "what is left, {misfit:.1e}, is no noise (neighbours so alike have the probability {probability:.1e})"
         ),
@@ -68,9 +68,16 @@ pub(super) fn suspects_in_words(update: &Update) -> Vec<String> {
         let words: Vec<String> = told.iter().map(words).collect();
         lines.push(format!("errors that are noticed (99 of 100) begin at: {}", words.join(", ")));
     }
-    if !hidden.is_empty() {
-        let names: Vec<String> = hidden.iter().map(ToString::to_string).collect();
-        lines.push(format!("errors that cannot be told from what is sought: {}", names.join(", ")));
+    let (large, never): (Vec<&Suspect>, Vec<&Suspect>) =
+        hidden.into_iter().partition(|suspect| suspect.noticed.is_some());
+    for (suspects, words) in [
+        (large, "errors that are noticed from 100 % (1 s) on only"),
+        (never, "errors that cannot be told from what is sought"),
+    ] {
+        let names: Vec<String> = suspects.iter().map(ToString::to_string).collect();
+        if !names.is_empty() {
+            lines.push(format!("{words}: {}", names.join(", ")));
+        }
     }
     let mut named: Vec<&str> = Vec::new();
     for suspect in &told {
@@ -87,7 +94,7 @@ pub(super) fn suspects_in_words(update: &Update) -> Vec<String> {
         if let Some(best) = best {
             let (error, part) = (best.in_words(best.explains.0), 100.0 * best.explains.1 / fit.chi_square);
             lines.push(format!(
-                "of these {best} explains most, off by {error}: {part:.0} % of the misfit's square"
+                "of these {best} explains most, off by about {error}: to first order {part:.0} % of the misfit's square"
             ));
         }
     }

@@ -1,6 +1,6 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
-use crate::experiment::{ARRIVED, NOMINAL, SceneOutline, error};
+use crate::experiment::{ARRIVED, Channel, NOMINAL, SceneOutline, error};
 use crate::mechanics::Palm;
 use crate::report::motion::answers::{Observed, ended_in_words, fault_lines, noise_unit};
 use crate::report::motion::frames::{frames, recovered_outline};
@@ -93,6 +93,7 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
                     @if sensor.resolution > 0.0 { ", rounded to multiples of " (format!("{:.1e} m", sensor.resolution)) }
                     ". "
                 }
+                @for (name, own) in &scene.channels { (channel_in_words(name, own)) " " }
                 @if sensor.jitter > 0.0 { "Steps in time vary by " (format!("{:.1e} s", sensor.jitter)) ". " }
             } @else if let (Some(motion), Some(simulated)) = (&experiment.motion, &scene.system) {
                 "Simulated by its own equations, from " code { (values(&simulated.start)) }
@@ -125,6 +126,31 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
             ". A window has " (scene.observer.window) " steps of time."
         }
         @if observed.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
+    }
+}
+
+/// How a column is read that has its own sensor.
+fn channel_in_words(name: &str, own: &Channel) -> String {
+    let mut parts = Vec::new();
+    if let Some(noise) = own.noise.filter(|noise| *noise > 0.0) {
+        parts.push(format!("errors of {noise:.1e}"));
+    }
+    if let Some(resolution) = own.resolution.filter(|resolution| *resolution > 0.0) {
+        parts.push(format!("rounding to multiples of {resolution:.1e}"));
+    }
+    if own.gain != 1.0 {
+        parts.push(format!("a gain of {}", own.gain));
+    }
+    if own.bias != 0.0 {
+        parts.push(format!("a bias of {}", own.bias));
+    }
+    if own.delay > 0.0 {
+        parts.push(format!("a delay of {:.1e} s", own.delay));
+    }
+    if parts.is_empty() {
+        format!("{name} was read without error.")
+    } else {
+        format!("{name} was read with {}.", parts.join(", "))
     }
 }
 

@@ -245,7 +245,9 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
     if report.interrupted {
         let _ = writeln!(out, "  interrupted: these are the states done until then");
     }
-    let _ = writeln!(out, "  {:.2} s", report.seconds);
+    if report.seconds.is_finite() {
+        let _ = writeln!(out, "  {:.2} s", report.seconds);
+    }
 }
 
 /// What an answer takes for granted beside its file's equations: what is known and so not counted, what is assumed of signals,

@@ -7,6 +7,7 @@ pub(super) mod generic;
 mod global;
 pub(super) mod motions;
 mod seen;
+mod state_table;
 
 pub use accessible::{accessibility_json, accessibility_text};
 pub(super) use answer::taken_for_granted;
@@ -14,3 +15,4 @@ pub use answer::{rank_json, rank_text};
 pub use drops::{drops_json, drops_text};
 pub use global::{global_json, global_text};
 pub use motions::unseen_field_text;
+pub use state_table::{StateTableWriter, TableForm};

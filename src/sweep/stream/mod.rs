@@ -19,9 +19,10 @@ mod random;
 mod report;
 
 use crate::expression::{BlockProgram, Graph, Guard, Input, Need, Node, NodeId, expand_angles};
-use crate::number::{Bounded, Function, Instructions, Lanes, Vectorised, rational_from_f64};
+use crate::number::{Bounded, Function, Instructions, Lanes, MOST_LANES, Vectorised, rational_from_f64};
 use crate::observability::{Coordinate, Locus, LocusError, Reduction, Source, State};
 use crate::sweep::certainty::Certainty;
+use crate::sweep::table::StateRow;
 use crate::system::System;
 pub use certain::Elimination;
 use dashu::rational::RBig;
@@ -178,23 +179,39 @@ impl Stream {
         options: &StreamOptions<'_>,
         left: &mut dyn FnMut(&[u64]),
     ) -> Result<StreamReport, LocusError> {
+        self.run_from(0, options, false, &mut |indices, _| left(indices))
+    }
+
+    /// The same from the state of an index on: a stream that is cut anywhere adds up to the whole. Where rows are wanted there is
+    /// one for each state, handed on with the indices of those among them that are left, whose rows say nothing yet.
+    ///
+    /// # Errors
+    /// Where states cannot be drawn.
+    pub(in crate::sweep) fn run_from(
+        &self,
+        begin: u64,
+        options: &StreamOptions<'_>,
+        wants_rows: bool,
+        left: &mut dyn FnMut(&[u64], Vec<StateRow>),
+    ) -> Result<StreamReport, LocusError> {
         let mut report = self.nothing();
         let mut done = 0;
         while done < options.states && !options.interrupt.load(Ordering::Relaxed) {
             let chunks = options.states.saturating_sub(done).div_ceil(CHUNK).min(CHUNKS);
-            let found: Vec<Result<(StreamReport, Vec<u64>), LocusError>> = (0..chunks)
+            let found: Vec<Result<ChunkFound, LocusError>> = (0..chunks)
                 .into_par_iter()
                 .map(|chunk| {
                     let first = done + chunk * CHUNK;
                     let count = CHUNK.min(options.states - first);
-                    self.instructions.run(Chunk { stream: self, options, first, count })
+                    let first = begin + first;
+                    self.instructions.run(Chunk { stream: self, options, first, count, wants_rows })
                 })
                 .collect();
             for part in found {
-                let (part, indices) = part?;
+                let ChunkFound { report: part, left: indices, rows } = part?;
                 report.append(&part);
-                if !indices.is_empty() {
-                    left(&indices);
+                if !indices.is_empty() || wants_rows {
+                    left(&indices, rows);
                 }
             }
             done = report.states;
@@ -261,16 +278,26 @@ struct Chunk<'a, 'o> {
     options: &'a StreamOptions<'o>,
     first: u64,
     count: u64,
+    wants_rows: bool,
+}
+
+/// What was found at them.
+struct ChunkFound {
+    report: StreamReport,
+    /// The indices of those that are left for slower numbers.
+    left: Vec<u64>,
+    /// A row for each, where these are wanted.
+    rows: Vec<StateRow>,
 }
 
 impl Vectorised for Chunk<'_, '_> {
-    type Output = Result<(StreamReport, Vec<u64>), LocusError>;
+    type Output = Result<ChunkFound, LocusError>;
 
     #[inline(always)]
     fn run<L: Lanes>(self, zero: L) -> Self::Output {
-        let Chunk { stream, options, first, count } = self;
+        let Chunk { stream, options, first, count, wants_rows } = self;
         let mut report = stream.nothing();
-        let mut left = Vec::new();
+        let (mut left, mut rows_of_states) = (Vec::new(), Vec::new());
         let mut machine = stream.matrix.program.machine(Bounded::exact(zero));
         let lanes = machine.lanes();
         let mut drawer = Drawer::new(&stream.axes, &stream.avoid, options.seed, BlockOf { zero, lanes });
@@ -298,17 +325,32 @@ impl Vectorised for Chunk<'_, '_> {
                 }
                 let LaneFound { found, finite } =
                     decide_lane(&stream.matrix.program, &machine, lane, &mut decider, true);
+                let mut smallest = [0.0; MOST_LANES];
+                if wants_rows && let Some(value) = decider.singular_values().last() {
+                    value.store(&mut smallest);
+                }
                 for (i, finite) in finite.into_iter().enumerate().take(L::COUNT.min((count - here) as usize))
                 {
                     let index = first + here + i as u64;
-                    if report.add(index, &found, i, finite, options.wanted) {
+                    let is_left = report.add(index, &found, i, finite, options.wanted);
+                    if is_left {
                         left.push(index);
+                    }
+                    if wants_rows {
+                        rows_of_states.push(StateRow {
+                            index,
+                            rank: (!is_left).then(|| report.full()),
+                            certified: !is_left && found.certain[i] > 0.0,
+                            smallest_singular_value: (!is_left).then_some(smallest[i]),
+                            condition: (!is_left).then(|| 1.0 / found.ratio[i]),
+                            coordinates: Vec::new(),
+                        });
                     }
                 }
             }
             done += machine.states() as u64;
         }
-        Ok((report, left))
+        Ok(ChunkFound { report, left, rows: rows_of_states })
     }
 }
 

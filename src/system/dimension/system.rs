@@ -4,8 +4,8 @@ use super::check::problems_of;
 use super::exponents::Dimension;
 use crate::expression::Symbol;
 use crate::system::error::ReadError;
-use crate::system::grammar::Statement;
 use crate::system::model::System;
+use crate::system::syntax::Statement;
 
 impl System {
     /// Whether the file, or one that it imports, declares a dimension; without, nothing is known and nothing checked.

@@ -12,3 +12,4 @@ mod circular;
 mod drawn;
 mod quaternions;
 mod sheet;
+mod spatial;

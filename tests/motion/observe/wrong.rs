@@ -146,8 +146,8 @@ fn readings_that_are_none_are_never_borne_out() {
     }
 }
 
-/// The contacts as they were 1 ms ago, with their noise; what comes before the first sample is extrapolated.
-fn late(experiment: Experiment) -> Experiment {
+/// The contacts as they were this long ago, with their noise; what comes before the first sample is extrapolated.
+fn late(experiment: Experiment, delay: f64) -> Experiment {
     let simulation = experiment.simulation.clone().unwrap();
     changed(experiment, |columns, signals| {
         for name in ["s1", "s2"] {
@@ -157,58 +157,60 @@ fn late(experiment: Experiment) -> Experiment {
             let place = place(columns, name);
             for ((value, time), truth) in columns[place].1.iter_mut().zip(signals.times()).zip(truth) {
                 let mut before = [0.0];
-                exact.at(&[0], time - 1e-3, &mut before);
+                exact.at(&[0], time - delay, &mut before);
                 *value += before[0] - truth;
             }
         }
     })
 }
 
-/// The torques 1 % too large as they are read, the contacts 1 ms late, the body 1 % heavier than is believed: where the noise
-/// lets 99 of 100 be noticed, each is; and the error that explains what is left is the one that was made.
+/// The torques too large as they are read, the contacts late, the body heavier than is believed: what is wrong, by how much the truth
+/// exceeds what is believed, and the experiment.
+fn errors(name: &str, seed: u64, [gain, delay, mass]: [f64; 3]) -> [(&'static str, f64, Experiment); 3] {
+    let larger = |columns: &mut Columns, _: &Signals| {
+        let place = place(columns, "tau1");
+        columns[place].1.iter_mut().for_each(|torque| *torque *= 1.0 + gain);
+    };
+    let mut heavier = noisy(name, seed);
+    *heavier.question.known.get_mut("m").unwrap() *= 1.0 + mass;
+    [
+        ("the gain of tau1", 1.0 / (1.0 + gain) - 1.0, changed(noisy(name, seed), larger)),
+        ("a delay of s1, s2", delay, late(noisy(name, seed), delay)),
+        ("m", 1.0 / (1.0 + mass) - 1.0, heavier),
+    ]
+}
+
+/// Torques 1 % off, contacts 1 ms late, a mass 1 % off: where the noise lets 99 of 100 be noticed, each is. And of three times the
+/// error that is just noticed the size is found. It is found to first order: between fixed palms, where the state is seen least, such an
+/// error moves the estimate out of where that holds, and the side and the magnitude are left.
 #[test]
 fn small_errors_are_noticed_and_named() {
-    let mut named = 0;
     for name in REGIMES {
         let right = first(&noisy(name, 1));
         let right = one(&right);
         assert_eq!(right.end, UpdateEnd::Converged, "{name}");
         assert!(right.is_borne_out() && right.fit.unwrap().from == NoiseFrom::Stated);
-        let gain = |columns: &mut Columns, _: &Signals| {
-            let place = place(columns, "tau1");
-            columns[place].1.iter_mut().for_each(|torque| *torque *= 1.01);
-        };
-        let heavier = |seed: u64| {
-            let mut experiment = noisy(name, seed);
-            *experiment.question.known.get_mut("m").unwrap() *= 1.01;
-            experiment
-        };
-        for seed in [2] {
-            let wrongs = [
-                ("the gain of tau1", 1.0 / 1.01 - 1.0, 0.01, changed(noisy(name, seed), gain)),
-                ("a delay of s1, s2", 1e-3, 1e-3, late(noisy(name, seed))),
-                ("m", 1.0 / 1.01 - 1.0, 0.01, heavier(seed)),
-            ];
-            for (what, error, size, experiment) in wrongs {
-                let noticed = suspect(right, what).noticed.unwrap();
-                assert!(noticed < size, "{name}, {what}: noticed from {noticed:e} only");
-                let track = first(&experiment);
-                let update = one(&track);
-                assert!(!track.is_sound(), "{name}, {what}: {:?}", update.fit);
-                // a search along a narrow valley may meet a pole on its way: that is a warning, and no name
-                if update.end != UpdateEnd::DoesNotFit {
-                    continue;
-                }
-                named += 1;
-                let (found, explained) = suspect(update, what).explains;
-                // both are of first order in an error that moves the estimate by many bounds
-                assert!((0.5..2.0).contains(&(found / error)), "{name}, {what}: {found:e} for {error:e}");
-                let fit = update.fit.unwrap();
-                assert!(explained > 0.5 * (fit.chi_square - fit.degrees as f64), "{name}, {what}: {fit:?}");
-            }
+        let noticed =
+            ["the gain of tau1", "a delay of s1, s2", "m"].map(|what| suspect(right, what).noticed.unwrap());
+        let sizes = [0.01, 1e-3, 0.01];
+        for (noticed, size) in noticed.iter().zip(sizes) {
+            assert!(*noticed < size, "{name}: noticed from {noticed:e} only");
+        }
+        for (what, _, experiment) in errors(name, 2, sizes) {
+            let track = first(&experiment);
+            assert!(!track.is_sound(), "{name}, {what}: {:?}", one(&track).fit);
+        }
+        for (what, error, experiment) in errors(name, 2, noticed.map(|noticed| 3.0 * noticed)) {
+            let track = first(&experiment);
+            let update = one(&track);
+            assert_eq!(update.end, UpdateEnd::DoesNotFit, "{name}, {what}: {:?}", update.fit);
+            let (found, explained) = suspect(update, what).explains;
+            let (size, share) = if name == "fixed_palms" { (0.4..1.6, 0.6) } else { (0.8..1.2, 0.95) };
+            assert!(size.contains(&(found / error)), "{name}, {what}: {found:e} for {error:e}");
+            let fit = update.fit.unwrap();
+            assert!(explained > share * (fit.chi_square - fit.degrees as f64), "{name}, {what}: {fit:?}");
         }
     }
-    assert!(named >= 9, "{named} of twelve");
 }
 
 /// In free fall between fixed palms only forces over the mass are met: both gains and the mass leave traces that are one, and where
@@ -264,7 +266,7 @@ fn noise_that_is_not_stated_is_estimated() {
     for (own, other) in update.deviations.iter().zip(&one(&known).deviations) {
         assert!((own / other / (fit.sigma / NOISE) - 1.0).abs() < 1e-3, "the bound is that of the noise");
     }
-    for wrong in [late(noisy("same_rate", 3)), changed(noisy("same_rate", 3), GROSS[2].1)] {
+    for wrong in [late(noisy("same_rate", 3), 1e-3), changed(noisy("same_rate", 3), GROSS[2].1)] {
         let track = first(&silent(wrong));
         assert!(!track.is_sound(), "{track:?}");
     }

@@ -3,6 +3,7 @@
 use super::super::keys::{GuessKeys, ObserverKeys};
 use super::super::{Guess, ObserverSettings, Study};
 use super::{Checks, MOST_SAMPLES, Problem, Source};
+use crate::observer::CalibrationKind;
 
 /// The most first guesses that a study may try.
 const MOST_GUESSES: usize = 10_000_000;
@@ -112,7 +113,10 @@ impl Checks<'_> {
                     self.sought(&place, name, estimate)?;
                     self.finite(&place, *value)?;
                 }
-                if let Some(name) = estimate.iter().find(|name| !values.contains_key(*name)) {
+                // gains and biases have one by themselves
+                let is_missing =
+                    |name: &&String| !values.contains_key(*name) && CalibrationKind::of(name).is_none();
+                if let Some(name) = estimate.iter().find(is_missing) {
                     let message = format!("there is no first guess of '{name}'");
                     let help = format!("add {name} = ... to it");
                     return Err(self.wrong("observer.guess", message, help));

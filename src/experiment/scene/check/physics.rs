@@ -2,18 +2,74 @@
 
 use super::super::keys::PalmsKeys;
 use super::super::simulated::MOST_JITTER;
-use super::super::{Body, Palms, SceneOutline, Sensor, SimulatedSystem};
+use super::super::{Body, Channel, Palms, SceneOutline, Sensor, SimulatedSystem};
 use super::{Checks, MOST_SAMPLES, Problem, Simulated};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::{Drive, Oscillation};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+/// The largest delay, in steps of time: eight samples carry a curve so far beyond the first.
+pub(super) const MOST_DELAY: f64 = 4.0;
+
 impl Checks<'_> {
     pub(super) fn sensor(&self, sensor: &Sensor) -> Result<(), Problem> {
         self.not_negative("sensor.noise", sensor.noise, "m")?;
         self.not_negative("sensor.resolution", sensor.resolution, "m")?;
         self.not_negative("sensor.jitter", sensor.jitter, "s")
+    }
+
+    pub(super) fn channels(
+        &self,
+        channels: &BTreeMap<String, Channel>,
+        recorded: bool,
+    ) -> Result<(), Problem> {
+        for (name, channel) in channels {
+            let place = |key: &str| format!("sensor.{name}.{key}");
+            self.not_negative(&place("noise"), channel.noise.unwrap_or(0.0), "the unit of the column")?;
+            self.not_negative(
+                &place("resolution"),
+                channel.resolution.unwrap_or(0.0),
+                "the unit of the column",
+            )?;
+            self.finite(&place("bias"), channel.bias)?;
+            self.finite(&place("gain"), channel.gain)?;
+            self.not_negative(&place("delay"), channel.delay, "s")?;
+            if channel.gain == 0.0 {
+                let help = "give a number that is not zero, 1 for a sensor that is right";
+                return Err(self.wrong(&place("gain"), "a gain of zero reads nothing", help));
+            }
+            let given =
+                [("bias", channel.bias, 0.0), ("gain", channel.gain, 1.0), ("delay", channel.delay, 0.0)];
+            if let Some((key, value, _)) = given.iter().find(|(_, value, none)| recorded && value != none) {
+                let message = format!("the {key} of a recorded column is not simulated");
+                let help = format!(
+                    "give what is known of it to the observers, known = {{ \"{name}.{key}\" = {value} }}, or let them seek it"
+                );
+                return Err(self.wrong(&place(key), message, help));
+            }
+        }
+        Ok(())
+    }
+
+    /// What a late sensor reads at the first sample lies before the simulation: it is extrapolated, and not far.
+    pub(super) fn delays(
+        &self,
+        channels: &BTreeMap<String, Channel>,
+        (duration, samples): (f64, usize),
+    ) -> Result<(), Problem> {
+        let step = duration / samples.saturating_sub(1).max(1) as f64;
+        for (name, channel) in channels {
+            if channel.delay > MOST_DELAY * step {
+                let message =
+                    format!("a delay of {} s is too much for samples {step:.3e} s apart", channel.delay);
+                let help = format!(
+                    "give at most {MOST_DELAY} steps: what was before the first sample is not simulated"
+                );
+                return Err(self.wrong(&format!("sensor.{name}.delay"), message, help));
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn jitter(&self, jitter: f64, (duration, samples): (f64, usize)) -> Result<(), Problem> {

@@ -9,11 +9,16 @@
 //! | `name = e`, `@1=e, ...` | a definition |
 //! | `parameters:`, `known:`, `inputs:`, `unknown inputs:`, `title:`, `source:` | what else is known, in lines of their own |
 
-use super::expression::{ForeignExpr, ForeignKind, Span};
-use super::functions::constant;
-use super::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
-use super::script::{Dialect, Parser, Syntax, SyntaxKind, Token, meaning, named_function, tokens};
+mod headers;
+mod pieces;
+
+use crate::import::expression::{ForeignExpr, ForeignKind, Span};
+use crate::import::functions::constant;
+use crate::import::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
+use crate::import::script::{Dialect, Parser, Syntax, SyntaxKind, Token, meaning, named_function, tokens};
 use crate::system::Problem;
+use headers::{expressions_in, names_in, without_headers};
+use pieces::{TIME, differentiated, is_equation, symbol, vector};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the text does not say of itself.
@@ -25,23 +30,8 @@ pub struct PrintedRoles {
     pub outputs: Vec<String>,
 }
 
-/// The headers, each with what it may be called.
-const HEADERS: [(&str, &[&str]); 8] = [
-    ("title", &["title"]),
-    ("source", &["source", "cite"]),
-    ("states", &["states", "state"]),
-    ("outputs", &["outputs", "output"]),
-    ("parameters", &["parameters", "parameter", "unknown parameters"]),
-    ("known", &["known", "known parameters", "constants"]),
-    ("inputs", &["inputs", "input", "known inputs"]),
-    ("unknown inputs", &["unknown inputs", "unknown input"]),
-];
-
-/// The name of time where nothing is called so.
-const TIME: &str = "t";
-
 /// Reads formulas.
-pub(super) fn read(text: &str, roles: &PrintedRoles) -> Result<ForeignModel, Problem> {
+pub(in crate::import) fn read(text: &str, roles: &PrintedRoles) -> Result<ForeignModel, Problem> {
     let (body, headers) = without_headers(text)?;
     let (words, comments) = tokens(&body, Dialect::Printed)?;
     let mut reading = Reading::default();
@@ -87,172 +77,8 @@ pub(super) fn read(text: &str, roles: &PrintedRoles) -> Result<ForeignModel, Pro
     let header = |name: &str| headers.get(name).map(|span| text[span.clone()].trim().to_owned());
     model.title = header("title");
     let begin = words.first().map_or(0, |word| word.span.start);
-    model.source = header("source").or_else(|| super::heading(text, &comments, begin));
+    model.source = header("source").or_else(|| crate::import::heading(text, &comments, begin));
     Ok(model)
-}
-
-/// The text with blanks in place of its headers, and where what they say stands.
-fn without_headers(text: &str) -> Result<(String, BTreeMap<&'static str, Span>), Problem> {
-    let (mut body, mut headers) = (String::new(), BTreeMap::new());
-    let mut at = 0;
-    for line in text.split_inclusive('\n') {
-        let header = line.split_once(':').and_then(|(word, rest)| {
-            let word = word.trim().trim_start_matches('#').trim().to_lowercase();
-            let (name, _) = HEADERS.iter().find(|(_, names)| names.contains(&word.as_str()))?;
-            Some((*name, line.len() - rest.len()))
-        });
-        match header {
-            Some((name, from)) => {
-                let ours = line[from..].split('#').next().unwrap_or_default();
-                if headers.insert(name, at + from..at + from + ours.trim_end().len()).is_some() {
-                    return Err(Problem::new(
-                        &(at..at + line.trim_end().len()),
-                        format!("'{name}' is said twice"),
-                        "again here",
-                    )
-                    .help("put all of it into one line"));
-                }
-                body.extend(line.bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' }));
-            }
-            None => body.push_str(line),
-        }
-        at += line.len();
-    }
-    Ok((body, headers))
-}
-
-/// The expressions of a header, at their places.
-fn expressions_in(text: &str, span: &Span) -> Result<Vec<Syntax>, Problem> {
-    let masked: String = format!("{}{}", " ".repeat(span.start), &text[span.clone()]);
-    let (words, _) = tokens(&masked, Dialect::Printed)?;
-    let mut parser = Parser::new(&words, Dialect::Printed);
-    let mut list = Vec::new();
-    while !parser.at_end() {
-        list.push(parser.argument()?);
-        if !parser.take(",") && !parser.at_end() {
-            return Err(parser.unexpected("','"));
-        }
-    }
-    Ok(list)
-}
-
-fn names_in(text: &str, span: Option<&Span>) -> Result<Vec<String>, Problem> {
-    let Some(span) = span else { return Ok(Vec::new()) };
-    let list = expressions_in(text, span)?;
-    list.iter()
-        .map(|one| {
-            symbol(one).ok_or_else(|| {
-                Problem::new(&one.span, "this is no name", "this").help("names with commas between them")
-            })
-        })
-        .collect()
-}
-
-/// The name of `x`, `x(t)`, `x[1]`, `Symbol('x')` or `Function('x')(Symbol('t'))`.
-fn symbol(syntax: &Syntax) -> Option<String> {
-    match &syntax.kind {
-        SyntaxKind::Name(name) => Some(name.clone()),
-        SyntaxKind::Index(inner, index) => {
-            let inner = inner.as_name()?;
-            let index = index.iter().map(|one| match &one.kind {
-                SyntaxKind::Number(value) => Some(value.to_string()),
-                _ => None,
-            });
-            Some(format!("{inner}[{}]", index.collect::<Option<Vec<_>>>()?.join(",")))
-        }
-        SyntaxKind::Call(callee, arguments) => {
-            if let (
-                Some("Symbol" | "Function" | "Dummy"),
-                [Syntax { kind: SyntaxKind::Text(text), .. }, ..],
-            ) = (callee.as_name(), arguments.as_slice())
-            {
-                return Some(text.clone());
-            }
-            let [time] = arguments.as_slice() else { return None };
-            let is_time = symbol(time).is_some_and(|time| time == TIME);
-            match &callee.kind {
-                SyntaxKind::Name(name) if is_time => Some(name.clone()),
-                SyntaxKind::Call(..) if is_time => symbol(callee),
-                _ => None,
-            }
-        }
-        _ => None,
-    }
-}
-
-/// The state of which this is the rate: `x'`, `dx/dt`, `Derivative(x(t), t)`.
-fn differentiated(syntax: &Syntax) -> Option<String> {
-    match &syntax.kind {
-        SyntaxKind::Prime(inner) => symbol(inner),
-        // x'(t)
-        SyntaxKind::Call(callee, arguments)
-            if matches!(callee.kind, SyntaxKind::Prime(_))
-                && arguments.len() == 1
-                && symbol(&arguments[0])? == TIME =>
-        {
-            differentiated(callee)
-        }
-        SyntaxKind::Product(factors) => match factors.as_slice() {
-            [(false, above), (true, below)] if below.as_name() == Some("dt") => match &above.kind {
-                SyntaxKind::Name(name) => {
-                    name.strip_prefix('d').filter(|name| !name.is_empty()).map(str::to_owned)
-                }
-                SyntaxKind::Index(..) => symbol(above)?.strip_prefix('d').map(str::to_owned),
-                _ => None,
-            },
-            _ => None,
-        },
-        SyntaxKind::Call(..) => match named_function(syntax)? {
-            ("Derivative" | "diff", [inner, time]) => {
-                let time = match &time.kind {
-                    SyntaxKind::List(pair) => pair.first()?,
-                    _ => match named_function(time) {
-                        Some(("Tuple", [time, one])) if is_one(one) => time,
-                        _ => time,
-                    },
-                };
-                (symbol(time)? == TIME).then(|| symbol(inner))?
-            }
-            _ => None,
-        },
-        _ => None,
-    }
-}
-
-fn is_one(syntax: &Syntax) -> bool {
-    match &syntax.kind {
-        SyntaxKind::Number(value) => value.is_one(),
-        SyntaxKind::Call(..) => matches!(named_function(syntax), Some(("Integer", [one])) if is_one(one)),
-        _ => false,
-    }
-}
-
-/// The elements of a vector, however it is printed; none where it is no vector.
-fn vector(syntax: &Syntax) -> Option<Vec<&Syntax>> {
-    let flat = |list: &'static [&'static str]| list;
-    let wrappers = flat(&[
-        "Matrix",
-        "ImmutableMatrix",
-        "ImmutableDenseMatrix",
-        "MutableDenseMatrix",
-        "SX",
-        "MX",
-        "DM",
-        "array",
-    ]);
-    match &syntax.kind {
-        SyntaxKind::List(list) => {
-            Some(list.iter().flat_map(|one| vector(one).unwrap_or_else(|| vec![one])).collect())
-        }
-        SyntaxKind::Call(..) => match named_function(syntax)? {
-            ("vertcat" | "Tuple", list) => {
-                Some(list.iter().flat_map(|one| vector(one).unwrap_or_else(|| vec![one])).collect())
-            }
-            (name, [list, ..]) if wrappers.contains(&name) => vector(list),
-            _ => None,
-        },
-        _ => None,
-    }
 }
 
 #[derive(Default)]
@@ -550,11 +376,6 @@ fn outputs_by_use(model: &mut ForeignModel) {
             .push(format!("outputs are the definitions that nothing else uses: {}", names.join(", ")));
     }
     model.outputs = free.into_iter().map(|(name, value)| ForeignOutput { name: Some(name), value }).collect();
-}
-
-fn is_equation(syntax: &Syntax) -> bool {
-    matches!(named_function(syntax), Some(("Eq" | "Equality", _)))
-        || matches!(syntax.kind, SyntaxKind::Equation(..))
 }
 
 fn no_left(syntax: &Syntax) -> Problem {

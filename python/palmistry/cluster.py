@@ -1,0 +1,76 @@
+"""A sweep over many machines: the shards of a command that are missing are submitted to a Dask cluster, and their parts merged.
+
+    pip install 'palmistry[dask]'
+    from palmistry.cluster import sweep
+    answer = sweep(["rank", "mysystem.proof", "--samples", "1000000000"], shards=640, folder="/shared/parts", client=client)
+
+`client` is any `dask.distributed.Client`: of a cluster on this machine, or of SLURM or PBS by dask-jobqueue. A task runs the program in
+a process of its own, on a folder that all machines see, and returns the name of its file and nothing else: no result passes the
+scheduler. A part appears under its name when it is whole, and a shard whose part is there returns at once, so that a task may be
+started as often as one likes. What is lost with a machine is done again. The answer is that of a single run, to the last bit.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import time
+
+
+class Failed(Exception):
+    """What the program said that could not be done again."""
+
+
+def run(program, words, threads=None):
+    """Runs the program; what it prints, and its exit status. Raises `Failed` with its own words where it has no result."""
+    environment = dict(os.environ, **({"RAYON_NUM_THREADS": str(threads)} if threads else {}))
+    done = subprocess.run([program, *words], capture_output=True, text=True, env=environment, check=False)
+    if done.returncode not in (0, 1, 3) or not done.stdout and done.stderr:
+        raise Failed(f"{' '.join([program, *words])}\n{done.stderr.strip()}")
+    return done.stdout, done.returncode
+
+
+def do_shard(program, command, number, shards, folder, threads):
+    """Does one shard; the name of the file of its part."""
+    words = [*command, "--shard", f"{number}/{shards}", "--part", folder, "--json"]
+    text, status = run(program, words, threads)
+    if status != 0:
+        raise RuntimeError(f"shard {number}/{shards} was interrupted")  # to be tried again
+    return json.loads(text)["part"]
+
+
+def missing(command, shards, folder, program="palmistry"):
+    """The numbers of the shards whose parts are not there."""
+    os.makedirs(folder, exist_ok=True)
+    text, _ = run(program, [*command, "--missing", folder, str(shards), "--json"])
+    return json.loads(text)["missing"]
+
+
+def sweep(command, shards, folder, client, program="palmistry", merge=(), threads=1, retries=5, rounds=3, progress=True):
+    """Does what is missing of `command` in so many shards on a cluster, and merges: the JSON of the answer, as an object.
+
+    command: the words of the command, as ["rank", "mysystem.proof", "--samples", "1000000"]; paths as the workers see them.
+    merge: further words for the merge alone, as ["--digits", "40"]. threads: of each process; with one thread for each worker
+    the processors are shared best. retries: how often a shard that fails is tried again by Dask; rounds: how often what is still missing
+    is submitted, since a file may be lost after its task has ended. Raises `Failed` with the program's own words.
+    """
+    from dask.distributed import as_completed
+
+    folder, begin = os.path.abspath(folder), time.monotonic()
+    for _ in range(rounds):
+        wanted = missing(command, shards, folder, program)
+        if not wanted:
+            break
+        futures = [client.submit(do_shard, program, list(command), number, shards, folder, threads, pure=False, retries=retries)
+                   for number in wanted]
+        for count, future in enumerate(as_completed(futures), 1):
+            failure = future.exception()
+            if isinstance(failure, Failed):
+                client.cancel(futures)
+                raise failure
+            if progress and sys.stderr.isatty():
+                print(f"\r{count} of {len(wanted)} shards, {time.monotonic() - begin:.0f} s", end="", file=sys.stderr, flush=True)
+        if progress and sys.stderr.isatty():
+            print(file=sys.stderr)
+    text, _ = run(program, [*command, *merge, "--merge", folder, "--json"])
+    return json.loads(text)

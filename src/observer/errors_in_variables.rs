@@ -1,0 +1,103 @@
+//! The observer by windows where columns that drive the model err: their true values are unknown as well, and are believed to be what
+//! the outputs and their errors make most likely.
+//!
+//! Gauss and Newton's method for all unknowns at once, the samples' errors eliminated: differences are weighted by their covariance
+//! ([`Weights`]), a state is sought, the most likely errors are taken off the columns, and weights are made anew there, until
+//! the answer stays. Reference: W. A. Fuller, Measurement Error Models, 1987, section 3.2.
+
+use super::moving_window::MovingWindow;
+use super::task::{Task, Update, UpdateEnd};
+use super::trace::{is_asked, suspects};
+use super::weights::{self, Weights};
+use super::{Order, cramer_rao};
+use nalgebra::DVector;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Weights are made so often at most.
+const ROUNDS: usize = 6;
+
+/// An answer stays that moves by less than this part of its deviation.
+const STAYS: f64 = 1e-3;
+
+impl MovingWindow {
+    /// One update by weighted differences, begun at the answer of those that are not weighted; with the suspects of an update of
+    /// which they are asked.
+    pub(super) fn weighted_update(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &std::ops::Range<usize>,
+        clamped: &[usize],
+        ask: bool,
+    ) -> Update {
+        let begin = Instant::now();
+        let mut update = self.attempt(task, belief, rows, clamped);
+        if matches!(update.end, UpdateEnd::Lost(_)) {
+            return update;
+        }
+        let mut signals = task.signals.clone();
+        let mut taken_off: Option<DVector<f64>> = None;
+        let (mut steps, mut troubled) = (update.steps, update.troubled);
+        for round in 0..ROUNDS {
+            let own = task.with_signals(&signals);
+            let before = update.estimate.clone();
+            let mut window = Self::window(&own, &before, rows, clamped);
+            window.start[task.estimated()..].clone_from_slice(&update.outputs);
+            let weights = match Weights::of(&own, &window, taken_off.as_ref(), task.signals) {
+                Ok(weights) => Arc::new(weights),
+                Err(lost) => {
+                    update.end = UpdateEnd::Lost(lost);
+                    break;
+                }
+            };
+            window.weights = Some(weights.clone());
+            let (next, left) = self.attempt_in(&own, &window, &before);
+            update = next;
+            steps += update.steps;
+            troubled += update.troubled;
+            let Some(left) = left else { break };
+            let moved = before.iter().zip(&update.estimate).zip(&update.deviations);
+            let stays = moved.map(|((before, after), d)| (after - before).abs() / d).all(|part| part < STAYS);
+            let is_last = round + 1 == ROUNDS || (round > 0 && stays);
+            if is_last {
+                if ask && is_asked(&update) {
+                    update.suspects = suspects(&own, &window, &update, self.alarm(task));
+                }
+                break;
+            }
+            let errors = weights.likely_errors(&left);
+            signals = weights.without(task.signals, &errors);
+            taken_off = Some(errors);
+        }
+        Update { steps, troubled, seconds: begin.elapsed().as_secs_f64(), ..update }
+    }
+
+    /// The least standard deviations that estimates of what is sought can have at the first of some rows, where this is believed of it;
+    /// infinite where the model cannot be followed.
+    pub fn bounds(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &std::ops::Range<usize>,
+        clamped: &[usize],
+    ) -> Vec<f64> {
+        let mut window = Self::window(task, belief, rows, clamped);
+        let sizes = Self::sizes(task, &window);
+        let mut found = vec![f64::INFINITY; window.free.len()];
+        let weights = weights::are_needed(task).then(|| Weights::of(task, &window, None, task.signals));
+        if let Ok(weights) = weights.transpose() {
+            window.weights = weights.map(Arc::new);
+            if let Ok(expansion) = window.expand(&window.unknowns(&window.start), Order::First) {
+                found = cramer_rao(&expansion.slopes, task.sigma, &sizes).deviations;
+            }
+        }
+        let mut bounds = vec![0.0; task.estimated()];
+        for (place, deviation) in window.free.iter().zip(found) {
+            if let Some(own) = bounds.get_mut(*place) {
+                *own = deviation;
+            }
+        }
+        bounds
+    }
+}
