@@ -9,7 +9,7 @@ use super::nodes::{Bounds, Nodes, Segments};
 use super::stiff_joints::{Found, seek};
 use super::task::{Observer, Task, Track, Update, UpdateEnd};
 use super::trace::{is_asked, suspects};
-use super::{MovingWindow, WindowSearch};
+use super::{MovingWindow, WindowSearch, weights};
 use crate::number::rational_to_f64;
 use nalgebra::DVector;
 use rand::{RngExt, SeedableRng};
@@ -342,7 +342,8 @@ impl Observer for MultipleShooting {
                     None => self.solutions(task, &belief, &rows, clamped),
                 };
                 let mut update = found.remove(0);
-                if !are_suspects_known && is_asked(&update) {
+                // what errs in the columns that drive the model is not among the suspects: that is for the windows that weigh it
+                if !are_suspects_known && is_asked(&update) && !weights::are_needed(task) {
                     let window = MovingWindow::window(task, &belief, &rows, clamped);
                     update.suspects = suspects(task, &window, &update, ending.alarm(task));
                     are_suspects_known = true;
