@@ -68,6 +68,9 @@ pub mod file;
 // what a value can be
 pub mod number;
 
+// the shape of a convex body from what was touched of it
+pub mod shape;
+
 // from text to a shared graph of expressions, its derivative, its value
 pub mod expression;
 

@@ -5,9 +5,12 @@ use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use indicatif::ProgressBar;
-use palmistry::experiment::{Answer, Basin, Experiment, NoiseLevel, Scene, SceneError, basins, noise_study};
+use palmistry::experiment::{
+    Answer, Basin, Experiment, NoiseLevel, Reconstruction, Scene, SceneError, basins, noise_study, shown,
+};
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
+use palmistry::observer::RecordError;
 use palmistry::report::{Observed, ended_in_words, forget_seconds, observe_json, observe_page, observe_text};
 use std::path::PathBuf;
 
@@ -50,6 +53,12 @@ pub(crate) struct Observe {
     /// Write all of the simulated motion to a file, CSV or Parquet: poses, contact forces, torques, energies, the truth.
     #[arg(long, value_name = "FILE")]
     motion: Option<PathBuf>,
+    /// Write the outline to a file, CSV or Parquet: for each normal the support radius with its band, and the point.
+    #[arg(long, value_name = "FILE")]
+    outline: Option<PathBuf>,
+    /// Write what was believed sample by sample to a file, CSV or Parquet: each state with its bound.
+    #[arg(long, value_name = "FILE")]
+    track: Option<PathBuf>,
     /// Tell no times: two runs with one seed on one machine then write the same to the last byte.
     #[arg(long)]
     no_times: bool,
@@ -100,9 +109,15 @@ impl Observe {
             bar.set_message(method.name());
             bar.inc(1);
         })?;
+        bar.set_message("shape");
+        let reconstruction = experiment.reconstruct(&answers, &INTERRUPTED);
         bar.finish_and_clear();
         if self.no_times {
             answers.iter_mut().for_each(Answer::forget_times);
+        }
+        self.write_shape(&experiment, &answers, reconstruction.as_ref(), &mut files)?;
+        if let (Some(place), Some(found)) = (shown_place(&answers), reconstruction) {
+            answers[place].reconstruction = Some(Box::new(found));
         }
         let (noise, basins) = if self.studies { studies(&experiment)? } else { (Vec::new(), Vec::new()) };
         begin_to_tell();
@@ -141,6 +156,46 @@ impl Observe {
         let status = Status::of(as_expected);
         files.print(Form::of(self.json), json, || observe_text(&observed), status)
     }
+}
+
+/// Why there may be no outline.
+const NO_OUTLINE: &str = "no support radius was seen; an outline takes two palms with the outputs s1 and s2, and r1 and r2 sought and seen";
+
+impl Observe {
+    /// The files of `--outline` and `--track`.
+    fn write_shape(
+        &self,
+        experiment: &Experiment,
+        answers: &[Answer],
+        reconstruction: Option<&Reconstruction>,
+        files: &mut Files,
+    ) -> miette::Result<()> {
+        let unexpected = |error: RecordError| Unusable::report(error.to_string(), "");
+        if let Some(path) = &self.outline {
+            match reconstruction.and_then(Reconstruction::outline_table) {
+                Some(table) => files.table(path, &table.map_err(unexpected)?),
+                None => files.text_or(path, Err::<String, _>(NO_OUTLINE)),
+            }
+            files.announce(path);
+        }
+        if let Some(path) = &self.track {
+            match shown(answers) {
+                Some(answer) => {
+                    let table = experiment.track_table(answer, reconstruction);
+                    files.table(path, &table.map_err(unexpected)?);
+                }
+                None => files.text_or(path, Err::<String, _>("no observer was run")),
+            }
+            files.announce(path);
+        }
+        Ok(())
+    }
+}
+
+/// The place of the answer whose outline is shown.
+fn shown_place(answers: &[Answer]) -> Option<usize> {
+    let shown = shown(answers)?;
+    answers.iter().position(|answer| std::ptr::eq(answer, shown))
 }
 
 fn studies(experiment: &Experiment) -> Result<(Vec<NoiseLevel>, Vec<Basin>), SceneError> {

@@ -2,13 +2,15 @@
 //!
 //! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
 //! from a TOML file and checked value by value. A [`Simulation`] moves its body, a [`SystemMotion`] any other system by its own equations; an
-//! [`Experiment`] is a scene with its readings, and
-//! runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`], [`basins`]).
+//! [`Experiment`] is a scene with its readings, and runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`],
+//! [`basins`]); a [`Reconstruction`] is the shape that all of it tells.
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 
 mod channels;
 mod columns;
+mod reconstruction;
+mod recovered;
 mod run;
 mod scene;
 mod simulation;
@@ -18,6 +20,9 @@ mod system_motion;
 #[doc(hidden)]
 pub mod unguided;
 
+#[doc(hidden)]
+pub use reconstruction::{on_palm, shown, turned};
+pub use recovered::{Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
 #[doc(hidden)]
 pub use run::NOMINAL;
 #[doc(hidden)]

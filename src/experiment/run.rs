@@ -1,6 +1,7 @@
 //! A scene from beginning to end: bodies or a file, what is read of them, and what the observers make of it.
 
 use super::channels;
+use super::recovered::Reconstruction;
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{Simulation, TOUCH, body, constants, deviation};
 use super::since::Since;
@@ -56,6 +57,8 @@ pub struct Answer {
     pub track: Track,
     /// In s; NaN where no times are kept.
     pub seconds: f64,
+    /// The shape that it tells, where that was asked for: of the answer that is shown.
+    pub reconstruction: Option<Box<Reconstruction>>,
 }
 
 impl Answer {
@@ -231,7 +234,8 @@ impl Experiment {
         for &method in &self.scene.observer.methods {
             let begin = Instant::now();
             let track = self.observer(method).observe(&task);
-            answers.push(Answer { method, track, seconds: begin.elapsed().as_secs_f64() });
+            let seconds = begin.elapsed().as_secs_f64();
+            answers.push(Answer { method, track, seconds, reconstruction: None });
             done(method);
             if task.interrupted() {
                 break;

@@ -147,6 +147,9 @@ pub(super) fn read_with_errors(
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     for (place, (name, values)) in columns.iter_mut().enumerate() {
         let is_output = is_output(name);
+        if !is_output && !channels.contains_key(name) {
+            continue;
+        }
         let channel = channels.get(name).copied().unwrap_or_default();
         let common = if is_output { *sensor } else { Sensor::default() };
         let noise = channel.noise.unwrap_or(common.noise);

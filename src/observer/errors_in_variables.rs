@@ -58,7 +58,7 @@ impl MovingWindow {
             troubled += update.troubled;
             let Some(left) = left else { break };
             let moved = before.iter().zip(&update.estimate).zip(&update.deviations);
-            let stays = moved.map(|((before, after), d)| (after - before).abs() / d).all(|part| part < STAYS);
+            let stays = moved.into_iter().all(|((before, after), d)| (after - before).abs() <= STAYS * d);
             let is_last = round + 1 == ROUNDS || (round > 0 && stays);
             if is_last {
                 if ask && is_asked(&update) {

@@ -46,6 +46,7 @@ pub(crate) use calibration::not_told;
 pub use chi_square::exceeded_with;
 pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom};
 pub use flow::Lost;
+pub(crate) use flow::advance;
 #[doc(hidden)]
 pub use flow::{ModelFlow, Order, Sample};
 pub use high_gain::HighGain;

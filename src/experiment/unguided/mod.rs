@@ -94,5 +94,50 @@ impl PalmReadings {
     }
 }
 
+impl PalmReadings {
+    /// Some of the rows.
+    ///
+    /// # Panics
+    /// When there are no such rows.
+    pub fn rows(&self, rows: std::ops::Range<usize>) -> PalmReadings {
+        let cut = |pair: &[Vec<f64>; 2]| [pair[0][rows.clone()].to_vec(), pair[1][rows.clone()].to_vec()];
+        PalmReadings {
+            times: self.times[rows.clone()].to_vec(),
+            contacts: cut(&self.contacts),
+            angles: cut(&self.angles),
+            rates: cut(&self.rates),
+            accelerations: cut(&self.accelerations),
+            torques: cut(&self.torques),
+            ..*self
+        }
+    }
+
+    /// The motion from a first state on, by the integrals of the readings; none where there are too few.
+    pub(super) fn motion(&self, first: &FirstState) -> Option<PalmMotion> {
+        if self.times.len() < FEWEST {
+            return None;
+        }
+        let all = Integrals::of(self)?;
+        let k = 1.0 / (self.mass * first.gyration * first.gyration);
+        let ([cx, cy], [vx, vy]) = (first.centre, first.velocity);
+        let mut motion = PalmMotion { radii: Vec::new(), rates: Vec::new() };
+        for sample in &all.samples {
+            let turned = sample.c - sample.a[0] * cx - sample.a[1] * cy - sample.b[0] * vx - sample.b[1] * vy;
+            let place = [cx + vx * sample.time + sample.place[0], cy + vy * sample.time + sample.place[1]];
+            motion.rates.push(first.rate + k * turned);
+            motion.radii.push(sample.palms.map(|palm| palm.normal[0] * place[0] + palm.normal[1] * place[1]));
+        }
+        Some(motion)
+    }
+}
+
+/// A motion, sample by sample.
+pub(super) struct PalmMotion {
+    /// The distances of the centre of mass from the palms.
+    pub radii: Vec<[f64; 2]>,
+    /// The body's rate.
+    pub rates: Vec<f64>,
+}
+
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 //! a comment, spaces around a cell do not count.
 
 use super::table::Table;
-use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row, TIME};
+use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row};
 use crate::file::read_bytes;
 use csv::{ReaderBuilder, Trim, WriterBuilder};
 use std::io::{Error, Write};
@@ -82,7 +82,7 @@ fn shortened(text: &str) -> String {
 /// Writes a record. Rust prints a double with the fewest digits that are read back as the same one.
 pub(super) fn write(record: &Record, file: &mut dyn Write) -> std::io::Result<()> {
     let mut writer = WriterBuilder::new().from_writer(file);
-    let header = std::iter::once(TIME).chain(record.names.iter().map(String::as_str));
+    let header = std::iter::once(record.first_name()).chain(record.names.iter().map(String::as_str));
     writer.write_record(header).map_err(Error::from)?;
     for (row, time) in record.times.iter().enumerate() {
         let values = std::iter::once(*time).chain(record.columns.iter().map(|column| column[row]));

@@ -40,6 +40,8 @@ const MOST_CELLS: u64 = 100_000_000;
 /// A table of numbers: a time in seconds and named columns, one row a sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
+    /// What the first column is where it is no time.
+    over: Option<String>,
     times: Vec<f64>,
     names: Vec<String>,
     columns: Vec<Vec<f64>>,
@@ -76,6 +78,28 @@ impl Record {
             record.columns.push(values);
         }
         Ok(record)
+    }
+
+    /// The table of these columns over something other than time: the first column is called so. It is written as such, and is no record of
+    /// measurements to anyone who reads it.
+    ///
+    /// # Errors
+    /// As [`Record::new`], or when a column has the name of the first.
+    pub fn over(
+        name: &str,
+        values: Vec<f64>,
+        columns: Vec<(String, Vec<f64>)>,
+    ) -> Result<Record, RecordError> {
+        let record = Record::new(values, columns)?;
+        if name.trim().is_empty() || record.names.iter().any(|other| other == name) {
+            return Err(RecordError::Name { column: name.to_owned() });
+        }
+        Ok(Record { over: Some(name.to_owned()), ..record })
+    }
+
+    /// The name of the first column.
+    fn first_name(&self) -> &str {
+        self.over.as_deref().unwrap_or(TIME)
     }
 
     /// Reads a file of numbers, CSV or Parquet by its extension, and judges no value: times may stand in any order,

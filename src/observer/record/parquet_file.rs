@@ -2,7 +2,7 @@
 //! and may lack values; columns of other types, and numbers that mean dates or decimals, are known by name only.
 
 use super::table::Table;
-use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row, TIME, metadata};
+use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row, metadata};
 use crate::file::read_bytes;
 use bytes::Bytes;
 use parquet::basic::{ConvertedType, Repetition, Type as Physical};
@@ -182,7 +182,7 @@ fn store(record: &Record, file: &mut (dyn Write + Send)) -> Result<(), ParquetEr
         let builder = Type::primitive_type_builder(name, Physical::DOUBLE);
         builder.with_repetition(Repetition::REQUIRED).build().map(Arc::new)
     };
-    let mut fields = vec![field(TIME)?];
+    let mut fields = vec![field(record.first_name())?];
     for name in &record.names {
         fields.push(field(name)?);
     }

@@ -5,6 +5,7 @@ use crate::mechanics::moving::Ended;
 use crate::observer::{Fault, Update, UpdateEnd};
 use crate::report::axis::unit_of;
 use crate::report::motion::fit::{finite, fit_in_words, noise_from, suspect_json, suspects_in_words};
+use crate::report::motion::reconstruction::{shape_json, shape_text};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -203,6 +204,9 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         let ended = motion.ended().map_or_else(|| "completed".to_owned(), |lost| format!("ended {lost}"));
         found["simulation"] = json!({ "ended": ended });
     }
+    if let Some(shape) = shape_json(experiment, observed.answers) {
+        found["shape"] = shape;
+    }
     if !observed.noise.is_empty() {
         let names = experiment.names();
         let level = |level: &NoiseLevel| {
@@ -333,6 +337,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             basin.names[1]
         );
     }
+    text.push_str(&shape_text(experiment, observed.answers));
     if observed.interrupted {
         text.push_str("\ninterrupted; this is what was done until then\n");
     }

@@ -1,16 +1,16 @@
 //! Pictures of the body between its palms, and of the outline that was recovered.
 
+use crate::experiment::{TouchInstant, TouchTrack, on_palm, turned};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::Shape;
 use crate::report::drawing::{Drawing, INK, svg};
 use crate::report::motion::answers::Observed;
-use crate::report::motion::shape::{Instant, Outline, on_palm, turned};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// What each palm touched, recovered.
 pub(super) const PALM_COLOURS: [RGBColor; 2] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0)];
-const TRUE_OUTLINE: RGBColor = RGBColor(150, 156, 165);
+pub(super) const TRUE_OUTLINE: RGBColor = RGBColor(150, 156, 165);
 /// Recovered where the observer could not see.
 const UNSEEN: RGBColor = RGBColor(205, 209, 215);
 /// Twice the size in which they are shown: places are whole pixels, and a curve of few pixels is not smooth.
@@ -20,7 +20,7 @@ const CELL: (u32, u32) = (400, 336);
 const ARC: u32 = 48;
 
 /// A place in the world or the body's frame as a pixel.
-struct View {
+pub(super) struct View {
     scale: f64,
     middle: [f64; 2],
     centre: [f64; 2],
@@ -28,7 +28,7 @@ struct View {
 
 impl View {
     /// Shows all of some places in a rectangle of pixels, `x` and `y` to one scale.
-    fn of(places: impl Iterator<Item = [f64; 2]>, size: (f64, f64)) -> View {
+    pub fn of(places: impl Iterator<Item = [f64; 2]>, size: (f64, f64)) -> View {
         let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for place in places {
             for (end, value) in ends.iter_mut().zip(place) {
@@ -43,7 +43,7 @@ impl View {
         }
     }
 
-    fn pixel(&self, [x, y]: [f64; 2], corner: (f64, f64)) -> (i32, i32) {
+    pub fn pixel(&self, [x, y]: [f64; 2], corner: (f64, f64)) -> (i32, i32) {
         let at = [x - self.middle[0], self.middle[1] - y];
         let [x, y] = [0, 1].map(|i| self.centre[i] + self.scale * at[i]);
         ((corner.0 + x).round() as i32, (corner.1 + y).round() as i32)
@@ -51,7 +51,7 @@ impl View {
 }
 
 /// Where the body is at a sample: as it truly was where that is known, as recovered otherwise.
-fn pose(observed: &Observed<'_>, instant: &Instant) -> ([f64; 2], f64) {
+fn pose(observed: &Observed<'_>, instant: &TouchInstant) -> ([f64; 2], f64) {
     let moments = observed.experiment.simulation.as_ref().map(|simulation| &simulation.trajectory.moments);
     let row = |moments: &Vec<crate::mechanics::moving::Moment>| {
         moments.partition_point(|moment| moment.time < instant.time).min(moments.len() - 1)
@@ -70,7 +70,7 @@ fn placed(point: [f64; 2], (centre, angle): ([f64; 2], f64)) -> [f64; 2] {
 /// Small dots for what was recovered by each palm; dots that would cover each other are left out.
 fn dots(
     area: &Drawing<'_>,
-    instants: &[Instant],
+    instants: &[TouchInstant],
     size: i32,
     pixel: impl Fn([f64; 2]) -> (i32, i32),
 ) -> Result<(), Box<dyn std::error::Error>> {
@@ -90,7 +90,7 @@ fn dots(
 
 /// As figure 4.3: the palms, the true outline, the contacts and the centre of mass at some samples, the last among them, and
 /// the part of the outline that is recovered by then, a picture each; at most `most`.
-pub(super) fn frames(observed: &Observed<'_>, outline: &Outline, most: usize) -> Vec<String> {
+pub(super) fn frames(observed: &Observed<'_>, outline: &TouchTrack, most: usize) -> Vec<String> {
     let instants = &outline.instants;
     let count = most.min(instants.len());
     let rows: Vec<usize> = (1..=count).map(|frame| frame * instants.len() / count - 1).collect();
@@ -99,7 +99,7 @@ pub(super) fn frames(observed: &Observed<'_>, outline: &Outline, most: usize) ->
     let longest = contacts.map(|[x, y]| x.hypot(y)).fold(0.0, f64::max);
     let farthest = sensed.fold(0.0, f64::max);
     // from the joint to its end
-    let palm = |instant: &Instant, i: usize| -> Vec<[f64; 2]> {
+    let palm = |instant: &TouchInstant, i: usize| -> Vec<[f64; 2]> {
         let angle = instant.palms[i];
         match outline.forms[i] {
             Palm::Flat => vec![[0.0; 2], [1.15 * longest * angle.cos(), 1.15 * longest * angle.sin()]],
@@ -155,7 +155,7 @@ fn closed(
 }
 
 /// The true outline, where it is known, and the recovered points, in the frame of the body.
-pub(super) fn recovered_outline(shape: Option<&Shape>, outline: &Outline) -> String {
+pub(super) fn recovered_outline(shape: Option<&Shape>, outline: &TouchTrack) -> String {
     const SIZE: (u32, u32) = (800, 720);
     let sides: Vec<[f64; 2]> = shape.map(|shape| shape.outline(360)).unwrap_or_default();
     let everywhere = sides.iter().copied().chain(outline.instants.iter().flat_map(|i| i.points));

@@ -2,6 +2,8 @@
 
 use crate::report::document::document;
 use crate::report::motion::answers::Observed;
+use crate::report::motion::outline_section::shape_section;
+use crate::report::motion::reconstruction::reconstruction;
 use crate::report::motion::section::{
     FRAMES, body_pictures, faults, sensor_pictures, state_pictures, studies, summary,
 };
@@ -12,6 +14,7 @@ use maud::html;
 pub fn observe_page(observed: &Observed<'_>) -> String {
     let has_palms = observed.experiment.is_about_palms();
     let studied = !observed.noise.is_empty() || !observed.basins.is_empty();
+    let shape = reconstruction(observed.answers).is_some();
     let content = html! {
         header {
             h1 { (observed.experiment.scene.title) }
@@ -19,6 +22,7 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
             (faults(observed))
             nav {
                 @if has_palms { a href="#body" { "The body" } }
+                @if shape { a href="#shape" { "The shape" } }
                 a href="#found" { "What they found" }
                 a href="#states" { "States over time" }
                 a href="#sensors" { "Sensor errors" }
@@ -28,6 +32,7 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
         }
         main {
             @if has_palms { section #body { h2 { "The body between its palms" } (body_pictures(observed, FRAMES)) } }
+            @if shape { section #shape { h2 { "The shape" } (shape_section(observed)) } }
             section #found { h2 { "What they found" } (ends(observed)) (notes(observed)) }
             section #states { h2 { "States over time" } (state_pictures(observed)) }
             section #sensors { h2 { "Sensor errors" } (sensor_pictures(observed)) }
@@ -43,7 +48,7 @@ mod tests {
     use super::*;
     use crate::experiment::{BasinStudy, Experiment, NoiseStudy, Scene, basins, noise_study};
     use crate::report::motion::section::observed_section;
-    use crate::report::motion::shape::outline;
+    use crate::report::motion::shape::{departure, outline};
     use std::sync::atomic::AtomicBool;
 
     const SCENE: &str = r#"
@@ -110,7 +115,8 @@ steps = 20
     fn recovered_contacts_lie_on_the_true_outline() {
         with_observed(|observed| {
             let simulation = observed.experiment.simulation.as_ref().unwrap();
-            let (moments, outline) = (&simulation.trajectory.moments, outline(observed).unwrap());
+            let (moments, outline) =
+                (&simulation.trajectory.moments, outline(observed.experiment, observed.answers).unwrap());
             assert_eq!(outline.instants.len(), moments.len());
             let step: f64 = 0.3 / 60.0;
             let rule = |i: usize| step.powi(2) / 12.0 * (moments[i].alpha0 - moments[0].alpha0);
@@ -121,7 +127,7 @@ steps = 20
                 assert!(turned.abs() < 1e-6, "{} s: {turned:e}", instant.time);
             }
             let turned = (0..moments.len()).map(|i| rule(i).abs()).fold(0.0, f64::max);
-            let (largest, mean) = outline.departure(&simulation.shape).unwrap();
+            let (largest, mean) = departure(&outline, &simulation.shape).unwrap();
             assert!(largest < 2e-6 + 1.2 * turned, "{largest:e} for {turned:e}");
             assert!(mean <= largest);
         });

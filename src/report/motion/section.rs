@@ -1,11 +1,13 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
-use crate::experiment::{ARRIVED, Channel, NOMINAL, SceneOutline, error};
+use crate::experiment::{ARRIVED, Channel, NOMINAL, SceneOutline, error, shown};
 use crate::mechanics::Palm;
 use crate::report::motion::answers::{Observed, ended_in_words, fault_lines, noise_unit};
 use crate::report::motion::frames::{frames, recovered_outline};
+use crate::report::motion::outline_section::shape_section;
 use crate::report::motion::plot::{errors, sensor_errors, state};
-use crate::report::motion::shape::{outline, shown};
+use crate::report::motion::reconstruction::length;
+use crate::report::motion::shape::{departure, outline};
 use crate::report::motion::study_plot;
 use crate::report::motion::table::{ends, noise_table, notes, pace, updates};
 use maud::{Markup, PreEscaped, html};
@@ -29,6 +31,7 @@ pub(in crate::report) fn observed_section(experiments: &[Observed<'_>]) -> Marku
                 (summary(observed))
                 (faults(observed))
                 @if observed.experiment.is_about_palms() { (body_pictures(observed, FRAMES / 2)) }
+                (shape_section(observed))
                 (ends(observed))
                 (notes(observed))
                 details { summary { "states over time, and their errors" } (state_pictures(observed)) }
@@ -164,7 +167,7 @@ fn functions(functions: &BTreeMap<String, String>) -> String {
 
 /// In a sentence what the method whose outline is shown came to.
 fn headline(observed: &Observed<'_>) -> Markup {
-    let Some(answer) = shown(observed) else { return html! {} };
+    let Some(answer) = shown(observed.answers) else { return html! {} };
     let names = observed.experiment.names();
     let end = answer.track.last().and_then(|last| Some((last, observed.experiment.truth_at(last.time)?)));
     let largest = end.map(|(last, truth)| {
@@ -213,7 +216,7 @@ pub(super) fn faults(observed: &Observed<'_>) -> Markup {
 
 /// As figure 4.3 and 4.4a.
 pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
-    let Some(outline) = outline(observed) else {
+    let Some(outline) = outline(observed.experiment, observed.answers) else {
         return html! {
             p.remark {
                 "There is no picture of the body: that takes two palms with the outputs s1 and s2, estimates of r1 and r2, and "
@@ -242,7 +245,7 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
             figcaption {
                 "Every recovered contact, turned back by the recovered orientation. "
                 @if let Some(shape) = shape {
-                    @match outline.departure(shape) {
+                    @match departure(&outline, shape) {
                         Some((largest, mean)) => {
                             @let size = (shape.area() / std::f64::consts::PI).sqrt();
                             "Where it could see, the points lie within " b { (length(largest)) } " of the true outline (root of the "
@@ -254,16 +257,6 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
                 } @else { "The frame is that of the body at the first sample." }
             }
         }
-    }
-}
-
-/// A length in a unit in which it is easily read.
-fn length(metres: f64) -> String {
-    match metres {
-        m if m < 1e-6 => format!("{:.2} nm", m * 1e9),
-        m if m < 1e-3 => format!("{:.2} µm", m * 1e6),
-        m if m < 1.0 => format!("{:.2} mm", m * 1e3),
-        m => format!("{m:.3} m"),
     }
 }
 

@@ -1,0 +1,22 @@
+//! The shape of a convex body from what was touched of it.
+//!
+//! Whatever touched the body gives [`SupportSample`]s: an outward normal in the body's frame, how far the body reaches there, and how
+//! much that is worth. [`fit_support`] makes a closed [`SupportSeries`] of them, a [`ShapeEstimate`] says how sure it is: the band about it, area and
+//! perimeter with their errors, whether it is convex ([`Convexity`]), and [`Coverage`] says which normals were touched at all. Who has a
+//! better way from readings to the coefficients brings these and their covariance, and has the rest.
+//!
+//! This floor knows numbers. It knows nothing of palms, bodies, motions or systems.
+
+mod convexity;
+mod coverage;
+mod estimate;
+mod fit;
+mod series;
+
+pub use convexity::{Convexity, convexity};
+pub use coverage::Coverage;
+pub use estimate::{Measured, ShapeEstimate};
+#[doc(hidden)]
+pub use fit::{ORDERS, convex_deviation};
+pub use fit::{SupportSample, SupportWeights, fit_support};
+pub use series::SupportSeries;
