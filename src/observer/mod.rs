@@ -28,6 +28,7 @@ pub(crate) mod record;
 mod response;
 mod sensitivity;
 mod signal;
+mod starts;
 mod stiff_joints;
 mod suspect;
 mod task;
