@@ -205,7 +205,8 @@ impl Weights {
             rest => exceeded(rest * rest, degrees as f64),
         };
         let from = NoiseFrom::Stated;
-        Fit { chi_square, degrees, probability, sigma: self.unit, from, fits: probability >= alarm }
+        let fits = degrees > 0 && probability >= alarm;
+        Fit { chi_square, degrees, probability, sigma: self.unit, from, fits }
     }
 
     fn unexplained(&self, left: &DVector<f64>, slopes: &DMatrix<f64>, computed: f64) -> Option<f64> {
