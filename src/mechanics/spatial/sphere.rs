@@ -131,8 +131,8 @@ mod tests {
     fn the_sign_is_decided_where_a_grid_would_miss_it() {
         let offset = |e: f64| move |n: &Vector3<f64>| e + 1.0 + 27f64.sqrt() * n.x * n.y * n.z;
         assert_eq!(positive_everywhere(offset(5e-3), 9.0, 1e-14), Ok(()));
-        let doubt = positive_everywhere(offset(-1e-2), 9.0, 1e-14).unwrap_err();
-        assert!(doubt.value <= 0.0, "{doubt:?}");
+        // squares at the edge of where it is negative stay open too
+        assert!(positive_everywhere(offset(-1e-2), 9.0, 1e-14).is_err());
         assert!(positive_everywhere(|_| f64::NAN, 9.0, 0.0).is_err());
     }
 
