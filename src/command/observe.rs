@@ -158,6 +158,9 @@ impl Observe {
     }
 }
 
+/// Why there may be no outline.
+const NO_OUTLINE: &str = "no support radius was seen; an outline takes two palms with the outputs s1 and s2, and r1 and r2 sought and seen";
+
 impl Observe {
     /// The files of `--outline` and `--track`.
     fn write_shape(
@@ -169,23 +172,20 @@ impl Observe {
     ) -> miette::Result<()> {
         let unexpected = |error: RecordError| Unusable::report(error.to_string(), "");
         if let Some(path) = &self.outline {
-            let Some(table) = reconstruction.and_then(Reconstruction::outline_table) else {
-                let message = "there is no outline: no support radius was seen";
-                let help =
-                    "an outline takes two palms with the outputs s1 and s2, and r1 and r2 sought and seen";
-                return Err(Unusable::report(message, help));
-            };
-            files.table(path, &table.map_err(unexpected)?);
+            match reconstruction.and_then(Reconstruction::outline_table) {
+                Some(table) => files.table(path, &table.map_err(unexpected)?),
+                None => files.text_or(path, Err::<String, _>(NO_OUTLINE)),
+            }
             files.announce(path);
         }
         if let Some(path) = &self.track {
-            let Some(answer) = shown(answers) else {
-                return Err(Unusable::report(
-                    "there is no track: no observer was run",
-                    "let one run to its end",
-                ));
-            };
-            files.table(path, &experiment.track_table(answer, reconstruction).map_err(unexpected)?);
+            match shown(answers) {
+                Some(answer) => {
+                    let table = experiment.track_table(answer, reconstruction);
+                    files.table(path, &table.map_err(unexpected)?);
+                }
+                None => files.text_or(path, Err::<String, _>("no observer was run")),
+            }
             files.announce(path);
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! A support function that was estimated, and how sure it is.
 
-use super::{Convexity, SupportSeries, convexity};
+use super::{Convexity, Coverage, SupportSeries, convexity};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{PI, TAU};
 
@@ -40,9 +40,36 @@ const PIECES: usize = 8;
 const DEPTH: u32 = 12;
 
 impl ShapeEstimate {
-    /// The standard deviation of the support radius at a normal (rad), in m: that of a single normal. The band is twice it to either side.
+    /// The standard deviation of the support radius at a normal (rad), in m: that of a single normal, if the body has no harmonics beyond those of the series.
     pub fn deviation(&self, angle: f64) -> f64 {
         self.deviation_of(angle, |basis| basis[0])
+    }
+
+    /// Half the width of the band about the support radius at a normal, in m. Where it was touched it is two standard deviations. In a gap no sample tells which harmonics
+    /// there are, and the band is what convexity alone leaves: the body reaches at least as far as its contacts at the gap's ends, and no farther than the corner at which the tangents there
+    /// meet; infinite where these do not meet, in a gap of half a turn and more.
+    pub fn band(&self, coverage: &Coverage, angle: f64) -> f64 {
+        let own = 2.0 * self.deviation(angle);
+        if coverage.contains(angle) {
+            return own;
+        }
+        let turned = angle.rem_euclid(TAU);
+        let within = |from: f64| if turned < from { turned + TAU } else { turned };
+        let gap = coverage.gaps().into_iter().find(|[from, to]| within(*from) <= *to);
+        let Some([from, to]) = gap else { return own };
+        if to - from >= PI {
+            return f64::INFINITY;
+        }
+        let (angle, sine) = (within(from), (to - from).sin());
+        let [first, last] = [from, to].map(|end| self.support.support(end)[0]);
+        let corner = (first * (to - angle).sin() + last * (angle - from).sin()) / sine;
+        let reach = |end: f64| {
+            let [x, y] = self.support.point(end);
+            x * angle.cos() + y * angle.sin()
+        };
+        let (radius, least) = (self.support.support(angle)[0], reach(from).max(reach(to)));
+        let ends = 2.0 * self.deviation(from).max(self.deviation(to));
+        own.max((corner - radius).max(radius - least) + ends)
     }
 
     /// The standard deviation of the radius of curvature, in m.
@@ -160,6 +187,23 @@ mod tests {
         // the polynomial itself is convex all the same
         let Convexity::Convex { least } = estimate(0.3, 1.01 * limit).convexity() else { panic!() };
         assert!(least > 0.095 && least <= 0.1, "{least}");
+    }
+
+    /// By hand for a disc of radius one that was not touched over a right angle: in its middle it may reach to the corner of a square, `sqrt 2`, and the chord
+    /// is at `sqrt 2 / 2`. Over half a turn nothing is known.
+    #[test]
+    fn a_gap_is_as_wide_as_convexity_leaves_it() {
+        let disc = estimate(0.0, 1e-9);
+        let touched = |path: &[f64]| Coverage::of_paths([path]);
+        let three_quarters = touched(&[PI / 2.0, TAU]);
+        let band = disc.band(&three_quarters, PI / 4.0);
+        assert!((band - (2f64.sqrt() - 1.0)).abs() < 1e-8, "{band}");
+        assert_eq!(disc.band(&three_quarters, PI), 2.0 * disc.deviation(PI));
+        assert_eq!(disc.band(&touched(&[0.0, 3.0]), 4.0), f64::INFINITY);
+        assert_eq!(disc.band(&Coverage::default(), 4.0), f64::INFINITY);
+        // across the end of the turn
+        let across = disc.band(&touched(&[PI / 4.0, 7.0 * PI / 4.0]), -0.0);
+        assert!((across - (2f64.sqrt() - 1.0)).abs() < 1e-8, "{across}");
     }
 
     /// By hand for a disc: `A = pi a^2` has the derivative `2 pi a`, and the harmonics do not matter to the first order.

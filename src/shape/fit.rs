@@ -4,8 +4,8 @@
 //!
 //! `r + r''` is not negative, so that none of its Fourier coefficients is larger than twice its mean, which is that of `r`: a body of the mean radius
 //! `a_0` has `|a_k|, |b_k| <= 2 a_0/(k^2 - 1)`, and `<= 2 a_0` for `k = 1`, since its point of reference lies inside. The fit takes these bounds for standard
-//! deviations of the coefficients about zero. That is all the regularisation there is. Where normals were touched it moves nothing that the samples tell; where they were not, the
-//! band is as wide as convexity leaves it, instead of infinite.
+//! deviations of the coefficients about zero. That is all the regularisation there is. Where normals were touched it moves nothing that the samples tell; where they were not, it keeps
+//! the deviations of the coefficients finite. What the band is in a gap says [`ShapeEstimate::band`], without it.
 
 use super::{ShapeEstimate, SupportSeries};
 use nalgebra::{DMatrix, DVector};
@@ -55,7 +55,8 @@ pub fn convex_deviation(mean: f64, k: usize) -> f64 {
 /// The support function that explains samples best, with its covariance. Samples without a positive finite weight do not count. None where none does, or they
 /// tell no positive mean radius.
 ///
-/// The order is the one given, or else the one of [`ORDERS`] with the least criterion of H. Akaike (1974), corrected for few samples.
+/// The order is the one given, or else the one of [`ORDERS`] with the least criterion of G. Schwarz (1978): harmonics too small to be told are
+/// left out, and their part is not in the band.
 ///
 /// ```
 /// use palmistry::shape::{SupportSample, SupportWeights, fit_support};
@@ -154,10 +155,9 @@ impl Solution {
 
     fn criterion(&self, weights: SupportWeights) -> f64 {
         let (n, p) = (self.samples as f64, self.coefficients.len() as f64);
-        let corrected = 2.0 * p * n / (n - p - 1.0).max(1.0);
         match weights {
-            SupportWeights::InverseVariances => self.cost + 2.0 * p,
-            SupportWeights::Relative => n * (self.cost / n).max(f64::MIN_POSITIVE).ln() + corrected,
+            SupportWeights::InverseVariances => self.cost + p * n.ln(),
+            SupportWeights::Relative => n * (self.cost / n).max(f64::MIN_POSITIVE).ln() + p * n.ln(),
         }
     }
 }

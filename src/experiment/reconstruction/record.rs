@@ -55,12 +55,18 @@ pub(super) struct Followed {
     pub contact_rows: [Vec<f64>; 2],
 }
 
+/// The support function at both contacts.
+struct Touched {
+    palms: PalmsAt,
+    /// `[h, h', h'', h''']`.
+    support: [[f64; 4]; 2],
+    bases: [Vec<[f64; 4]>; 2],
+}
+
 /// A pose with all that its derivatives are made of.
 struct Local {
     pose: Pose<DualSVec64<INPUTS>>,
-    /// `[h, h', h'', h''']` at both contacts.
-    support: [[f64; 4]; 2],
-    bases: [Vec<[f64; 4]>; 2],
+    touched: Touched,
 }
 
 /// The value and the derivatives of a dual number.
@@ -85,7 +91,7 @@ impl WholeRecord {
         PalmsAt { angles: [a, b], rates: [c, d], accelerations: [e, f] }
     }
 
-    fn local(&self, time: f64, phi: f64, rate: f64, x: &Unknowns) -> Local {
+    fn touched(&self, time: f64, phi: f64, x: &Unknowns) -> Touched {
         let palms = self.palms_at(time);
         let order = x.support.len() / 2;
         let bases = palms.normals(phi).map(|angle| SupportSeries::basis(angle, order));
@@ -96,24 +102,36 @@ impl WholeRecord {
             }
             sum
         });
+        Touched { palms, support, bases }
+    }
+
+    /// The pose without its derivatives.
+    fn pose(&self, time: f64, phi: f64, rate: f64, x: &Unknowns) -> Pose<f64> {
+        let Touched { palms, support, .. } = self.touched(time, phi, x);
+        pose(&palms, &support.map(|[r, slope, second, _]| [r, slope, second]), rate, x.gyration, self.gravity)
+    }
+
+    fn local(&self, time: f64, phi: f64, rate: f64, x: &Unknowns) -> Local {
+        let touched = self.touched(time, phi, x);
         let input = |value: f64, place: usize| -> DualSVec64<INPUTS> {
             DualSVec64::new(value, Derivative::derivative_generic(nalgebra::Const, nalgebra::Const, place))
         };
-        let duals = [0, 1].map(|i: usize| [0, 1, 2].map(|k: usize| input(support[i][k], 3 * i + k)));
-        let pose = pose(&palms, &duals, input(rate, 6), input(x.gyration, 7), self.gravity);
-        Local { pose, support, bases }
+        let duals = [0, 1].map(|i: usize| [0, 1, 2].map(|k: usize| input(touched.support[i][k], 3 * i + k)));
+        let pose = pose(&touched.palms, &duals, input(rate, 6), input(x.gyration, 7), self.gravity);
+        Local { pose, touched }
     }
 
     /// The derivatives by the free unknowns of a quantity with derivatives by the inputs, where those of angle and rate are known.
     fn row(&self, local: &Local, by: &[f64; INPUTS], x: &Unknowns, phi: &[f64], rate: &[f64]) -> Vec<f64> {
-        let by_phi: f64 =
-            (0..2).map(|i| (0..3).map(|k| -by[3 * i + k] * local.support[i][k + 1]).sum::<f64>()).sum();
+        let by_phi: f64 = (0..2)
+            .map(|i| (0..3).map(|k| -by[3 * i + k] * local.touched.support[i][k + 1]).sum::<f64>())
+            .sum();
         let mut row: Vec<f64> = phi.iter().zip(rate).map(|(phi, rate)| by_phi * phi + by[6] * rate).collect();
         let head = self.head();
         if head == 2 {
             row[1] += by[7] * x.gyration;
         }
-        for (i, bases) in local.bases.iter().enumerate() {
+        for (i, bases) in local.touched.bases.iter().enumerate() {
             for (own, basis) in row[head..].iter_mut().zip(bases) {
                 *own += by[3 * i] * basis[0] + by[3 * i + 1] * basis[1] + by[3 * i + 2] * basis[2];
             }
@@ -130,9 +148,11 @@ impl WholeRecord {
             y[2 + p] = 1.0;
         }
         let law = |time: f64, y: &[f64], dy: &mut [f64]| {
-            let local = self.local(time, y[0], y[1], x);
-            (dy[0], dy[1]) = (y[1], local.pose.acceleration.re);
-            if p > 0 {
+            if p == 0 {
+                (dy[0], dy[1]) = (y[1], self.pose(time, y[0], y[1], x).acceleration);
+            } else {
+                let local = self.local(time, y[0], y[1], x);
+                (dy[0], dy[1]) = (y[1], local.pose.acceleration.re);
                 let (phi, rate) = y[2..].split_at(p);
                 dy[2..2 + p].copy_from_slice(rate);
                 let row = self.row(&local, &parts(&local.pose.acceleration), x, phi, rate);
@@ -161,7 +181,7 @@ impl WholeRecord {
         Followed {
             phi: y[0],
             rate: y[1],
-            radii: local.support.map(|support| support[0]),
+            radii: local.touched.support.map(|support| support[0]),
             centre: local.pose.centre.map(|x| x.re),
             contacts: local.pose.contacts.map(|x| x.re),
             contact_rows: if p > 0 { [contact(0), contact(1)] } else { Default::default() },

@@ -16,6 +16,13 @@ const FEWEST_SAMPLES: usize = 24;
 /// The highest order of the shape at the beginning.
 const ORDER: usize = 6;
 
+/// The order to which a disc is let go.
+const DISC_ORDER: usize = 3;
+
+/// Rates on the grid, and the fastest of them in units of `sqrt(g/R)`.
+const RATES: u32 = 40;
+const FASTEST: f64 = 2.0;
+
 impl WholeRecord {
     /// The readings of an experiment between flat palms; none where one of them is missing. `sigma` is the standard deviation of a contact.
     pub fn of(experiment: &Experiment, sigma: f64) -> Option<WholeRecord> {
@@ -58,6 +65,28 @@ impl WholeRecord {
             starts.extend(self.start(&windows.samples, windows.rate, windows.gyration));
         }
         starts
+    }
+
+    /// Discs that turn at rates on a grid, where nobody knows anything: a disc between palms touches both at `R/tan(a/2)`, `a` being the angle between them, and bodies
+    /// that gravity turns have rates of the size of `sqrt(g/R)`.
+    pub fn discs(&self) -> Vec<Unknowns> {
+        let radii = self.times.iter().enumerate().map(|(i, time)| {
+            let palms = self.palms_at(*time);
+            let half = (palms.angles[1] - palms.angles[0]) / 2.0;
+            half.tan().abs() * f64::midpoint(self.contacts[0][i], self.contacts[1][i])
+        });
+        let radius = radii.sum::<f64>() / self.times.len() as f64;
+        let palms =
+            self.palms_at(self.times[0]).rates.into_iter().fold(0.0, |most: f64, rate| most.max(rate.abs()));
+        let most = FASTEST * (self.gravity.abs() / radius).sqrt() + palms;
+        if !(radius > 0.0 && most.is_finite()) {
+            return Vec::new();
+        }
+        let mut support = vec![0.0; 1 + 2 * DISC_ORDER];
+        support[0] = radius;
+        let gyration = self.gyration.unwrap_or(radius / 2f64.sqrt());
+        let rates = (0..RATES).map(|i| most * (2.0 * f64::from(i) / f64::from(RATES - 1) - 1.0));
+        rates.map(|rate| Unknowns { rate, gyration, support: support.clone() }).collect()
     }
 
     fn start(&self, samples: &[SupportSample], rate: Option<f64>, gyration: Option<f64>) -> Option<Unknowns> {

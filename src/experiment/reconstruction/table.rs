@@ -12,7 +12,7 @@ const ANGLE: &str = "angle";
 const NORMALS: usize = 720;
 
 impl Reconstruction {
-    /// The outline, a row a normal: its `angle` (rad, in the body's frame), the support radius `r`, `band` (twice its standard deviation), the point `x`, `y` of the outline in the
+    /// The outline, a row a normal: its `angle` (rad, in the body's frame), the support radius `r`, `band` (two standard deviations where it was touched, in a gap what convexity leaves, infinite in one of half a turn and more), the point `x`, `y` of the outline in the
     /// frame of the body, its `radius_of_curvature`, and whether the normal was `touched` (1 or 0). SI units. None where nothing was seen.
     pub fn outline_table(&self) -> Option<Result<Record, RecordError>> {
         let shape = self.shape.as_ref()?;
@@ -22,7 +22,7 @@ impl Reconstruction {
         };
         let columns = vec![
             column("r", &|angle| shape.support.support(angle)[0]),
-            column("band", &|angle| 2.0 * shape.deviation(angle)),
+            column("band", &|angle| shape.band(&self.coverage, angle)),
             column("x", &|angle| shape.support.point(angle)[0]),
             column("y", &|angle| shape.support.point(angle)[1]),
             column("radius_of_curvature", &|angle| shape.support.radius_of_curvature(angle)),

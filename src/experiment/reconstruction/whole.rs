@@ -3,7 +3,7 @@
 //! The body slides between two flat palms by its one law of motion (`law`), so that all contacts follow from its rate at the first sample and its
 //! support function: a handful of unknowns for hundreds of readings. No torque and no mass is in it, no derivative of a reading, and no window: what
 //! a method by windows forgets from one to the next is kept here. Levenberg and Marquardt's method begins at a shape and a rate that others found, on the first part of the record, and goes
-//! on to all of it; then harmonics are added while H. Akaike's criterion says that they tell something.
+//! on to all of it; then harmonics are added while G. Schwarz's criterion says that they tell something.
 
 use super::record::{Followed, Unknowns, WholeRecord};
 use crate::shape::{ORDERS, ShapeEstimate, SupportSeries, convex_deviation};
@@ -30,11 +30,20 @@ const STEPS: usize = 30;
 /// A step that lowers the sum of the squares by less than this part of itself is the last one, unless it is below what follows.
 const SETTLED: f64 = 1e-9;
 
-/// So many orders without a better criterion end the search.
-const PATIENCE: usize = 2;
+/// So many orders without a better criterion end the search: a body with fourfold symmetry has none of the orders 5 and 6.
+const PATIENCE: usize = 3;
 
 /// Parts of the record that are explained one after the other.
 const PARTS: [f64; 4] = [0.15, 0.3, 0.6, 1.0];
+
+/// Fewer rows than these are no part.
+const FEWEST: usize = 24;
+
+/// A misfit below this part of the mean radius is one of the shape; a larger one is one of a motion that is another.
+const FOUND: f64 = 1e-2;
+
+/// So many of the discs go on.
+const KEPT: usize = 6;
 
 /// The best unknowns of some rows and order.
 #[derive(Clone)]
@@ -44,14 +53,16 @@ struct Best {
 }
 
 impl Best {
-    /// H. Akaike's criterion, the variance of the readings being known.
-    fn criterion(&self) -> f64 {
-        self.cost + 2.0 * self.x.support.len() as f64
+    /// The criterion of G. Schwarz (1978), the variance of the readings being known.
+    fn criterion(&self, rows: usize) -> f64 {
+        self.cost + self.x.support.len() as f64 * (2.0 * rows as f64).ln()
     }
 }
 
 impl WholeRecord {
     /// Shape and motion, from where others began; none where nothing can be followed, or it was interrupted.
+    ///
+    /// Where what they found explains nothing it is sought from discs at rates on a grid.
     pub fn explain(&self, starts: &[Unknowns], interrupt: &AtomicBool) -> Option<Found> {
         let rows = self.times.len();
         let stop = || interrupt.load(Ordering::Relaxed);
@@ -60,12 +71,7 @@ impl WholeRecord {
             let straight = self.descend(start.clone(), rows, interrupt);
             let mut ends = vec![straight];
             if !ends[0].as_ref().is_some_and(|end| self.is_explained(end, rows)) {
-                let mut x = Some(start.clone());
-                for part in PARTS {
-                    let rows = ((part * rows as f64) as usize).clamp(rows.min(24), rows);
-                    x = x.and_then(|x| self.descend(x, rows, interrupt)).map(|end| end.x);
-                }
-                ends.push(x.and_then(|x| self.descend(x, rows, interrupt)));
+                ends.push(self.by_parts(start.clone(), 0, interrupt));
             }
             best =
                 best.into_iter().chain(ends.into_iter().flatten()).min_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -73,8 +79,54 @@ impl WholeRecord {
                 break;
             }
         }
+        let is_found = |best: &Best| self.misfit(best, rows) < FOUND * best.x.support[0];
+        if !best.as_ref().is_some_and(is_found) && !stop() {
+            best = best
+                .into_iter()
+                .chain(self.begun_as_discs(interrupt))
+                .min_by(|a, b| a.cost.total_cmp(&b.cost));
+        }
         let best = self.choose_order(best?, interrupt)?;
         if stop() { None } else { self.found(best.x) }
+    }
+
+    /// The first parts of the record one after the other, from one of [`PARTS`] on.
+    fn by_parts(&self, start: Unknowns, first: usize, interrupt: &AtomicBool) -> Option<Best> {
+        let mut end = None;
+        let mut x = start;
+        for part in &PARTS[first..] {
+            let best = self.descend(x, self.part(*part), interrupt)?;
+            x = best.x.clone();
+            end = Some(best);
+        }
+        end
+    }
+
+    fn part(&self, part: f64) -> usize {
+        let rows = self.times.len();
+        ((part * rows as f64) as usize).clamp(rows.min(FEWEST), rows)
+    }
+
+    /// From discs that turn at one rate each: the best few by the first part of the record go on to all of it.
+    fn begun_as_discs(&self, interrupt: &AtomicBool) -> Option<Best> {
+        let rows = self.part(PARTS[0]);
+        let starts = self.discs().into_iter();
+        let mut begun: Vec<Best> = starts.filter_map(|start| self.descend(start, rows, interrupt)).collect();
+        begun.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let mut best: Option<Best> = None;
+        for begin in begun.into_iter().take(KEPT) {
+            let end = self.by_parts(begin.x, 1, interrupt);
+            best = best.into_iter().chain(end).min_by(|a, b| a.cost.total_cmp(&b.cost));
+            if best.as_ref().is_some_and(|best| self.is_explained(best, self.times.len())) {
+                break;
+            }
+        }
+        best
+    }
+
+    /// The root of the mean square of what is left of a contact, in m.
+    fn misfit(&self, best: &Best, rows: usize) -> f64 {
+        self.sigma * (best.cost / (2 * rows) as f64).sqrt()
     }
 
     /// Whether what is left is no more than noise leaves, five deviations of the sum of so many squares added.
@@ -95,7 +147,7 @@ impl WholeRecord {
             x.support.resize(1 + 2 * order, 0.0);
             let Some(end) = self.descend(x, rows, interrupt) else { break };
             last = end;
-            if last.criterion() < best.criterion() {
+            if last.criterion(rows) < best.criterion(rows) {
                 (best, idle) = (last.clone(), 0);
             } else {
                 idle += 1;
@@ -109,7 +161,7 @@ impl WholeRecord {
                 let mut x = best.x.clone();
                 x.support.truncate(1 + 2 * order);
                 match self.descend(x, rows, interrupt) {
-                    Some(end) if end.criterion() < best.criterion() => best = end,
+                    Some(end) if end.criterion(rows) < best.criterion(rows) => best = end,
                     _ => break,
                 }
             }

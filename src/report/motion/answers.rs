@@ -204,7 +204,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         let ended = motion.ended().map_or_else(|| "completed".to_owned(), |lost| format!("ended {lost}"));
         found["simulation"] = json!({ "ended": ended });
     }
-    if let Some(shape) = shape_json(observed) {
+    if let Some(shape) = shape_json(experiment, observed.answers) {
         found["shape"] = shape;
     }
     if !observed.noise.is_empty() {
@@ -337,7 +337,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             basin.names[1]
         );
     }
-    text.push_str(&shape_text(observed));
+    text.push_str(&shape_text(experiment, observed.answers));
     if observed.interrupted {
         text.push_str("\ninterrupted; this is what was done until then\n");
     }

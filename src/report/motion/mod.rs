@@ -5,6 +5,7 @@ pub(super) mod curves;
 pub(super) mod fit;
 pub(super) mod frames;
 pub(super) mod outline_plot;
+pub(super) mod outline_section;
 pub(super) mod page;
 pub(super) mod plot;
 pub(super) mod reconstruction;

@@ -42,10 +42,11 @@ pub(super) fn outline_picture(
 ) -> (String, f64) {
     let covered = |angle: f64| found.coverage.contains(angle);
     let magnified = magnification(shape, covered);
+    let band = |angle: f64| shape.band(&found.coverage, angle);
     let place = |i: usize, off: f64| {
         let (angle, [x, y]) = (angle(i), shape.support.point(angle(i)));
         // what is not known at all does not fill the page
-        let off = (off * 2.0 * shape.deviation(angle) * magnified)
+        let off = (off * band(angle) * if covered(angle) { magnified } else { 1.0 })
             .clamp(-0.3 * shape.support.mean, 0.3 * shape.support.mean);
         [x + off * angle.cos(), y + off * angle.sin()]
     };
@@ -99,7 +100,7 @@ fn runs(counts: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
 /// The band over the angle of the normal, in a unit in which it is easily read, and the error in it where the truth is known.
 pub(super) fn band_picture(found: &Reconstruction, shape: &ShapeEstimate, truth: Option<&Shape>) -> String {
     let covered = |angle: f64| found.coverage.contains(angle);
-    let band = |angle: f64| 2.0 * shape.deviation(angle);
+    let band = |angle: f64| shape.band(&found.coverage, angle);
     let off = |angle: f64| truth.map(|truth| shape.support.support(angle)[0] - truth.support(angle)[0]);
     let angles = || (0..=NORMALS).map(angle);
     let touched = angles().filter(|angle| covered(*angle));

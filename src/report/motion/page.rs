@@ -2,7 +2,8 @@
 
 use crate::report::document::document;
 use crate::report::motion::answers::Observed;
-use crate::report::motion::reconstruction::{reconstruction, shape_section};
+use crate::report::motion::outline_section::shape_section;
+use crate::report::motion::reconstruction::reconstruction;
 use crate::report::motion::section::{
     FRAMES, body_pictures, faults, sensor_pictures, state_pictures, studies, summary,
 };
@@ -13,7 +14,7 @@ use maud::html;
 pub fn observe_page(observed: &Observed<'_>) -> String {
     let has_palms = observed.experiment.is_about_palms();
     let studied = !observed.noise.is_empty() || !observed.basins.is_empty();
-    let shape = reconstruction(observed).is_some();
+    let shape = reconstruction(observed.answers).is_some();
     let content = html! {
         header {
             h1 { (observed.experiment.scene.title) }
@@ -114,7 +115,8 @@ steps = 20
     fn recovered_contacts_lie_on_the_true_outline() {
         with_observed(|observed| {
             let simulation = observed.experiment.simulation.as_ref().unwrap();
-            let (moments, outline) = (&simulation.trajectory.moments, outline(observed).unwrap());
+            let (moments, outline) =
+                (&simulation.trajectory.moments, outline(observed.experiment, observed.answers).unwrap());
             assert_eq!(outline.instants.len(), moments.len());
             let step: f64 = 0.3 / 60.0;
             let rule = |i: usize| step.powi(2) / 12.0 * (moments[i].alpha0 - moments[0].alpha0);

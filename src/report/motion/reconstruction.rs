@@ -1,26 +1,33 @@
-//! The shape that an experiment tells, in words, as JSON and as a part of a page.
+//! The shape that an experiment tells, in words and as JSON.
 
-use crate::experiment::{Experiment, Reconstruction, WholeMotion, error, shown};
+use crate::experiment::{Answer, Experiment, Reconstruction, WholeMotion, error, shown};
 use crate::mechanics::moving::Shape;
-use crate::report::motion::answers::Observed;
 use crate::report::motion::fit::finite;
-use crate::report::motion::outline_plot::{band_picture, outline_picture};
-use crate::report::motion::section::length;
 use crate::report::motion::shape::support_error;
 use crate::shape::{Convexity, Measured, ShapeEstimate};
-use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// A misfit that is larger than the noise by more than this factor is said.
-const EXPLAINED: f64 = 1.1;
+pub(super) const EXPLAINED: f64 = 1.1;
 
 /// Angles of which bands and errors are taken.
 const NORMALS: u32 = 1440;
 
 /// The reconstruction of the answer that is shown.
-pub(super) fn reconstruction<'a>(observed: &Observed<'a>) -> Option<&'a Reconstruction> {
-    shown(observed.answers)?.reconstruction.as_deref()
+pub(super) fn reconstruction(answers: &[Answer]) -> Option<&Reconstruction> {
+    shown(answers)?.reconstruction.as_deref()
+}
+
+/// A length in a unit in which it is easily read.
+pub(super) fn length(metres: f64) -> String {
+    match metres {
+        m if m < 1e-6 => format!("{:.2} nm", m * 1e9),
+        m if m < 1e-3 => format!("{:.2} µm", m * 1e6),
+        m if m < 1.0 => format!("{:.2} mm", m * 1e3),
+        m if m.is_infinite() => "anything".to_owned(),
+        m => format!("{m:.3} m"),
+    }
 }
 
 fn word(convexity: &Convexity) -> &'static str {
@@ -32,13 +39,17 @@ fn word(convexity: &Convexity) -> &'static str {
 }
 
 /// The largest half width of the band over the normals that count.
-fn widest(shape: &ShapeEstimate, counts: impl Fn(f64) -> bool) -> Option<f64> {
+pub(super) fn widest(
+    found: &Reconstruction,
+    shape: &ShapeEstimate,
+    counts: impl Fn(f64) -> bool,
+) -> Option<f64> {
     let angles = (0..NORMALS).map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(NORMALS));
-    angles.filter(|angle| counts(*angle)).map(|angle| 2.0 * shape.deviation(angle)).reduce(f64::max)
+    angles.filter(|angle| counts(*angle)).map(|angle| shape.band(&found.coverage, angle)).reduce(f64::max)
 }
 
 /// The true shape, where it is known and the frame is its own.
-fn truth<'a>(experiment: &'a Experiment) -> Option<&'a Shape> {
+pub(super) fn truth(experiment: &Experiment) -> Option<&Shape> {
     experiment.simulation.as_ref().map(|simulation| &simulation.shape)
 }
 
@@ -47,12 +58,12 @@ fn degrees(gap: &[f64; 2]) -> String {
 }
 
 /// The gaps of the coverage in words; nothing where there is none.
-fn gaps(found: &Reconstruction) -> String {
+pub(super) fn gaps(found: &Reconstruction) -> String {
     let gaps: Vec<String> = found.coverage.gaps().iter().map(degrees).collect();
     if gaps.is_empty() { String::new() } else { format!("; not from {}", gaps.join(", ")) }
 }
 
-fn convexity_in_words(shape: &ShapeEstimate) -> String {
+pub(super) fn convexity_in_words(shape: &ShapeEstimate) -> String {
     let itself = match shape.convexity() {
         Convexity::Convex { least } => format!("convex, with radii of curvature from {} on", length(least)),
         Convexity::NotConvex { angle, .. } => format!("not convex at the normal {:.1}°", angle.to_degrees()),
@@ -72,7 +83,7 @@ fn convexity_in_words(shape: &ShapeEstimate) -> String {
     format!("{itself}; {band}")
 }
 
-fn from_in_words(found: &Reconstruction) -> String {
+pub(super) fn from_in_words(found: &Reconstruction) -> String {
     match &found.whole {
         Some(_) => "from all readings at once".to_owned(),
         None => format!("from what {} believed of the support radii", found.track.method.name()),
@@ -80,9 +91,9 @@ fn from_in_words(found: &Reconstruction) -> String {
 }
 
 /// The shape, as lines.
-pub(super) fn shape_text(observed: &Observed<'_>) -> String {
+pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String {
     let mut text = String::new();
-    let Some(found) = reconstruction(observed) else { return text };
+    let Some(found) = reconstruction(answers) else { return text };
     let Some(shape) = &found.shape else {
         let _ = writeln!(text, "\nshape: nothing was seen of it");
         return text;
@@ -91,8 +102,8 @@ pub(super) fn shape_text(observed: &Observed<'_>) -> String {
     let mean = shape.support.mean;
     let _ = writeln!(text, "  normals touched: {:.1} %{}", 100.0 * found.coverage.fraction(), gaps(found));
     let covered = |angle: f64| found.coverage.contains(angle);
-    if let Some(band) = widest(shape, covered) {
-        let everywhere = widest(shape, |_| true).unwrap_or(f64::NAN);
+    if let Some(band) = widest(found, shape, covered) {
+        let everywhere = widest(found, shape, |_| true).unwrap_or(f64::NAN);
         let _ = writeln!(
             text,
             "  band (two standard deviations): at most {} where touched, {} anywhere; mean radius {}",
@@ -102,6 +113,12 @@ pub(super) fn shape_text(observed: &Observed<'_>) -> String {
         );
     }
     let (perimeter, area) = (shape.perimeter(), shape.area());
+    if found.coverage.fraction() < 1.0 {
+        let _ = writeln!(
+            text,
+            "  what follows is of the polynomial: harmonics that show only in gaps are not in it"
+        );
+    }
     let _ = writeln!(text, "  perimeter {:.9} m ± {:.1e}", perimeter.value, perimeter.deviation);
     let _ = writeln!(text, "  area {:.9} m^2 ± {:.1e}", area.value, area.deviation);
     let _ = writeln!(text, "  {}", convexity_in_words(shape));
@@ -109,7 +126,7 @@ pub(super) fn shape_text(observed: &Observed<'_>) -> String {
         let _ = writeln!(text, "  {}", misfit_in_words(whole, shape));
         if let Some(gyration) = whole.gyration {
             let _ = write!(text, "  rho {:.9} m ± {:.1e}", gyration.value, gyration.deviation);
-            match observed.experiment.simulation.as_ref().and_then(|s| s.constants.get("rho")) {
+            match experiment.simulation.as_ref().and_then(|s| s.constants.get("rho")) {
                 Some(truth) => {
                     let _ = writeln!(text, ", error {:.1e}", error(gyration.value, *truth));
                 }
@@ -119,9 +136,7 @@ pub(super) fn shape_text(observed: &Observed<'_>) -> String {
     } else if shape.widened > EXPLAINED {
         let _ = writeln!(text, "  {}", widened_in_words(shape));
     }
-    if let Some((largest, rms)) =
-        truth(observed.experiment).and_then(|truth| support_error(shape, truth, covered))
-    {
+    if let Some((largest, rms)) = truth(experiment).and_then(|truth| support_error(shape, truth, covered)) {
         let _ = writeln!(
             text,
             "  error where touched: at most {} ({:.1e} of the mean radius), rms {}",
@@ -133,11 +148,11 @@ pub(super) fn shape_text(observed: &Observed<'_>) -> String {
     text
 }
 
-fn widened_in_words(shape: &ShapeEstimate) -> String {
+pub(super) fn widened_in_words(shape: &ShapeEstimate) -> String {
     format!("the misfit is {:.1} times what bounds explain, and the band is as much wider", shape.widened)
 }
 
-fn misfit_in_words(whole: &WholeMotion, shape: &ShapeEstimate) -> String {
+pub(super) fn misfit_in_words(whole: &WholeMotion, shape: &ShapeEstimate) -> String {
     let left = format!("contacts are explained to {} (rms)", length(whole.misfit));
     match shape.widened > EXPLAINED {
         true => {
@@ -165,8 +180,8 @@ fn convexity_json(convexity: &Convexity) -> Value {
 }
 
 /// The shape as JSON; nothing where none was asked for.
-pub(super) fn shape_json(observed: &Observed<'_>) -> Option<Value> {
-    let found = reconstruction(observed)?;
+pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<Value> {
+    let found = reconstruction(answers)?;
     let mut json = json!({
         "method": found.track.method.name(),
         "from": if found.whole.is_some() { "all readings" } else { "track" },
@@ -178,8 +193,8 @@ pub(super) fn shape_json(observed: &Observed<'_>) -> Option<Value> {
     json["mean_radius"] = finite(shape.support.mean);
     json["harmonics"] = json!(shape.support.harmonics);
     json["band"] = json!({
-        "largest_where_touched": widest(shape, covered).map(finite),
-        "largest": widest(shape, |_| true).map(finite),
+        "largest_where_touched": widest(found, shape, covered).map(finite),
+        "largest": widest(found, shape, |_| true).map(finite),
     });
     json["perimeter"] = measured(shape.perimeter());
     json["area"] = measured(shape.area());
@@ -195,9 +210,7 @@ pub(super) fn shape_json(observed: &Observed<'_>) -> Option<Value> {
             json["rho"] = measured(gyration);
         }
     }
-    if let Some((largest, rms)) =
-        truth(observed.experiment).and_then(|truth| support_error(shape, truth, covered))
-    {
+    if let Some((largest, rms)) = truth(experiment).and_then(|truth| support_error(shape, truth, covered)) {
         json["error"] = json!({
             "largest": finite(largest),
             "root_mean_square": finite(rms),
@@ -205,50 +218,4 @@ pub(super) fn shape_json(observed: &Observed<'_>) -> Option<Value> {
         });
     }
     Some(json)
-}
-
-/// The shape with its pictures; nothing where none was asked for.
-pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
-    let Some(found) = reconstruction(observed) else { return html! {} };
-    let Some(shape) = &found.shape else {
-        return html! { p.remark { "Nothing was seen of the shape." } };
-    };
-    let truth = truth(observed.experiment);
-    let covered = |angle: f64| found.coverage.contains(angle);
-    let (perimeter, area) = (shape.perimeter(), shape.area());
-    let (picture, magnified) = outline_picture(found, shape, truth);
-    html! {
-        p {
-            "A closed support function with " (shape.support.order()) " harmonics, " (from_in_words(found)) ". "
-            b { (format!("{:.1} %", 100.0 * found.coverage.fraction())) " of the normals were touched" } (gaps(found)) ". "
-            @if let Some(band) = widest(shape, covered) {
-                "The band, two standard deviations to either side, is at most " b { (length(band)) } " wide where it was touched: "
-                (format!("{:.1e}", band / shape.support.mean)) " of the mean radius " (length(shape.support.mean)) ". "
-            }
-            @if let Some((largest, rms)) = truth.and_then(|truth| support_error(shape, truth, covered)) {
-                "The largest error there is " b { (length(largest)) } " (rms " (length(rms)) "). "
-            }
-        }
-        p {
-            "Perimeter " (format!("{:.6} m ± {:.1e}", perimeter.value, perimeter.deviation)) ", area "
-            (format!("{:.6} m² ± {:.1e}", area.value, area.deviation)) ". The polynomial is " (convexity_in_words(shape)) ". "
-            @match &found.whole {
-                Some(whole) => { (misfit_in_words(whole, shape)) "." }
-                None if shape.widened > EXPLAINED => { (widened_in_words(shape)) "." }
-                None => {}
-            }
-        }
-        figure {
-            div.two { (PreEscaped(picture)) (PreEscaped(band_picture(found, shape, truth))) }
-            figcaption {
-                "Left: the outline"
-                @if truth.is_some() { " over the true one (grey)" }
-                ", with its band"
-                @if magnified > 1.0 { " drawn " b { (format!("{magnified:.0}")) " times as wide as it is" } }
-                "; pale where no normal was touched: there convexity alone says how wide it is. Right: the band over the angle of the normal"
-                @if truth.is_some() { ", and the error of the support radius in it" }
-                "."
-            }
-        }
-    }
 }

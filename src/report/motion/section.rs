@@ -4,8 +4,9 @@ use crate::experiment::{ARRIVED, Channel, NOMINAL, SceneOutline, error, shown};
 use crate::mechanics::Palm;
 use crate::report::motion::answers::{Observed, ended_in_words, fault_lines, noise_unit};
 use crate::report::motion::frames::{frames, recovered_outline};
+use crate::report::motion::outline_section::shape_section;
 use crate::report::motion::plot::{errors, sensor_errors, state};
-use crate::report::motion::reconstruction::shape_section;
+use crate::report::motion::reconstruction::length;
 use crate::report::motion::shape::{departure, outline};
 use crate::report::motion::study_plot;
 use crate::report::motion::table::{ends, noise_table, notes, pace, updates};
@@ -215,7 +216,7 @@ pub(super) fn faults(observed: &Observed<'_>) -> Markup {
 
 /// As figure 4.3 and 4.4a.
 pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
-    let Some(outline) = outline(observed) else {
+    let Some(outline) = outline(observed.experiment, observed.answers) else {
         return html! {
             p.remark {
                 "There is no picture of the body: that takes two palms with the outputs s1 and s2, estimates of r1 and r2, and "
@@ -256,16 +257,6 @@ pub(super) fn body_pictures(observed: &Observed<'_>, most: usize) -> Markup {
                 } @else { "The frame is that of the body at the first sample." }
             }
         }
-    }
-}
-
-/// A length in a unit in which it is easily read.
-pub(super) fn length(metres: f64) -> String {
-    match metres {
-        m if m < 1e-6 => format!("{:.2} nm", m * 1e9),
-        m if m < 1e-3 => format!("{:.2} µm", m * 1e6),
-        m if m < 1.0 => format!("{:.2} mm", m * 1e3),
-        m => format!("{m:.3} m"),
     }
 }
 

@@ -2,19 +2,18 @@
 //!
 //! What is true comes only from the simulation.
 
-use crate::experiment::{TouchTrack, shown};
+use crate::experiment::{Answer, Experiment, TouchTrack, shown};
 use crate::mechanics::moving::Shape;
-use crate::report::motion::answers::Observed;
 use crate::shape::ShapeEstimate;
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 /// What the observer shown recovered of the outline, as it was found out before or else now.
-pub(super) fn outline<'a>(observed: &Observed<'a>) -> Option<Cow<'a, TouchTrack>> {
-    let answer = shown(observed.answers)?;
+pub(super) fn outline<'a>(experiment: &Experiment, answers: &'a [Answer]) -> Option<Cow<'a, TouchTrack>> {
+    let answer = shown(answers)?;
     match &answer.reconstruction {
         Some(reconstruction) => Some(Cow::Borrowed(&reconstruction.track)),
-        None => observed.experiment.touch_track(answer).map(Cow::Owned),
+        None => experiment.touch_track(answer).map(Cow::Owned),
     }
 }
 

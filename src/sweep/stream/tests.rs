@@ -33,7 +33,9 @@ fn piece(stream: &Stream, instructions: Instructions, first: u64, last: u64) -> 
         interrupt: &false.into(),
         progress: &|_| (),
     };
-    instructions.run(Chunk { stream, options: &options, first, count: last - first }).unwrap()
+    let chunk = Chunk { stream, options: &options, first, count: last - first, wants_rows: false };
+    let found = instructions.run(chunk).unwrap();
+    (found.report, found.left)
 }
 
 #[test]
@@ -96,7 +98,8 @@ fn a_state_is_drawn_whatever_becomes_of_those_after_it() {
             progress: &|_| (),
         };
         for instructions in Instructions::ALL {
-            let chunk = Chunk { stream: &stream, options: &options, first: index, count: 1 };
+            let chunk =
+                Chunk { stream: &stream, options: &options, first: index, count: 1, wants_rows: false };
             assert_eq!(instructions.run(chunk).is_ok(), found, "{instructions:?}, state {index}");
         }
     }

@@ -12,6 +12,8 @@ mod random;
 mod recorded;
 mod recovered;
 mod refused;
+mod shape;
+mod systems;
 mod witness;
 mod wrong;
 

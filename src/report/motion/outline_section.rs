@@ -1,0 +1,58 @@
+//! The shape that an experiment tells, as a part of a page.
+
+use crate::report::motion::answers::Observed;
+use crate::report::motion::outline_plot::{band_picture, outline_picture};
+use crate::report::motion::reconstruction::{
+    EXPLAINED, convexity_in_words, from_in_words, gaps, length, misfit_in_words, reconstruction, truth,
+    widened_in_words, widest,
+};
+use crate::report::motion::shape::support_error;
+use maud::{Markup, PreEscaped, html};
+
+/// The shape with its pictures; nothing where none was asked for.
+pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
+    let Some(found) = reconstruction(observed.answers) else { return html! {} };
+    let Some(shape) = &found.shape else {
+        return html! { p.remark { "Nothing was seen of the shape." } };
+    };
+    let truth = truth(observed.experiment);
+    let covered = |angle: f64| found.coverage.contains(angle);
+    let (perimeter, area) = (shape.perimeter(), shape.area());
+    let (picture, magnified) = outline_picture(found, shape, truth);
+    html! {
+        p {
+            "A closed support function with " (shape.support.order()) " harmonics, " (from_in_words(found)) ". "
+            b { (format!("{:.1} %", 100.0 * found.coverage.fraction())) " of the normals were touched" } (gaps(found)) ". "
+            @if let Some(band) = widest(found, shape, covered) {
+                "The band, two standard deviations to either side, is at most " b { (length(band)) } " wide where it was touched: "
+                (format!("{:.1e}", band / shape.support.mean)) " of the mean radius " (length(shape.support.mean)) ". "
+            }
+            @if let Some((largest, rms)) = truth.and_then(|truth| support_error(shape, truth, covered)) {
+                "The largest error there is " b { (length(largest)) } " (rms " (length(rms)) "). "
+            }
+        }
+        p {
+            "Perimeter " (format!("{:.6} m ± {:.1e}", perimeter.value, perimeter.deviation)) ", area "
+            (format!("{:.6} m² ± {:.1e}", area.value, area.deviation))
+            @if found.coverage.fraction() < 1.0 { " (of the polynomial: harmonics that show only in gaps are not in it)" }
+            ". The polynomial is " (convexity_in_words(shape)) ". "
+            @match &found.whole {
+                Some(whole) => { (misfit_in_words(whole, shape)) "." }
+                None if shape.widened > EXPLAINED => { (widened_in_words(shape)) "." }
+                None => {}
+            }
+        }
+        figure {
+            div.two { (PreEscaped(picture)) (PreEscaped(band_picture(found, shape, truth))) }
+            figcaption {
+                "Left: the outline"
+                @if truth.is_some() { " over the true one (grey)" }
+                ", with its band"
+                @if magnified > 1.0 { " drawn " b { (format!("{magnified:.0}")) " times as wide as it is" } }
+                "; pale where no normal was touched: there convexity alone says how wide it is. Right: the band over the angle of the normal"
+                @if truth.is_some() { ", and the error of the support radius in it" }
+                "."
+            }
+        }
+    }
+}
