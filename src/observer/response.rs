@@ -275,7 +275,8 @@ impl Motion<'_> {
                     Ok(there) => state = there,
                     Err(lost) => {
                         let lost = failure.get().map_or(lost, |(time, refusal)| refuse(time, refusal));
-                        return Ok((states, others, Some(lost)));
+                        // one sample is no motion
+                        return if i == 1 { Err(lost) } else { Ok((states, others, Some(lost))) };
                     }
                 }
             }
