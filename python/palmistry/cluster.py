@@ -25,6 +25,8 @@ def run(program, words, threads=None):
     """Runs the program; what it prints, and its exit status. Raises `Failed` with its own words where it has no result."""
     environment = dict(os.environ, **({"RAYON_NUM_THREADS": str(threads)} if threads else {}))
     done = subprocess.run([program, *words], capture_output=True, text=True, env=environment, check=False)
+    if done.returncode < 0:
+        raise RuntimeError(f"ended by signal {-done.returncode}: {' '.join(words)}")  # to be tried again
     if done.returncode not in (0, 1, 3) or not done.stdout and done.stderr:
         raise Failed(f"{' '.join([program, *words])}\n{done.stderr.strip()}")
     return done.stdout, done.returncode

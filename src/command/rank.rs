@@ -46,7 +46,7 @@ pub(crate) struct Rank {
     file: PathBuf,
     /// How many states are drawn from the sample box, to see where the rank drops; with 0 only almost all states are spoken of, which takes
     /// no words of Lie derivatives and no time [default: 1000, where the words are short enough to be written down in a moment, else 0].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=1_000_000_000_000_000))]
     samples: Option<u64>,
     /// Seed of the sampled states.
     #[arg(long, default_value_t = 1, value_name = "S")]

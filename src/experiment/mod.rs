@@ -24,8 +24,6 @@ pub mod unguided;
 pub use reconstruction::{on_palm, shown, turned};
 pub use recovered::{Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
 #[doc(hidden)]
-pub use run::NOMINAL;
-#[doc(hidden)]
 pub use run::error;
 pub use run::{Answer, Experiment};
 #[doc(hidden)]
@@ -33,6 +31,8 @@ pub use scene::SceneOutline;
 #[doc(hidden)]
 pub use scene::{BasinStudy, NoiseStudy};
 pub use scene::{Channel, Data, Guess, Method, ObserverSettings, Scene, SceneError, Sensor};
+#[doc(hidden)]
+pub use simulation::NOMINAL;
 pub use simulation::Simulation;
 #[doc(hidden)]
 pub use study::ARRIVED;

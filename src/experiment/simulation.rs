@@ -15,6 +15,9 @@ use std::collections::BTreeMap;
 /// The columns that are read by touch; only they have noise.
 pub const TOUCH: [&str; 2] = ["s1", "s2"];
 
+/// Readings without error are taken to be good to a nanometre, where a bound asks for a figure.
+pub const NOMINAL: f64 = 1e-9;
+
 /// A scene's body in motion.
 #[derive(Clone, Debug)]
 pub struct Simulation {
@@ -147,6 +150,9 @@ pub(super) fn read_with_errors(
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     for (place, (name, values)) in columns.iter_mut().enumerate() {
         let is_output = is_output(name);
+        if !is_output && !channels.contains_key(name) {
+            continue;
+        }
         let channel = channels.get(name).copied().unwrap_or_default();
         let common = if is_output { *sensor } else { Sensor::default() };
         let noise = channel.noise.unwrap_or(common.noise);

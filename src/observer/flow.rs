@@ -71,12 +71,16 @@ const MOST_EVALUATIONS: usize = 3000;
 /// The unknowns that one call can carry.
 pub const MOST_UNKNOWNS: usize = 32;
 
+/// The unknowns whose second derivatives one call can carry: they are many.
+pub const MOST_BENT: usize = 10;
+
 impl ModelFlow<'_> {
     /// The model at some times, from a state at the first of them; `free` are the places of the states whose first values
     /// are unknown, in the order of the derivatives.
     ///
     /// # Errors
-    /// Where the equations have no value, the integrator finds no step, or more than [`MOST_UNKNOWNS`] are unknown.
+    /// Where the equations have no value, the integrator finds no step, or more than [`MOST_UNKNOWNS`] are unknown, or
+    /// [`MOST_BENT`] at order two.
     pub fn follow(
         &self,
         start: &[f64],
@@ -87,16 +91,17 @@ impl ModelFlow<'_> {
         let p = free.len();
         // few sizes for all, since each is compiled: what is too large is filled with zeros
         macro_rules! sized {
-            ($($size:literal)*) => {
+            ($($size:literal)*; $($bent:literal)*) => {
                 match order {
                     Order::Value => self.integrate::<f64>(start, free, times, 0),
                     $(Order::First if p <= $size => self.integrate::<DualSVec64<$size>>(start, free, times, $size),)*
-                    $(Order::Second if p <= $size => self.integrate::<Dual2SVec64<$size>>(start, free, times, $size),)*
-                    _ => Err(Lost { time: times[0], why: format!("{p} unknowns are more than {MOST_UNKNOWNS}") }),
+                    $(Order::Second if p <= $bent => self.integrate::<Dual2SVec64<$bent>>(start, free, times, $bent),)*
+                    Order::First => Err(Lost { time: times[0], why: format!("{p} unknowns are more than {MOST_UNKNOWNS}") }),
+                    Order::Second => Err(Lost { time: times[0], why: format!("{p} unknowns are more than {MOST_BENT}") }),
                 }
             };
         }
-        sized!(3 4 6 10 16 32)
+        sized!(3 4 6 10 16 32; 3 4 6 10)
     }
 
     fn integrate<J: Jet>(

@@ -4,7 +4,7 @@
 //! for constants or signals; a [`ModelFlow`] follows it through time with its exact first and second derivatives by the unknowns. A
 //! `Window` compares what the model expects with what was read, `cramer_rao` bounds how well that can tell the
 //! unknowns, and an [`Observer`] works through a [`Task`] and gives a [`Track`]: Newton's method and a region of trust
-//! ([`MovingWindow`]), [`MultipleShooting`], [`Integration`], [`Kalman`], [`HighGain`]. Whether what is left is what the errors of the readings explain
+//! ([`MovingWindow`]), [`MultipleShooting`], [`Integration`], [`Kalman`], [`Unscented`], [`HighGain`]. Whether what is left is what the errors of the readings explain
 //! is a [`Fit`]; which errors of what is taken for known it would show, and which not, says a [`Suspect`].
 //!
 //! This floor knows systems, signals and numbers; it knows nothing of palms, bodies or scenes.
@@ -28,21 +28,23 @@ pub(crate) mod record;
 mod response;
 mod sensitivity;
 mod signal;
+mod starts;
 mod stiff_joints;
 mod suspect;
 mod task;
+mod told;
 mod trace;
 mod trust_region;
+mod unscented;
 mod weights;
 mod window;
 
 pub use bound::CramerRaoBound;
 pub(crate) use bound::cramer_rao;
 pub use calibration::CalibrationKind;
-pub(crate) use calibration::not_told;
 #[doc(hidden)]
 pub use chi_square::exceeded_with;
-pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom};
+pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom, ReadingErrors};
 pub use flow::Lost;
 pub(crate) use flow::advance;
 #[doc(hidden)]
@@ -61,5 +63,6 @@ pub use response::{Response, ResponseError, ResponseQuestion};
 pub use signal::{SignalError, Signals};
 pub use suspect::{Suspect, SuspectKind};
 pub use task::{EstimateQuestion, Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
+pub(crate) use told::not_told;
 pub use trust_region::TrustRegion;
-pub use weights::ReadingErrors;
+pub use unscented::Unscented;

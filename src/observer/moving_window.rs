@@ -31,6 +31,9 @@ pub enum WhenBlind {
     Hold,
 }
 
+/// A window of so many samples that is lost is tried again from what its first half tells.
+const LONG: usize = 160;
+
 /// The observer by windows.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingWindow {
@@ -180,8 +183,22 @@ impl MovingWindow {
         rows: &std::ops::Range<usize>,
         clamped: &[usize],
     ) -> Update {
-        let window = Self::window(task, belief, rows, clamped);
-        self.attempt_in(task, &window, belief).0
+        let from = |belief: &[f64]| {
+            let window = Self::window(task, belief, rows, clamped);
+            self.attempt_in(task, &window, belief).0
+        };
+        let update = from(belief);
+        if !matches!(update.end, UpdateEnd::Lost(_)) || rows.len() < LONG {
+            return update;
+        }
+        // an unstable flow leaves a long window from a guess that half of it makes better
+        let half = self.attempt(task, belief, &(rows.start..rows.start + rows.len() / 2), clamped);
+        let again = from(&half.estimate);
+        if matches!(again.end, UpdateEnd::Lost(_)) {
+            return update;
+        }
+        let (steps, seconds) = (half.steps + again.steps, update.seconds + half.seconds + again.seconds);
+        Update { steps, seconds, ..again }
     }
 
     /// An attempt in a window; `belief` is what stays believed where there is none. With the differences of what was found.
@@ -245,7 +262,10 @@ impl MovingWindow {
             timing: task.timing,
         };
         match &window.weights {
-            Some(weights) => weights.fit(expansion, misfit.computed(), misfit.degrees(), misfit.alarm),
+            Some(weights) => {
+                let (computed, degrees) = (misfit.computed(), misfit.degrees());
+                weights.fit(differences, &expansion.slopes, computed, degrees, misfit.alarm)
+            }
             None => misfit.fit(task.noise),
         }
     }

@@ -5,15 +5,12 @@
 //! trust begins on the whole window, and its update is the answer, with its bound and its test of fit. Where several states fit as well, all are
 //! given: the outputs do not tell them apart, as where they leave a mirror image.
 
-use super::nodes::{Bounds, Nodes, Segments};
+use super::nodes::Segments;
+use super::starts::{bounds, first_nodes, is_angle, range};
 use super::stiff_joints::{Found, seek};
 use super::task::{Observer, Task, Track, Update, UpdateEnd};
 use super::trace::{is_asked, suspects};
-use super::{MovingWindow, WindowSearch};
-use crate::number::rational_to_f64;
-use nalgebra::DVector;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use super::{MovingWindow, WindowSearch, weights};
 use rayon::prelude::*;
 use serde::Deserialize;
 use std::f64::consts::{PI, TAU};
@@ -26,7 +23,7 @@ use std::time::Instant;
 pub struct Shooting {
     /// Segments of a window, at most; no segment is shorter than from one sample to the next.
     pub segments: usize,
-    /// How often it starts: from the guess and from states of the sample box, from each with signs kept and without.
+    /// How often it starts: from the guess and from states of the sample box, each second one with signs kept.
     pub starts: usize,
 }
 
@@ -56,6 +53,9 @@ const MOST_ENDS: usize = 4;
 
 /// A mean square of the differences, in units of the spreads, that is enough for a search, beside what noise leaves.
 const ENOUGH: f64 = 1e-8;
+
+/// A window is halved as long as a half has so many readings for each unknown.
+const FEWEST: usize = 4;
 
 /// Two states are one that are no farther apart than this part of the sizes, or than so many of their deviations.
 const SAME: (f64, f64) = (1e-5, 6.0);
@@ -93,6 +93,9 @@ impl MultipleShooting {
     }
 
     /// What explains the rows: the best state first, then others that fit as well.
+    ///
+    /// Where nothing fits on the whole window, what fits on its first half is where the search on the whole begins: over
+    /// a shorter time there are fewer false minima.
     pub fn solutions(
         &self,
         task: &Task<'_>,
@@ -100,6 +103,31 @@ impl MultipleShooting {
         rows: &Range<usize>,
         clamped: &[usize],
     ) -> Vec<Update> {
+        let begin = Instant::now();
+        let found = self.shot(task, belief, rows, clamped);
+        let half = rows.start..rows.start + rows.len() / 2 + 1;
+        let is_long = half.len() * task.full.outputs.len() > FEWEST * task.full.states.len();
+        if found.iter().any(Update::is_borne_out) || !is_long || task.interrupted() {
+            return found;
+        }
+        let shorter = self.solutions(task, belief, &half, clamped);
+        let fitting = shorter.into_iter().filter(Update::is_borne_out);
+        let grown = fitting.map(|update| self.end(task, &update.estimate, rows, clamped));
+        let mut updates: Vec<Update> = Vec::new();
+        for update in grown.chain(found) {
+            if !updates.iter().any(|other| is_one(task, other, &update)) {
+                updates.push(update);
+            }
+        }
+        let mut updates = best_first(task, updates);
+        if let Some(update) = updates.first_mut() {
+            update.seconds = begin.elapsed().as_secs_f64();
+        }
+        updates
+    }
+
+    /// The same, from the whole window alone.
+    fn shot(&self, task: &Task<'_>, belief: &[f64], rows: &Range<usize>, clamped: &[usize]) -> Vec<Update> {
         let begin = Instant::now();
         let segments = self.segments(task, belief, rows, clamped);
         if segments.moving.is_empty() {
@@ -110,7 +138,7 @@ impl MultipleShooting {
         let enough = ENOUGH + 2.0 * spreads.fold(0.0, f64::max);
         let one = |start: usize| {
             let bounds = &bounds[start % 2];
-            let nodes = first_nodes(task, &segments, bounds, (belief, rows, clamped), start / 2);
+            let nodes = first_nodes(task, &segments, bounds, (belief, rows, clamped), start);
             seek(&segments, nodes, bounds, enough, &|| task.interrupted()).ok()
         };
         let found: Vec<Option<Found>> = (0..self.shooting.starts.max(1)).into_par_iter().map(one).collect();
@@ -130,12 +158,7 @@ impl MultipleShooting {
             tried.push(state);
             update.steps += found.steps;
             update.troubled += found.refused;
-            let near = |other: &Update| {
-                let deviations: Vec<f64> =
-                    other.deviations.iter().zip(&update.deviations).map(|(a, b)| a + b).collect();
-                is_near(task, &other.estimate, &update.estimate, &deviations, SAME.0)
-            };
-            if !updates.iter().any(near) {
+            if !updates.iter().any(|other| is_one(task, other, &update)) {
                 updates.push(update);
             }
         }
@@ -199,81 +222,6 @@ impl MultipleShooting {
     }
 }
 
-/// The range from which a state is drawn, and whether the file says it; none where there is no such state.
-fn range(task: &Task<'_>, place: usize) -> Option<([f64; 2], bool)> {
-    let system = &task.source.0;
-    let symbol = system.find_symbol(task.full.states.get(place)?)?;
-    let own = system.symbol_info(symbol)?.range.clone();
-    let is_own = own.is_some();
-    let range = own.or_else(|| system.default_range(symbol))?;
-    Some(([&range.low, &range.high].map(rational_to_f64), is_own))
-}
-
-fn is_angle(task: &Task<'_>, place: usize) -> bool {
-    let system = &task.source.0;
-    let symbol = task.full.states.get(place).and_then(|name| system.find_symbol(name));
-    symbol.is_some_and(|symbol| system.is_angle(symbol))
-}
-
-/// Within what states are sought: at first within the ranges of the file, wider by their own width to both sides, later anywhere; where signs are
-/// kept, on the same side of zero all the time. Ranges say where states begin, and a motion may leave them and change sign: one half of the
-/// starts keeps signs, the other does not. Whole turns are no bound.
-fn bounds(task: &Task<'_>, are_signs_kept: bool) -> Bounds {
-    let one = |place: usize| {
-        let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
-        let Some(([low, high], true)) = range(task, place).filter(|_| !is_angle(task, place)) else {
-            return (anywhere, anywhere);
-        };
-        let width = high - low;
-        let (mut first, mut later) = ([low - width, high + width], anywhere);
-        if are_signs_kept && low >= 0.0 {
-            (first[0], later[0]) = (low / 100.0, low.min(width) / 100.0);
-        }
-        if are_signs_kept && high <= 0.0 {
-            (first[1], later[1]) = (high / 100.0, high.max(-width) / 100.0);
-        }
-        (first, later)
-    };
-    let (first, later) = (0..task.full.states.len()).map(one).unzip();
-    Bounds { first, later }
-}
-
-/// Where a start begins: from the guess, or from a state of the sample box; what is read is taken as it is read.
-fn first_nodes(
-    task: &Task<'_>,
-    segments: &Segments<'_>,
-    bounds: &Bounds,
-    (belief, rows, clamped): (&[f64], &Range<usize>, &[usize]),
-    start: usize,
-) -> Nodes {
-    let mut random = ChaCha8Rng::seed_from_u64(start as u64);
-    let mut state = task.full_state(belief, rows.start);
-    for (place, value) in state.iter_mut().enumerate() {
-        let part = random.random::<f64>();
-        if start > 0
-            && place < task.estimated()
-            && !clamped.contains(&place)
-            && let Some(([low, high], _)) = range(task, place)
-        {
-            *value = low + part * (high - low);
-        }
-    }
-    let node = |(node, segment): (usize, &Range<usize>)| {
-        let row = rows.start + segment.start;
-        let value = |place: &usize| match task.full.column_of(*place) {
-            Some(column) => task.signals.column(column)[row],
-            None => state[*place],
-        };
-        let values = segments.moving.iter().map(|place| bounds.within(node, *place, value(place)));
-        DVector::from_iterator(segments.moving.len(), values)
-    };
-    let constant = segments.constant.iter().map(|place| bounds.within(0, *place, state[*place]));
-    Nodes {
-        moving: segments.rows.iter().enumerate().map(node).collect(),
-        constant: DVector::from_iterator(segments.constant.len(), constant),
-    }
-}
-
 /// Whether two states are one: within a part of the sizes, or some deviations; angles but for whole turns.
 fn is_near(task: &Task<'_>, a: &[f64], b: &[f64], deviations: &[f64], part: f64) -> bool {
     (0..a.len()).all(|i| {
@@ -283,6 +231,12 @@ fn is_near(task: &Task<'_>, a: &[f64], b: &[f64], deviations: &[f64], part: f64)
         let room = part * task.sizes[i] + if deviation.is_finite() { SAME.1 * deviation } else { 0.0 };
         apart.abs() <= room
     })
+}
+
+/// Whether two updates came to one state.
+fn is_one(task: &Task<'_>, a: &Update, b: &Update) -> bool {
+    let deviations: Vec<f64> = a.deviations.iter().zip(&b.deviations).map(|(a, b)| a + b).collect();
+    is_near(task, &a.estimate, &b.estimate, &deviations, SAME.0)
 }
 
 /// How far a state lies outside of the sample box, in widths of it.
@@ -342,7 +296,8 @@ impl Observer for MultipleShooting {
                     None => self.solutions(task, &belief, &rows, clamped),
                 };
                 let mut update = found.remove(0);
-                if !are_suspects_known && is_asked(&update) {
+                // what errs in the columns that drive the model is not among the suspects: that is for the windows that weigh it
+                if !are_suspects_known && is_asked(&update) && !weights::are_needed(task) {
                     let window = MovingWindow::window(task, &belief, &rows, clamped);
                     update.suspects = suspects(task, &window, &update, ending.alarm(task));
                     are_suspects_known = true;

@@ -275,7 +275,8 @@ impl Motion<'_> {
                     Ok(there) => state = there,
                     Err(lost) => {
                         let lost = failure.get().map_or(lost, |(time, refusal)| refuse(time, refusal));
-                        return Ok((states, others, Some(lost)));
+                        // one sample is no motion
+                        return if i == 1 { Err(lost) } else { Ok((states, others, Some(lost))) };
                     }
                 }
             }
@@ -358,7 +359,7 @@ mod tests {
         };
         let whole = [("x", 1.0), ("y", 0.0), ("k", 1.0)];
         assert_eq!(refused(&whole[..2], &[]), "nothing tells where 'k' begins");
-        assert_eq!(refused(&[("x", 1.0), ("z", 1.0)], &[]), "the system declares no 'z'");
+        assert_eq!(refused(&[("x", 1.0), ("height", 1.0)], &[]), "the system declares no 'height'");
         let moved = refused(&whole, &[("x", "t")]);
         assert_eq!(moved, "'x' moves by its own equation, and is no function of time");
     }

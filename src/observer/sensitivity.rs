@@ -203,7 +203,8 @@ mod tests {
         (system, Signals::new(times.clone(), columns).unwrap())
     }
 
-    /// The derivative by every sample against differences of the flow's own integrator, in a window within the recording.
+    /// The derivative by every sample against differences of the flow's own integrator, in a window within the recording. Two steps of the
+    /// fourth order between samples a twentieth of a second apart leave some 1e-5 of curves of degree seven.
     #[test]
     fn slopes_are_what_a_sample_changes() {
         let (system, signals) = pushed();
@@ -239,7 +240,7 @@ mod tests {
                 let own = own.map(|row| found.slopes.column(place * found.rows + row).into_owned());
                 let own = own.unwrap_or_else(|| DVector::zeros(slope.len()));
                 largest = largest.max(slope.amax());
-                assert!((&slope - &own).amax() < 1e-5, "{column} {row}: {:e}", (slope - own).amax());
+                assert!((&slope - &own).amax() < 1e-4, "{column} {row}: {:e}", (slope - own).amax());
             }
         }
         // outputs see their own sample at once, and what it did to the state later

@@ -1,5 +1,6 @@
 //! The error of the output over a window of samples (4.77), as a function of the unknown parts of the first state.
 
+use super::flow::MOST_BENT;
 use super::weights::Weights;
 use super::{Lost, ModelFlow, Order, Sample};
 use nalgebra::{DMatrix, DVector};
@@ -102,11 +103,12 @@ impl Window<'_> {
         }
     }
 
-    /// `k` with its derivatives.
+    /// `k` with its derivatives; of more than [`MOST_BENT`] unknowns without the second ones of the output, whatever the order.
     ///
     /// # Errors
     /// Where the model cannot be followed to the end of the window.
     pub fn expand(&self, unknowns: &DVector<f64>, order: Order) -> Result<WindowExpansion, Lost> {
+        let order = if self.free.len() > MOST_BENT { order.min(Order::First) } else { order };
         let samples = self.flow.follow(&self.state(unknowns), &self.free, self.times, order)?;
         let p = self.free.len();
         let left = self.differences(&samples);

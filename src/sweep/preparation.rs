@@ -115,7 +115,7 @@ impl<'q> RankPreparation<'q> {
             let mut branch = in_sign_cell(system, &part.cell, work)?;
             branch.cell = part.cell;
             fingerprint.text(&format!("{:?} {}", branch.locus.conditions, branch.samples));
-            fingerprint.text(&branch.fingerprint());
+            fingerprint.text(&branch.fingerprint(&system.graph));
             prepared.push(branch);
         }
         let (branches, prepared) = (prepared, fingerprint.value());

@@ -8,7 +8,7 @@ use super::ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateR
 use super::states::{RecordedState, Stretch, SweepOptions, SweepReport, Told};
 use super::stream::{Stream, StreamOptions};
 use super::table::{StateRow, TableOf, put_in};
-use crate::expression::{NodeId, add_guard, expand_angles};
+use crate::expression::{Graph, NodeId, add_guard, expand_angles};
 use crate::number::{PrimeField, Rung};
 use crate::observability::{Codistribution, Defined, Locus, LocusError, Spectrum, State};
 use crate::system::System;
@@ -29,8 +29,9 @@ pub(super) struct PreparedSweep {
     decider: RankDecider<'static>,
     seed: u64,
     wanted: Certainty,
-    /// What the rows are, to the last bit.
-    pub fingerprint: u64,
+    most: Option<usize>,
+    /// The rows that are tried first, all rows, and what they need to exist.
+    rows: [Vec<NodeId>; 3],
 }
 
 impl PreparedSweep {
@@ -65,16 +66,18 @@ impl PreparedSweep {
         let stream = Stream::new(system, locus, &quick)
             .filter(|_| watched)
             .filter(|stream| stream.full_rank() == columns && stream.remaining() != (0, 0));
-        let mut fingerprint = Fingerprint::default();
-        for rows in [&quick, &all] {
-            fingerprint.nodes(&system.graph, rows);
-        }
-        let asked: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
-        fingerprint.nodes(&system.graph, &asked);
-        fingerprint.text(&format!("{:?} {:?} {}", options.most, options.wanted, stream.is_some()));
-        let fingerprint = fingerprint.value();
+        let guards = guards.iter().map(|guard| guard.node).collect();
+        let (most, rows) = (options.most, [quick, all, guards]);
         let (seed, wanted) = (options.seed, options.wanted);
-        PreparedSweep { locus: locus.clone(), stream, decider, seed, wanted, fingerprint }
+        PreparedSweep { locus: locus.clone(), stream, decider, seed, wanted, most, rows }
+    }
+
+    /// What is decided, to the last bit, as a number.
+    pub fn fingerprint(&self, graph: &Graph) -> u64 {
+        let mut found = Fingerprint::default();
+        self.rows.iter().for_each(|nodes| found.nodes(graph, nodes));
+        found.text(&format!("{:?} {:?} {}", self.most, self.wanted, self.stream.is_some()));
+        found.value()
     }
 
     /// The state of an index.
@@ -200,7 +203,7 @@ impl PreparedSweep {
         for (index, item) in indices.iter().zip(block) {
             let (state, decided) = item?;
             if wants_rows {
-                rows.push(StateRow::of(*index, &decided));
+                rows.push(row_of(*index, &decided));
             }
             counts.add(names, &self.decider, *index, &state, decided);
         }
@@ -295,6 +298,21 @@ impl PreparedSweep {
             _ => None,
         });
         Ok(decided.collect::<Vec<_>>().into_iter().flatten().collect())
+    }
+}
+
+/// The row of a table for a state.
+fn row_of(index: u64, decided: &StateDecision) -> StateRow {
+    match decided {
+        StateDecision::Pole(_) => StateRow::of_nothing(index),
+        StateDecision::Report(StateReport { rank, certainty, spectrum, .. }) => StateRow {
+            rank: Some(*rank),
+            certified: *certainty == Certainty::Certified,
+            // of a matrix without columns there are none
+            smallest_singular_value: spectrum.as_ref().and_then(|found| found.values.last().copied()),
+            condition: spectrum.as_ref().map(Spectrum::condition),
+            ..StateRow::of_nothing(index)
+        },
     }
 }
 

@@ -10,7 +10,7 @@ use super::question::{BranchAnswer, RankError, TakenRow, guarded, held_parameter
 use super::series::PreparedSeries;
 use super::states::{Stretch, SweepOptions, SweepReport, Told};
 use super::table::TableOf;
-use crate::expression::{Guard, NodeId, Symbol};
+use crate::expression::{Graph, Guard, NodeId, Symbol};
 use crate::observability::{
     Branch, Codistribution, Frame, Length, Locus, Probe, SignCell, UnseenMotions, unseen_motions,
 };
@@ -140,12 +140,12 @@ impl PreparedBranch {
     }
 
     /// What the rows are, to the last bit, as a text.
-    pub fn fingerprint(&self) -> String {
+    pub fn fingerprint(&self, graph: &Graph) -> String {
         let full = match &self.full {
-            ByStates::Rows(rows) => Some(rows.fingerprint),
+            ByStates::Rows(rows) => Some(rows.fingerprint(graph)),
             ByStates::Series(_) => None,
         };
-        format!("{full:?} {:?}", self.rows.as_ref().map(|rows| rows.fingerprint))
+        format!("{full:?} {:?}", self.rows.as_ref().map(|rows| rows.fingerprint(graph)))
     }
 
     /// The answer on one branch.

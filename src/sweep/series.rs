@@ -69,12 +69,9 @@ impl PreparedSeries {
                 let found = found?;
                 if table.is_wanted() {
                     rows.push(StateRow {
-                        index,
                         rank: found.as_ref().ok().copied(),
                         certified: found.as_ref().is_ok_and(|rank| *rank == most),
-                        smallest_singular_value: None,
-                        condition: None,
-                        coordinates: Vec::new(),
+                        ..StateRow::of_nothing(index)
                     });
                 }
                 match found {

@@ -1,7 +1,5 @@
 //! A row for each state of a sweep, for those who want to look at all of them.
 
-use super::certainty::Certainty;
-use super::ladder::{StateDecision, StateReport};
 use crate::expression::Symbol;
 use crate::observability::{Coordinate, LocusError, State};
 use rayon::prelude::*;
@@ -24,25 +22,15 @@ pub struct StateRow {
 }
 
 impl StateRow {
-    pub(super) fn of(index: u64, decided: &StateDecision) -> StateRow {
-        let nothing = StateRow {
+    /// That of a state of which nothing is known.
+    pub(super) fn of_nothing(index: u64) -> StateRow {
+        StateRow {
             index,
             rank: None,
             certified: false,
             smallest_singular_value: None,
             condition: None,
             coordinates: Vec::new(),
-        };
-        match decided {
-            StateDecision::Pole(_) => nothing,
-            StateDecision::Report(StateReport { rank, certainty, spectrum, .. }) => StateRow {
-                rank: Some(*rank),
-                certified: *certainty == Certainty::Certified,
-                // of a matrix without columns there are none
-                smallest_singular_value: spectrum.as_ref().and_then(|found| found.values.last().copied()),
-                condition: spectrum.as_ref().map(|found| found.condition()),
-                ..nothing
-            },
         }
     }
 }

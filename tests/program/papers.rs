@@ -404,3 +404,19 @@ fn words_of_the_range_by_differences() {
     let found = value("proofs/martinelli2005/two_beacons.proof", "det(rows)", at);
     assert!((found - determinant).abs() < 1e-12, "{found}, {determinant}");
 }
+
+/// Three palms in space: every claim is proved, and at each drawn state and jet all sixteen unknowns are certainly seen, by all words
+/// and by the derivatives of the readings along one motion.
+#[test]
+fn three_palms_tell_all_of_a_body_that_turns() {
+    let found = json(&palmistry(&["prove", "proofs/moll2002/space", "--json"]));
+    let claims = found["claims"].as_array().unwrap();
+    assert!(claims.len() >= 45, "{}", claims.len());
+    assert!(claims.iter().all(|claim| claim["verdict"] == "proved"), "{found}");
+    let found =
+        json(&palmistry(&["rank", "proofs/moll2002/space/ranks.proof", "--samples", "100", "--json"]));
+    for rows in [&found, &found["own_rows"]] {
+        assert_eq!(rows["rank_histogram"], serde_json::json!({ "16": 100 }), "{found}");
+        assert_eq!(rows["certified"], 100);
+    }
+}

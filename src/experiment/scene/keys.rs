@@ -4,7 +4,7 @@ use super::observing::{Channel, Data, Method, Sensor, Study};
 use super::place::Places;
 use super::simulated::Body;
 use crate::mechanics::moving::{Course, PushedPalm};
-use crate::observer::{HighGain, Kalman, Shooting, WhenBlind};
+use crate::observer::{HighGain, Kalman, Shooting, Unscented, WhenBlind};
 use crate::system::Problem;
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
@@ -158,6 +158,8 @@ pub(super) struct ObserverKeys {
     pub shooting: Shooting,
     #[serde(default)]
     pub kalman: Kalman,
+    #[serde(default)]
+    pub unscented: Unscented,
     #[serde(default)]
     pub high_gain: HighGain,
 }

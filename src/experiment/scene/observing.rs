@@ -1,8 +1,8 @@
 //! What is measured, and what is to be found out from it.
 
 use crate::observer::{
-    HighGain, Integration, Kalman, MovingWindow, MultipleShooting, Observer, OnFault, Shooting, WhenBlind,
-    WindowSearch,
+    HighGain, Integration, Kalman, MovingWindow, MultipleShooting, Observer, OnFault, Shooting, Unscented,
+    WhenBlind, WindowSearch,
 };
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
@@ -92,6 +92,8 @@ pub struct ObserverSettings {
     pub shooting: Shooting,
     /// `[observer.kalman]`.
     pub kalman: Kalman,
+    /// `[observer.unscented]`.
+    pub unscented: Unscented,
     /// `[observer.high_gain]`.
     pub high_gain: HighGain,
 }
@@ -124,6 +126,8 @@ pub enum Method {
     Integration,
     /// `kalman`: the extended Kalman filter.
     Kalman,
+    /// `unscented`: the unscented Kalman filter.
+    Unscented,
     /// `high-gain`: the high-gain observer.
     HighGain,
 }
@@ -137,6 +141,7 @@ impl ObserverSettings {
             Method::MultipleShooting => Box::new(self.multiple_shooting()),
             Method::Integration => Box::new(Integration),
             Method::Kalman => Box::new(self.kalman),
+            Method::Unscented => Box::new(self.unscented),
             Method::HighGain => Box::new(self.high_gain),
         }
     }
@@ -167,6 +172,7 @@ impl Method {
             Method::MultipleShooting => "multiple-shooting",
             Method::Integration => "integration",
             Method::Kalman => "kalman",
+            Method::Unscented => "unscented",
             Method::HighGain => "high-gain",
         }
     }
@@ -176,7 +182,11 @@ impl Method {
         match self {
             Method::Newton => Some(WindowSearch::Newton),
             Method::TrustRegion => Some(WindowSearch::TrustRegion),
-            Method::MultipleShooting | Method::Integration | Method::Kalman | Method::HighGain => None,
+            Method::MultipleShooting
+            | Method::Integration
+            | Method::Kalman
+            | Method::Unscented
+            | Method::HighGain => None,
         }
     }
 

@@ -100,7 +100,9 @@ impl<'a> Places<'a> {
         };
         match (quoted.split_first(), message) {
             (Some((unknown, known)), m) if m.starts_with("unknown field") => {
-                let place = self.key_within(unknown, &span).unwrap_or(span);
+                // of a table that is read by hand the span is that of its header
+                let after = || self.key_within(unknown, &(span.start..self.length));
+                let place = self.key_within(unknown, &span).or_else(after).unwrap_or(span);
                 Problem::new(&place, format!("unknown key '{unknown}'"), "not a key of this table")
                     .help(suggest(unknown, known))
             }

@@ -2,7 +2,7 @@ mod mistakes;
 
 use super::*;
 use crate::mechanics::moving::{Course, Drive, Knots, Oscillation, PushedPalm};
-use crate::observer::{HighGain, Kalman, OnFault, WhenBlind};
+use crate::observer::{HighGain, Kalman, OnFault, Shooting, Unscented, WhenBlind};
 
 const WHOLE: &str = r#"title = "Both palms turn at one constant rate"
 model = "../proofs/general.proof"
@@ -46,8 +46,14 @@ steps = 4
 when_blind = "hold"
 blind = 0.5
 
+[observer.shooting]
+starts = 3
+
 [observer.kalman]
 prior = 0.2
+
+[observer.unscented]
+kappa = 0
 
 [observer.high_gain]
 gain = 30
@@ -167,9 +173,10 @@ fn every_key_arrives_where_it_belongs() {
         steps: 4,
         when_blind: WhenBlind::Hold,
         blind: 0.5,
+        shooting: Shooting { starts: 3, ..Shooting::default() },
         kalman: Kalman { prior: 0.2, ..Kalman::default() },
+        unscented: Unscented { kappa: 0.0, ..Unscented::default() },
         high_gain: HighGain { gain: 30.0 },
-        shooting: Default::default(),
     };
     assert_eq!(scene.observer, observer);
     assert_eq!(scene.study.noise, Some(NoiseStudy { levels: vec![1e-5, 1e-4], seeds: 500 }));

@@ -12,6 +12,7 @@
 //! Left out: friction, impacts (a motion ends where a contact force reaches zero), curved palms, edges of palms.
 
 mod balance;
+mod check;
 mod form;
 mod integrate;
 mod laws;

@@ -55,6 +55,8 @@ enum Sink<'w> {
     Groups {
         writer: SerializedFileWriter<&'w mut (dyn Write + Send)>,
         held: Vec<(usize, StateRow)>,
+        /// How many coordinates each row tells.
+        coordinates: usize,
     },
 }
 
@@ -63,7 +65,6 @@ pub struct StateTableWriter<'w> {
     sink: Sink<'w>,
     /// Whether there is a column for the branch.
     branches: bool,
-    coordinates: usize,
 }
 
 impl<'w> StateTableWriter<'w> {
@@ -82,7 +83,7 @@ impl<'w> StateTableWriter<'w> {
             #[cfg(feature = "parquet")]
             TableForm::Parquet => {
                 let writer = begin(file, branch, coordinates).map_err(Error::other)?;
-                Sink::Groups { writer, held: Vec::new() }
+                Sink::Groups { writer, held: Vec::new(), coordinates: coordinates.len() }
             }
             #[cfg(not(feature = "parquet"))]
             TableForm::Parquet => return Err(Error::other("this program was built without Parquet")),
@@ -93,7 +94,7 @@ impl<'w> StateTableWriter<'w> {
                 Sink::Text(file)
             }
         };
-        Ok(StateTableWriter { sink, branches: branch.is_some(), coordinates: coordinates.len() })
+        Ok(StateTableWriter { sink, branches: branch.is_some() })
     }
 
     /// Adds some rows of the branch of a number, counted from zero.
@@ -117,13 +118,13 @@ impl<'w> StateTableWriter<'w> {
                 writeln!(file, "{line}")
             }),
             #[cfg(feature = "parquet")]
-            Sink::Groups { writer, held } => {
+            Sink::Groups { writer, held, coordinates } => {
                 held.extend(rows.iter().map(|row| (branch, row.clone())));
                 if held.len() < GROUP {
                     return Ok(());
                 }
                 let group = std::mem::take(held);
-                write_group(writer, &group, self.branches, self.coordinates).map_err(Error::other)
+                write_group(writer, &group, self.branches, *coordinates).map_err(Error::other)
             }
         }
     }
@@ -136,9 +137,9 @@ impl<'w> StateTableWriter<'w> {
         match self.sink {
             Sink::Text(_) => Ok(()),
             #[cfg(feature = "parquet")]
-            Sink::Groups { mut writer, held } => {
+            Sink::Groups { mut writer, held, coordinates } => {
                 if !held.is_empty() {
-                    write_group(&mut writer, &held, self.branches, self.coordinates).map_err(Error::other)?;
+                    write_group(&mut writer, &held, self.branches, coordinates).map_err(Error::other)?;
                 }
                 writer.close().map(|_| ()).map_err(Error::other)
             }

@@ -325,6 +325,42 @@ fn palms_that_are_pushed_move_as_the_laws_ask() {
     }
 }
 
+/// Velocities and angular velocities are those of places and orientations, by central differences of a motion on palms that swing
+/// about hinges which do not meet.
+#[test]
+fn rates_are_those_of_the_motion() {
+    let [form, ..] = &forms()[..] else { panic!() };
+    let mut scene = scene(form.clone(), Orientation::by(&Vector3::new(0.5, 0.1, -0.4)), [0.1, -0.2, 0.3]);
+    for (palm, hinge) in scene.palms.iter_mut().zip([[0.3, 0.0, 0.1], [0.0, -0.2, 0.0], [0.1, 0.1, -0.1]]) {
+        palm.hinge = hinge;
+    }
+    let mut scene = balanced(scene);
+    scene.drive = SpatialDrive::Prescribed(std::array::from_fn(|i| swinging(PI / 3.0, i as f64)));
+    // the third derivatives are about 60: differences are off by a sixth of that times the square of the step
+    let step = 1e-4;
+    let found = simulate_solid(&scene, &[0.3 - step, 0.3, 0.3 + step]).unwrap();
+    assert_eq!(found.ended, SpatialEnded::Completed);
+    let [before, here, after] = &found.moments[..] else { panic!() };
+    let close = |what: &str, found: Vector3<f64>, expected: Vector3<f64>| {
+        assert!((found - expected).norm() < 1e-6, "{what}: {found} {expected}");
+    };
+    close("velocity", (after.centre - before.centre) / (2.0 * step), here.velocity);
+    close("acceleration", (after.velocity - before.velocity) / (2.0 * step), here.acceleration);
+    close("turning", (after.rate - before.rate) / (2.0 * step), here.turning);
+    let change = (after.orientation.matrix() - before.orientation.matrix()) / (2.0 * step);
+    let hat = change * here.orientation.matrix().transpose();
+    close("rate", Vector3::new(hat[(2, 1)], hat[(0, 2)], hat[(1, 0)]), here.rate);
+    for i in 0..3 {
+        let [before, here, after] = [before, here, after].map(|moment| &moment.palms[i]);
+        let [a, b, c] = [before, here, after].map(|palm| palm.contact);
+        // the contact stays on the palm: along the normal it moves as the palm does
+        let hinge = Vector3::from(scene.palms[i].hinge);
+        assert!(here.normal.dot(&(b - hinge)).abs() < 1e-13);
+        let turned = (after.normal - before.normal) / (2.0 * step);
+        assert!((turned.dot(&(b - hinge)) + here.normal.dot(&((c - a) / (2.0 * step)))).abs() < 1e-6);
+    }
+}
+
 /// A palm that swings too fast leaves the body on its way down: at that moment, and not before, its force is zero.
 #[test]
 fn a_contact_that_breaks_is_located() {

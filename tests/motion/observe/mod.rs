@@ -13,6 +13,7 @@ mod recorded;
 mod recovered;
 mod refused;
 mod shape;
+mod systems;
 mod witness;
 mod wrong;
 

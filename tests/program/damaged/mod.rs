@@ -4,12 +4,14 @@
 //! changed, cut out, doubled and lengths that lie. `PALMISTRY_FUZZ_CASES=100000` asks for a longer run. A case that
 //! takes longer than [`HUNG`] is a hang: it is shown, and the test ends.
 
+use palmistry::RankQuestion;
 use palmistry::certificate::{Limits, Region, RegionRows};
 use palmistry::checker::{Effort, VerdictFile};
 use palmistry::claim::{Kept, decide_all_keeping};
 use palmistry::experiment::Scene;
 use palmistry::import::{ForeignFormat, ImportQuestion, import};
 use palmistry::observer::{FaultRules, OnFault, Record};
+use palmistry::sweep::{RankPart, RankPreparation};
 use palmistry::system::System;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -342,6 +344,57 @@ fn journal() {
         }
     });
     reader.try_all(&[saved.into_bytes()]);
+}
+
+/// A part of a sweep. What was damaged is refused, or says the same.
+#[test]
+fn part() {
+    let text = std::fs::read_to_string(root().join("tests/models/cr.proof")).unwrap();
+    let mut system = System::parse("cr.proof", &text, Path::new("")).unwrap();
+    let question = RankQuestion { samples: 20, ..RankQuestion::default() };
+    let threads = rayon::ThreadPoolBuilder::new().stack_size(64 << 20).build().unwrap();
+    let whole = threads.install(|| {
+        let prepared = RankPreparation::new(&mut system, &question).unwrap();
+        prepared.sweep(&system, 3..20).unwrap().text().unwrap()
+    });
+    let expected = whole.clone();
+    let reader = Watched::new("part", move |bytes| {
+        if let Ok(text) = std::str::from_utf8(bytes)
+            && let Ok(part) = RankPart::read(text)
+        {
+            // blanks may stand anywhere
+            let said = part.text().expect("it is whole");
+            assert!(said == expected || part.range().is_empty(), "a damaged part is read");
+        }
+    });
+    reader.try_all(&[whole.into_bytes()]);
+}
+
+/// A share of a search. What was damaged is refused.
+#[test]
+fn share() {
+    let text = "system \"s\" state x drift f x' = x output x^2 sample x in [-1, 2]";
+    let mut system = System::parse("e.proof", text, Path::new("")).unwrap();
+    let mut region =
+        Region::new(&mut system, RegionRows::Codistribution(None), &BTreeMap::new(), None).unwrap();
+    region.run(Limits { seconds: None, boxes: Some(10) }, &false.into(), &|_| ());
+    let base = region.take_share(1, 1);
+    region.run(Limits { seconds: None, boxes: Some(50) }, &false.into(), &|_| ());
+    let whole = region.part_text(base, 1, 1);
+    assert!(whole.lines().count() > 3, "{whole}");
+    let (expected, region) = (whole.clone(), Mutex::new(region));
+    let reader = Watched::new("share", move |bytes| {
+        if let Ok(text) = std::str::from_utf8(bytes)
+            && region.lock().unwrap().read_part(text).is_ok()
+        {
+            assert_eq!(
+                text.trim_end_matches('\n'),
+                expected.trim_end_matches('\n'),
+                "a damaged share is read"
+            );
+        }
+    });
+    reader.try_all(&[whole.into_bytes()]);
 }
 
 /// What `--verdicts` writes, as `recheck` reads it.

@@ -8,6 +8,7 @@ mod inputs;
 mod interrupts;
 mod prove;
 mod rank;
+mod shards;
 mod shell;
 mod values;
 mod watch;

@@ -47,6 +47,10 @@ impl Checks<'_> {
         self.not_negative("observer.kalman.process_noise", keys.kalman.process_noise, "")?;
         self.positive("observer.kalman.prior", keys.kalman.prior, "")?;
         self.positive("observer.kalman.least_sigma", keys.kalman.least_sigma, "m")?;
+        self.not_negative("observer.unscented.process_noise", keys.unscented.process_noise, "")?;
+        self.positive("observer.unscented.prior", keys.unscented.prior, "")?;
+        self.positive("observer.unscented.least_sigma", keys.unscented.least_sigma, "")?;
+        self.not_negative("observer.unscented.kappa", keys.unscented.kappa, "")?;
         self.positive("observer.high_gain.gain", keys.high_gain.gain, "1/s")?;
         Ok(ObserverSettings {
             methods: keys.methods,
@@ -61,6 +65,7 @@ impl Checks<'_> {
             blind: keys.blind,
             shooting: keys.shooting,
             kalman: keys.kalman,
+            unscented: keys.unscented,
             high_gain: keys.high_gain,
         })
     }

@@ -1,0 +1,206 @@
+//! Systems without palms: simulated by their own equations, recorded, and recovered from the middle of their sample boxes.
+
+use crate::common::{folder, palmistry, without_times, write};
+use crate::observe::{answers, experiment, observe, refusal};
+use palmistry::experiment::Method;
+use palmistry::observer::UpdateEnd;
+use serde_json::Value;
+use std::path::Path;
+
+const SYSTEMS: [&str; 5] = ["van_der_pol", "lorenz", "two_tanks", "beacons", "epidemic"];
+
+/// A scene of the project's systems, that can be read from anywhere.
+fn scene(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/systems");
+    let text = std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
+    text.replace("model = \"", &format!("model = \"{}/", folder.display()))
+}
+
+fn with_line(text: &str, begins: &str, line: &str) -> String {
+    assert_eq!(text.lines().filter(|old| old.starts_with(begins)).count(), 1, "{begins}");
+    let lines = text.lines().map(|old| if old.starts_with(begins) { line } else { old });
+    lines.collect::<Vec<_>>().join("\n") + "\n"
+}
+
+/// From the middle of the sample box every state and constant is found: without noise to nine digits, as far as
+/// the bound for readings good to 1e-9 lets one tell them; with noise within five deviations, which one of two million passes.
+#[test]
+fn multiple_shooting_arrives_from_the_middle_of_the_sample_box() {
+    for name in SYSTEMS {
+        let text = with_line(&scene(name), "methods", "methods = [\"multiple-shooting\"]");
+        for noisy in [false, true] {
+            let text = if noisy { text.clone() } else { with_line(&text, "noise", "noise = 0") };
+            let experiment = experiment(&text);
+            let answers = answers(&experiment);
+            let track = &answers[0].track;
+            let update = &track.updates[0];
+            assert_eq!(update.end, UpdateEnd::Converged, "{name}: {update:?}");
+            assert!(update.is_borne_out() && track.is_sound(), "{name}: {update:?}");
+            assert!(track.others.is_empty(), "{name}: {:?}", track.others);
+            let truth = experiment.truth_at(0.0).unwrap();
+            for (i, truth) in truth.iter().enumerate() {
+                let off = (update.estimate[i] - truth).abs();
+                let room = 5.0 * update.deviations[i] + if noisy { 0.0 } else { 1e-9 * truth.abs() };
+                assert!(off <= room, "{name} {i}: {off:e} is more than {room:e}");
+            }
+        }
+    }
+}
+
+/// `x^2` of an oscillator is the same for `x` and `-x`: by hand, both states fit and no other does.
+#[test]
+fn a_mirror_image_is_named() {
+    let folder = folder();
+    write(
+        &folder,
+        "mirror.proof",
+        "system \"An oscillator whose square is seen\" state x, v param k unknown drift f x' = v v' = -k*x output x^2 \
+         sample x in [-2, 2] v in [-2, 2] k in [1, 5]",
+    );
+    let scene = "title = \"Its square\"\nmodel = \"mirror.proof\"\nduration = 4\nsamples = 81\n[start]\nx = 0.7\nv = -0.9\nk = 2.3\n\
+                 [sensor]\nnoise = 0.001\n[observer]\nmethods = [\"multiple-shooting\"]\nestimate = [\"x\", \"v\", \"k\"]\n";
+    let (output, found) = observe(&write(&folder, "mirror.toml", scene), &[]);
+    assert_eq!(output.status.code(), Some(0), "{found}");
+    let observer = &found["observers"][0];
+    let others = observer["fits_as_well"].as_array().unwrap();
+    assert_eq!(others.len(), 1, "{observer}");
+    let of = |update: &Value, name: &str| update["states"][name]["recovered"].as_f64().unwrap();
+    let update = &observer["updates"][0];
+    for (name, sign, truth) in [("x", -1.0, 0.7), ("v", -1.0, -0.9), ("k", 1.0, 2.3)] {
+        assert!((of(update, name) - sign * of(&others[0], name)).abs() < 1e-6, "{name}");
+        assert!((of(update, name).abs() - f64::abs(truth)).abs() < 0.01, "{name}");
+    }
+    // where the box has only one of them, the other is none
+    let model = std::fs::read_to_string(folder.path().join("mirror.proof")).unwrap();
+    write(&folder, "mirror.proof", model.replace("x in [-2, 2]", "x in [1/10, 2]"));
+    let (_, found) = observe(&folder.path().join("mirror.toml"), &[]);
+    let observer = &found["observers"][0];
+    assert_eq!(observer["fits_as_well"], Value::Array(Vec::new()));
+    assert!((of(&observer["updates"][0], "x") - 0.7).abs() < 0.01);
+}
+
+/// What was recorded gives what was simulated, to the last digit, whatever the first guess; and no page speaks of palms.
+#[test]
+fn a_recording_of_any_system_gives_the_same_answer() {
+    fn without_truth(value: &mut Value) {
+        match value {
+            Value::Object(map) => {
+                map.retain(|key, _| !["true", "error", "simulation"].contains(&key.as_str()));
+                map.values_mut().for_each(without_truth);
+            }
+            Value::Array(list) => list.iter_mut().for_each(without_truth),
+            _ => {}
+        }
+    }
+    let folder = folder();
+    for (name, guess) in [
+        ("two_tanks", "guess = \"sample\""),
+        ("beacons", "guess_off = 0.1"),
+        ("epidemic", "guess_off = -0.05"),
+    ] {
+        let text = scene(name).replace("window =", &format!("{guess}\nwindow ="));
+        let text = with_line(&text, "methods", "methods = [\"trust-region\", \"unscented\", \"kalman\"]");
+        let scene = write(&folder, "scene.toml", text);
+        for file in ["x.csv", "x.parquet"] {
+            let file = folder.path().join(file);
+            let file = file.to_str().unwrap();
+            let out = folder.path().join("out");
+            let (first, mut simulated) = observe(&scene, &["--record", file, "--out", out.to_str().unwrap()]);
+            let (second, mut replayed) = observe(&scene, &["--data", file]);
+            assert_eq!(first.status.code(), second.status.code(), "{name}");
+            assert!(
+                simulated["observers"][0]["updates"][0]["states"]
+                    .as_object()
+                    .is_some_and(|states| !states.is_empty())
+            );
+            without_truth(&mut simulated);
+            without_truth(&mut replayed);
+            without_times(&mut simulated);
+            without_times(&mut replayed);
+            assert_eq!(simulated, replayed, "{name}");
+            let page = std::fs::read_to_string(out.join("index.html")).unwrap();
+            let words = palmistry(&["observe", scene.to_str().unwrap()]);
+            let words = String::from_utf8_lossy(&words.stdout).into_owned();
+            let body = page.split("<body").nth(1).unwrap();
+            for word in ["palm ", "palms", "contact", "torque", "The body"] {
+                assert!(!body.contains(word) && !words.contains(word), "{name} speaks of {word}");
+            }
+        }
+    }
+}
+
+/// `x' = -k x` is `x0 e^(-k t)`; the unscented filter finds both within five of its noise's own bound, by the bound of Cramer and Rao.
+#[test]
+fn the_unscented_filter_finds_a_decay() {
+    let folder = folder();
+    write(
+        &folder,
+        "decay.proof",
+        "system \"Decay\" state x : m param k unknown drift f x' = -k*x output x sample x in [1/2, 2] k in [1/2, 2]",
+    );
+    let text = "title = \"Decay\"\nmodel = \"decay.proof\"\nduration = 2\nsamples = 201\n[start]\nx = 1.5\nk = 0.8\n[sensor]\nnoise = 0.001\n\
+                [observer]\nmethods = [\"unscented\", \"trust-region\"]\nestimate = [\"x\", \"k\"]\nunscented = { process_noise = 0 }\nwindow = 200\nsteps = 20\n";
+    let scene = write(&folder, "decay.toml", text);
+    let (_, found) = observe(&scene, &[]);
+    let k = &found["observers"][0]["end"]["states"]["k"];
+    let off = k["recovered"].as_f64().unwrap() - 0.8;
+    let bound = found["observers"][1]["updates"][0]["states"]["k"]["bound"].as_f64().unwrap();
+    assert!(off.abs() < 5.0 * bound && bound < 1e-3, "{off} and {bound}");
+    // states carry their units, where the file says them
+    let words = palmistry(&["observe", scene.to_str().unwrap()]);
+    assert!(String::from_utf8_lossy(&words.stdout).contains("x, m"));
+}
+
+/// What is wrong with [start] and [inputs], with the line that is named.
+const MISTAKES: [(&str, &str, &str, &str); 8] = [
+    ("h1 = 1.2", "", "nothing tells where 'h1' begins", "[start]"),
+    ("h1 = 1.2", "h1 = -1.2", "has no value", "[start]"),
+    ("h1 = 1.2", "h1 = 1.2\nh3 = 1", "declares no 'h3'", "h3 = 1"),
+    ("u = \"0.2 + 0.1*sin(0.5*t)\"", "u = \"0.2 + \"", "u = 0.2 + :", "u = "),
+    ("u = \"0.2 + 0.1*sin(0.5*t)\"", "u = \"h1\"", "depends on 'h1'", "u = "),
+    ("u = \"0.2 + 0.1*sin(0.5*t)\"", "h1 = \"t\"", "has a value and a function of time", "h1 = \"t\""),
+    ("u = \"0.2 + 0.1*sin(0.5*t)\"", "", "nothing tells where 'u' begins", "[start]"),
+    ("duration = 40\n", "", "without 'duration'", "samples"),
+];
+
+#[test]
+fn mistakes_in_a_system_are_shown_at_their_place() {
+    let folder = folder();
+    let whole = scene("two_tanks");
+    for (from, to, says, place) in MISTAKES {
+        assert!(whole.contains(from), "{from}");
+        let text = whole.replace(from, to);
+        let path = write(&folder, "scene.toml", &text);
+        let (output, found) = observe(&path, &[]);
+        let (message, help) = refusal(&output, &found);
+        assert!(message.contains(says) && !help.is_empty(), "{from} to {to}: {message}; {help}");
+        let line = found["error"]["line"].as_u64().unwrap() as usize;
+        assert!(text.lines().nth(line - 1).unwrap().starts_with(place), "{to}: line {line}");
+    }
+    // studies are refused where a scene has none
+    let path = write(&folder, "scene.toml", &whole);
+    let (output, found) = observe(&path, &["--studies"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(found["error"]["message"].as_str().unwrap().contains("the scene has no studies"), "{found}");
+}
+
+/// A study of any system: the error over noise lies at the bound, and a map of first guesses tells where each method arrives.
+#[test]
+fn studies_need_no_palms() {
+    let folder = folder();
+    let text = with_line(&scene("beacons"), "methods", "methods = [\"trust-region\"]");
+    let study = "[study.noise]\nlevels = [1e-3]\nseeds = 24\n[study.basin]\npx = [1.4, 1.6]\npy = [-1.1, -0.9]\npoints = 2\n";
+    let path = write(&folder, "scene.toml", text.replace("window =", "guess_off = 0.01\nwindow =") + study);
+    let (output, found) = observe(&path, &["--studies"]);
+    assert_eq!(output.status.code(), Some(0), "{found}");
+    let level = &found["noise"][0];
+    assert_eq!(level["converged"], 24);
+    for name in ["px", "py", "theta"] {
+        let of = |key: &str| level[key][name].as_f64().unwrap();
+        let ratio = of("root_mean_square_error") / of("bound");
+        // 24 seeds tell a deviation to one part in seven
+        assert!((0.5..1.6).contains(&ratio), "{name}: {ratio}");
+    }
+    assert_eq!(found["basins"][0]["fraction"], 1.0);
+    assert_eq!(experiment(&scene("beacons")).scene.observer.methods[0], Method::MultipleShooting);
+}
