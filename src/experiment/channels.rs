@@ -1,8 +1,7 @@
 //! How single columns are read: errors that simulated sensors make, what observers know of them, and what they seek.
 
-use super::run::NOMINAL;
 use super::scene::{Channel, Scene, SceneError};
-use super::simulation::TOUCH;
+use super::simulation::{NOMINAL, TOUCH};
 use crate::observer::{
     CalibrationKind, EstimateQuestion, ReadingErrors, SignalError, Signals, Task, not_told,
 };

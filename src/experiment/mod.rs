@@ -26,8 +26,6 @@ pub use known_motion::KnownMotion;
 pub use reconstruction::{on_palm, shown, turned};
 pub use recovered::{Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
 #[doc(hidden)]
-pub use run::NOMINAL;
-#[doc(hidden)]
 pub use run::error;
 pub use run::{Answer, Experiment};
 #[doc(hidden)]
@@ -35,6 +33,8 @@ pub use scene::SceneOutline;
 #[doc(hidden)]
 pub use scene::{BasinStudy, NoiseStudy};
 pub use scene::{Channel, Data, Guess, Method, ObserverSettings, Scene, SceneError, Sensor};
+#[doc(hidden)]
+pub use simulation::NOMINAL;
 pub use simulation::Simulation;
 #[doc(hidden)]
 pub use study::ARRIVED;

@@ -4,7 +4,7 @@ use super::channels;
 use super::known_motion::KnownMotion;
 use super::recovered::Reconstruction;
 use super::scene::{self, Guess, Scene, SceneError};
-use super::simulation::{Simulation, TOUCH, body, constants, deviation};
+use super::simulation::{NOMINAL, Simulation, TOUCH, body, constants, deviation};
 use super::since::Since;
 use super::system_motion::SystemMotion;
 use super::unguided::{PalmReadings, Unguided, palm_readings};
@@ -21,9 +21,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-
-/// Readings without error are taken to be good to a nanometre, where a bound asks for a figure.
-pub const NOMINAL: f64 = 1e-9;
 
 /// A scene with its readings.
 #[derive(Clone, Debug)]

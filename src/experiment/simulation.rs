@@ -15,6 +15,9 @@ use std::collections::BTreeMap;
 /// The columns that are read by touch; only they have noise.
 pub const TOUCH: [&str; 2] = ["s1", "s2"];
 
+/// Readings without error are taken to be good to a nanometre, where a bound asks for a figure.
+pub const NOMINAL: f64 = 1e-9;
+
 /// A scene's body in motion.
 #[derive(Clone, Debug)]
 pub struct Simulation {

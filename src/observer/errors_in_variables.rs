@@ -44,13 +44,14 @@ impl MovingWindow {
             let before = update.estimate.clone();
             let mut window = Self::window(&own, &before, rows, clamped);
             window.start[task.estimated()..].clone_from_slice(&update.outputs);
-            let weights = match Weights::of(&own, &window, taken_off.as_ref(), task.signals) {
-                Ok(weights) => Arc::new(weights),
-                Err(lost) => {
-                    update.end = UpdateEnd::Lost(lost);
-                    break;
-                }
-            };
+            let weights =
+                match Weights::of(&own, &window.start, window.times, taken_off.as_ref(), task.signals) {
+                    Ok(weights) => Arc::new(weights),
+                    Err(lost) => {
+                        update.end = UpdateEnd::Lost(lost);
+                        break;
+                    }
+                };
             window.weights = Some(weights.clone());
             let (next, left) = self.attempt_in(&own, &window, &before);
             update = next;
@@ -85,7 +86,8 @@ impl MovingWindow {
         let mut window = Self::window(task, belief, rows, clamped);
         let sizes = Self::sizes(task, &window);
         let mut found = vec![f64::INFINITY; window.free.len()];
-        let weights = weights::are_needed(task).then(|| Weights::of(task, &window, None, task.signals));
+        let weights = weights::are_needed(task)
+            .then(|| Weights::of(task, &window.start, window.times, None, task.signals));
         if let Ok(weights) = weights.transpose() {
             window.weights = weights.map(Arc::new);
             if let Ok(expansion) = window.expand(&window.unknowns(&window.start), Order::First) {

@@ -23,6 +23,27 @@ pub enum Noise {
     },
 }
 
+/// What is known of the errors of the readings of a column: independent normal ones, and rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ReadingErrors {
+    /// The standard deviation, in the column's unit.
+    pub normal: f64,
+    /// Readings are multiples of this; zero for none.
+    pub rounding: f64,
+}
+
+impl ReadingErrors {
+    /// The variance of a reading.
+    pub fn variance(self) -> f64 {
+        self.normal * self.normal + self.rounding * self.rounding / 12.0
+    }
+
+    /// Whether there is none.
+    pub fn are_none(self) -> bool {
+        self.variance() == 0.0
+    }
+}
+
 /// Where the standard deviation comes from by which a misfit is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoiseFrom {

@@ -32,6 +32,7 @@ mod starts;
 mod stiff_joints;
 mod suspect;
 mod task;
+mod told;
 mod trace;
 mod trust_region;
 mod unscented;
@@ -41,10 +42,9 @@ mod window;
 pub use bound::CramerRaoBound;
 pub(crate) use bound::cramer_rao;
 pub use calibration::CalibrationKind;
-pub(crate) use calibration::not_told;
 #[doc(hidden)]
 pub use chi_square::exceeded_with;
-pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom};
+pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom, ReadingErrors};
 pub use flow::Lost;
 pub(crate) use flow::advance;
 #[doc(hidden)]
@@ -63,6 +63,6 @@ pub use response::{Response, ResponseError, ResponseQuestion};
 pub use signal::{SignalError, Signals};
 pub use suspect::{Suspect, SuspectKind};
 pub use task::{EstimateQuestion, Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
+pub(crate) use told::not_told;
 pub use trust_region::TrustRegion;
 pub use unscented::Unscented;
-pub use weights::ReadingErrors;

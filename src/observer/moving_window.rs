@@ -262,7 +262,10 @@ impl MovingWindow {
             timing: task.timing,
         };
         match &window.weights {
-            Some(weights) => weights.fit(expansion, misfit.computed(), misfit.degrees(), misfit.alarm),
+            Some(weights) => {
+                let (computed, degrees) = (misfit.computed(), misfit.degrees());
+                weights.fit(differences, &expansion.slopes, computed, degrees, misfit.alarm)
+            }
             None => misfit.fit(task.noise),
         }
     }

@@ -8,33 +8,11 @@
 //! values of the columns are estimated with it, by `V S^T C^-1` of the differences, and `S` is taken there.
 
 use super::chi_square::exceeded;
-use super::fit::{Fit, NoiseFrom};
+use super::fit::{Fit, NoiseFrom, ReadingErrors};
 use super::sensitivity::Sensitivity;
 use super::task::Task;
-use super::window::{Window, WindowExpansion};
 use super::{Lost, Signals};
 use nalgebra::{Cholesky, DMatrix, DVector};
-
-/// What is known of the errors of the readings of a column: independent normal ones, and rounding.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ReadingErrors {
-    /// The standard deviation, in the column's unit.
-    pub normal: f64,
-    /// Readings are multiples of this; zero for none.
-    pub rounding: f64,
-}
-
-impl ReadingErrors {
-    /// The variance of a reading.
-    pub fn variance(self) -> f64 {
-        self.normal * self.normal + self.rounding * self.rounding / 12.0
-    }
-
-    /// Whether there is none.
-    pub fn are_none(self) -> bool {
-        self.variance() == 0.0
-    }
-}
 
 /// No output is believed to be better than this, in its unit.
 const LEAST: f64 = 1e-9;
@@ -78,20 +56,22 @@ pub(super) fn are_needed(task: &Task<'_>) -> bool {
 }
 
 impl Weights {
-    /// Of a window, from its start and the columns as they are believed to be; `taken_off` is what was taken off the readings for that.
+    /// Of a window, from the state at the first of its times and the columns as they are believed to be; `taken_off` is what was taken
+    /// off the readings for that.
     ///
     /// # Errors
     /// Where the model cannot be followed.
     pub fn of(
         task: &Task<'_>,
-        window: &Window<'_>,
+        start: &[f64],
+        times: &[f64],
         taken_off: Option<&DVector<f64>>,
         read: &Signals,
     ) -> Result<Weights, Lost> {
         let columns = noisy_columns(task);
         let names = task.signals.names();
         let errors: Vec<ReadingErrors> = columns.iter().map(|column| task.errors[&names[*column]]).collect();
-        let sensitivity = Sensitivity::of(&window.flow, &window.start, window.times, columns)?;
+        let sensitivity = Sensitivity::of(&task.full_flow(), start, times, columns)?;
         let rows = sensitivity.first..sensitivity.first + sensitivity.rows;
         let runs = sensitivity.columns.iter().map(|c| runs(&read.column(*c)[rows.clone()])).collect();
         let common = task.common_errors();
@@ -104,7 +84,7 @@ impl Weights {
         let (root, inverse) = (DMatrix::zeros(0, 0), DMatrix::zeros(0, 0));
         let mut weights =
             Weights { unit: task.sigma, root, inverse, offset, sensitivity, errors, runs, outputs };
-        let time = window.times[0];
+        let time = times[0];
         let lost =
             || Lost { time, why: "the errors of the readings have no covariance in doubles".to_owned() };
         let mut covariance = weights.covariance();
@@ -204,14 +184,20 @@ impl Weights {
         signals
     }
 
-    /// Whether what is left at the best state is explained; `computed` is what
-    /// the computation may add to a difference, `degrees` the number of differences less that of unknowns.
+    /// Whether the weighted differences at the best state, with their weighted derivatives, are explained; `computed` is what the
+    /// computation may add to a difference, `degrees` the number of differences less that of unknowns.
     ///
     /// What rounding and computation add may hang together in the worst way: that much is taken off before normal errors have to explain
     /// the rest, as where the errors are white. Differences are weighted anew for it, with the computation's part as an
     /// error of each: weights that know of none would make much of it.
-    pub fn fit(&self, at_best: &WindowExpansion, computed: f64, degrees: usize, alarm: f64) -> Fit {
-        let (left, slopes) = (&at_best.differences, &at_best.slopes);
+    pub fn fit(
+        &self,
+        left: &DVector<f64>,
+        slopes: &DMatrix<f64>,
+        computed: f64,
+        degrees: usize,
+        alarm: f64,
+    ) -> Fit {
         let chi_square = left.norm_squared() / (self.unit * self.unit);
         let rest = self.unexplained(left, slopes, computed).unwrap_or(f64::NAN);
         let probability = match rest {
@@ -219,7 +205,8 @@ impl Weights {
             rest => exceeded(rest * rest, degrees as f64),
         };
         let from = NoiseFrom::Stated;
-        Fit { chi_square, degrees, probability, sigma: self.unit, from, fits: probability >= alarm }
+        let fits = degrees > 0 && probability >= alarm;
+        Fit { chi_square, degrees, probability, sigma: self.unit, from, fits }
     }
 
     fn unexplained(&self, left: &DVector<f64>, slopes: &DMatrix<f64>, computed: f64) -> Option<f64> {
@@ -268,7 +255,7 @@ fn runs(values: &[f64]) -> Vec<std::ops::Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observer::{EstimateQuestion, MovingWindow, Noise};
+    use crate::observer::{EstimateQuestion, Noise};
     use crate::system::System;
     use std::path::Path;
     use std::sync::atomic::AtomicBool;
@@ -301,8 +288,7 @@ mod tests {
         ] {
             task.errors.insert("u".to_owned(), errors);
             assert!(are_needed(&task));
-            let window = MovingWindow::window(&task, &[0.5], &(0..2), &[]);
-            let weights = Weights::of(&task, &window, None, &signals).unwrap();
+            let weights = Weights::of(&task, &[0.5], signals.times(), None, &signals).unwrap();
             let covariance = &weights.root * weights.root.transpose();
             let by_hand = DMatrix::from_row_slice(2, 2, &[0.01, 0.0, 0.0, 0.01 + variance]);
             assert!((&covariance - by_hand).amax() < 1e-9, "{covariance}");

@@ -2,6 +2,7 @@
 
 use super::SupportSeries;
 use crate::number::{Function, Interval, RealNumber};
+use std::f64::consts::TAU;
 
 /// An interval is halved this often before it is given up.
 const DEPTH: u32 = 44;
@@ -39,7 +40,7 @@ pub enum Convexity {
 pub fn convexity(series: &SupportSeries) -> Convexity {
     let pieces = PIECES * (series.order() as u32 + 1);
     // a turn and a little more: rounding leaves no normal out
-    let step = 6.283_2 / f64::from(pieces);
+    let step = TAU * (1.0 + 1e-9) / f64::from(pieces);
     let mut open: Vec<(Interval, u32)> = (0..pieces)
         .map(|i| (Interval::new(step * f64::from(i), (step * f64::from(i + 1)).next_up()), 0))
         .collect();
@@ -78,8 +79,8 @@ fn curvature(series: &SupportSeries, piece: Interval) -> Option<[Interval; 2]> {
             Some([angle.function(Function::Cos).ok()?, angle.function(Function::Sin).ok()?])
         };
         let ([cosine, sine], [cosines, sines]) = (wave(middle)?, wave(piece)?);
-        value = value + factor * (a * cosine + b * sine);
-        slope = slope + factor * Interval::point(k) * (b * cosines - a * sines);
+        value += factor * (a * cosine + b * sine);
+        slope += factor * Interval::point(k) * (b * cosines - a * sines);
     }
     let all = value + slope * (piece - middle);
     let known = |interval: &Interval| interval.low().is_finite() && interval.high().is_finite();

@@ -15,7 +15,8 @@ mod whole;
 pub use track::{on_palm, shown, turned};
 
 use super::recovered::{Reconstruction, TouchTrack, WholeMotion, WholeSample};
-use super::run::{Answer, Experiment, NOMINAL};
+use super::run::{Answer, Experiment};
+use super::simulation::NOMINAL;
 use super::simulation::deviation;
 use crate::mechanics::Palm;
 use crate::shape::{Coverage, Measured, ShapeEstimate, SupportSample, SupportWeights, fit_support};

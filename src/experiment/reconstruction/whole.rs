@@ -81,8 +81,10 @@ impl WholeRecord {
         }
         let is_found = |best: &Best| self.misfit(best, rows) < FOUND * best.x.support[0];
         if !best.as_ref().is_some_and(is_found) && !stop() {
-            best =
-                best.into_iter().chain(self.from_discs(interrupt)).min_by(|a, b| a.cost.total_cmp(&b.cost));
+            best = best
+                .into_iter()
+                .chain(self.begun_as_discs(interrupt))
+                .min_by(|a, b| a.cost.total_cmp(&b.cost));
         }
         let best = self.choose_order(best?, interrupt)?;
         if stop() { None } else { self.found(best.x) }
@@ -106,7 +108,7 @@ impl WholeRecord {
     }
 
     /// From discs that turn at one rate each: the best few by the first part of the record go on to all of it.
-    fn from_discs(&self, interrupt: &AtomicBool) -> Option<Best> {
+    fn begun_as_discs(&self, interrupt: &AtomicBool) -> Option<Best> {
         let rows = self.part(PARTS[0]);
         let starts = self.discs().into_iter();
         let mut begun: Vec<Best> = starts.filter_map(|start| self.descend(start, rows, interrupt)).collect();

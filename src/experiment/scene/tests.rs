@@ -177,7 +177,6 @@ fn every_key_arrives_where_it_belongs() {
         kalman: Kalman { prior: 0.2, ..Kalman::default() },
         unscented: Unscented { kappa: 0.0, ..Unscented::default() },
         high_gain: HighGain { gain: 30.0 },
-        shooting: Default::default(),
     };
     assert_eq!(scene.observer, observer);
     assert_eq!(scene.study.noise, Some(NoiseStudy { levels: vec![1e-5, 1e-4], seeds: 500 }));
