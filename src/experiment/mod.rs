@@ -9,6 +9,7 @@
 
 mod channels;
 mod columns;
+mod known_motion;
 mod reconstruction;
 mod recovered;
 mod run;
@@ -20,6 +21,7 @@ mod system_motion;
 #[doc(hidden)]
 pub mod unguided;
 
+pub use known_motion::KnownMotion;
 #[doc(hidden)]
 pub use reconstruction::{on_palm, shown, turned};
 pub use recovered::{Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
@@ -37,5 +39,5 @@ pub use simulation::Simulation;
 #[doc(hidden)]
 pub use study::ARRIVED;
 #[doc(hidden)]
-pub use study::{Basin, NoiseLevel, Truth, basins, noise_study};
+pub use study::{Basin, NoiseLevel, basins, noise_study};
 pub use system_motion::SystemMotion;

@@ -1,11 +1,11 @@
 //! A scene from beginning to end: bodies or a file, what is read of them, and what the observers make of it.
 
 use super::channels;
+use super::known_motion::KnownMotion;
 use super::recovered::Reconstruction;
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{NOMINAL, Simulation, TOUCH, body, constants, deviation};
 use super::since::Since;
-use super::study::Truth;
 use super::system_motion::SystemMotion;
 use super::unguided::{PalmReadings, Unguided, palm_readings};
 use crate::expression::{NodeId, Symbol};
@@ -86,9 +86,9 @@ impl Experiment {
             scene.system.as_ref().map(|own| SystemMotion::of(&scene, &system, own)).transpose()?;
         let known = known_constants(&scene, &system, simulation.as_ref(), described.as_ref())?;
         let motion = described.clone().filter(|_| file.is_none());
-        let simulated: Option<&dyn Truth> = match (&simulation, &motion) {
+        let simulated: Option<&dyn KnownMotion> = match (&simulation, &motion) {
             (Some(simulation), _) => Some(simulation),
-            (None, motion) => motion.as_ref().map(|motion| motion as &dyn Truth),
+            (None, motion) => motion.as_ref().map(|motion| motion as &dyn KnownMotion),
         };
         let RecordReading { record, faults, .. } = match (simulated, file) {
             (Some(simulated), _) => {
@@ -261,10 +261,10 @@ impl Experiment {
     }
 
     /// What was simulated: none where the readings come from a file.
-    pub fn simulated(&self) -> Option<&dyn Truth> {
+    pub fn simulated(&self) -> Option<&dyn KnownMotion> {
         match (&self.simulation, &self.motion) {
             (Some(simulation), _) => Some(simulation),
-            (None, motion) => motion.as_ref().map(|motion| motion as &dyn Truth),
+            (None, motion) => motion.as_ref().map(|motion| motion as &dyn KnownMotion),
         }
     }
 

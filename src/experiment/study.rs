@@ -1,61 +1,13 @@
 //! An experiment many times over: with other errors of the readings, and from other first guesses.
 
 use super::channels::corrected;
+use super::known_motion::KnownMotion;
 use super::run::{Experiment, error};
-use super::scene::{self, BasinStudy, Channel, NoiseStudy, SceneError, Sensor};
-use super::simulation::{Simulation, deviation};
-use super::system_motion::SystemMotion;
-use crate::observer::{MovingWindow, Noise, Record, RecordError, Signals, Task, UpdateEnd, WindowSearch};
+use super::scene::{self, BasinStudy, NoiseStudy, SceneError, Sensor};
+use super::simulation::deviation;
+use crate::observer::{MovingWindow, Noise, Signals, Task, UpdateEnd, WindowSearch};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// What was simulated, as far as studies ask: what is true, and what is read with errors of any size.
-pub trait Truth: Sync {
-    /// The true values of a state, sample by sample.
-    fn truth(&self, name: &str) -> Option<Vec<f64>>;
-
-    /// What is read, with the errors of the outputs that have none of their own, and with those of single columns.
-    ///
-    /// # Errors
-    /// None that a simulation could bring about.
-    fn read(
-        &self,
-        sensor: &Sensor,
-        channels: &BTreeMap<String, Channel>,
-        seed: u64,
-    ) -> Result<Record, RecordError>;
-}
-
-impl Truth for Simulation {
-    fn truth(&self, name: &str) -> Option<Vec<f64>> {
-        self.truth(name)
-    }
-
-    fn read(
-        &self,
-        sensor: &Sensor,
-        channels: &BTreeMap<String, Channel>,
-        seed: u64,
-    ) -> Result<Record, RecordError> {
-        self.read(sensor, channels, seed)
-    }
-}
-
-impl Truth for SystemMotion {
-    fn truth(&self, name: &str) -> Option<Vec<f64>> {
-        self.truth(name)
-    }
-
-    fn read(
-        &self,
-        sensor: &Sensor,
-        channels: &BTreeMap<String, Channel>,
-        seed: u64,
-    ) -> Result<Record, RecordError> {
-        self.read(sensor, channels, seed)
-    }
-}
 
 /// The error over many seeds at one level of noise.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +57,7 @@ pub const ARRIVED: f64 = 0.01;
 /// As [`Experiment::task`].
 pub fn noise_study(
     experiment: &Experiment,
-    simulation: &dyn Truth,
+    simulation: &dyn KnownMotion,
     study: &NoiseStudy,
     interrupt: &AtomicBool,
     done: &(dyn Fn() + Sync),
@@ -183,7 +135,7 @@ impl Trial {
 }
 
 /// The signals of an experiment with other errors.
-fn noisy(experiment: &Experiment, simulation: &dyn Truth, noise: f64, seed: u64) -> Option<Signals> {
+fn noisy(experiment: &Experiment, simulation: &dyn KnownMotion, noise: f64, seed: u64) -> Option<Signals> {
     // the levels are those of the outputs that have no noise of their own; all other columns have the errors of the scene
     let sensor = Sensor { noise, ..experiment.scene.sensor };
     let record = simulation.read(&sensor, &experiment.scene.channels, seed).ok()?;

@@ -25,13 +25,17 @@ fn angle(i: usize) -> f64 {
     TAU * i as f64 / NORMALS as f64
 }
 
-/// By what power of ten a band is drawn wider than it is, so that it can be seen: not wider than a twelfth of the radius.
+/// By what round factor a band is drawn wider than it is, so that it can be seen: not wider than a twelfth of the radius.
 fn magnification(shape: &ShapeEstimate, counts: impl Fn(f64) -> bool) -> f64 {
     let widest =
         (0..NORMALS).map(angle).filter(|angle| counts(*angle)).map(|angle| 2.0 * shape.deviation(angle));
     let widest = widest.fold(0.0, f64::max);
     let most = shape.support.mean / 12.0 / widest;
-    if most.is_finite() && most > 1.0 { 10f64.powf(most.log10().floor()).min(1e12) } else { 1.0 }
+    if !(most.is_finite() && most > 1.0) {
+        return 1.0;
+    }
+    let power = 10f64.powf(most.log10().floor());
+    [5.0, 2.0].into_iter().map(|k| k * power).find(|factor| *factor <= most).unwrap_or(power)
 }
 
 /// The outline in the frame of the body, with the band by how many times it is drawn wider.

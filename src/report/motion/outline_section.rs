@@ -35,12 +35,13 @@ pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
             "Perimeter " (format!("{:.6} m ± {:.1e}", perimeter.value, perimeter.deviation)) ", area "
             (format!("{:.6} m² ± {:.1e}", area.value, area.deviation))
             @if found.coverage.fraction() < 1.0 { " (of the polynomial: harmonics that show only in gaps are not in it)" }
-            ". The polynomial is " (convexity_in_words(shape)) ". "
+            ". The polynomial is " (convexity_in_words(shape))
             @match &found.whole {
-                Some(whole) => { (misfit_in_words(whole, shape)) "." }
-                None if shape.widened > EXPLAINED => { (widened_in_words(shape)) "." }
+                Some(whole) => { "; " (misfit_in_words(whole, shape)) }
+                None if shape.widened > EXPLAINED => { "; " (widened_in_words(shape)) }
                 None => {}
             }
+            "."
         }
         figure {
             div.two { (PreEscaped(picture)) (PreEscaped(band_picture(found, shape, truth))) }

@@ -9,6 +9,10 @@ use std::process::Output;
 const SYSTEM: &str = "system \"s\"\nstate x, y, z\ndrift f\n  x' = y*z\n  y' = z^2 - x\n  z' = x*y\noutput x\n\
                       sample x in [-1, 1] y in [-1, 1] z in [-1, 1]\n";
 
+/// One with open boxes for as long as one likes, and with few minors.
+const FEW_MINORS: &str = "system \"s\"\nstate x, y\ndrift f\n  x' = y\n  y' = -x\noutput x^2 + y^2*x\n\
+                          sample x in [-1, 2] y in [-1, 3]\n";
+
 struct Case {
     folder: tempfile::TempDir,
     command: Vec<String>,
@@ -16,8 +20,12 @@ struct Case {
 
 impl Case {
     fn new(words: &[&str]) -> Case {
+        Case::of(SYSTEM, words)
+    }
+
+    fn of(system: &str, words: &[&str]) -> Case {
         let folder = folder();
-        let file = write(&folder, "s.proof", SYSTEM).display().to_string();
+        let file = write(&folder, "s.proof", system).display().to_string();
         let (verb, more) = words.split_first().unwrap();
         let mut command = vec![(*verb).to_owned(), file];
         command.extend(more.iter().map(|word| (*word).to_owned()));
@@ -168,7 +176,7 @@ fn a_table_has_a_row_for_each_state() {
 /// What was open is dealt out, each box to one: nothing is lost and nothing counts twice, and going on from there is going on.
 #[test]
 fn open_boxes_are_dealt_out_and_put_together_again() {
-    let case = Case::new(&["certify", "--boxes", "150"]);
+    let case = Case::of(FEW_MINORS, &["certify", "--boxes", "150"]);
     let (state, parts, next) = (case.path("open.txt"), case.path("parts"), case.path("next.txt"));
     assert!(case.refused(&["--shard", "1/3", "--part", &parts]).contains("'--state' names none"));
     let first: Value = serde_json::from_str(&case.succeeds(&["--state", &state, "--json"])).unwrap();
