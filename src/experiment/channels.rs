@@ -42,7 +42,7 @@ pub(super) fn split(known: &BTreeMap<String, f64>) -> (BTreeMap<String, f64>, BT
 /// Whether all columns of which something is said are there.
 pub(super) fn are_columns(scene: &Scene, signals: &Signals) -> Result<(), SceneError> {
     let columns = || signals.names().join(", ");
-    for name in scene.channels.keys().filter(|name| signals.find(name).is_none()) {
+    if let Some(name) = scene.channels.keys().find(|name| signals.find(name).is_none()) {
         let help = format!("the columns are {}", columns());
         return Err(scene.error_at(
             &format!("sensor.{name}"),

@@ -137,7 +137,7 @@ fn is_zero(system: &System, node: NodeId) -> bool {
 /// The states that move by their equations: all but the signals that functions of time stand for, and their derivatives.
 fn moving(system: &System, question: &ResponseQuestion) -> Result<Vec<Symbol>, ResponseError> {
     let signals = system.signal_chains();
-    for (name, _) in &question.functions {
+    for name in question.functions.keys() {
         let symbol = system.find_symbol(name);
         let is_state = symbol.is_some_and(|symbol| system.states.contains(&symbol));
         if is_state && !signals.iter().any(|chain| chain.first() == symbol.as_ref()) {

@@ -60,8 +60,8 @@ impl RankPart {
     fn is_consistent(&self) -> bool {
         let range = self.range();
         let looked_at = range.end.checked_sub(range.start);
-        let sum = |list: &mut dyn Iterator<Item = &u64>| {
-            list.fold(Some(0u64), |sum, count| sum?.checked_add(*count))
+        let sum = |mut list: &mut dyn Iterator<Item = &u64>| {
+            Iterator::try_fold(&mut list, 0u64, |sum, count| sum.checked_add(*count))
         };
         let consistent = |counts: &SweepCounts| {
             let has = |worst: Option<WorstState>| worst.is_none_or(|worst| range.contains(&worst.index));

@@ -18,9 +18,9 @@ use crate::system::{Assignment, System, Time};
 
 /// What the full codistribution is decided by.
 pub(super) enum ByStates {
-    Rows(PreparedSweep),
+    Rows(Box<PreparedSweep>),
     /// Where its words are too long to be written down.
-    Series(PreparedSeries),
+    Series(Box<PreparedSeries>),
 }
 
 impl ByStates {
@@ -116,10 +116,10 @@ impl PreparedBranch {
             codistribution.is_cut_off() && question.order.is_none() && system.time == Time::Continuous;
         let probe = by_series.then(|| Probe::new(system, &conditions)).filter(|probe| !probe.has_functions());
         let full = match probe {
-            Some(probe) => ByStates::Series(PreparedSeries::new(system, &locus, probe, &options)),
+            Some(probe) => ByStates::Series(Box::new(PreparedSeries::new(system, &locus, probe, &options))),
             None => {
                 let quick = codistribution.needed_entries();
-                ByStates::Rows(PreparedSweep::new(system, &locus, &quick, &all, &options))
+                ByStates::Rows(Box::new(PreparedSweep::new(system, &locus, &quick, &all, &options)))
             }
         };
         let rows = own.filter(|_| wanted).map(|(rows, guards)| {

@@ -159,7 +159,8 @@ pub fn simulate_solid(scene: &SpatialScene, times: &[f64]) -> Result<SpatialTraj
         if time > now.time {
             match advance(scene, now, time, last / FEWEST_STEPS) {
                 Ok(held) => now = TimedState { time, ..held },
-                Err((at, ended)) => {
+                Err(end) => {
+                    let (at, ended) = *end;
                     // an end at once after a sample is that sample
                     let fresh = at.filter(|at| at.time > now.time);
                     moments.extend(fresh.map(|at| SpatialMoment::of(scene, &at)));
@@ -190,7 +191,7 @@ fn advance(
     from: TimedState,
     end: f64,
     longest: f64,
-) -> Result<TimedState, (Option<TimedState>, SpatialEnded)> {
+) -> Result<TimedState, Box<(Option<TimedState>, SpatialEnded)>> {
     let (all, failure) = steps(scene, from, end, longest);
     let mut held = from;
     for step in all {
@@ -200,13 +201,13 @@ fn advance(
                 Breach::Flat => SpatialEnded::Flat { time: at.time },
                 Breach::Pulls(palm) => SpatialEnded::ContactLost { palm, time: at.time },
             };
-            return Err((Some(at), ended));
+            return Err(Box::new((Some(at), ended)));
         }
         held = step;
     }
     match failure {
         None => Ok(held),
-        Some(why) => Err((None, SpatialEnded::Failed { time: held.time, why })),
+        Some(why) => Err(Box::new((None, SpatialEnded::Failed { time: held.time, why }))),
     }
 }
 

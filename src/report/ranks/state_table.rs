@@ -53,7 +53,7 @@ enum Sink<'w> {
     Text(&'w mut (dyn Write + Send)),
     #[cfg(feature = "parquet")]
     Groups {
-        writer: SerializedFileWriter<&'w mut (dyn Write + Send)>,
+        writer: Box<SerializedFileWriter<&'w mut (dyn Write + Send)>>,
         held: Vec<(usize, StateRow)>,
         /// How many coordinates each row tells.
         coordinates: usize,
@@ -83,7 +83,7 @@ impl<'w> StateTableWriter<'w> {
             #[cfg(feature = "parquet")]
             TableForm::Parquet => {
                 let writer = begin(file, branch, coordinates).map_err(Error::other)?;
-                Sink::Groups { writer, held: Vec::new(), coordinates: coordinates.len() }
+                Sink::Groups { writer: Box::new(writer), held: Vec::new(), coordinates: coordinates.len() }
             }
             #[cfg(not(feature = "parquet"))]
             TableForm::Parquet => return Err(Error::other("this program was built without Parquet")),
