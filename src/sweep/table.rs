@@ -15,7 +15,8 @@ pub struct StateRow {
     pub certified: bool,
     /// The smallest singular value of the matrix that remains without unit rows, equilibrated; nothing where there is none.
     pub smallest_singular_value: Option<f64>,
-    /// The largest over the smallest; infinite where the smallest is zero.
+    /// The largest over the smallest; infinite where the smallest is zero. Equilibration ends where another round gains little, so that it is
+    /// good to some percent.
     pub condition: Option<f64>,
     /// The coordinates that were asked for, in their units, angles in radians; NaN where the state says nothing of one.
     pub coordinates: Vec<f64>,

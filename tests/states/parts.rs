@@ -291,11 +291,13 @@ fn tables() {
                 let values: Vec<f64> = state.iter().map(|at| at.value).collect();
                 let worst = own.iter().find(|row| row.coordinates == values).expect("it is in the table");
                 assert_eq!(worst.rank, Some(answer.dimension), "{name}");
-                // equilibration in doubles leaves four digits
-                assert!((worst.condition.unwrap() / spectrum.condition() - 1.0).abs() < 1e-3, "{name}");
+                // the table has the condition by which states were compared, and equilibration ends where another round gains little:
+                // of the state that is told it is made with more care
+                let ratio = worst.condition.unwrap() / spectrum.condition();
+                assert!((0.8..1.25).contains(&ratio), "{name}: {ratio}");
                 let others = own.iter().filter(|row| row.rank == Some(answer.dimension));
                 assert!(
-                    others.filter_map(|row| row.condition).all(|one| one <= spectrum.condition() * 1.001)
+                    others.filter_map(|row| row.condition).all(|one| one <= worst.condition.unwrap() * 1.001)
                 );
             }
         }

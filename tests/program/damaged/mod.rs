@@ -340,7 +340,12 @@ fn journal() {
         if let Ok(text) = std::str::from_utf8(bytes)
             && region.lock().unwrap().resume(text).is_ok()
         {
-            assert_eq!(text, whole, "a damaged state is taken up");
+            // a last line without an end is no damage
+            assert_eq!(
+                text.trim_end_matches('\n'),
+                whole.trim_end_matches('\n'),
+                "a damaged state is taken up"
+            );
         }
     });
     reader.try_all(&[saved.into_bytes()]);
