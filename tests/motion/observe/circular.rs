@@ -47,7 +47,7 @@ fn a_body_between_arcs_is_recovered_and_flat_palms_do_not_explain_it() {
 #[test]
 fn mixed_palms_are_recovered_too() {
     let mixed = with(&scene(), "radii = [4.0, 5.0]", "radii = [inf, -6.0]");
-    let mixed = with(&mixed, "guess_off = 0.1", "guess_off = 0.01\nknown = { b1 = 1e9 }");
+    let mixed = with(&mixed, "window = 80", "known = { b1 = 1e9 }\nwindow = 80");
     let mixed = with(&with(&mixed, "duration = 0.56", "duration = 0.28"), "samples = 161", "samples = 81");
     let (found, converged) = worst(&mixed);
     println!("mixed {found:e}");
