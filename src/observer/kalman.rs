@@ -1,6 +1,6 @@
 //! The extended Kalman filter, the field's usual choice.
 
-use super::task::{Observer, SampleEstimate, Task, Track};
+use super::task::{Observer, Task, Track};
 use super::{Lost, Order};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Deserialize;
@@ -36,18 +36,10 @@ impl Observer for Kalman {
         let mut track = Track::default();
         let sigma = task.sigma.max(self.least_sigma);
         let mut state = DVector::from_vec(task.full_state(&task.guess, 0));
-        let deviation = |i: usize| match task.sizes.get(i) {
-            Some(_) if task.clamped.contains(&i) => 0.0,
-            Some(size) => self.prior * size,
-            None => sigma,
-        };
-        let mut covariance = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| deviation(i).powi(2)));
+        let deviations = DVector::from_vec(task.prior_deviations(self.prior, sigma));
+        let mut covariance = DMatrix::from_diagonal(&deviations.map(|deviation| deviation.powi(2)));
         let drive = |i: usize| task.sizes.get(i).map_or(0.0, |size| (self.process_noise * size).powi(2));
-        let record = |time: f64, state: &DVector<f64>, residual: Vec<f64>, track: &mut Track| {
-            let state = state.as_slice()[..task.estimated()].to_vec();
-            track.estimates.push(SampleEstimate { time, state, residual });
-        };
-        record(times[0], &state, Vec::new(), &mut track);
+        track.believe(times[0], state.as_slice(), task.estimated(), Vec::new());
         for row in 1..times.len() {
             if task.interrupted() {
                 break;
@@ -62,18 +54,15 @@ impl Observer for Kalman {
                     }
                 }
                 Err(lost) => {
-                    if track.unseen == 0 {
-                        track.remarks.push(format!("held, with the outputs as they are read: {lost}"));
-                    }
-                    track.unseen += 1;
+                    track.hold(&lost);
                     let belief = state.as_slice()[..task.estimated()].to_vec();
                     state = DVector::from_vec(task.full_state(&belief, row));
-                    record(times[row], &state, Vec::new(), &mut track);
+                    track.believe(times[row], state.as_slice(), task.estimated(), Vec::new());
                     continue;
                 }
             }
             let residual = correct(task, &mut state, &mut covariance, sigma, row);
-            record(times[row], &state, residual.unwrap_or_default(), &mut track);
+            track.believe(times[row], state.as_slice(), task.estimated(), residual.unwrap_or_default());
         }
         track
     }

@@ -167,6 +167,17 @@ impl<'a> Task<'a> {
         (0..self.full.states.len()).map(|i| if i < sought.len() { sought[i] } else { read(i) }).collect()
     }
 
+    /// The standard deviations that a filter begins with: of what is sought a part of its size, none of what is clamped, and of outputs that
+    /// are states the readings' own.
+    pub(super) fn prior_deviations(&self, part: f64, sigma: f64) -> Vec<f64> {
+        let deviation = |place: usize| match self.sizes.get(place) {
+            Some(_) if self.clamped.contains(&place) => 0.0,
+            Some(size) => part * size,
+            None => sigma,
+        };
+        (0..self.full.states.len()).map(deviation).collect()
+    }
+
     /// What was read of the outputs at a sample.
     pub(super) fn readings(&self, row: usize) -> Vec<f64> {
         self.full.measured.iter().map(|column| self.signals.column(*column)[row]).collect()
@@ -280,6 +291,19 @@ pub struct Track {
 }
 
 impl Track {
+    /// Adds what a filter believes at a sample, of so many states that are sought.
+    pub(super) fn believe(&mut self, time: f64, state: &[f64], sought: usize, residual: Vec<f64>) {
+        self.estimates.push(SampleEstimate { time, state: state[..sought].to_vec(), residual });
+    }
+
+    /// Notes that the model could not be followed to a sample, where a filter then holds what it believed.
+    pub(super) fn hold(&mut self, lost: &Lost) {
+        if self.unseen == 0 {
+            self.remarks.push(format!("held, with the outputs as they are read: {lost}"));
+        }
+        self.unseen += 1;
+    }
+
     /// What it believed last.
     pub fn last(&self) -> Option<&SampleEstimate> {
         self.estimates.last()

@@ -1,6 +1,6 @@
 //! The unscented Kalman filter: no derivative is taken, points about the estimate are followed instead.
 
-use super::task::{Observer, SampleEstimate, Task, Track};
+use super::task::{Observer, Task, Track};
 use super::{Lost, Order};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
@@ -91,18 +91,10 @@ impl Observer for Unscented {
         let mut track = Track::default();
         let sigma = task.sigma.max(self.least_sigma);
         let mut state = DVector::from_vec(task.full_state(&task.guess, 0));
-        let deviation = |i: usize| match task.sizes.get(i) {
-            Some(_) if task.clamped.contains(&i) => 0.0,
-            Some(size) => self.prior * size,
-            None => sigma,
-        };
-        let mut root = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| deviation(i)));
+        let deviations = DVector::from_vec(task.prior_deviations(self.prior, sigma));
+        let mut root = DMatrix::from_diagonal(&deviations);
         let drive =
             DVector::from_fn(n, |i, _| task.sizes.get(i).map_or(0.0, |size| self.process_noise * size));
-        let record = |time: f64, state: &DVector<f64>, residual: Vec<f64>, track: &mut Track| {
-            let state = state.as_slice()[..task.estimated()].to_vec();
-            track.estimates.push(SampleEstimate { time, state, residual });
-        };
         for row in 0..times.len() {
             if task.interrupted() {
                 break;
@@ -112,13 +104,10 @@ impl Observer for Unscented {
                 match self.predict(task, &state, &root, &drive, &times[row - 1..=row]) {
                     Ok((there, spread)) => (state, root) = (there, spread),
                     Err(lost) => {
-                        if track.unseen == 0 {
-                            track.remarks.push(format!("held, with the outputs as they are read: {lost}"));
-                        }
-                        track.unseen += 1;
+                        track.hold(&lost);
                         let belief = state.as_slice()[..task.estimated()].to_vec();
                         state = DVector::from_vec(task.full_state(&belief, row));
-                        record(times[row], &state, Vec::new(), &mut track);
+                        track.believe(times[row], state.as_slice(), task.estimated(), Vec::new());
                         continue;
                     }
                 }
@@ -130,7 +119,7 @@ impl Observer for Unscented {
                 }
                 None => Vec::new(),
             };
-            record(times[row], &state, residual, &mut track);
+            track.believe(times[row], state.as_slice(), task.estimated(), residual);
         }
         track
     }
