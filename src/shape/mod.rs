@@ -5,6 +5,8 @@
 //! perimeter with their errors, whether it is convex ([`Convexity`]), and [`Coverage`] says which normals were touched at all. Who has a
 //! better way from readings to the coefficients brings these and their covariance, and has the rest.
 //!
+//! Of bodies in space [`sphere`] knows what they contain and what they lie in, and their support function.
+//!
 //! This floor knows numbers. It knows nothing of palms, bodies, motions or systems.
 
 mod convexity;
@@ -12,6 +14,7 @@ mod coverage;
 mod estimate;
 mod fit;
 mod series;
+pub mod sphere;
 
 pub use convexity::{Convexity, convexity};
 pub use coverage::Coverage;
