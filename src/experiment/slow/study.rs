@@ -1,0 +1,226 @@
+//! Many bodies: how often, how well and how fast each way finds a shape.
+
+use super::quadrature::by_quadrature;
+use super::run::{readings_of, track_error};
+use super::scene::{Family, SlowScene};
+use super::start::{EXACT, from_nothing};
+use super::thesis::{ThesisMethod, by_thesis};
+use crate::mechanics::Palm;
+use crate::mechanics::moving::{
+    BodyForm, CentreOfMass, DEFAULT_TOLERANCE, Drive, FormError, MovingScene, Shape, SplineDraws,
+};
+use crate::mechanics::resting::{follow_resting, plan_3_14};
+use crate::shape::SupportSeries;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::TAU;
+use std::time::Instant;
+
+/// Two rounds of the plan of figure 3.14 with this margin, in radians.
+const MARGIN: f64 = 0.15;
+const ROUNDS: f64 = 2.0;
+const DURATION: f64 = 100.0;
+
+/// An outline that is off by less than this part of the mean radius (or so many times the resolution) is recovered.
+const RECOVERED: f64 = 1e-2;
+const RECOVERED_RESOLUTIONS: f64 = 2.0;
+
+/// Draws for a body that neither jumps nor leaves the palms.
+const MOST_DRAWS: usize = 200;
+
+/// What one way did, over all bodies of a row. Errors are in parts of the mean radius, and in radians.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WayTally {
+    /// The greatest error of a support radius on the way, one a body; infinite where the way stopped.
+    pub radius: Vec<f64>,
+    /// The greatest error of the orientation.
+    pub phi0: Vec<f64>,
+    /// All seconds.
+    pub seconds: f64,
+}
+
+impl WayTally {
+    fn add(&mut self, error: Option<super::run::TrackError>, size: f64, seconds: f64) {
+        self.radius.push(error.map_or(f64::INFINITY, |error| error.radius / size));
+        self.phi0.push(error.map_or(f64::INFINITY, |error| error.phi0));
+        self.seconds += seconds;
+    }
+}
+
+/// The median and the worst of a list; none of an empty one.
+pub fn median_and_worst(values: &[f64]) -> Option<[f64; 2]> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    Some([*sorted.get(sorted.len() / 2)?, *sorted.last()?])
+}
+
+/// A row of the study: a family, a number of samples, a resolution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyRow {
+    /// The family.
+    pub family: Family,
+    /// The samples.
+    pub samples: usize,
+    /// The resolution, in m.
+    pub resolution: f64,
+    /// The bodies.
+    pub bodies: usize,
+    /// The bodies that were drawn beside them and jumped.
+    pub jumped: usize,
+    /// Sections 3.3 and 3.4, from the true radii.
+    pub thesis: WayTally,
+    /// From the true height.
+    pub quadrature: WayTally,
+    /// With nothing known.
+    pub together: WayTally,
+    /// The greatest error of the whole outline, in m, one a body.
+    pub outline: Vec<f64>,
+    /// The bodies whose outline was recovered.
+    pub recovered: usize,
+    /// The bodies that were not, although the residual says that the readings are explained.
+    pub silent: usize,
+}
+
+/// A body of a family.
+fn draw(family: Family, size: f64, random: &mut ChaCha8Rng) -> Result<Shape, FormError> {
+    if let Some(knots) = family.knots() {
+        let drawn = SplineDraws::new(random.random(), knots).until_convex()?;
+        // of this mean radius: splines scale with their points
+        let BodyForm::Spline { radii, knots } = drawn.form else { return Ok(drawn.shape) };
+        let scale = size * TAU / drawn.shape.perimeter();
+        return Shape::new(
+            &BodyForm::Spline { radii: radii.map(|r| r * scale), knots },
+            CentreOfMass::Uniform,
+        );
+    }
+    loop {
+        let harmonic = |k: u32, random: &mut ChaCha8Rng| {
+            let k = f64::from(k);
+            let most = if k < 2.0 { 0.0 } else { size / (k * k - 1.0) / k };
+            [(); 2].map(|()| random.random_range(-1.0..=1.0) * most)
+        };
+        let harmonics: Vec<[f64; 2]> = (1..=6).map(|k| harmonic(k, random)).collect();
+        let form = BodyForm::Harmonics { mean: size, harmonics };
+        let (angle, part): (f64, f64) = (random.random_range(0.0..TAU), random.random_range(0.05..=0.3));
+        let found = match family {
+            Family::OffCentre => {
+                Shape::new(&form, CentreOfMass::At([part * size * angle.cos(), part * size * angle.sin()]))
+            }
+            _ => Shape::new(&form, CentreOfMass::Uniform),
+        };
+        match found {
+            Err(FormError::NotConvex { .. } | FormError::TooClose { .. }) => (),
+            found => return found,
+        }
+    }
+}
+
+/// The greatest difference of two outlines about their centres of mass over all directions, in m, one of them turned so that it is least.
+fn outline_error(shape: &Shape, found: &SupportSeries) -> f64 {
+    const DIRECTIONS: usize = 720;
+    let truth: Vec<f64> =
+        (0..DIRECTIONS).map(|i| shape.support(TAU * i as f64 / DIRECTIONS as f64)[0]).collect();
+    let off = |turn: f64| {
+        let at = |i: usize| found.support(TAU * i as f64 / DIRECTIONS as f64 + turn)[0] - truth[i];
+        (0..DIRECTIONS).map(|i| at(i).abs()).fold(0.0, f64::max)
+    };
+    let coarse = |i: &usize| off(TAU * *i as f64 / 360.0);
+    let best = (0..360).min_by(|a, b| coarse(a).total_cmp(&coarse(b))).unwrap_or(0);
+    // golden section
+    let (mut low, mut high) = (TAU * (best as f64 - 1.0) / 360.0, TAU * (best as f64 + 1.0) / 360.0);
+    let part = (5f64.sqrt() - 1.0) / 2.0;
+    for _ in 0..60 {
+        let (a, b) = (high - part * (high - low), low + part * (high - low));
+        if off(a) < off(b) { high = b } else { low = a }
+    }
+    off(f64::midpoint(low, high))
+}
+
+/// The study of a scene: a row for each family, number of samples and resolution. Bodies that jump on the plan are counted and drawn anew. `done` is told of each body.
+///
+/// # Errors
+/// What is wrong with the bodies.
+pub fn slow_study(
+    scene: &SlowScene,
+    interrupt: &dyn Fn() -> bool,
+    done: &dyn Fn(),
+) -> Result<Vec<StudyRow>, FormError> {
+    let Some(study) = &scene.study else { return Ok(Vec::new()) };
+    let mut rows = Vec::new();
+    for &family in &study.families {
+        for &samples in &study.samples {
+            for &resolution in &study.resolutions {
+                let mut row = StudyRow {
+                    family,
+                    samples,
+                    resolution,
+                    bodies: 0,
+                    jumped: 0,
+                    thesis: WayTally::default(),
+                    quadrature: WayTally::default(),
+                    together: WayTally::default(),
+                    outline: Vec::new(),
+                    recovered: 0,
+                    silent: 0,
+                };
+                // the same bodies in every row of a family
+                let mut random = ChaCha8Rng::seed_from_u64(scene.seed);
+                while row.bodies < study.bodies && row.jumped < MOST_DRAWS * study.bodies && !interrupt() {
+                    let shape = draw(family, study.size, &mut random)?;
+                    if one_body(&mut row, shape, study.size, scene.seed, interrupt) {
+                        done();
+                    }
+                }
+                rows.push(row);
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// Adds a body to a row; false where it jumps.
+fn one_body(row: &mut StudyRow, shape: Shape, size: f64, seed: u64, interrupt: &dyn Fn() -> bool) -> bool {
+    let Ok(courses) = plan_3_14(MARGIN, ROUNDS, DURATION) else { return false };
+    let times: Vec<f64> = (0..row.samples).map(|i| DURATION * i as f64 / (row.samples - 1) as f64).collect();
+    let moved = MovingScene {
+        mass: 1.0,
+        gyration: shape.gyration(),
+        orientation: 0.0,
+        rate: 0.0,
+        gravity: -9.81,
+        palm_inertia: [1.0; 2],
+        palm_lengths: [f64::INFINITY; 2],
+        palms: [Palm::Flat; 2],
+        drive: Drive::Prescribed(courses),
+        tolerance: DEFAULT_TOLERANCE,
+        shape,
+    };
+    let followed = follow_resting(&moved, &times);
+    let Some(truth) =
+        followed.ok().filter(|truth| truth.jumps.is_empty() && truth.moments.len() == times.len())
+    else {
+        row.jumped += 1;
+        return false;
+    };
+    let readings = readings_of(&truth, 0.0, row.resolution, seed);
+    row.bodies += 1;
+    let first = &truth.moments[0];
+    let begin = Instant::now();
+    let thesis = by_thesis(&readings, first.palms.map(|palm| palm.r), ThesisMethod::PredictorCorrector);
+    row.thesis.add(track_error(&truth, &thesis.track), size, begin.elapsed().as_secs_f64());
+    let begin = Instant::now();
+    let quadrature = by_quadrature(&readings, first.centre[1]);
+    row.quadrature.add(track_error(&truth, &quadrature), size, begin.elapsed().as_secs_f64());
+    let begin = Instant::now();
+    let found = from_nothing(&readings, interrupt);
+    let error = found.as_ref().and_then(|found| track_error(&truth, &found.track));
+    row.together.add(error, size, begin.elapsed().as_secs_f64());
+    let outline =
+        found.as_ref().map_or(f64::INFINITY, |found| outline_error(&moved.shape, &found.shape.support));
+    let explained = found.as_ref().is_some_and(|found| found.explains(EXACT));
+    let recovered = outline <= (RECOVERED * size).max(RECOVERED_RESOLUTIONS * row.resolution);
+    row.outline.push(outline);
+    row.recovered += usize::from(recovered && explained);
+    row.silent += usize::from(!recovered && explained);
+    true
+}

@@ -1,0 +1,427 @@
+//! Shape and motion from all readings at once: the support function whose equilibria explain the contacts best.
+//!
+//! At palm angles that are known the body lies where `G = A r_1' + B r_2'` vanishes and grows; which of these poses, says the one in which it lay at the last step of
+//! the search. From there the contacts follow, and their derivatives by the coefficients `c` are exact: by the pose's, `d phi0/dc = (A b_1' + B b_2')/(A r_1'' + B r_2'')`
+//! with the basis `b`, and by the coefficients' own. The turn of the body's frame is a choice; the search does not move it. Levenberg and Marquardt's steps by QR, orders
+//! of harmonics raised while G. Schwarz's criterion says that they tell something; the inverse of the last normal matrix is Cramér and Rao's bound.
+
+use super::quadrature::SlowTrack;
+use super::readings::{Sampled, SlowReadings};
+use crate::shape::{ShapeEstimate, SupportSeries, convex_deviation};
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Orders that are tried, as far as the readings can tell them.
+const LADDER: [usize; 14] = [3, 5, 8, 12, 16, 24, 32, 48, 64, 80, 100, 130, 160, 200];
+
+/// Under noise beyond this part of the mean contact higher orders than this tell nothing.
+const IS_NOISY: f64 = 1e-5;
+const MOST_NOISY: usize = 48;
+
+/// So many deviations of chi-square are not chance.
+const CERTAIN: f64 = 5.0;
+
+/// Orders in a row that tell nothing end the ladder.
+const PATIENCE: usize = 2;
+
+/// Steps for an order.
+const STEPS: usize = 40;
+
+/// A step that lowers the sum of squares by less than this part is the last.
+const SETTLED: f64 = 1e-6;
+
+/// The standard deviation of exact readings, in parts of the mean contact.
+const NOMINAL: f64 = 1e-13;
+
+/// From an order on, a misfit above this part of the mean contact and so many deviations is that of another motion.
+const HOPELESS: [(usize, f64); 3] = [(16, 3e-2), (32, 1e-2), (64, 3e-3)];
+const HOPELESS_NOISE: f64 = 5.0;
+
+/// Parts of the readings that are explained one after the other, and a misfit with which it is not gone on, in deviations.
+const PARTS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
+const HOPELESS_PART: f64 = 20.0;
+
+/// In one step no pose turns by more than this, in radians: it is another pose then.
+const LARGEST_TURN: f64 = 0.5;
+
+/// Shape and motion that explain all readings.
+#[derive(Clone, Debug)]
+pub struct SlowShape {
+    /// The support function with its covariance, by the readings' deviation: Cramér and Rao's bound.
+    pub shape: ShapeEstimate,
+    /// Radii, orientations, heights at the samples. The orientation is in the frame of the shape.
+    pub track: SlowTrack,
+    /// The root of the mean square of what is left of a contact, in m.
+    pub misfit: f64,
+    /// The deviation of a reading with which it was held against, in m.
+    pub sigma: f64,
+    /// The least of the potential's second derivatives at the samples, in parts of the mean radius.
+    pub stiffness: f64,
+}
+
+impl SlowShape {
+    /// Whether the readings are explained: what is left is what errors of their deviation leave, by chi-square within five deviations of its own; exact ones to a part of the mean radius. A shape
+    /// that is another leaves more, if only a quarter more: a body that is nearly its own mirror image does.
+    pub fn explains(&self, part: f64) -> bool {
+        let most = 1.0 + CERTAIN / (2.0 * self.shape.samples as f64).sqrt();
+        self.misfit <= (most * self.sigma).max(part * self.shape.support.mean)
+    }
+}
+
+/// A point of the search.
+#[derive(Clone)]
+struct Point {
+    coefficients: Vec<f64>,
+    phi0: Vec<f64>,
+    /// What is left of the contacts, in deviations, and of what convexity says of the coefficients.
+    left: DVector<f64>,
+    cost: f64,
+    stiffness: f64,
+}
+
+pub(super) struct Together<'a> {
+    sampled: Vec<Sampled>,
+    angles: Vec<[f64; 2]>,
+    readings: &'a SlowReadings,
+    sigma: f64,
+    /// A mean radius by which convexity's bounds are measured.
+    size: f64,
+}
+
+/// Radius and its derivatives at both contacts.
+type Touched = [[f64; 4]; 2];
+
+impl<'a> Together<'a> {
+    pub fn of(readings: &'a SlowReadings) -> Together<'a> {
+        let angle = |p: &[f64; 2]| [p[0] - FRAC_PI_2, p[0] + p[1] - 3.0 * FRAC_PI_2];
+        let scale = readings.scale();
+        Together {
+            sampled: (0..readings.rows()).map(|row| readings.sampled(row)).collect(),
+            angles: readings.palms.iter().map(angle).collect(),
+            readings,
+            sigma: readings.sigma.max(NOMINAL * scale),
+            size: scale,
+        }
+    }
+
+    fn touched(&self, row: usize, phi0: f64, series: &SupportSeries) -> Touched {
+        self.angles[row].map(|angle| series.support(angle - phi0))
+    }
+
+    /// The stable pose next to a given one, downhill, by Newton's steps while they stay near and halved brackets else.
+    fn pose(&self, row: usize, start: f64, series: &SupportSeries, farthest: f64) -> Option<(f64, f64)> {
+        let (a, b) = (self.sampled[row].second[0], self.sampled[row].first[0]);
+        let slope = |phi0: f64| {
+            let [first, second] = self.touched(row, phi0, series);
+            [-(a * first[1] + b * second[1]), a * first[2] + b * second[2]]
+        };
+        let mut here = slope(start);
+        let mut phi0 = start;
+        for _ in 0..6 {
+            if here[1] <= 0.0 {
+                break;
+            }
+            let step = here[0] / here[1];
+            if step.abs() > 0.2 {
+                break;
+            }
+            phi0 -= step;
+            let next = slope(phi0);
+            if step.abs() < 1e-15
+                || (next[0] == 0.0 && next[1] > 0.0)
+                || (step.abs() < 1e-11 && next[1] > 0.0)
+            {
+                return ((phi0 - start).abs() <= farthest && next[1] > 0.0).then_some((phi0, next[1]));
+            }
+            if next[0].abs() > 0.9 * here[0].abs() {
+                break;
+            }
+            here = next;
+        }
+        // downhill in small steps, then by halves
+        let direction = if slope(start)[0] > 0.0 { -1.0 } else { 1.0 };
+        let (mut low, mut high) = (start, start);
+        loop {
+            high += direction * 0.01;
+            if (high - start).abs() > farthest {
+                return None;
+            }
+            if direction * slope(high)[0] >= 0.0 {
+                break;
+            }
+            low = high;
+        }
+        for _ in 0..60 {
+            let middle = f64::midpoint(low, high);
+            if direction * slope(middle)[0] < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let stiffness = slope(high)[1];
+        (stiffness > 0.0).then_some((high, stiffness))
+    }
+
+    fn contacts(&self, row: usize, [first, second]: &Touched) -> [f64; 2] {
+        let [sine, cosine] = self.sampled[row].opening;
+        [
+            (first[0] * cosine + second[0]) / sine + first[1],
+            (second[0] * cosine + first[0]) / sine - second[1],
+        ]
+    }
+
+    /// A point at coefficients, every pose the next one to what is given.
+    fn point(&self, coefficients: Vec<f64>, near: &[f64]) -> Option<Point> {
+        self.settled(coefficients, near, LARGEST_TURN)
+    }
+
+    /// A point to begin at: the poses next to those of a track, however far, or those to which the palms lead the body from the first one, whichever explain more.
+    fn begin(&self, coefficients: &[f64], near: &[f64]) -> Option<Point> {
+        let series = SupportSeries::of_coefficients(coefficients);
+        let mut led = Vec::with_capacity(near.len());
+        for row in 0..near.len() {
+            let from = led.last().copied().unwrap_or(near[0]);
+            led.push(self.pose(row, from, &series, PI)?.0);
+        }
+        let both = [near, &led].map(|near| self.settled(coefficients.to_vec(), near, PI));
+        both.into_iter().flatten().min_by(|a, b| a.cost.total_cmp(&b.cost))
+    }
+
+    fn settled(&self, coefficients: Vec<f64>, near: &[f64], farthest: f64) -> Option<Point> {
+        let series = SupportSeries::of_coefficients(&coefficients);
+        let rows = self.sampled.len();
+        let mut left = DVector::zeros(2 * rows + coefficients.len());
+        let mut phi0 = Vec::with_capacity(rows);
+        let mut least = f64::INFINITY;
+        for row in 0..rows {
+            let (pose, stiffness) = self.pose(row, near[row], &series, farthest)?;
+            least = least.min(stiffness);
+            phi0.push(pose);
+            let s = self.contacts(row, &self.touched(row, pose, &series));
+            for i in 0..2 {
+                left[2 * row + i] = (self.readings.contacts[row][i] - s[i]) / self.sigma;
+            }
+        }
+        for (place, coefficient) in coefficients.iter().enumerate().skip(1) {
+            left[2 * rows + place] = -coefficient / convex_deviation(self.size, place.div_ceil(2));
+        }
+        let cost = left.norm_squared();
+        cost.is_finite().then_some(Point { coefficients, phi0, left, cost, stiffness: least })
+    }
+
+    /// The derivatives of what is left by the coefficients, negative.
+    fn rows(&self, at: &Point) -> DMatrix<f64> {
+        let (rows, p) = (self.sampled.len(), at.coefficients.len());
+        let series = SupportSeries::of_coefficients(&at.coefficients);
+        // column by column in memory: a row of the transpose is written at once
+        let mut transposed = DMatrix::zeros(p, 2 * rows + p);
+        for row in 0..rows {
+            let sampled = &self.sampled[row];
+            let (a, b) = (sampled.second[0], sampled.first[0]);
+            let [sine, cosine] = sampled.opening;
+            let [first, second] = self.touched(row, at.phi0[row], &series);
+            let bases =
+                self.angles[row].map(|angle| SupportSeries::basis(angle - at.phi0[row], series.order()));
+            let stiffness = a * first[2] + b * second[2];
+            let by_turn = [
+                -(first[1] * cosine + second[1]) / sine - first[2],
+                -(second[1] * cosine + first[1]) / sine + second[2],
+            ];
+            for k in 0..p {
+                let (one, two) = (&bases[0][k], &bases[1][k]);
+                let turn = (a * one[1] + b * two[1]) / stiffness;
+                let own =
+                    [(one[0] * cosine + two[0]) / sine + one[1], (two[0] * cosine + one[0]) / sine - two[1]];
+                for i in 0..2 {
+                    transposed[(k, 2 * row + i)] = (own[i] + by_turn[i] * turn) / self.sigma;
+                }
+            }
+        }
+        for k in 1..p {
+            transposed[(k, 2 * rows + k)] = 1.0 / convex_deviation(self.size, k.div_ceil(2));
+        }
+        transposed.transpose()
+    }
+
+    /// The direction in which the body's frame alone turns.
+    fn turning(coefficients: &[f64]) -> DVector<f64> {
+        let mut direction = DVector::zeros(coefficients.len());
+        for (k, pair) in (1..).zip(coefficients[1..].chunks_exact(2)) {
+            let k = f64::from(k);
+            direction[2 * k as usize - 1] = -k * pair[1];
+            direction[2 * k as usize] = k * pair[0];
+        }
+        let length = direction.norm();
+        if length > 0.0 { direction / length } else { direction }
+    }
+
+    /// The triangle of the rows, and what they say of the right side, with a row that holds the frame.
+    fn triangle(&self, at: &Point) -> (DMatrix<f64>, DVector<f64>) {
+        let rows = self.rows(at);
+        let (m, p) = rows.shape();
+        let mut all = DMatrix::zeros(m + 1, p + 1);
+        all.view_mut((0, 0), (m, p)).copy_from(&rows);
+        all.view_mut((0, p), (m, 1)).copy_from(&at.left);
+        let hold = rows.norm() / (p as f64).sqrt();
+        let turning = Self::turning(&at.coefficients);
+        for k in 0..p {
+            all[(m, k)] = hold * turning[k];
+        }
+        let r = all.qr().r();
+        let side = r.view((0, p), (p, 1)).column(0).into_owned();
+        (r.view((0, 0), (p, p)).into_owned(), side)
+    }
+
+    /// Levenberg and Marquardt's way down from a point.
+    fn down(&self, mut at: Point, interrupt: &dyn Fn() -> bool) -> Point {
+        let mut damping = 1e-6;
+        for _ in 0..STEPS {
+            if interrupt() {
+                break;
+            }
+            let (triangle, side) = self.triangle(&at);
+            let p = triangle.ncols();
+            let sizes: Vec<f64> = (0..p).map(|k| triangle.column(k).norm().max(f64::MIN_POSITIVE)).collect();
+            let mut gained = None;
+            for _ in 0..8 {
+                let mut damped = DMatrix::zeros(2 * p, p + 1);
+                damped.view_mut((0, 0), (p, p)).copy_from(&triangle);
+                damped.view_mut((0, p), (p, 1)).copy_from(&side);
+                (0..p).for_each(|k| damped[(p + k, k)] = damping * sizes[k]);
+                let r = damped.qr().r();
+                let step = r
+                    .view((0, 0), (p, p))
+                    .into_owned()
+                    .solve_upper_triangular(&r.view((0, p), (p, 1)).column(0).into_owned());
+                let next = step.and_then(|step| {
+                    let moved = at.coefficients.iter().zip(step.iter()).map(|(c, step)| c + step).collect();
+                    self.point(moved, &at.phi0)
+                });
+                match next {
+                    Some(next) if next.cost < at.cost => {
+                        gained = Some(1.0 - next.cost / at.cost);
+                        at = next;
+                        damping = (damping * 0.1).max(1e-14);
+                        break;
+                    }
+                    _ => damping = (damping * 10.0).max(1e-7),
+                }
+            }
+            if gained.is_none_or(|part| part < SETTLED) {
+                break;
+            }
+        }
+        at
+    }
+
+    /// From a track that someone else found, up the orders. None where no order can begin there.
+    pub fn explain(
+        &self,
+        start: &SupportSeries,
+        near: &[f64],
+        interrupt: &dyn Fn() -> bool,
+    ) -> Option<SlowShape> {
+        let readings = 2 * self.sampled.len();
+        let criterion = |at: &Point| at.cost + at.coefficients.len() as f64 * (readings as f64).ln();
+        let padded = |from: &[f64], order: usize| -> Vec<f64> {
+            let mut all = from.to_vec();
+            all.resize(1 + 2 * order, 0.0);
+            all
+        };
+        let from = start.coefficients();
+        let mut best: Option<Point> = None;
+        let mut patience = PATIENCE;
+        let mut last: Option<Point> = None;
+        for order in LADDER {
+            let is_noisy = self.readings.sigma > IS_NOISY * self.size;
+            if 2 * (1 + 2 * order) > readings || (is_noisy && order > MOST_NOISY) || interrupt() {
+                break;
+            }
+            let begin = match &last {
+                Some(at) => self.point(padded(&at.coefficients, order), &at.phi0),
+                None => self.begin(&padded(&from, order), near),
+            };
+            let Some(begin) = begin else { continue };
+            let end = self.down(begin, interrupt);
+            let misfit = (end.left.rows(0, readings).norm_squared() / readings as f64).sqrt() * self.sigma;
+            if HOPELESS.iter().any(|(from, part)| {
+                order >= *from && misfit > (HOPELESS_NOISE * self.readings.sigma).max(part * self.size)
+            }) {
+                // another start: harmonics do not mend a motion that is another
+                best = best.or(Some(end));
+                break;
+            }
+            last = Some(end.clone());
+            if best.as_ref().is_none_or(|best| criterion(&end) < criterion(best)) {
+                best = Some(end);
+                patience = PATIENCE;
+            } else {
+                patience -= 1;
+                if patience == 0 {
+                    break;
+                }
+            }
+        }
+        best.map(|best| self.shape(&best))
+    }
+
+    /// The same, over longer and longer parts of the readings: what the first ones tell leads the body through the next ones.
+    pub fn explain_by_parts(
+        readings: &SlowReadings,
+        start: &SupportSeries,
+        near: &[f64],
+        interrupt: &dyn Fn() -> bool,
+    ) -> Option<SlowShape> {
+        let (mut support, mut near) = (start.clone(), near.to_vec());
+        let mut found = None;
+        for part in PARTS {
+            let rows = ((readings.rows() as f64 * part) as usize).min(readings.rows());
+            let first = readings.first(rows);
+            let explained = Together::of(&first).explain(&support, &near[..rows], interrupt)?;
+            let last = rows.checked_sub(1)?;
+            let turned = explained.track.phi0[last] - near[last];
+            near[..rows].copy_from_slice(&explained.track.phi0);
+            near[rows..].iter_mut().for_each(|phi0| *phi0 += turned);
+            support.clone_from(&explained.shape.support);
+            if explained.misfit > HOPELESS_PART * explained.sigma.max(1e-3 * readings.scale()) {
+                return Some(explained).filter(|_| rows == readings.rows());
+            }
+            found = Some(explained);
+        }
+        found
+    }
+
+    fn shape(&self, at: &Point) -> SlowShape {
+        let rows = self.sampled.len();
+        let p = at.coefficients.len();
+        let (triangle, _) = self.triangle(at);
+        let inverse = triangle
+            .solve_upper_triangular(&DMatrix::identity(p, p))
+            .unwrap_or_else(|| DMatrix::from_element(p, p, f64::INFINITY));
+        let chi_square = at.left.rows(0, 2 * rows).norm_squared();
+        let degrees = (2 * rows).saturating_sub(p).max(1);
+        let widened = (chi_square / degrees as f64).max(1.0).sqrt();
+        let support = SupportSeries::of_coefficients(&at.coefficients);
+        let radii: Vec<[f64; 2]> =
+            (0..rows).map(|row| self.touched(row, at.phi0[row], &support).map(|r| r[0])).collect();
+        let height =
+            self.sampled.iter().zip(&radii).map(|(sampled, [r1, r2])| {
+                (sampled.second[0] * r1 + sampled.first[0] * r2) / sampled.opening[0]
+            });
+        SlowShape {
+            track: SlowTrack { height: height.collect(), phi0: at.phi0.clone(), radii },
+            misfit: (chi_square / (2 * rows) as f64).sqrt() * self.sigma,
+            sigma: self.sigma,
+            stiffness: at.stiffness / support.mean,
+            shape: ShapeEstimate {
+                covariance: &inverse * inverse.transpose() * (widened * widened),
+                support,
+                samples: 2 * rows,
+                chi_square,
+                degrees,
+                widened,
+            },
+        }
+    }
+}

@@ -1,0 +1,342 @@
+//! What slow palms tell of a body: text, JSON, and a page with the pictures of figures 3.6, 3.7 and 3.8 and the body in motion.
+
+use crate::experiment::slow::{SlowTrack, StudyRow, ThesisMethod, TrackError, WayTally, median_and_worst};
+use crate::report::document::document;
+use crate::report::motion::ended_in_words;
+use crate::report::slow_observed::SlowObserved;
+use crate::report::slow_plot::{animation, curves, frames, speed};
+use maud::{Markup, PreEscaped, html};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+fn method_name(method: ThesisMethod) -> &'static str {
+    match method {
+        ThesisMethod::PredictorCorrector => "3.35 to 3.37 by predictor and corrector",
+        ThesisMethod::Dopri5 => "3.35 to 3.37 by dopri5",
+        ThesisMethod::Dop853 => "3.35 to 3.37 by dop853",
+    }
+}
+
+/// A way, its track, its seconds, and what is to be said of it.
+struct Way<'a> {
+    name: &'static str,
+    track: &'a SlowTrack,
+    seconds: Option<f64>,
+    remark: String,
+}
+
+fn greatest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
+}
+
+fn ways<'a>(observed: &SlowObserved<'a>) -> Vec<Way<'a>> {
+    let answers = observed.answers;
+    let mut all = Vec::new();
+    if let Some(found) = &answers.together {
+        let remark = format!(
+            "order {}, {:.2e} m left of a contact; the readings {} explained",
+            found.shape.support.order(),
+            found.misfit,
+            if answers.explained { "are" } else { "are NOT" }
+        );
+        all.push(Way {
+            name: "all readings at once",
+            track: &found.track,
+            seconds: Some(answers.seconds[0]),
+            remark,
+        });
+    }
+    let from = if observed.experiment.truth.is_some() {
+        "from the true height"
+    } else {
+        "from the height that was found"
+    };
+    if let Some(track) = &answers.quadrature {
+        all.push(Way {
+            name: "quadrature",
+            track,
+            seconds: Some(answers.seconds[1]),
+            remark: from.to_owned(),
+        });
+    }
+    for (method, found) in &answers.thesis {
+        let remark = match &found.stopped {
+            Some(why) => format!(
+                "stopped at sample {} of {}: {why}",
+                found.track.radii.len(),
+                observed.experiment.readings.rows()
+            ),
+            None => format!(
+                "the denominator of 3.37 changes its sign {} times; e_f up to {:.1e} m, e_c up to {:.1e} m",
+                found.vanishing.len(),
+                greatest(&found.force_error),
+                greatest(&found.contact_error)
+            ),
+        };
+        let seconds = (*method == ThesisMethod::PredictorCorrector).then_some(answers.seconds[2]);
+        all.push(Way { name: method_name(*method), track: &found.track, seconds, remark });
+    }
+    if let Some(found) = &answers.misled {
+        let remark = format!(
+            "the height at the first sample 1 % off: e_f up to {:.1e} m, e_c up to {:.1e} m",
+            greatest(&found.force_error),
+            greatest(&found.contact_error)
+        );
+        all.push(Way { name: "the same, misled", track: &found.track, seconds: None, remark });
+    }
+    all
+}
+
+fn error_in_words(error: Option<TrackError>, mean: f64) -> String {
+    match error {
+        Some(error) => format!("{:.1e} of the mean radius, {:.1e} rad", error.radius / mean, error.phi0),
+        None => "-".to_owned(),
+    }
+}
+
+fn mean_radius(observed: &SlowObserved<'_>) -> f64 {
+    let truth =
+        observed.experiment.truth.as_ref().map(|truth| truth.shape.perimeter() / std::f64::consts::TAU);
+    let found = observed.answers.together.as_ref().map(|found| found.shape.support.mean);
+    truth.or(found).unwrap_or(1.0)
+}
+
+/// Beside each other what stands in the table of a study.
+fn tally(way: &WayTally) -> [String; 2] {
+    [&way.radius, &way.phi0].map(|values| match median_and_worst(values) {
+        Some([median, worst]) => format!("{median:.1e} ({worst:.1e})"),
+        None => "-".to_owned(),
+    })
+}
+
+/// What was found, as text.
+pub fn slow_text(observed: &SlowObserved<'_>) -> String {
+    let (experiment, answers) = (observed.experiment, observed.answers);
+    let mut out = format!("{}\n", experiment.scene.title);
+    let _ = writeln!(out, "{} samples", experiment.readings.rows());
+    if let Some(truth) = &experiment.truth {
+        let _ = writeln!(
+            out,
+            "the motion: {}; jumps: {}",
+            ended_in_words(&truth.trajectory.ended),
+            truth.trajectory.jumps.len()
+        );
+        for jump in &truth.trajectory.jumps {
+            let _ = writeln!(
+                out,
+                "  at {:.4} s, palms {:.4} and {:.4} rad: from {:.4} to {:.4} rad, {:.3e} m down",
+                jump.time, jump.palms[0], jump.palms[1], jump.from, jump.to, jump.drop
+            );
+        }
+    }
+    let mean = mean_radius(observed);
+    for way in ways(observed) {
+        let _ = writeln!(
+            out,
+            "{}: {}; {}",
+            way.name,
+            error_in_words(experiment.error(way.track), mean),
+            way.remark
+        );
+    }
+    if answers.together.is_none() {
+        out.push_str("all readings at once: no start could be followed; nothing is recovered\n");
+    }
+    let votes: Vec<String> =
+        answers.votes.iter().take(4).map(|vote| format!("{:.6} m ({})", vote.height, vote.votes)).collect();
+    let _ = writeln!(out, "heights told by zeros of 3.37's numerator: {}", votes.join(", "));
+    for row in observed.study {
+        let _ = writeln!(
+            out,
+            "{} {} samples, resolution {} m: {} of {} recovered, {} silent failures, {} jumped",
+            row.family.name(),
+            row.samples,
+            row.resolution,
+            row.recovered,
+            row.bodies,
+            row.silent,
+            row.jumped
+        );
+        if let Some([median, worst]) = median_and_worst(&row.outline) {
+            let _ = writeln!(out, "  outline: median {median:.2e} m, worst {worst:.2e} m");
+        }
+        for (name, way) in ways_of(row) {
+            let [radius, phi0] = tally(way);
+            let each = way.seconds / row.bodies.max(1) as f64;
+            let _ = writeln!(out, "  {name}: radius {radius}, phi0 {phi0} rad, {each:.3} s");
+        }
+    }
+    if observed.interrupted {
+        out.push_str("interrupted: this is what was done until then\n");
+    }
+    out
+}
+
+fn ways_of(row: &StudyRow) -> [(&'static str, &WayTally); 3] {
+    [
+        ("thesis, true radii", &row.thesis),
+        ("quadrature, true height", &row.quadrature),
+        ("all at once, nothing known", &row.together),
+    ]
+}
+
+/// A number, or null where it is none.
+fn number(x: f64) -> Value {
+    if x.is_finite() { json!(x) } else { Value::Null }
+}
+
+/// What was found, as JSON.
+pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
+    let (experiment, answers) = (observed.experiment, observed.answers);
+    let ways = ways(observed).into_iter().map(|way| {
+        let error = experiment.error(way.track);
+        json!({
+            "name": way.name,
+            "samples": way.track.radii.len(),
+            "radius_error": error.map(|error| error.radius),
+            "phi0_error": error.map(|error| error.phi0),
+            "remark": way.remark,
+            "seconds": way.seconds,
+        })
+    });
+    let together = answers.together.as_ref().map(|found| {
+        let support = &found.shape.support;
+        let deviations: Vec<Value> =
+            found.shape.covariance.diagonal().iter().map(|variance| number(variance.sqrt())).collect();
+        json!({
+            "mean": support.mean,
+            "harmonics": support.harmonics,
+            "deviations": deviations,
+            "misfit": found.misfit,
+            "sigma": found.sigma,
+            "explained": answers.explained,
+        })
+    });
+    let simulation = experiment.truth.as_ref().map(|truth| {
+        let jumps = truth.trajectory.jumps.iter().map(|jump| {
+            json!({ "time": jump.time, "palms": jump.palms, "from": jump.from, "to": jump.to, "drop": jump.drop })
+        });
+        json!({ "ended": ended_in_words(&truth.trajectory.ended), "jumps": jumps.collect::<Vec<_>>() })
+    });
+    let votes = answers.votes.iter().map(|vote| json!({ "height": vote.height, "votes": vote.votes }));
+    let study = observed.study.iter().map(|row| {
+        let ways = ways_of(row).map(|(name, way)| {
+            let each = |values: &[f64]| values.iter().map(|x| number(*x)).collect::<Vec<_>>();
+            json!({ "name": name, "radius_errors": each(&way.radius), "phi0_errors": each(&way.phi0), "seconds": way.seconds })
+        });
+        json!({
+            "family": row.family.name(),
+            "samples": row.samples,
+            "resolution": row.resolution,
+            "bodies": row.bodies,
+            "jumped": row.jumped,
+            "recovered": row.recovered,
+            "silent": row.silent,
+            "outline_errors": row.outline.iter().map(|x| number(*x)).collect::<Vec<_>>(),
+            "ways": ways,
+        })
+    });
+    json!({
+        "scene": experiment.scene.title,
+        "motion": "quasistatic",
+        "seed": experiment.scene.seed,
+        "samples": experiment.readings.rows(),
+        "simulation": simulation,
+        "shape": together,
+        "ways": ways.collect::<Vec<_>>(),
+        "heights": votes.collect::<Vec<_>>(),
+        "study": study.collect::<Vec<_>>(),
+        "interrupted": observed.interrupted,
+    })
+}
+
+fn study_section(rows: &[StudyRow]) -> Markup {
+    html! {
+        p { "Medians over all bodies, the worst in brackets; errors of a support radius in parts of the mean radius, of the orientation in rad. An infinite one stopped on the way." }
+        table {
+            thead { tr {
+                th { "family" } th { "samples" } th { "resolution" } th { "way" } th { "radius" } th { "phi0" } th { "s a body" }
+            } }
+            tbody {
+                @for row in rows {
+                    @for (name, way) in ways_of(row) {
+                        @let [radius, phi0] = tally(way);
+                        tr {
+                            td { (row.family.name()) } td { (row.samples) } td { (row.resolution) " m" } td { (name) }
+                            td { (radius) } td { (phi0) } td { (format!("{:.3}", way.seconds / row.bodies.max(1) as f64)) }
+                        }
+                    }
+                }
+            }
+        }
+        @for row in rows {
+            p {
+                (row.family.name()) ", " (row.samples) " samples, resolution " (row.resolution) " m: "
+                b { (row.recovered) " of " (row.bodies) " recovered, " (row.silent) " silent failures" }
+                "; " (row.jumped) " bodies that jumped were drawn anew"
+                @if let Some([median, worst]) = median_and_worst(&row.outline) {
+                    "; greatest error of the outline: median " (format!("{median:.1e} m, worst {worst:.1e} m"))
+                }
+                "."
+            }
+        }
+        (PreEscaped(speed(rows)))
+    }
+}
+
+/// The page as HTML.
+pub fn slow_page(observed: &SlowObserved<'_>) -> String {
+    let (experiment, answers) = (observed.experiment, observed.answers);
+    let mean = mean_radius(observed);
+    let content = html! {
+        header {
+            h1 { (experiment.scene.title) }
+            p {
+                "A smooth convex body at rest between two slow palms (chapter 3); " b { (experiment.readings.rows()) " samples" } ". "
+                @if let Some(truth) = &experiment.truth {
+                    "Simulated: the motion " (ended_in_words(&truth.trajectory.ended)) ", with " (truth.trajectory.jumps.len()) " jumps. "
+                } @else { "Recorded: what is true is not known. " }
+            }
+            @if observed.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
+        }
+        main {
+            section #body { h2 { "The body between its palms" } (PreEscaped(animation(observed))) }
+            @if let Some(truth) = &experiment.truth {
+                @if !truth.trajectory.jumps.is_empty() {
+                    section #jumps {
+                        h2 { "Jumps" }
+                        table {
+                            thead { tr { th { "s" } th { "palms, rad" } th { "from, rad" } th { "to, rad" } th { "down, m" } } }
+                            tbody { @for jump in &truth.trajectory.jumps {
+                                tr {
+                                    td { (format!("{:.4}", jump.time)) } td { (format!("{:.4}, {:.4}", jump.palms[0], jump.palms[1])) }
+                                    td { (format!("{:.4}", jump.from)) } td { (format!("{:.4}", jump.to)) } td { (format!("{:.2e}", jump.drop)) }
+                                }
+                            } }
+                        }
+                    }
+                }
+            }
+            section #found {
+                h2 { "What each way found" }
+                table {
+                    thead { tr { th { "way" } th { "greatest error" } th { "remark" } } }
+                    tbody {
+                        @for way in ways(observed) {
+                            tr { td { (way.name) } td { (error_in_words(experiment.error(way.track), mean)) } td { (way.remark) } }
+                        }
+                    }
+                }
+                @if answers.together.is_none() { p.bad { "All readings at once: no start could be followed; nothing is recovered." } }
+                p {
+                    "Heights of the centre of mass at the first sample that zeros of 3.37's numerator tell, with their number: "
+                    @for vote in answers.votes.iter().take(6) { (format!("{:.5} m ({}) ", vote.height, vote.votes)) }
+                }
+            }
+            section #frames { h2 { "As figure 3.6: what was touched so far" } (PreEscaped(frames(observed))) }
+            section #errors { h2 { "As figures 3.7 and 3.8: errors over the samples" } (PreEscaped(curves(observed))) }
+            @if !observed.study.is_empty() { section #study { h2 { "Many bodies" } (study_section(observed.study)) } }
+        }
+    };
+    document(&experiment.scene.title, &content, false)
+}

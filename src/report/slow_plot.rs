@@ -1,0 +1,319 @@
+//! Pictures of a slow body, written as SVG: the motion, what was touched, errors, speed.
+
+use crate::experiment::slow::{SlowTrack, StudyRow, median_and_worst};
+use crate::report::slow_observed::SlowObserved;
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::fmt::Write;
+
+/// Frames of the animation and of the figure at most.
+const MOVED: usize = 90;
+const FRAMES: usize = 27;
+
+/// Points of an outline.
+const OUTLINE: usize = 96;
+
+/// The pose of a sample: orientation, centre of mass, palms' angles.
+struct Pose {
+    phi0: f64,
+    centre: [f64; 2],
+    palms: [f64; 2],
+    contacts: [f64; 2],
+}
+
+/// The track that is shown: the whole one, where there is none the quadrature's.
+fn shown<'a>(observed: &SlowObserved<'a>) -> Option<&'a SlowTrack> {
+    let answers = observed.answers;
+    answers.together.as_ref().map(|found| &found.track).or(answers.quadrature.as_ref())
+}
+
+fn pose(observed: &SlowObserved<'_>, row: usize) -> Option<Pose> {
+    let readings = &observed.experiment.readings;
+    let (palms, contacts) = (readings.palms[row], readings.contacts[row]);
+    if let Some(truth) = &observed.experiment.truth {
+        let at = truth.trajectory.moments.get(row)?;
+        return Some(Pose { phi0: at.phi0, centre: at.centre, palms, contacts });
+    }
+    let track = shown(observed)?;
+    let [r1, r2] = *track.radii.get(row)?;
+    let (first, second, opening) = (palms[0], palms[0] + palms[1], palms[1].sin());
+    let centre =
+        [(second.cos() * r1 + first.cos() * r2) / opening, (second.sin() * r1 + first.sin() * r2) / opening];
+    Some(Pose { phi0: track.phi0[row], centre, palms, contacts })
+}
+
+/// The outline in the body's frame: the true one, or the one that was found.
+fn outline(observed: &SlowObserved<'_>) -> Vec<[f64; 2]> {
+    if let Some(truth) = &observed.experiment.truth {
+        return truth.shape.outline(OUTLINE);
+    }
+    let support = observed.answers.together.as_ref().map(|found| &found.shape.support);
+    let angles = (0..OUTLINE).map(|i| TAU * i as f64 / OUTLINE as f64);
+    support.map_or_else(Vec::new, |support| angles.map(|angle| support.point(angle)).collect())
+}
+
+fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+    let (sine, cosine) = angle.sin_cos();
+    [cosine * x - sine * y, sine * x + cosine * y]
+}
+
+fn path(points: &[[f64; 2]], scale: f64) -> String {
+    let mut out = String::new();
+    for (i, [x, y]) in points.iter().enumerate() {
+        let _ = write!(out, "{}{:.1},{:.1}", if i == 0 { "M" } else { "L" }, x * scale, -y * scale);
+    }
+    out.push('Z');
+    out
+}
+
+/// Samples that are shown, evenly.
+fn rows(count: usize, most: usize) -> Vec<usize> {
+    let shown = count.min(most);
+    (0..shown).map(|i| if shown < 2 { 0 } else { i * (count - 1) / (shown - 1) }).collect()
+}
+
+/// The body and its palms in motion, over and over, by the elements of SVG alone.
+pub(super) fn animation(observed: &SlowObserved<'_>) -> String {
+    let rows = rows(observed.experiment.readings.rows(), MOVED);
+    let poses: Vec<Pose> = rows.iter().filter_map(|row| pose(observed, *row)).collect();
+    let points = outline(observed);
+    if poses.len() < 2 || points.is_empty() {
+        return "<p>There is no motion to show.</p>".to_owned();
+    }
+    let reach = points.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+    let far = poses.iter().map(|at| at.centre[0].hypot(at.centre[1])).fold(0.0, f64::max) + reach;
+    let scale = 210.0 / far;
+    let join = |of: &dyn Fn(&Pose) -> String| poses.iter().map(of).collect::<Vec<_>>().join(";");
+    let degrees = |angle: f64| -angle.to_degrees();
+    let duration = "dur=\"12s\" repeatCount=\"indefinite\" calcMode=\"linear\"";
+    let palm = |of: &dyn Fn(&Pose) -> f64, colour: &str| {
+        format!(
+            "<line x1=\"0\" y1=\"0\" x2=\"{:.0}\" y2=\"0\" stroke=\"{colour}\" stroke-width=\"4\"><animateTransform attributeName=\"transform\" type=\"rotate\" values=\"{}\" {duration}/></line>",
+            1.1 * far * scale,
+            join(&|at| format!("{:.2}", degrees(of(at))))
+        )
+    };
+    let moved = join(&|at| format!("{:.1} {:.1}", at.centre[0] * scale, -at.centre[1] * scale));
+    let rotated = join(&|at| format!("{:.2}", degrees(at.phi0)));
+    let contact = |palm: usize| {
+        let place = |at: &Pose| {
+            let angle = if palm == 0 { at.palms[0] } else { at.palms[0] + at.palms[1] };
+            [at.contacts[palm] * angle.cos() * scale, -at.contacts[palm] * angle.sin() * scale]
+        };
+        format!(
+            "<circle r=\"4\" fill=\"#c8283c\"><animate attributeName=\"cx\" values=\"{}\" {duration}/><animate attributeName=\"cy\" values=\"{}\" {duration}/></circle>",
+            join(&|at| format!("{:.1}", place(at)[0])),
+            join(&|at| format!("{:.1}", place(at)[1]))
+        )
+    };
+    format!(
+        "<svg role=\"img\" aria-label=\"The body and its palms in motion\" viewBox=\"-250 -230 500 260\" width=\"500\" height=\"260\">{}{}\
+         <g><animateTransform attributeName=\"transform\" type=\"translate\" values=\"{moved}\" {duration}/>\
+         <g><animateTransform attributeName=\"transform\" type=\"rotate\" values=\"{rotated}\" {duration}/>\
+         <path d=\"{}\" fill=\"#9cbfd8\" fill-opacity=\"0.6\" stroke=\"#0072b2\"/><circle r=\"3\" fill=\"#282c34\"/><line x1=\"0\" y1=\"0\" x2=\"{:.1}\" y2=\"0\" stroke=\"#282c34\"/></g></g>{}{}</svg>",
+        palm(&|at| at.palms[0], "#0072b2"),
+        palm(&|at| at.palms[0] + at.palms[1], "#d55e00"),
+        path(&points, scale),
+        0.6 * reach * scale,
+        contact(0),
+        contact(1),
+    )
+}
+
+/// Figure 3.6: after every tenth of the samples the points that were touched so far, as they were found.
+pub(super) fn frames(observed: &SlowObserved<'_>) -> String {
+    let (Some(found), readings) = (&observed.answers.together, &observed.experiment.readings) else {
+        return "<p>Nothing was found.</p>".to_owned();
+    };
+    let support = &found.shape.support;
+    let size = (0..OUTLINE)
+        .map(|i| support.point(TAU * i as f64 / OUTLINE as f64))
+        .map(|[x, y]| x.hypot(y))
+        .fold(0.0, f64::max);
+    let scale = 42.0 / size;
+    let mut out = String::from("<div>");
+    let count = readings.rows();
+    for frame in rows(count, FRAMES + 1).into_iter().skip(1) {
+        let phi0 = found.track.phi0[frame];
+        let mut dots = String::new();
+        for row in (0..=frame).step_by((count / 200).max(1)) {
+            let palms = readings.palms[row];
+            let normals = [palms[0] - FRAC_PI_2, palms[0] + palms[1] - 3.0 * FRAC_PI_2];
+            for normal in normals {
+                let [x, y] = turned(support.point(normal - found.track.phi0[row]), phi0);
+                let _ = write!(dots, "M{:.1},{:.1}h.1", x * scale, -y * scale);
+            }
+        }
+        let palms = readings.palms[frame];
+        let lines = [palms[0] - FRAC_PI_2, palms[0] + palms[1] - 3.0 * FRAC_PI_2].map(|normal| {
+            let [x, y] = turned(support.point(normal - phi0), phi0);
+            let along = [-normal.sin() * 30.0, normal.cos() * 30.0];
+            format!(
+                "<path d=\"M{:.1},{:.1}L{:.1},{:.1}\" stroke=\"#9a9a9a\"/><circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"2.5\" fill=\"#c8283c\"/>",
+                x * scale - along[0], -y * scale + along[1], x * scale + along[0], -y * scale - along[1], x * scale, -y * scale
+            )
+        });
+        let _ = write!(
+            out,
+            "<svg role=\"img\" aria-label=\"After {} samples\" viewBox=\"-55 -55 110 122\" width=\"110\" height=\"122\">{}{}<path d=\"{dots}\" stroke=\"#0072b2\" stroke-width=\"2.4\" stroke-linecap=\"round\"/><circle r=\"2.5\" fill=\"#282c34\"/><text y=\"66\" font-size=\"10\" text-anchor=\"middle\" fill=\"currentColor\">{}</text></svg>",
+            frame + 1,
+            lines[0],
+            lines[1],
+            frame + 1
+        );
+    }
+    out.push_str("</div>");
+    out
+}
+
+/// A curve of sizes over the samples, by their logarithms.
+fn logarithmic(title: &str, unit: &str, series: &[(&str, &str, Vec<f64>)]) -> String {
+    let positive = || series.iter().flat_map(|(_, _, values)| values).filter(|v| v.is_finite() && **v > 0.0);
+    let high = positive().copied().fold(f64::MIN_POSITIVE, f64::max).log10().ceil();
+    let low = positive().copied().fold(f64::INFINITY, f64::min).log10().floor().max(high - 17.0);
+    // neither where nothing is positive
+    if high.partial_cmp(&low) != Some(std::cmp::Ordering::Greater) {
+        return String::new();
+    }
+    let y = |value: f64| 20.0 + 180.0 * (high - value.max(1e-300).log10().clamp(low, high)) / (high - low);
+    let mut out = format!(
+        "<svg role=\"img\" aria-label=\"{title}\" viewBox=\"0 0 460 250\" width=\"460\" height=\"250\"><text x=\"230\" y=\"12\" font-size=\"13\" text-anchor=\"middle\" fill=\"currentColor\">{title} ({unit})</text>"
+    );
+    let mut decade = low;
+    while decade <= high {
+        let at = y(10f64.powf(decade));
+        let _ = write!(
+            out,
+            "<path d=\"M50,{at:.1}H450\" stroke=\"currentColor\" stroke-opacity=\"0.15\"/><text x=\"46\" y=\"{:.1}\" font-size=\"10\" text-anchor=\"end\" fill=\"currentColor\">1e{decade}</text>",
+            at + 3.0
+        );
+        decade += ((high - low) / 6.0).ceil().max(1.0);
+    }
+    for (place, (name, colour, values)) in series.iter().enumerate() {
+        let count = values.len().max(2);
+        let mut line = String::new();
+        let mut pen = "M";
+        for (i, value) in values.iter().enumerate() {
+            if value.is_finite() {
+                let _ =
+                    write!(line, "{pen}{:.1},{:.1}", 50.0 + 400.0 * i as f64 / (count - 1) as f64, y(*value));
+                pen = "L";
+            } else {
+                pen = "M";
+            }
+        }
+        let _ = write!(
+            out,
+            "<path d=\"{line}\" fill=\"none\" stroke=\"{colour}\"/><text x=\"{}\" y=\"240\" font-size=\"11\" fill=\"{colour}\">{name}</text>",
+            50 + 135 * place
+        );
+    }
+    out.push_str("<text x=\"250\" y=\"218\" font-size=\"10\" text-anchor=\"middle\" fill=\"currentColor\">samples</text></svg>");
+    out
+}
+
+/// Figures 3.7 and 3.8: errors of the radii and the orientation, and the errors that can be seen without the truth.
+pub(super) fn curves(observed: &SlowObserved<'_>) -> String {
+    let answers = observed.answers;
+    let thesis = answers.thesis.first().map(|(_, found)| found);
+    let tracks = [
+        ("all at once", "#0072b2", answers.together.as_ref().map(|found| &found.track)),
+        ("quadrature", "#009e73", answers.quadrature.as_ref()),
+        ("thesis", "#d55e00", thesis.map(|found| &found.track)),
+    ];
+    let mut out = String::new();
+    if let Some(truth) = &observed.experiment.truth {
+        let moments = &truth.trajectory.moments;
+        let mut radii = Vec::new();
+        let mut turns = Vec::new();
+        for (name, colour, track) in &tracks {
+            let Some(track) = track else { continue };
+            let both = track.radii.iter().zip(moments);
+            let off = |(r, at): (&[f64; 2], &crate::mechanics::moving::Moment)| {
+                (r[0] - at.palms[0].r).abs().max((r[1] - at.palms[1].r).abs())
+            };
+            radii.push((*name, *colour, both.map(off).collect()));
+            let first = track.phi0.first().zip(moments.first()).map_or(0.0, |(phi0, at)| phi0 - at.phi0);
+            let both = track.phi0.iter().zip(moments);
+            turns.push((*name, *colour, both.map(|(phi0, at)| (phi0 - at.phi0 - first).abs()).collect()));
+        }
+        out += &logarithmic("greatest error of a support radius", "m", &radii);
+        out += &logarithmic("error of the orientation", "rad", &turns);
+    }
+    let seen = |name: &'static str, colour: &'static str, values: Option<&Vec<f64>>| {
+        values.map(|values| (name, colour, values.iter().map(|x| x.abs()).collect::<Vec<f64>>()))
+    };
+    let misled = answers.misled.as_ref();
+    let force = [
+        seen("thesis", "#d55e00", thesis.map(|found| &found.force_error)),
+        seen("height 1 % off", "#cc79a7", misled.map(|found| &found.force_error)),
+    ];
+    let contact = [
+        seen("thesis", "#d55e00", thesis.map(|found| &found.contact_error)),
+        seen("height 1 % off", "#cc79a7", misled.map(|found| &found.contact_error)),
+    ];
+    out += &logarithmic("e_f of 3.38", "m", &force.into_iter().flatten().collect::<Vec<_>>());
+    out += &logarithmic("e_c of 3.39", "m", &contact.into_iter().flatten().collect::<Vec<_>>());
+    out
+}
+
+/// Speed against accuracy of all ways: a mark a row of the study.
+pub(super) fn speed(rows: &[StudyRow]) -> String {
+    let mut marks = Vec::new();
+    for row in rows {
+        let ways = [("#d55e00", &row.thesis), ("#009e73", &row.quadrature), ("#0072b2", &row.together)];
+        for (colour, way) in ways {
+            let seconds = way.seconds / row.bodies.max(1) as f64;
+            let error = median_and_worst(&way.radius).map_or(f64::INFINITY, |[median, _]| median);
+            if seconds > 0.0 && error > 0.0 && error.is_finite() {
+                let title = format!(
+                    "{}, {} samples, resolution {} m",
+                    row.family.name(),
+                    row.samples,
+                    row.resolution
+                );
+                marks.push((seconds.log10(), error.log10(), colour, title));
+            }
+        }
+    }
+    let ends = |all: Vec<f64>| {
+        let range = all
+            .into_iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |ends, x| [ends[0].min(x), ends[1].max(x)]);
+        [range[0].floor(), range[1].ceil().max(range[0].floor() + 1.0)]
+    };
+    if marks.is_empty() {
+        return String::new();
+    }
+    let (x, y) =
+        (ends(marks.iter().map(|mark| mark.0).collect()), ends(marks.iter().map(|mark| mark.1).collect()));
+    let place =
+        |a: f64, [low, high]: [f64; 2], from: f64, to: f64| from + (to - from) * (a - low) / (high - low);
+    let mut out = String::from(
+        "<svg role=\"img\" aria-label=\"Speed against accuracy\" viewBox=\"0 0 460 290\" width=\"460\" height=\"290\"><text x=\"230\" y=\"14\" font-size=\"13\" text-anchor=\"middle\" fill=\"currentColor\">median error of a radius over its mean, against seconds a body</text>",
+    );
+    for decade in x[0] as i32..=x[1] as i32 {
+        let at = place(f64::from(decade), x, 50.0, 440.0);
+        let _ = write!(
+            out,
+            "<path d=\"M{at:.1},25V240\" stroke=\"currentColor\" stroke-opacity=\"0.15\"/><text x=\"{at:.1}\" y=\"254\" font-size=\"10\" text-anchor=\"middle\" fill=\"currentColor\">1e{decade} s</text>"
+        );
+    }
+    for decade in (y[0] as i32..=y[1] as i32).step_by(2) {
+        let at = place(f64::from(decade), y, 240.0, 25.0);
+        let _ = write!(
+            out,
+            "<path d=\"M50,{at:.1}H440\" stroke=\"currentColor\" stroke-opacity=\"0.15\"/><text x=\"46\" y=\"{:.1}\" font-size=\"10\" text-anchor=\"end\" fill=\"currentColor\">1e{decade}</text>",
+            at + 3.0
+        );
+    }
+    for (seconds, error, colour, title) in &marks {
+        let _ = write!(
+            out,
+            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4\" fill=\"{colour}\"><title>{title}</title></circle>",
+            place(*seconds, x, 50.0, 440.0),
+            place(*error, y, 240.0, 25.0)
+        );
+    }
+    out.push_str("<text x=\"50\" y=\"280\" font-size=\"11\" fill=\"#d55e00\">thesis</text><text x=\"180\" y=\"280\" font-size=\"11\" fill=\"#009e73\">quadrature</text><text x=\"310\" y=\"280\" font-size=\"11\" fill=\"#0072b2\">all at once</text></svg>");
+    out
+}
