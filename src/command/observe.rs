@@ -1,18 +1,26 @@
 //! `palmistry observe`: a body or another system in motion, and observers that recover its state.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
+use super::observe_stream;
 use super::output::{Files, Form, progress};
+use super::shards::{NO_WHOLE, Parts, Shards};
 use super::{Status, Unusable};
 use clap::Args;
 use indicatif::ProgressBar;
+use palmistry::experiment::slow::{SlowExperiment, SlowScene, slow_study};
 use palmistry::experiment::{
-    Answer, Basin, Experiment, NoiseLevel, Reconstruction, Scene, SceneError, basins, noise_study, shown,
+    Answer, Basin, Experiment, NoiseLevel, Reconstruction, Scene, SceneError, Studies, StudyPart, basins,
+    noise_study, shown,
 };
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
 use palmistry::observer::RecordError;
-use palmistry::report::{Observed, ended_in_words, forget_seconds, observe_json, observe_page, observe_text};
-use std::path::PathBuf;
+use palmistry::report::{
+    Observed, SlowObserved, ended_in_words, forget_seconds, observe_json, observe_page, observe_text,
+    slow_json, slow_page, slow_text,
+};
+use palmistry::sweep::shard_of;
+use std::path::{Path, PathBuf};
 
 /// Moves a system, hands on what its sensors tell, and has observers recover its state: the system of any proof file by its own
 /// equations, or a body between two palms by Newton's laws and the contacts.
@@ -22,20 +30,27 @@ use std::path::PathBuf;
 /// observers know only the readings and the equations of the scene's proof file. For each update there are the true and
 /// the recovered states, the error, the bound of Cramér and Rao below which no unbiased estimate can be, steps and time.
 ///
+/// With --data - the readings come from standard input as they are written (CSV), and each window is answered as soon as it is there: with
+/// --json in a line of JSON, and one at the end. Memory is bounded by a window. What ends a stream early takes nothing back that was answered.
+///
 /// With --data the readings come from a CSV or Parquet file with the columns that the model needs (time, outputs, inputs);
 /// faulty rows are reported by number and handled as the scene says, and what --record wrote gives the same answer. With --studies the scene's studies run as well: the
 /// error over many seeds at several levels of noise beside the bound, and the first guesses from which each method arrives.
+///
+/// Studies can be cut into shards of trials, with --shard and --part, each a process of its own; --merge then answers as --studies
+/// does in one run, to the last bit.
 ///
 /// An update that converged is held against the noise that the scene states: what is left has to be what the noise explains. Where
 /// no noise is stated it is estimated from what is left, which then has to look like noise. The exit status is 1 where an update
 /// converged and does not fit, or a method by windows has no update that does.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed")]
+  palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed
+  palmistry observe SCENE --record - | palmistry observe SCENE --data - --json")]
 pub(crate) struct Observe {
     /// The scene.
     scene: PathBuf,
-    /// Readings from a file (CSV or Parquet) instead of a simulation.
+    /// Readings from a file (CSV or Parquet) instead of a simulation; - is standard input (CSV), answered window by window.
     #[arg(long, value_name = "FILE")]
     data: Option<PathBuf>,
     /// Take this seed and not the scene's.
@@ -45,21 +60,23 @@ pub(crate) struct Observe {
     #[arg(long)]
     studies: bool,
     /// Write a page with pictures (index.html) and observe.json into this folder.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["shard", "missing"])]
     out: Option<PathBuf>,
-    /// Write the readings to a file, CSV or Parquet by its extension.
-    #[arg(long, value_name = "FILE")]
+    /// Write the readings to a file, CSV or Parquet by its extension; - is standard output (CSV), and then nothing is observed.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     record: Option<PathBuf>,
     /// Write all of the simulated motion to a file, CSV or Parquet: poses, contact forces, torques, energies, the truth.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     motion: Option<PathBuf>,
     /// Write the outline to a file, CSV or Parquet: for each normal the support radius with its band, and the point.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     outline: Option<PathBuf>,
     /// Write what was believed sample by sample to a file, CSV or Parquet: each state with its bound.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
     track: Option<PathBuf>,
-    /// Tell no times: two runs with one seed on one machine then write the same to the last byte.
+    #[command(flatten)]
+    shards: Shards,
+    /// Tell no times: two runs with one seed on one machine then write the same to the last byte, as a merge does, which knows none.
     #[arg(long)]
     no_times: bool,
     /// Print one JSON object: 'observers' with their 'updates' and 'end', and the studies.
@@ -69,26 +86,44 @@ pub(crate) struct Observe {
 
 impl Observe {
     pub fn run(self) -> miette::Result<Status> {
+        if let Some(slow) = SlowScene::read(&self.scene) {
+            return self.run_slow(slow?);
+        }
         let mut scene = Scene::read(&self.scene)?;
         scene.seed = self.seed.unwrap_or(scene.seed);
+        let from = self.data.as_deref().or(scene.data.record.as_deref());
+        let is_stream = from == Some(Path::new("-"));
+        self.goes_together(&scene, is_stream)?;
+        if is_stream {
+            return observe_stream::observe(scene, Form::of(self.json), self.no_times);
+        }
         let bar = progress(scene.observer.methods.len() as u64 + 1, "simulating");
         let experiment = Experiment::new(scene, self.data.as_deref())?;
         bar.inc(1);
-        if self.studies && experiment.simulated().is_none() {
+        let asks_for_studies = self.studies || self.shards.are_asked();
+        if asks_for_studies && experiment.simulated().is_none() {
             let message = "a study needs the truth, and readings from a file have none";
             return Err(Unusable::report(message, "leave out --studies, or simulate"));
         }
         let study = &experiment.scene.study;
-        if self.studies && study.noise.is_none() && study.basin.is_none() {
+        if asks_for_studies && study.noise.is_none() && study.basin.is_none() {
             let message = "the scene has no studies";
             return Err(Unusable::report(
                 message,
                 "add [study.noise] or [study.basin] to it, or leave out --studies",
             ));
         }
+        let merged = if self.shards.are_asked() {
+            match self.shard_or_merge(&experiment, &bar)? {
+                Sharded::Done(status) => return Ok(status),
+                Sharded::Merged(noise, basins) => Some((noise, basins)),
+            }
+        } else {
+            None
+        };
         let mut files = Files::default();
         if let Some(path) = &self.record {
-            files.table(path, &experiment.record);
+            files.table(path, experiment.as_written());
             files.announce(path);
         }
         if let Some(path) = &self.motion {
@@ -104,22 +139,27 @@ impl Observe {
             files.table(path, &table);
             files.announce(path);
         }
+        if self.records_to_output() {
+            // what is printed is the record alone: others may read it
+            bar.finish_and_clear();
+            return Ok(files.status(Status::of(true)));
+        }
         bar.set_message("observing");
-        let mut answers = experiment.run(&INTERRUPTED, &|method| {
+        let mut answers = experiment.run_with_shape(&INTERRUPTED, &|method| {
             bar.set_message(method.name());
             bar.inc(1);
         })?;
-        bar.set_message("shape");
-        let reconstruction = experiment.reconstruct(&answers, &INTERRUPTED);
         bar.finish_and_clear();
-        if self.no_times {
+        let no_times = self.no_times || merged.is_some();
+        if no_times {
             answers.iter_mut().for_each(Answer::forget_times);
         }
-        self.write_shape(&experiment, &answers, reconstruction.as_ref(), &mut files)?;
-        if let (Some(place), Some(found)) = (shown_place(&answers), reconstruction) {
-            answers[place].reconstruction = Some(Box::new(found));
-        }
-        let (noise, basins) = if self.studies { studies(&experiment)? } else { (Vec::new(), Vec::new()) };
+        self.write_shape(&experiment, &answers, &mut files)?;
+        let (noise, basins) = match merged {
+            Some(merged) => merged,
+            None if self.studies => studies(&experiment)?,
+            None => (Vec::new(), Vec::new()),
+        };
         begin_to_tell();
         let interrupted = interrupted();
         let observed = Observed {
@@ -130,7 +170,7 @@ impl Observe {
             interrupted,
         };
         let mut json = observe_json(&observed);
-        if self.no_times {
+        if no_times {
             forget_seconds(&mut json);
         }
         if let Some(folder) = &self.out {
@@ -158,18 +198,176 @@ impl Observe {
     }
 }
 
+/// What is left of a command whose studies are cut.
+enum Sharded {
+    /// A shard was done, or those were told that are missing.
+    Done(Status),
+    Merged(Vec<NoiseLevel>, Vec<Basin>),
+}
+
+impl Observe {
+    /// Does a shard of the studies, tells which are missing, or merges them.
+    fn shard_or_merge(&self, experiment: &Experiment, bar: &ProgressBar) -> miette::Result<Sharded> {
+        let studies = Studies::new(experiment, &INTERRUPTED)?;
+        let parts = Parts {
+            kind: "observe",
+            extension: ".json",
+            read: &|text| StudyPart::read(text).map_err(|why| why.to_string()),
+            belongs: &|part: &StudyPart| part.fingerprint() == studies.fingerprint(),
+        };
+        let form = Form::of(self.json);
+        if let Some(missing) = &self.shards.missing {
+            bar.finish_and_clear();
+            begin_to_tell();
+            return parts.tell_missing(missing, form).map(Sharded::Done);
+        }
+        if let (Some(shard), Some(folder)) = (self.shards.shard, &self.shards.part) {
+            bar.set_message("trials");
+            let status = parts.do_shard(shard, folder, None, form, |_| {
+                let places = shard_of(studies.trials(), shard.number, shard.of);
+                bar.set_position(0);
+                bar.set_length(places.end - places.start);
+                let part = studies.part(places, &INTERRUPTED, &|| bar.inc(1));
+                bar.finish_and_clear();
+                Ok(part.and_then(|part| part.text()))
+            });
+            return status.map(Sharded::Done);
+        }
+        let all = self.shards.merge.as_ref().map_or_else(|| Ok(Vec::new()), |folder| parts.all(folder))?;
+        let merged = studies.merge(all).map_err(|why| Unusable::report(why.to_string(), NO_WHOLE))?;
+        Ok(Sharded::Merged(merged.0, merged.1))
+    }
+}
+
+impl Observe {
+    /// Whether the record is what is printed.
+    fn records_to_output(&self) -> bool {
+        self.record.as_deref() == Some(Path::new("-"))
+    }
+
+    /// Whether what is asked for can be had at once.
+    fn goes_together(&self, scene: &Scene, is_stream: bool) -> miette::Result<()> {
+        if self.records_to_output() {
+            let asked = [
+                ("--json", self.json),
+                ("--studies", self.studies),
+                ("--out", self.out.is_some()),
+                ("--outline", self.outline.is_some()),
+                ("--track", self.track.is_some()),
+            ];
+            if let Some((name, _)) = asked.iter().find(|(_, is_asked)| *is_asked) {
+                let message = format!(
+                    "with --record - the readings are all that is printed, and nothing is observed: {name} asks for more"
+                );
+                return Err(Unusable::report(message, "record to a file, or leave the other out"));
+            }
+        }
+        if is_stream {
+            let asked = [
+                ("--studies", self.studies || self.shards.are_asked()),
+                ("--out", self.out.is_some()),
+                ("--record", self.record.is_some()),
+                ("--motion", self.motion.is_some()),
+                ("--outline", self.outline.is_some()),
+                ("--track", self.track.is_some()),
+            ];
+            if let Some((name, _)) = asked.iter().find(|(_, is_asked)| *is_asked) {
+                let message = format!("{name} needs all of the readings, and a stream is not kept");
+                return Err(Unusable::report(
+                    message,
+                    "hold the readings in a file first, and hand it over with --data",
+                ));
+            }
+            if scene.data.record.as_deref().is_some_and(|record| record != Path::new("-")) {
+                note("readings come from standard input, and not from the scene's record");
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Why there may be no outline.
 const NO_OUTLINE: &str = "no support radius was seen; an outline takes two palms with the outputs s1 and s2, and r1 and r2 sought and seen";
 
 impl Observe {
+    /// A scene with `motion = "quasistatic"`.
+    fn run_slow(self, mut scene: SlowScene) -> miette::Result<Status> {
+        scene.seed = self.seed.unwrap_or(scene.seed);
+        for (given, option) in
+            [(&self.motion, "--motion"), (&self.outline, "--outline"), (&self.track, "--track")]
+        {
+            if given.is_some() {
+                let message = format!("{option} is not for slow motion");
+                return Err(Unusable::report(
+                    message,
+                    "leave it out; --record, --out and --json say all there is",
+                ));
+            }
+        }
+        if self.studies && scene.study.is_none() {
+            return Err(Unusable::report(
+                "the scene has no study",
+                "add [study] to it, or leave out --studies",
+            ));
+        }
+        let bar = progress(4, "simulating");
+        let experiment = SlowExperiment::new(scene, self.data.as_deref())?;
+        bar.inc(1);
+        let mut files = Files::default();
+        if let Some(path) = &self.record {
+            let record = experiment.record().map_err(|error| Unusable::report(error.to_string(), ""))?;
+            files.table(path, &record);
+            files.announce(path);
+        }
+        bar.set_message("observing");
+        let mut answers = experiment.run(&interrupted, &|step| {
+            bar.set_message(step);
+            bar.inc(1);
+        });
+        bar.finish_and_clear();
+        let mut study = Vec::new();
+        if let (true, Some(settings)) = (self.studies, &experiment.scene.study) {
+            let rows = settings.families.len() * settings.samples.len() * settings.resolutions.len();
+            let bar = progress((rows * settings.bodies) as u64, "bodies");
+            study = slow_study(&experiment.scene, &interrupted, &|| bar.inc(1)).map_err(|error| {
+                experiment.scene.error_at("study", error.to_string(), "other families may do")
+            })?;
+            bar.finish_and_clear();
+        }
+        if self.no_times {
+            answers.seconds = [f64::NAN; 3];
+            for row in &mut study {
+                for way in [&mut row.thesis, &mut row.quadrature, &mut row.together] {
+                    way.seconds = f64::NAN;
+                }
+            }
+        }
+        begin_to_tell();
+        let observed = SlowObserved {
+            experiment: &experiment,
+            answers: &answers,
+            study: &study,
+            interrupted: interrupted(),
+        };
+        let json = slow_json(&observed);
+        if let Some(folder) = &self.out {
+            files.text(&folder.join("index.html"), &slow_page(&observed));
+            files.json(&folder.join("observe.json"), &json);
+            files.announce(&folder.join("index.html"));
+        }
+        // readings that no body explains are not a shape
+        let status = Status::of(answers.explained && study.iter().all(|row| row.silent == 0));
+        files.print(Form::of(self.json), json, || slow_text(&observed), status)
+    }
+
     /// The files of `--outline` and `--track`.
     fn write_shape(
         &self,
         experiment: &Experiment,
         answers: &[Answer],
-        reconstruction: Option<&Reconstruction>,
         files: &mut Files,
     ) -> miette::Result<()> {
+        let reconstruction = shown(answers).and_then(|answer| answer.reconstruction.as_deref());
         let unexpected = |error: RecordError| Unusable::report(error.to_string(), "");
         if let Some(path) = &self.outline {
             match reconstruction.and_then(Reconstruction::outline_table) {
@@ -190,12 +388,6 @@ impl Observe {
         }
         Ok(())
     }
-}
-
-/// The place of the answer whose outline is shown.
-fn shown_place(answers: &[Answer]) -> Option<usize> {
-    let shown = shown(answers)?;
-    answers.iter().position(|answer| std::ptr::eq(answer, shown))
 }
 
 fn studies(experiment: &Experiment) -> Result<(Vec<NoiseLevel>, Vec<Basin>), SceneError> {

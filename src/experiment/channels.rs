@@ -39,6 +39,11 @@ pub(super) fn split(known: &BTreeMap<String, f64>) -> (BTreeMap<String, f64>, BT
     (constants, sensors)
 }
 
+/// What is known of sensors, by column.
+pub(super) fn known_sensors(known: &BTreeMap<String, f64>) -> BTreeMap<String, Known> {
+    split(known).1
+}
+
 /// Whether all columns of which something is said are there.
 pub(super) fn are_columns(scene: &Scene, signals: &Signals) -> Result<(), SceneError> {
     let columns = || signals.names().join(", ");
@@ -137,11 +142,26 @@ pub(super) fn tell(
 ) -> Result<(), SceneError> {
     let sought = |name: &String| CalibrationKind::of(name).is_some();
     let is_one_sought = scene.observer.estimate.iter().any(sought);
-    if scene.channels.is_empty() && !is_one_sought {
+    let is_nothing_read = (0..task.full.outputs.len()).all(|output| task.full.is_implicit(output));
+    if is_nothing_read && !has_palms && (scene.sensor.noise > 0.0 || scene.sensor.resolution > 0.0) {
+        let known: Vec<&str> = task.full.read_columns(task.signals);
+        let help = format!(
+            "[sensor.COLUMN] states those of one column; the outputs here depend on {}",
+            known.join(", ")
+        );
+        let message = "the errors of outputs are stated, and no output is read: all of them are zero";
+        return Err(scene.error_at("sensor", message.to_owned(), "stated here", help));
+    }
+    if is_nothing_read {
+        (task.exact, task.sigma, task.noise) = (true, NOMINAL, crate::observer::Noise::Unstated);
+    }
+    if scene.channels.is_empty() && !is_one_sought && !task.full.has_implicit() {
         return Ok(());
     }
     let sensors = split(&scene.observer.known).1;
-    let outputs = task.full.outputs.clone();
+    let all = task.full.outputs.iter().enumerate();
+    let outputs: Vec<String> =
+        all.filter(|(place, _)| !task.full.is_implicit(*place)).map(|(_, name)| name.clone()).collect();
     for name in task.signals.names() {
         // an output is read with the errors of `[sensor]` unless it has its own; of a body between palms these are of the contacts
         let common = ReadingErrors { normal: scene.sensor.noise, rounding: scene.sensor.resolution };
@@ -163,7 +183,11 @@ pub(super) fn tell(
         return Err(scene.error_at(&format!("sensor.{driving}"), message, "this sensor", help));
     }
     let of_outputs = || outputs.iter().map(|name| task.errors.get(name).copied().unwrap_or_default());
-    let largest = of_outputs().map(ReadingErrors::variance).fold(0.0, f64::max).sqrt();
+    let mut largest = of_outputs().map(ReadingErrors::variance).fold(0.0, f64::max).sqrt();
+    if is_nothing_read {
+        // a unit for what is weighted anyway
+        largest = task.errors.values().map(|errors| errors.variance()).fold(0.0, f64::max).sqrt();
+    }
     let errs = driving.is_some() || largest > 0.0;
     // the first readings of an output whose gain or bias is sought are not its first values
     let is_output =

@@ -3,12 +3,13 @@
 //! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
 //! from a TOML file and checked value by value. A [`Simulation`] moves its body, a [`SystemMotion`] any other system by its own equations; an
 //! [`Experiment`] is a scene with its readings, and runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`],
-//! [`basins`]); a [`Reconstruction`] is the shape that all of it tells.
+//! [`basins`], or stretch by stretch as [`Studies`]); a [`Reconstruction`] is the shape that all of it tells.
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 
 mod channels;
 mod columns;
+mod groundwork;
 mod known_motion;
 mod reconstruction;
 mod recovered;
@@ -16,6 +17,9 @@ mod run;
 mod scene;
 mod simulation;
 mod since;
+#[doc(hidden)]
+pub mod slow;
+mod stream;
 mod study;
 mod system_motion;
 #[doc(hidden)]
@@ -32,12 +36,13 @@ pub use run::{Answer, Experiment};
 pub use scene::SceneOutline;
 #[doc(hidden)]
 pub use scene::{BasinStudy, NoiseStudy};
-pub use scene::{Channel, Data, Guess, Method, ObserverSettings, Scene, SceneError, Sensor};
+pub use scene::{Channel, Data, Guess, Method, ObserverSettings, Scene, SceneColumn, SceneError, Sensor};
 #[doc(hidden)]
 pub use simulation::NOMINAL;
 pub use simulation::Simulation;
+pub use stream::{StreamAnswer, StreamEnd, StreamPiece, StreamTally, WindowReport, observe_stream};
 #[doc(hidden)]
 pub use study::ARRIVED;
 #[doc(hidden)]
-pub use study::{Basin, NoiseLevel, basins, noise_study};
+pub use study::{Basin, NoiseLevel, Studies, StudyMergeError, StudyPart, basins, noise_study};
 pub use system_motion::SystemMotion;

@@ -1,23 +1,21 @@
 //! A scene from beginning to end: bodies or a file, what is read of them, and what the observers make of it.
 
 use super::channels;
+use super::groundwork::{Groundwork, Steady, estimate_question, sample_range};
 use super::known_motion::KnownMotion;
 use super::recovered::Reconstruction;
 use super::scene::{self, Guess, Scene, SceneError};
-use super::simulation::{NOMINAL, Simulation, TOUCH, body, constants, deviation};
+use super::simulation::{NOMINAL, Simulation, TOUCH, deviation};
 use super::since::Since;
 use super::system_motion::SystemMotion;
-use super::unguided::{PalmReadings, Unguided, palm_readings};
-use crate::expression::{NodeId, Symbol};
-use crate::number::rational_to_f64;
+use super::unguided::{PalmReadings, palm_readings};
 use crate::observer::{
-    CalibrationKind, EstimateQuestion, Fault, FaultRules, ModelError, MovingWindow, Noise, Observer, Record,
-    RecordError, RecordReading, Signals, Task, Track, WindowSearch,
+    EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
+    Signals, Task, Track, WindowSearch,
 };
 use crate::sweep::UNINTERRUPTED;
-use crate::system::{Kind, System, nearest};
+use crate::system::System;
 use miette::Diagnostic;
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -35,6 +33,8 @@ pub struct Experiment {
     pub motion: Option<SystemMotion>,
     /// The readings.
     pub record: Record,
+    /// The same as instruments write them, where the scene says that they have other names or units than the model.
+    pub written: Option<Record>,
     /// The time of the first sample where times are counted from there, because they were counted from another age; else zero. In s.
     pub origin: f64,
     /// What was wrong with the rows of a file.
@@ -74,47 +74,56 @@ impl Experiment {
     /// # Errors
     /// What is wrong with the scene, its model or the file, with the place in the scene.
     pub fn new(scene: Scene, data: Option<&Path>) -> Result<Experiment, SceneError> {
-        let system = System::read(&scene.model)?;
-        let file = data.or(scene.data.record.as_deref());
-        let simulation = match (&scene.simulated, file) {
-            (Some(simulated), None) => Some(Simulation::of(&scene, simulated)?),
-            _ => None,
-        };
-        known_states(&scene, &system)?;
-        // a recording of what the scene describes is told the same constants
-        let described =
-            scene.system.as_ref().map(|own| SystemMotion::of(&scene, &system, own)).transpose()?;
-        let known = known_constants(&scene, &system, simulation.as_ref(), described.as_ref())?;
-        let motion = described.clone().filter(|_| file.is_none());
-        let simulated: Option<&dyn KnownMotion> = match (&simulation, &motion) {
-            (Some(simulation), _) => Some(simulation),
-            (None, motion) => motion.as_ref().map(|motion| motion as &dyn KnownMotion),
-        };
-        let RecordReading { record, faults, .. } = match (simulated, file) {
+        let file = data.map(Path::to_owned).or_else(|| scene.data.record.clone());
+        let ground = Groundwork::of(scene, file.is_none())?;
+        let Groundwork { scene, names, .. } = &ground;
+        let (reading, written) = match (ground.simulated(), &file) {
             (Some(simulated), _) => {
-                let record = simulated.read(&scene.sensor, &scene.channels, scene.seed);
                 let place =
                     |error: RecordError| scene.error_at("sensor", error.to_string(), "these readings", "");
-                RecordReading { record: record.map_err(place)?, faults: Vec::new(), left_out: Vec::new() }
+                let mut record = simulated.read(&scene.sensor, &scene.channels, scene.seed).map_err(place)?;
+                let mut written = None;
+                if !names.sources.is_empty() {
+                    // what is observed is what would be read of what is written
+                    let own = names.written(&record).map_err(place)?;
+                    record = names.read(&own, record.names()).map_err(place)?;
+                    written = Some(own);
+                }
+                (RecordReading { record, faults: Vec::new(), left_out: Vec::new() }, written)
             }
             (None, Some(file)) => {
-                let needed = needed(&scene, &system, &known);
+                let needed = ground.needed();
                 let needed: Vec<&str> = needed.iter().map(String::as_str).collect();
-                Record::read_checked(file, &needed, &fault_rules(&scene, &system))
-                    .map_err(|error| unusable(&scene, &error))?
+                let read = Record::read_named(file, &needed, names, &ground.fault_rules());
+                (read.map_err(|error| unusable(scene, &error))?, None)
             }
             (None, None) => {
                 let help = "give [start] with a value for each state, or a body and palms; or name a file under [data], or hand one over with --data";
                 return Err(scene.error_at("title", "there is nothing to observe", "this scene", help));
             }
         };
-        let (record, origin) = match file {
-            Some(_) => {
+        Experiment::with_readings(ground, reading, written, Steady::AreConstants)
+    }
+
+    /// The experiment with these readings.
+    ///
+    /// # Errors
+    /// What is wrong with the readings, or with what is asked of them, with the place in the scene.
+    pub(super) fn with_readings(
+        ground: Groundwork,
+        reading: RecordReading,
+        written: Option<Record>,
+        steady: Steady,
+    ) -> Result<Experiment, SceneError> {
+        let Groundwork { scene, system, simulation, described, simulates, known, .. } = ground;
+        let RecordReading { record, faults, .. } = reading;
+        let (record, origin) = match simulates {
+            // simulated times are counted from zero
+            true => (record, 0.0),
+            false => {
                 let since = Since::first(&record);
                 (since.count(&scene, record)?, since.origin)
             }
-            // simulated times are counted from zero
-            None => (record, 0.0),
         };
         let signals = Signals::of_record(&record);
         let signals =
@@ -128,11 +137,22 @@ impl Experiment {
                 Some(simulation) => simulation.truth(name)?.first().copied(),
                 None => described.as_ref()?.truth(name)?.first().copied(),
             };
-            estimate_question(&scene, &system, &truth, known, &signals)?
+            estimate_question(&scene, &system, &truth, known, &signals, steady)?
         };
         channels::are_told(&scene, &system, &question, &signals)?;
-        let experiment =
-            Experiment { scene, system, simulation, motion, record, origin, faults, signals, question };
+        let motion = described.filter(|_| simulates);
+        let experiment = Experiment {
+            scene,
+            system,
+            simulation,
+            motion,
+            record,
+            written,
+            origin,
+            faults,
+            signals,
+            question,
+        };
         // whether the model can be made at all is better known now
         experiment.task(&UNINTERRUPTED)?;
         Ok(experiment)
@@ -177,6 +197,11 @@ impl Experiment {
             task.noise = Noise::Stated { normal: sensor.noise, rounding: sensor.resolution };
         }
         channels::tell(&self.scene, &mut task, self.simulation.is_some(), self.simulated().is_some())?;
+        let settings = &self.scene.observer;
+        (task.inherit, task.whole, task.loss) = (settings.inherit, settings.whole, settings.loss);
+        for (name, bounds) in self.names().into_iter().zip(&mut task.bounds) {
+            *bounds = settings.bounds.get(name).copied().unwrap_or(*bounds);
+        }
         task.timing = self.origin.abs() * f64::EPSILON * self.fastest(&task);
         Ok(task)
     }
@@ -241,6 +266,11 @@ impl Experiment {
         Ok(answers)
     }
 
+    /// The readings as instruments write them: what `--record` keeps.
+    pub fn as_written(&self) -> &Record {
+        self.written.as_ref().unwrap_or(&self.record)
+    }
+
     /// The names of what is sought.
     pub fn names(&self) -> Vec<&str> {
         self.question.guess.iter().map(|(name, _)| name.as_str()).collect()
@@ -283,154 +313,17 @@ pub fn error(estimate: f64, truth: f64) -> f64 {
     ((estimate - truth) / size).abs()
 }
 
-/// Whether all that is sought are states of the system: said before anyone asks for readings or a first guess of them.
-fn known_states(scene: &Scene, system: &System) -> Result<(), SceneError> {
-    let states: Vec<&str> = system.states.iter().map(|state| system.symbol_name(*state)).collect();
-    for (index, name) in scene.observer.estimate.iter().enumerate() {
-        if !states.contains(&name.as_str()) && !channels::is_sought(system, name) {
-            let help = match nearest(name, states.iter().copied()) {
-                Some(near) => format!("perhaps you meant '{near}'"),
-                None => "an observer seeks states; constants are told".to_owned(),
-            };
-            let error = ModelError::NoState { name: name.clone(), states: states.join(", ") };
-            let place = format!("observer.estimate[{index}]");
-            return Err(scene.error_at(&place, error.to_string(), "sought here", help));
-        }
-    }
-    Ok(())
-}
-
 /// What is wrong with a file of readings, with the record's own advice.
-fn unusable(scene: &Scene, error: &RecordError) -> SceneError {
+pub(super) fn unusable(scene: &Scene, error: &RecordError) -> SceneError {
     let advice = error.help().map(|help| help.to_string()).unwrap_or_default();
     let help = match error {
-        RecordError::Column { column, .. } => {
+        RecordError::Column { column, .. }
+            if !scene.observer.estimate.contains(column)
+                && !scene.columns.values().any(|own| own.from == *column) =>
+        {
             format!("{advice}; or give '{column}' under `known`, or estimate it")
         }
         _ => advice,
     };
     scene.error_at("data", error.to_string(), "the readings of this scene", help)
-}
-
-/// The constants that the observers know: the scene's own, and those of the bodies that the model knows.
-fn known_constants(
-    scene: &Scene,
-    system: &System,
-    simulation: Option<&Simulation>,
-    described: Option<&SystemMotion>,
-) -> Result<BTreeMap<String, f64>, SceneError> {
-    let settings = &scene.observer;
-    let mut known = channels::split(&settings.known).0;
-    let mut give = |name: &str, value: f64| {
-        if system.find_symbol(name).is_some() && !settings.estimate.iter().any(|other| other == name) {
-            known.entry(name.to_owned()).or_insert(value);
-        }
-    };
-    if let Some(simulation) = simulation {
-        for (name, value) in &simulation.constants {
-            give(name, *value);
-        }
-    } else if let Some(simulated) = &scene.simulated {
-        // a recording of what the scene describes
-        for (name, value) in constants(scene, simulated, &body(scene, simulated)?.0) {
-            give(&name, value);
-        }
-    } else if let Some(described) = described {
-        let read = |name: &str| described.response.outputs.iter().any(|(output, _)| output == name);
-        for (name, value) in described.response.constants.iter().filter(|(name, _)| !read(name)) {
-            give(name, *value);
-        }
-    }
-    Ok(known)
-}
-
-/// The columns without which the model is not determined.
-fn needed(scene: &Scene, system: &System, known: &BTreeMap<String, f64>) -> Vec<String> {
-    let settings = &scene.observer;
-    let driven: Vec<&String> = settings.inputs.values().collect();
-    let unknown =
-        |name: &str| !known.contains_key(name) && !settings.estimate.iter().any(|other| other == name);
-    let is_sought =
-        |symbol: &Symbol| settings.estimate.iter().any(|name| system.symbol_name(*symbol) == name);
-    let is_read = |node: &NodeId| system.graph.symbols_of([*node]).iter().any(is_sought);
-    let outputs =
-        system.outputs.iter().filter(|(name, node)| system.find_symbol(name).is_none() && is_read(node));
-    let outputs: Vec<String> = outputs.map(|(name, _)| name.clone()).collect();
-    let symbols = system.symbols().filter(|(symbol, info)| {
-        let name = system.symbol_name(*symbol);
-        unknown(name)
-            && match info.kind {
-                Kind::State => true,
-                Kind::Parameter => info.default.is_none() || driven.iter().any(|other| *other == name),
-                Kind::Imported => false,
-            }
-    });
-    symbols.map(|(symbol, _)| system.symbol_name(symbol).to_owned()).chain(outputs).collect()
-}
-
-/// The scene's rules for faulty rows, with the resolution of what this system's sensors read.
-fn fault_rules(scene: &Scene, system: &System) -> FaultRules {
-    let mut rules = scene.fault_rules();
-    let outputs = system.outputs.iter().map(|(name, _)| name.clone());
-    rules.resolution.extend(outputs.map(|name| (name, scene.sensor.resolution)));
-    rules
-}
-
-/// The range from which a state is drawn.
-fn sample_range(system: &System, name: &str) -> Option<[f64; 2]> {
-    let symbol = system.find_symbol(name)?;
-    let range = system.symbol_info(symbol)?.range.clone().or_else(|| system.default_range(symbol))?;
-    Some([&range.low, &range.high].map(rational_to_f64))
-}
-
-fn estimate_question(
-    scene: &Scene,
-    system: &System,
-    truth: &dyn Fn(&str) -> Option<f64>,
-    mut known: BTreeMap<String, f64>,
-    signals: &Signals,
-) -> Result<EstimateQuestion, SceneError> {
-    let settings = &scene.observer;
-    // a signal that never changes is a constant: the model then has only what the regime asks for
-    for (place, name) in signals.names().iter().enumerate() {
-        let column = signals.column(place);
-        let steady = column.iter().all(|value| *value == column[0]);
-        let met = system.find_symbol(name).is_some();
-        let is_output = system.outputs.iter().any(|(output, _)| output == name);
-        if met && steady && !is_output && !TOUCH.contains(&name.as_str()) && !settings.estimate.contains(name)
-        {
-            known.entry(name.clone()).or_insert(column[0]);
-        }
-    }
-    let unguided = match settings.guess {
-        Guess::None => Unguided::of(scene, system, &known, signals)?,
-        Guess::Values(_) | Guess::Off(_) | Guess::Sample => Unguided::default(),
-    };
-    let mut guess = Vec::new();
-    for name in &settings.estimate {
-        let value = match (&settings.guess, truth(name)) {
-            (Guess::Values(values), _) if values.contains_key(name) => values.get(name).copied(),
-            // a sensor is taken to be right at first
-            _ if CalibrationKind::of(name).is_some() => {
-                CalibrationKind::of(name).map(|(_, kind)| kind.nominal())
-            }
-            (Guess::Sample, _) => sample_range(system, name).map(|[low, high]| (low + high) / 2.0),
-            (Guess::None, _) => Some(unguided.value(scene, name)?),
-            (Guess::Values(_), _) => None,
-            (Guess::Off(off), Some(truth)) => Some(truth * (1.0 + off)),
-            (Guess::Off(_), None) => None,
-        };
-        let missing = || {
-            let help = "where there is no truth to be off from, give a value for each state under `guess`";
-            scene.error_at(
-                "observer.guess_off",
-                format!("there is no first guess of '{name}'"),
-                "asked for here",
-                help,
-            )
-        };
-        guess.push((name.clone(), value.ok_or_else(missing)?));
-    }
-    let inputs = settings.inputs.iter().map(|(field, symbol)| (field.clone(), symbol.clone())).collect();
-    Ok(EstimateQuestion { guess, clamped: settings.clamp.clone(), known, inputs })
 }

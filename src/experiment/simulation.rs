@@ -4,10 +4,11 @@ use super::columns::{COLUMNS, Column, SeenAs};
 use super::scene::{self, Channel, Scene, SceneError, Sensor, Simulated};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::{
-    BodyForm, CentreOfMass, DEFAULT_TOLERANCE, Ended, FormError, MovingScene as Bodies,
+    BodyForm, CentreOfMass, DEFAULT_TOLERANCE, DrawnSpline, Ended, FormError, MovingScene as Bodies,
     SceneError as Refused, Shape, SplineDraws, Trajectory, simulate as follow,
 };
 use crate::observer::{Record, RecordError, Signals};
+use crate::pose_surface::PoseBody;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -192,7 +193,7 @@ pub fn deviation(noise: f64, resolution: f64) -> f64 {
 }
 
 /// A number from the normal distribution with mean zero and standard deviation one, by G. Box and M. Muller's method.
-fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub(super) fn normal(random: &mut ChaCha8Rng) -> f64 {
     use rand::RngExt;
     let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt();
     radius * (std::f64::consts::TAU * random.random::<f64>()).cos()
@@ -200,7 +201,7 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
 
 /// The body of a scene, and how many splines were drawn until one was convex.
 pub(super) fn body(scene: &Scene, simulated: &Simulated) -> Result<(Shape, Option<usize>), SceneError> {
-    outline(simulated).map_err(|error| {
+    outline(&simulated.body).map_err(|error| {
         let help = "a body has to be smooth and strictly convex, with its centre of mass inside";
         scene.error_at("body.shape", error.to_string(), "this body", help)
     })
@@ -224,9 +225,10 @@ pub(super) fn constants(scene: &Scene, simulated: &Simulated, shape: &Shape) -> 
     constants.into_iter().chain(radii).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
-fn outline(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {
-    let centre = simulated.body.centre_of_mass.map_or(CentreOfMass::Uniform, CentreOfMass::At);
-    let form = match &simulated.body.shape {
+/// The outline, where the centre of mass is, and the random body where it is one.
+fn form(body: &scene::Body) -> Result<(BodyForm, CentreOfMass, Option<DrawnSpline>), FormError> {
+    let centre = body.centre_of_mass.map_or(CentreOfMass::Uniform, CentreOfMass::At);
+    let form = match &body.shape {
         scene::SceneOutline::Harmonics { mean, harmonics } => {
             BodyForm::Harmonics { mean: *mean, harmonics: harmonics.clone() }
         }
@@ -237,11 +239,38 @@ fn outline(simulated: &Simulated) -> Result<(Shape, Option<usize>), FormError> {
         scene::SceneOutline::Spline { radii, knots } => BodyForm::Spline { radii: *radii, knots: *knots },
         scene::SceneOutline::RandomSpline { seed, knots } => {
             let drawn = SplineDraws::new(*seed, *knots).until_convex()?;
-            return match centre {
-                CentreOfMass::Uniform => Ok((drawn.shape, Some(drawn.draws))),
-                CentreOfMass::At(_) => Ok((Shape::new(&drawn.form, centre)?, Some(drawn.draws))),
-            };
+            return Ok((drawn.form.clone(), centre, Some(drawn)));
         }
     };
-    Ok((Shape::new(&form, centre)?, None))
+    Ok((form, centre, None))
+}
+
+/// The shape of a body, and how many splines were drawn until one was convex.
+pub(super) fn outline(body: &scene::Body) -> Result<(Shape, Option<usize>), FormError> {
+    Ok(match form(body)? {
+        (_, CentreOfMass::Uniform, Some(drawn)) => (drawn.shape, Some(drawn.draws)),
+        (form, centre, drawn) => (Shape::new(&form, centre)?, drawn.map(|drawn| drawn.draws)),
+    })
+}
+
+fn pose_body(scene: &Scene) -> Result<PoseBody, SceneError> {
+    let Some(simulated) = &scene.simulated else {
+        let help = "stable poses are those of a simulated body: give [body] and [palms]";
+        return Err(scene.error_at("model", "the scene has no body", "no body beside this", help));
+    };
+    let found = form(&simulated.body).and_then(|(form, centre, _)| PoseBody::new(form, centre));
+    found.map_err(|error| {
+        let help = "a body has to be smooth and strictly convex, with its centre of mass inside";
+        scene.error_at("body.shape", error.to_string(), "this body", help)
+    })
+}
+
+impl Scene {
+    /// The body of the scene, to look at its stable poses.
+    ///
+    /// # Errors
+    /// Where the scene has no body, or one that is not convex, with the place in the scene.
+    pub fn pose_body(&self) -> Result<PoseBody, SceneError> {
+        pose_body(self)
+    }
 }

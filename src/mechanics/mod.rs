@@ -7,7 +7,7 @@
 //! ([`differentiate`]): some seventy correct digits, of which the estimate vouches for more than forty.
 //! Newton's laws, written for the centre of mass and the rotation and solved as linear equations, give the
 //! accelerations, the contact forces and the palms' torques ([`planar_dynamics`], [`solid_dynamics`]); where
-//! nothing accelerates, the potential energy gives the pose ([`lowest_pose`], [`follow`], [`resting_pose`]).
+//! nothing accelerates, the potential energy gives the pose ([`lowest_pose`], [`follow`], [`resting_pose`]; in double precision [`resting`]).
 //!
 //! What a published formula says of such a motion can then be held against the motion itself. For that to be
 //! worth something this floor has to stay ignorant: it imports numbers only, reads no proof file, and uses no
@@ -34,6 +34,7 @@ mod palm;
 mod precise;
 mod quasistatics;
 mod rest;
+pub mod resting;
 mod solid;
 pub mod spatial;
 mod tumbling;

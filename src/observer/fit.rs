@@ -77,6 +77,8 @@ pub struct Fit {
 pub(super) struct Misfit<'a> {
     pub differences: &'a DVector<f64>,
     pub outputs: usize,
+    /// So many of the first are no differences of readings: they are what was known before, in the same unit.
+    pub relations: usize,
     /// What was fitted, readings that were taken as they are included.
     pub unknowns: usize,
     /// The root of the mean square of what was read.
@@ -155,7 +157,12 @@ impl Misfit<'_> {
     /// The probability of neighbours so alike, the least over the outputs times their number.
     fn independent(&self) -> f64 {
         let column = |output: usize| -> Vec<f64> {
-            self.differences.iter().skip(output).step_by(self.outputs.max(1)).copied().collect()
+            self.differences
+                .iter()
+                .skip(self.relations + output)
+                .step_by(self.outputs.max(1))
+                .copied()
+                .collect()
         };
         let tail = |column: Vec<f64>| {
             let n = column.len() as f64;
@@ -184,7 +191,16 @@ mod tests {
     }
 
     fn misfit(differences: &DVector<f64>, alarm: f64) -> Misfit<'_> {
-        Misfit { differences, outputs: 2, unknowns: 0, size: 1.0, alarm, least: 1e-9, timing: 0.0 }
+        Misfit {
+            differences,
+            outputs: 2,
+            relations: 0,
+            unknowns: 0,
+            size: 1.0,
+            alarm,
+            least: 1e-9,
+            timing: 0.0,
+        }
     }
 
     /// Normal errors are called so, whether their size was stated or not: over 20,000 draws no more alarms than are allowed, five

@@ -7,6 +7,7 @@
 
 use super::jet::{Jet, triangle};
 use super::model::{Formulas, InputSource};
+use super::quick_step::QuickSteps;
 use super::{Model, Signals};
 use crate::number::{Duals, Refusal};
 use nalgebra::DMatrix;
@@ -153,9 +154,18 @@ impl ModelFlow<'_> {
             }
         }
         let mut samples = Vec::with_capacity(times.len());
+        let mut quick = QuickSteps::default();
         for (i, time) in times.iter().enumerate() {
             if i > 0 {
                 failure.set(None);
+                if quick.take(&right_hand_side, times[i - 1], *time, &mut y, self.tolerance) {
+                    let values = evaluate(&model.seen, &seen, *time, &y)
+                        .map_err(|error| refuse(*time, error.refusal))?;
+                    samples.push(sample(*time, start.len(), free.len(), size, &y, &values));
+                    continue;
+                }
+                failure.set(None);
+                quick.begin_anew();
                 y = advance(&right_hand_side, times[i - 1], *time, &y, self.tolerance).map_err(|lost| {
                     match failure.get() {
                         Some((time, refusal)) => refuse(time, refusal),

@@ -3,7 +3,7 @@
 use super::flow::advance;
 use super::model::{Formulas, InputSource};
 use super::task::{Observer, SampleEstimate, Task, Track};
-use super::{Lost, Model};
+use super::{Learned, Lost, Model};
 use crate::expression::{NodeId, Symbol, gradient};
 use crate::number::{Duals, Refusal};
 use nalgebra::{DMatrix, DVector};
@@ -50,7 +50,11 @@ impl Observer for HighGain {
     fn observe(&self, task: &Task<'_>) -> Track {
         let mut track = Track::default();
         let times = task.signals.times();
-        let mut state = task.full_state(&task.guess, 0);
+        let learned = Learned::before(task);
+        let mut state = task.full_state(&learned.belief, 0);
+        if let Some((known, _)) = &learned.filter {
+            state = known.as_slice().to_vec();
+        }
         let canonical = match Canonical::new(task, &state) {
             Ok(canonical) => canonical,
             Err(why) => {
@@ -97,6 +101,9 @@ impl Observer for HighGain {
             "canonical form: the outputs and their derivatives, {} coordinates",
             lengths.join(" and ")
         ));
+        let belief = state[..task.estimated()].to_vec();
+        let filter = Some((DVector::from_vec(state), DMatrix::zeros(0, 0)));
+        track.hand_on(Learned { belief, filter, ..Learned::nothing(task) });
         track
     }
 }
@@ -155,6 +162,9 @@ fn inputs_at(task: &Task<'_>, model: &Model, formulas: &Formulas, time: f64, x: 
 impl Canonical {
     /// The canonical form of a task's model, where it has one at the first guess.
     fn new(task: &Task<'_>, state: &[f64]) -> Result<Canonical, String> {
+        if let Some(why) = task.refuses_implicit() {
+            return Err(why);
+        }
         let mut model = Model::clone(&task.full);
         if model.outputs.iter().any(|output| model.find(output).is_none()) {
             return Err("an output is not one of the states that are followed".to_owned());
@@ -202,7 +212,8 @@ impl Canonical {
             return None;
         }
         let mut read = vec![0.0; self.model.measured.len()];
-        task.signals.at(&self.model.measured, time, &mut read);
+        let measured: Vec<usize> = self.model.measured.iter().flatten().copied().collect();
+        task.signals.at(&measured, time, &mut read);
         let mut right = Vec::with_capacity(x.len());
         for ((length, output), read) in self.lengths.iter().zip(&self.model.outputs).zip(&read) {
             let error = x[self.model.find(output)?] - read;

@@ -1,6 +1,7 @@
 //! Pure integration: the equations, from the first guess to the end. What the thesis resorts to where its observer cannot
 //! see, and the line below which no observer should fall.
 
+use super::Learned;
 use super::task::{Observer, SampleEstimate, Task, Track};
 
 /// Integrates what is sought with the outputs as they are read, and never compares.
@@ -11,7 +12,7 @@ impl Observer for Integration {
     fn observe(&self, task: &Task<'_>) -> Track {
         let times = task.signals.times();
         let mut track = Track::default();
-        let mut belief = task.guess.clone();
+        let mut belief = Learned::before(task).belief;
         track.estimates.push(SampleEstimate { time: times[0], state: belief.clone(), residual: Vec::new() });
         for (row, &time) in times.iter().enumerate().skip(1) {
             if task.interrupted() {
@@ -28,6 +29,7 @@ impl Observer for Integration {
             }
             track.estimates.push(SampleEstimate { time, state: belief.clone(), residual: Vec::new() });
         }
+        track.hand_on(Learned { belief, ..Learned::nothing(task) });
         track
     }
 }

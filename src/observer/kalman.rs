@@ -1,7 +1,7 @@
 //! The extended Kalman filter, the field's usual choice.
 
 use super::task::{Observer, Task, Track};
-use super::{Lost, Order};
+use super::{Learned, Lost, Order};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Deserialize;
 
@@ -34,11 +34,19 @@ impl Observer for Kalman {
         let times = task.signals.times();
         let n = task.full.states.len();
         let mut track = Track::default();
+        if let Some(why) = task.refuses_implicit() {
+            track.remarks.push(why);
+            return track;
+        }
         let sigma = task.sigma.max(self.least_sigma);
-        let mut state = DVector::from_vec(task.full_state(&task.guess, 0));
+        let learned = Learned::before(task);
+        let mut state = DVector::from_vec(task.full_state(&learned.belief, 0));
         let deviations = DVector::from_vec(task.prior_deviations(self.prior, sigma));
         let mut covariance = DMatrix::from_diagonal(&deviations.map(|deviation| deviation.powi(2)));
         let drive = |i: usize| task.sizes.get(i).map_or(0.0, |size| (self.process_noise * size).powi(2));
+        if let Some((known, spread)) = learned.filter {
+            (state, covariance) = (known, spread);
+        }
         track.believe(times[0], state.as_slice(), task.estimated(), Vec::new());
         for row in 1..times.len() {
             if task.interrupted() {
@@ -64,6 +72,7 @@ impl Observer for Kalman {
             let residual = correct(task, &mut state, &mut covariance, sigma, row);
             track.believe(times[row], state.as_slice(), task.estimated(), residual.unwrap_or_default());
         }
+        track.hand_on(Learned::of_filter(task, &state, &covariance, covariance.diagonal()));
         track
     }
 }

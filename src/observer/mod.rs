@@ -16,14 +16,18 @@ mod errors_in_variables;
 mod fit;
 mod flow;
 mod high_gain;
+mod inheritance;
 mod integration;
 mod jet;
 mod kalman;
+mod learned;
+mod loss;
 mod model;
 mod moving_window;
 mod multiple_shooting;
 mod newton;
 mod nodes;
+mod quick_step;
 pub(crate) mod record;
 mod response;
 mod sensitivity;
@@ -52,13 +56,18 @@ pub use flow::{ModelFlow, Order, Sample};
 pub use high_gain::HighGain;
 pub use integration::Integration;
 pub use kalman::Kalman;
+pub use learned::{Arrival, Learned};
+pub use loss::Loss;
 #[doc(hidden)]
 pub use model::ModelQuestion;
 pub use model::{Model, ModelError};
 pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
 pub use multiple_shooting::{MultipleShooting, Shooting};
 pub use newton::Newton;
-pub use record::{Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading};
+pub use record::{
+    ColumnNames, ColumnSource, Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading,
+};
+pub(crate) use record::{RowStream, STREAM, TIME};
 pub use response::{Response, ResponseError, ResponseQuestion};
 pub use signal::{SignalError, Signals};
 pub use suspect::{Suspect, SuspectKind};

@@ -86,8 +86,8 @@ pub struct Model {
     pub(super) seen: Formulas,
     /// The columns of the signals that the formulas need.
     pub(super) columns: Vec<usize>,
-    /// The columns of the outputs.
-    pub(super) measured: Vec<usize>,
+    /// The columns of the outputs; none of those that are zero, which tie states to readings.
+    pub(super) measured: Vec<Option<usize>>,
     /// The system with what is known put in, the rates and the outputs in its graph: for who needs derivatives of them.
     pub(super) system: System,
     pub(super) symbols: Vec<Symbol>,
@@ -105,6 +105,8 @@ impl Model {
         calibration::declare(&mut system, &question.followed);
         let symbols = symbols_of(&system, &question.followed)?;
         let (mut rates, mut outputs) = totals(&mut system, &symbols, &question.inputs)?;
+        let zeros = system.zero_outputs();
+        let are_zero: Vec<bool> = outputs.iter().map(|(_, node)| zeros.contains(node)).collect();
         calibration::put_in(&mut system, &question.followed, &mut rates, &mut outputs);
         let values = values_of(&mut system, question, &symbols, signals)?;
         for (rate, name) in rates.iter().zip(&question.followed) {
@@ -127,13 +129,18 @@ impl Model {
             rate_nodes,
             output_nodes: Vec::new(),
         };
-        for ((name, _), node) in outputs.iter().zip(nodes) {
+        for (((name, _), node), is_zero) in outputs.iter().zip(nodes).zip(are_zero) {
             let depends = model.system.graph.symbols_of([node]);
             if model.symbols.iter().any(|symbol| depends.contains(symbol)) {
                 let columns = signals.names().join(", ");
                 let missing = || ModelError::NotMeasured { name: name.clone(), columns };
-                model.measured.push(signals.find(name).ok_or_else(missing)?);
-                model.outputs.push(name.clone());
+                if is_zero {
+                    model.measured.push(None);
+                    model.outputs.push(format!("0 = {name}"));
+                } else {
+                    model.measured.push(Some(signals.find(name).ok_or_else(missing)?));
+                    model.outputs.push(name.clone());
+                }
                 model.output_nodes.push(node);
             }
         }
@@ -178,7 +185,26 @@ impl Model {
     /// The column that measures a followed state itself, where there is one.
     pub fn column_of(&self, state: usize) -> Option<usize> {
         let place = self.outputs.iter().position(|output| *output == self.states[state])?;
-        Some(self.measured[place])
+        self.measured[place]
+    }
+
+    /// Whether an output is implicit: zero at the true state and readings, so that nothing is read of it itself.
+    pub fn is_implicit(&self, output: usize) -> bool {
+        self.measured.get(output).is_some_and(Option::is_none)
+    }
+
+    /// The names of the columns that the outputs depend on, directly.
+    pub fn read_columns<'s>(&self, signals: &'s Signals) -> Vec<&'s str> {
+        let sources = self.seen.sources.iter().filter_map(|source| match source {
+            InputSource::Column(place) => Some(signals.names()[self.columns[*place]].as_str()),
+            InputSource::State(_) | InputSource::Rate(_) => None,
+        });
+        sources.collect()
+    }
+
+    /// Whether an output is implicit.
+    pub fn has_implicit(&self) -> bool {
+        self.measured.iter().any(Option::is_none)
     }
 
     /// Whether a followed state does not move, whatever the others are.

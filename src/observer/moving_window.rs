@@ -9,6 +9,7 @@ use super::{Fit, Newton, Order, TrustRegion, cramer_rao, weights};
 use argmin::core::{Executor, State, TerminationReason, TerminationStatus};
 use nalgebra::DVector;
 use serde::Deserialize;
+use std::ops::Range;
 use std::time::Instant;
 
 /// How the smallest error of a window is sought.
@@ -31,8 +32,11 @@ pub enum WhenBlind {
     Hold,
 }
 
-/// A window of so many samples that is lost is tried again from what its first half tells.
-const LONG: usize = 160;
+/// With a robust loss so many times the steps are allowed.
+const ROBUST: u64 = 8;
+
+/// A window that is lost grows from a part of it with so many readings for each unknown.
+const FEWEST: usize = 4;
 
 /// The observer by windows.
 #[derive(Clone, Copy, Debug)]
@@ -60,31 +64,16 @@ impl MovingWindow {
 
 impl Observer for MovingWindow {
     fn observe(&self, task: &Task<'_>) -> Track {
-        let mut track = Track::default();
-        let mut are_suspects_known = false;
-        let samples = task.signals.times().len();
-        let mut belief = task.guess.clone();
-        let mut row = 0;
-        let mut sees = true;
-        while row + 1 < samples && !task.interrupted() {
-            // windows share a sample: where one ends the next begins
-            let rows = row..(row + self.window.max(2)).min(samples - 1) + 1;
-            let clamped: &[usize] = if row == 0 { &task.clamped } else { &[] };
-            // too few samples to compare are only followed, and seen if those before were
-            let update = (rows.len() >= self.window.min(samples))
-                .then(|| self.update_and_ask(task, &belief, &rows, clamped, !are_suspects_known));
-            are_suspects_known |= update.as_ref().is_some_and(is_asked);
-            let mut start = task.full_state(&belief, row);
-            if let Some(update) = update {
-                sees = !matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
-                belief.clone_from(&update.estimate);
-                start = [&update.estimate[..], &update.outputs].concat();
-                track.updates.push(update);
-            }
-            belief = self.follow(task, &start, &rows, sees, &mut track);
-            row = rows.end - 1;
-        }
-        track
+        let all = MovingWindow { window: task.signals.times().len(), ..*self };
+        let windows = if task.whole { &all } else { self };
+        windows.observe_by(task, |belief, rows, clamped, learned| {
+            let ask = !learned.is_asked;
+            let update = match task.whole {
+                true => self.grown(task, belief, rows, clamped, ask),
+                false => self.update_and_ask(task, belief, rows, clamped, ask),
+            };
+            (update, Vec::new())
+        })
     }
 }
 
@@ -102,10 +91,24 @@ impl MovingWindow {
             flow: task.full_flow(),
             times: &task.signals.times()[rows.clone()],
             measured: rows.clone().map(|row| task.readings(row)).collect(),
-            start: task.full_state(belief, rows.start),
+            start: task.within_bounds(task.full_state(belief, rows.start)),
+            bounds: Self::bounds_of(task, clamped),
             free: sought.chain(read).collect(),
+            arrival: task.arrival.clone(),
+            loss: (task.loss, task.sigma),
             weights: None,
         }
+    }
+
+    /// Between what a window's unknowns lie; nothing where nothing is told.
+    fn bounds_of(task: &Task<'_>, clamped: &[usize]) -> Vec<[f64; 2]> {
+        if task.bounds.iter().flatten().all(|bound| bound.is_infinite()) {
+            return Vec::new();
+        }
+        let sought = (0..task.estimated()).filter(|place| !clamped.contains(place));
+        let read = task.estimated()..if task.exact { task.estimated() } else { task.full.states.len() };
+        let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
+        sought.chain(read).map(|place| task.bounds.get(place).copied().unwrap_or(anywhere)).collect()
     }
 
     /// The magnitudes of a window's unknowns.
@@ -119,6 +122,9 @@ impl MovingWindow {
 
     /// The probability of a false alarm that an update may have for all of a run to have no more than [`FALSE_ALARMS`].
     pub(super) fn alarm(&self, task: &Task<'_>) -> f64 {
+        if let Some(alarm) = task.alarm {
+            return alarm;
+        }
         let updates = task.signals.times().len().div_ceil(self.window.max(1));
         FALSE_ALARMS / updates.max(1) as f64
     }
@@ -138,7 +144,7 @@ impl MovingWindow {
     }
 
     /// The same, with the suspects of an update of which they are asked.
-    fn update_and_ask(
+    pub(super) fn update_and_ask(
         &self,
         task: &Task<'_>,
         belief: &[f64],
@@ -188,17 +194,46 @@ impl MovingWindow {
             self.attempt_in(task, &window, belief).0
         };
         let update = from(belief);
-        if !matches!(update.end, UpdateEnd::Lost(_)) || rows.len() < LONG {
+        let shorter = rows.start..rows.start + rows.len() / 2;
+        if !matches!(update.end, UpdateEnd::Lost(_)) || shorter.len() < self.fewest(task) {
             return update;
         }
-        // an unstable flow leaves a long window from a guess that half of it makes better
-        let half = self.attempt(task, belief, &(rows.start..rows.start + rows.len() / 2), clamped);
+        // an unstable flow leaves a long window from a guess that a part of it makes better
+        let half = self.attempt(task, belief, &shorter, clamped);
         let again = from(&half.estimate);
         if matches!(again.end, UpdateEnd::Lost(_)) {
             return update;
         }
         let (steps, seconds) = (half.steps + again.steps, update.seconds + half.seconds + again.seconds);
         Update { steps, seconds, ..again }
+    }
+
+    /// The samples of the shortest part of a window that tells something.
+    fn fewest(&self, task: &Task<'_>) -> usize {
+        (FEWEST * task.full.states.len()).div_ceil(task.full.outputs.len().max(1)).max(8)
+    }
+
+    /// An update from all of the rows by windows that grow: the first is as long as this observer's, each further one twice as long, and
+    /// what is found is where the next begins.
+    fn grown(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &Range<usize>,
+        clamped: &[usize],
+        ask: bool,
+    ) -> Update {
+        let (mut belief, mut length) = (belief.to_vec(), self.window.max(2));
+        let (mut steps, mut seconds) = (0, 0.0);
+        while length < rows.len() && !task.interrupted() {
+            let part = rows.start..rows.start + length;
+            let update = self.update_and_ask(task, &belief, &part, clamped, false);
+            (steps, seconds) = (steps + update.steps, seconds + update.seconds);
+            belief = update.estimate;
+            length *= 2;
+        }
+        let update = self.update_and_ask(task, &belief, rows, clamped, ask);
+        Update { steps: steps + update.steps, seconds: seconds + update.seconds, ..update }
     }
 
     /// An attempt in a window; `belief` is what stays believed where there is none. With the differences of what was found.
@@ -226,6 +261,8 @@ impl MovingWindow {
             end: UpdateEnd::Stuck,
             fit: None,
             suspects: Vec::new(),
+            is_heir: false,
+            discounted: 0,
         };
         let guess = window.unknowns(&window.start);
         update.end = match window.expand(&guess, Order::First) {
@@ -248,13 +285,25 @@ impl MovingWindow {
 
     /// How well a state explains a window.
     fn fit(&self, task: &Task<'_>, window: &Window<'_>, expansion: &WindowExpansion) -> Fit {
-        let differences = &expansion.differences;
+        let differences = &expansion.counted;
         let read = || window.measured.iter().flatten();
         let square: f64 = read().map(|value| value * value).sum();
+        // nothing is read of an implicit output: it is as large as what is sought makes its terms
+        let sizes = Self::sizes(task, window);
+        let term = |i: usize| -> f64 {
+            expansion.slopes.row(i).iter().zip(&sizes).map(|(slope, size)| (slope * size).powi(2)).sum()
+        };
+        let outputs = task.full.outputs.len().max(1);
+        let implicit = (0..differences.len()).filter(|i| task.full.is_implicit(i % outputs));
+        let square = match window.weights {
+            Some(_) => square,
+            None => square + implicit.map(term).sum::<f64>(),
+        };
         let taken = if task.exact { task.full.states.len() - task.estimated() } else { 0 };
         let misfit = Misfit {
             differences,
             outputs: task.full.outputs.len(),
+            relations: window.relations(),
             unknowns: window.free.len() + taken,
             size: (square / read().count().max(1) as f64).sqrt(),
             alarm: self.alarm(task),
@@ -301,15 +350,19 @@ impl MovingWindow {
         sizes: &[f64],
         update: &mut Update,
     ) -> (UpdateEnd, Option<DVector<f64>>) {
+        // beyond the corner of a robust loss the error is no square: each step leaves a part of the way
+        let steps = if task.loss == super::Loss::Squares { self.steps } else { ROBUST * self.steps };
         macro_rules! run {
             ($solver:expr) => {
                 Executor::new(window.clone(), $solver)
-                    .configure(|state| state.param(guess).max_iters(self.steps))
+                    .configure(|state| state.param(guess).max_iters(steps))
                     .ctrlc(false)
                     .run()
             };
         }
-        let (state, troubled) = match self.method {
+        // steps of Newton's method know of no bounds
+        let method = if window.bounds.is_empty() { self.method } else { WindowSearch::TrustRegion };
+        let (state, troubled) = match method {
             WindowSearch::Newton => match run!(Newton::new(sizes.to_vec())) {
                 Ok(result) => {
                     let troubled = result.solver.not_convex + result.solver.halved;
@@ -335,6 +388,9 @@ impl MovingWindow {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
                 let fit = self.fit(task, window, &expansion);
                 update.fit = Some(fit);
+                let (loss, sigma) = window.loss;
+                let left = window.weighted(expansion.left.clone());
+                update.discounted = left.iter().filter(|value| loss.is_discounted(**value, sigma)).count();
                 if let Some(blind) = self.see(task, fit.sigma, window, &expansion.slopes, sizes, update) {
                     update.estimate = window.start[..task.estimated()].to_vec();
                     update.outputs = window.start[task.estimated()..].to_vec();

@@ -192,8 +192,14 @@ impl MultipleShooting {
             let least = (1e-6 * low.abs().max(high.abs())).max(task.sigma);
             ((high - low) / 2.0).max(least)
         };
-        let spread =
-            (0..model.outputs.len()).map(|output| spread_of(read.iter().map(|row| row[output]).collect()));
+        // nothing is read of an implicit output: it is as large as at the guess
+        let first = task.full_flow().follow(&base, &[], &times[rows.start..=rows.start], super::Order::Value);
+        let guessed = first.ok().and_then(|mut samples| Some(samples.pop()?.outputs)).unwrap_or_default();
+        let spread = (0..model.outputs.len()).map(|output| match guessed.get(output) {
+            Some(size) if model.is_implicit(output) && *size != 0.0 => size.abs().max(task.sigma),
+            _ if model.is_implicit(output) => 1.0,
+            _ => spread_of(read.iter().map(|row| row[output]).collect()),
+        });
         let size = |place: usize| {
             let own = task.sizes.get(place).copied();
             let sampled = range(task, place).map(|([low, high], _)| (high - low) / 2.0);
@@ -278,39 +284,24 @@ fn best_first(task: &Task<'_>, mut updates: Vec<Update>) -> Vec<Update> {
 
 impl Observer for MultipleShooting {
     fn observe(&self, task: &Task<'_>) -> Track {
-        let mut track = Track::default();
         let ending = self.ending();
-        let samples = task.signals.times().len();
-        let mut belief = task.guess.clone();
-        let mut are_suspects_known = false;
-        let (mut row, mut sees) = (0, true);
-        while row + 1 < samples && !task.interrupted() {
-            let rows = row..(row + ending.window.max(2)).min(samples - 1) + 1;
-            let clamped: &[usize] = if row == 0 { &task.clamped } else { &[] };
-            let mut start = task.full_state(&belief, row);
-            if rows.len() >= ending.window.min(samples) {
-                // what was learned is where the next window begins; it starts anew where that does not fit
-                let inherited = (row > 0 && sees).then(|| ending.update(task, &belief, &rows, clamped));
-                let mut found = match inherited.filter(Update::is_borne_out) {
-                    Some(update) => vec![update],
-                    None => self.solutions(task, &belief, &rows, clamped),
-                };
-                let mut update = found.remove(0);
-                // what errs in the columns that drive the model is not among the suspects: that is for the windows that weigh it
-                if !are_suspects_known && is_asked(&update) && !weights::are_needed(task) {
-                    let window = MovingWindow::window(task, &belief, &rows, clamped);
-                    update.suspects = suspects(task, &window, &update, ending.alarm(task));
-                    are_suspects_known = true;
-                }
-                sees = !matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
-                belief.clone_from(&update.estimate);
-                start = [&update.estimate[..], &update.outputs].concat();
-                track.updates.push(update);
-                track.others.extend(found);
+        let all = MovingWindow { window: task.signals.times().len(), ..ending };
+        let windows = if task.whole { &all } else { &ending };
+        windows.observe_by(task, |belief, rows, clamped, learned| {
+            // what was learned is where the next window begins; it starts anew where that does not fit
+            let is_known = task.learned.is_some() || rows.start > 0;
+            let inherited = (is_known && learned.sees).then(|| ending.update(task, belief, rows, clamped));
+            let mut found = match inherited.filter(Update::is_borne_out) {
+                Some(update) => vec![update],
+                None => self.solutions(task, belief, rows, clamped),
+            };
+            let mut update = found.remove(0);
+            // what errs in the columns that drive the model is not among the suspects: that is for the windows that weigh it
+            if !learned.is_asked && is_asked(&update) && !weights::are_needed(task) {
+                let window = MovingWindow::window(task, belief, rows, clamped);
+                update.suspects = suspects(task, &window, &update, windows.alarm(task));
             }
-            belief = ending.follow(task, &start, &rows, sees, &mut track);
-            row = rows.end - 1;
-        }
-        track
+            (update, found)
+        })
     }
 }

@@ -35,6 +35,8 @@ pub struct Signals {
     weights: Vec<Vec<f64>>,
     points: usize,
     unit: f64,
+    /// The samples that are looked at; those beside them carry the curves alone.
+    shown: std::ops::Range<usize>,
 }
 
 impl Signals {
@@ -83,12 +85,22 @@ impl Signals {
         let weights =
             times.windows(points).map(|run| (0..points).map(|i| weight(run, i)).collect()).collect();
         let (names, columns) = columns.into_iter().unzip();
-        Ok(Signals { times, names, columns, weights, points, unit })
+        let shown = 0..times.len();
+        Ok(Signals { times, names, columns, weights, points, unit, shown })
+    }
+
+    /// The same of which some samples are looked at, and the others carry the curves beside them: a part of a longer recording.
+    ///
+    /// # Panics
+    /// When there are no such samples.
+    pub(crate) fn showing(self, shown: std::ops::Range<usize>) -> Signals {
+        assert!(shown.start < shown.end && shown.end <= self.times.len(), "{shown:?}");
+        Signals { shown, ..self }
     }
 
     /// The times of the samples, in s.
     pub fn times(&self) -> &[f64] {
-        &self.times
+        &self.times[self.shown.clone()]
     }
 
     /// The place of a column.
@@ -103,7 +115,7 @@ impl Signals {
 
     /// The samples of a column.
     pub fn column(&self, place: usize) -> &[f64] {
-        &self.columns[place]
+        &self.columns[place][self.shown.clone()]
     }
 
     /// The same with a column multiplied by a factor.

@@ -1,6 +1,8 @@
 //! What every observer is given, and what it gives back.
 
 use super::fit::{Fit, Noise};
+use super::learned::{Arrival, Learned};
+use super::loss::Loss;
 use super::suspect::Suspect;
 use super::{
     CalibrationKind, Lost, Model, ModelError, ModelFlow, ModelQuestion, Order, ReadingErrors, Signals,
@@ -37,6 +39,20 @@ pub struct Task<'a> {
     pub timing: f64,
     /// Whether the readings are taken as they are for the first values of the outputs, because they have no error.
     pub exact: bool,
+    /// Whether a window begins with what the ones before it have learned.
+    pub inherit: bool,
+    /// What is known of each of what is sought: it lies in this range.
+    pub bounds: Vec<[f64; 2]>,
+    /// How misfits are weighed.
+    pub loss: Loss,
+    /// Whether all samples are one window, however many a window has otherwise: it grows from that many to all.
+    pub whole: bool,
+    /// The probability of a false alarm of each update; where none is given it is such that all of a run have [`super::FALSE_ALARMS`].
+    pub alarm: Option<f64>,
+    /// What was learned from earlier samples of a recording of which these are the next: its last sample is the first here.
+    pub learned: Option<Arc<Learned>>,
+    /// What is known of the state at the first sample of a window from those before it.
+    pub(super) arrival: Option<Arc<Arrival>>,
     /// The tolerance of the integration.
     pub tolerance: f64,
     /// Set from outside to stop: what is done by then is given back.
@@ -125,6 +141,13 @@ impl<'a> Task<'a> {
             errors: BTreeMap::new(),
             timing: 0.0,
             exact: true,
+            inherit: true,
+            bounds: vec![[f64::NEG_INFINITY, f64::INFINITY]; names.len()],
+            loss: Loss::Squares,
+            whole: false,
+            alarm: None,
+            learned: None,
+            arrival: None,
             tolerance: TOLERANCE,
             interrupt,
             source: Arc::new((system.clone(), wanted.clone())),
@@ -167,6 +190,14 @@ impl<'a> Task<'a> {
         (0..self.full.states.len()).map(|i| if i < sought.len() { sought[i] } else { read(i) }).collect()
     }
 
+    /// A full state whose sought part lies where it is told to.
+    pub(super) fn within_bounds(&self, mut state: Vec<f64>) -> Vec<f64> {
+        for (value, [low, high]) in state.iter_mut().zip(&self.bounds) {
+            *value = value.max(*low).min(*high);
+        }
+        state
+    }
+
     /// The standard deviations that a filter begins with: of what is sought a part of its size, none of what is clamped, and of outputs that
     /// are states the readings' own.
     pub(super) fn prior_deviations(&self, part: f64, sigma: f64) -> Vec<f64> {
@@ -178,9 +209,30 @@ impl<'a> Task<'a> {
         (0..self.full.states.len()).map(deviation).collect()
     }
 
-    /// What was read of the outputs at a sample.
+    /// What is believed of the errors of an output: one that is zero has none of its own, but those of the readings in it.
+    pub(super) fn output_errors(&self, output: usize) -> ReadingErrors {
+        if self.full.is_implicit(output) {
+            return ReadingErrors::default();
+        }
+        self.errors.get(&self.full.outputs[output]).copied().unwrap_or_else(|| self.common_errors())
+    }
+
+    /// Why a method that knows no errors but those of readings does nothing here: some outputs are implicit.
+    pub(super) fn refuses_implicit(&self) -> Option<String> {
+        let names = self.full.outputs.iter().enumerate().filter(|(place, _)| self.full.is_implicit(*place));
+        let names: Vec<&str> = names.map(|(_, name)| name.as_str()).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "it compares outputs with readings, and none is read of {}: ask a method by windows",
+                names.join(", ")
+            )
+        })
+    }
+
+    /// What was read of the outputs at a sample; zero of those that are zero.
     pub(super) fn readings(&self, row: usize) -> Vec<f64> {
-        self.full.measured.iter().map(|column| self.signals.column(*column)[row]).collect()
+        let read = |column: &Option<usize>| column.map_or(0.0, |column| self.signals.column(column)[row]);
+        self.full.measured.iter().map(read).collect()
     }
 
     /// What is sought, from one sample to a later one by the equations alone, with the outputs as they are read.
@@ -257,6 +309,10 @@ pub struct Update {
     pub end: UpdateEnd,
     /// How well it explains the readings, where it was found out.
     pub fit: Option<Fit>,
+    /// Whether it counts what the windows before it have learned, beside its own readings.
+    pub is_heir: bool,
+    /// Readings beyond the corner of a robust loss.
+    pub discounted: usize,
     /// What else might be wrong with the model: for the first update of a track that converged where the noise is stated.
     pub suspects: Vec<Suspect>,
 }
@@ -288,6 +344,8 @@ pub struct Track {
     pub unseen: usize,
     /// What else is to be said.
     pub remarks: Vec<String>,
+    /// What is handed to whoever goes on from the last sample.
+    pub learned: Option<Arc<Learned>>,
 }
 
 impl Track {

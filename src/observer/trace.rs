@@ -178,13 +178,17 @@ fn directions(task: &Task<'_>, window: &Window<'_>, here: &WindowExpansion) -> V
     let outputs = task.full.outputs.len().max(1);
     let read: Vec<f64> = window.measured.concat();
     for (place, name) in task.full.outputs.iter().enumerate() {
-        if task.full.find(&format!("{name}.gain")).is_some() {
+        if task.full.is_implicit(place) || task.full.find(&format!("{name}.gain")).is_some() {
             continue;
         }
         let own = |i: usize, _| if i % outputs == place { read[i] } else { 0.0 };
         add(name, SuspectKind::OutputGain, Some(DVector::from_fn(read.len(), own)));
     }
-    let modelled: Vec<f64> = here.left.iter().zip(&read).map(|(off, read)| off + read).collect();
+    // what is late in an implicit output are its readings, each in its own way
+    let modelled = |(i, (off, read)): (usize, (&f64, &f64))| {
+        if task.full.is_implicit(i % outputs) { 0.0 } else { off + read }
+    };
+    let modelled: Vec<f64> = here.left.iter().zip(&read).enumerate().map(modelled).collect();
     add(
         &task.full.outputs.join(", "),
         SuspectKind::Delay,

@@ -37,6 +37,32 @@ impl TrustRegion {
         TrustRegion { sizes, refused: 0, lambda, growth, here: None, converged: false, stuck: false }
     }
 
+    /// The next step; between bounds where there are some: what lies at one and is pushed against it stays there, and a step ends at the first
+    /// bound of each unknown.
+    fn within(
+        &self,
+        problem: &Problem<Window<'_>>,
+        here: &WindowExpansion,
+        guess: &DVector<f64>,
+    ) -> Option<DVector<f64>> {
+        let bounds = problem.problem.as_ref().map_or(&[][..], |window| &window.bounds);
+        if bounds.is_empty() {
+            return gauss_newton(here, &self.sizes, self.lambda);
+        }
+        let mut free = here.clone();
+        for (i, [low, high]) in bounds.iter().enumerate() {
+            let pushed =
+                (guess[i] <= *low && here.gradient[i] > 0.0) || (guess[i] >= *high && here.gradient[i] < 0.0);
+            if pushed {
+                free.slopes.column_mut(i).fill(0.0);
+            }
+        }
+        let step = gauss_newton(&free, &self.sizes, self.lambda)?;
+        Some(DVector::from_fn(step.len(), |i, _| {
+            (guess[i] + step[i]).clamp(bounds[i][0], bounds[i][1]) - guess[i]
+        }))
+    }
+
     /// How much smaller `2k/dt` should be after a step, by the linear model.
     fn foretold(&self, here: &WindowExpansion, step: &DVector<f64>) -> f64 {
         let after = &here.differences + &here.slopes * step;
@@ -65,12 +91,14 @@ impl Solver<Window<'_>, Iteration> for TrustRegion {
                     .column_iter()
                     .zip(&self.sizes)
                     .map(|(c, size)| c.norm_squared() * size * size);
-                self.lambda = 1e-6 * scaled.fold(0.0, f64::max);
+                // what was learned before may weigh some directions far more than others: damping would hide these
+                let is_near = problem.problem.as_ref().is_some_and(|window| window.relations() > 0);
+                self.lambda = if is_near { 1e-16 } else { 1e-6 } * scaled.fold(0.0, f64::max);
                 here
             }
         };
         while self.lambda < STRONGEST {
-            let Some(step) = gauss_newton(&here, &self.sizes, self.lambda) else { break };
+            let Some(step) = self.within(problem, &here, &guess) else { break };
             let short = length(&step, &self.sizes);
             let tried: Result<WindowExpansion, Lost> =
                 problem.problem("expansions", |window| Ok(window.expand(&(&guess + &step), Order::First)))?;

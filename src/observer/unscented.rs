@@ -1,7 +1,7 @@
 //! The unscented Kalman filter: no derivative is taken, points about the estimate are followed instead.
 
 use super::task::{Observer, Task, Track};
-use super::{Lost, Order};
+use super::{Learned, Lost, Order};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 
@@ -89,13 +89,24 @@ impl Observer for Unscented {
         let times = task.signals.times();
         let n = task.full.states.len();
         let mut track = Track::default();
+        if let Some(why) = task.refuses_implicit() {
+            track.remarks.push(why);
+            return track;
+        }
         let sigma = task.sigma.max(self.least_sigma);
-        let mut state = DVector::from_vec(task.full_state(&task.guess, 0));
+        let learned = Learned::before(task);
+        let mut state = DVector::from_vec(task.full_state(&learned.belief, 0));
         let deviations = DVector::from_vec(task.prior_deviations(self.prior, sigma));
         let mut root = DMatrix::from_diagonal(&deviations);
         let drive =
             DVector::from_fn(n, |i, _| task.sizes.get(i).map_or(0.0, |size| self.process_noise * size));
-        for row in 0..times.len() {
+        // what was learned before has read the first sample
+        let mut first = 0;
+        if let Some((known, spread)) = learned.filter {
+            (state, root, first) = (known, spread, 1);
+            track.believe(times[0], state.as_slice(), task.estimated(), Vec::new());
+        }
+        for row in first..times.len() {
             if task.interrupted() {
                 break;
             }
@@ -121,6 +132,8 @@ impl Observer for Unscented {
             };
             track.believe(times[row], state.as_slice(), task.estimated(), residual);
         }
+        let variances = (&root * root.transpose()).diagonal();
+        track.hand_on(Learned::of_filter(task, &state, &root, variances));
         track
     }
 }

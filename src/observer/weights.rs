@@ -6,9 +6,12 @@
 //! differences of the true state have the covariance `C = R + S V S^T`. Least squares with `W` for which `W C W^T = 1` is as good as an
 //! estimate from these readings can be (A. C. Aitken, On least squares and linear combination of observations, 1935); the true
 //! values of the columns are estimated with it, by `V S^T C^-1` of the differences, and `S` is taken there.
+//!
+//! An implicit output, `0 = y(x, reading)`, is one whose reading is zero and has no error of its own: its row of `S` has `dy/dreading` at its
+//! own sample, beside what the readings do through the motion.
 
 use super::chi_square::exceeded;
-use super::fit::{Fit, NoiseFrom, ReadingErrors};
+use super::fit::{Fit, Noise, NoiseFrom, ReadingErrors};
 use super::sensitivity::Sensitivity;
 use super::task::Task;
 use super::{Lost, Signals};
@@ -52,7 +55,10 @@ pub(super) fn noisy_columns(task: &Task<'_>) -> Vec<usize> {
 pub(super) fn are_needed(task: &Task<'_>) -> bool {
     let common = task.common_errors();
     let own = |name: &String| task.errors.get(name).is_some_and(|errors| *errors != common);
-    task.full.outputs.iter().any(own) || !noisy_columns(task).is_empty()
+    let is_stated = task.noise != Noise::Unstated;
+    task.full.outputs.iter().any(own)
+        || !noisy_columns(task).is_empty()
+        || (is_stated && task.full.has_implicit())
 }
 
 impl Weights {
@@ -74,9 +80,7 @@ impl Weights {
         let sensitivity = Sensitivity::of(&task.full_flow(), start, times, columns)?;
         let rows = sensitivity.first..sensitivity.first + sensitivity.rows;
         let runs = sensitivity.columns.iter().map(|c| runs(&read.column(*c)[rows.clone()])).collect();
-        let common = task.common_errors();
-        let outputs =
-            task.full.outputs.iter().map(|name| *task.errors.get(name).unwrap_or(&common)).collect();
+        let outputs = (0..task.full.outputs.len()).map(|output| task.output_errors(output)).collect();
         let offset = match taken_off {
             Some(errors) => sensitivity.times(errors),
             None => DVector::zeros(sensitivity.slopes.nrows()),
@@ -221,10 +225,15 @@ impl Weights {
         let directions = back(slopes.clone())?.qr().q();
         let left = &left - &directions * directions.tr_mul(&left);
         let n = left.len();
+        let inverse = root.solve_lower_triangular(&DMatrix::identity(n, n))?;
         let own: f64 = (0..n)
             .map(|i| {
-                let rounding = self.outputs[i % self.outputs.len()].rounding / 2.0;
-                (rounding + computed).powi(2) / (self.own_variance(i) + computed * computed)
+                let errors = self.outputs[i % self.outputs.len()];
+                if errors.are_none() {
+                    // of an output without errors of its own: by those that reach it
+                    return inverse.column(i).norm_squared() * computed * computed;
+                }
+                (errors.rounding / 2.0 + computed).powi(2) / (self.own_variance(i) + computed * computed)
             })
             .sum();
         let mut allowed = own.sqrt();

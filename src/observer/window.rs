@@ -1,6 +1,8 @@
 //! The error of the output over a window of samples (4.77), as a function of the unknown parts of the first state.
 
 use super::flow::MOST_BENT;
+use super::learned::Arrival;
+use super::loss::Loss;
 use super::weights::Weights;
 use super::{Lost, ModelFlow, Order, Sample};
 use nalgebra::{DMatrix, DVector};
@@ -21,6 +23,12 @@ pub struct Window<'a> {
     pub start: Vec<f64>,
     /// The places of what is unknown.
     pub free: Vec<usize>,
+    /// What is known of the state before the readings, which is then in the place of the first of them.
+    pub(super) arrival: Option<Arc<Arrival>>,
+    /// How misfits are weighed, and the standard deviation of a reading for it.
+    pub(super) loss: (Loss, f64),
+    /// Between what the unknowns lie.
+    pub(super) bounds: Vec<[f64; 2]>,
     /// The weights of the differences, where their errors are not independent and alike.
     pub(super) weights: Option<Arc<Weights>>,
 }
@@ -34,6 +42,8 @@ pub struct WindowExpansion {
     pub left: DVector<f64>,
     /// The same, weighted where they have weights: what the error is made of.
     pub differences: DVector<f64>,
+    /// The same as the test of fit counts them: where the loss is no square none counts for more than the corner.
+    pub counted: DVector<f64>,
     /// Their derivatives, n by p, weighted as they are.
     pub slopes: DMatrix<f64>,
     /// The derivative of `k`.
@@ -80,8 +90,34 @@ impl Window<'_> {
     /// Where the model cannot be followed to the end of the window.
     pub fn cost(&self, unknowns: &DVector<f64>) -> Result<f64, Lost> {
         let samples = self.flow.follow(&self.state(unknowns), &self.free, self.times, Order::Value)?;
-        let differences = self.differences(&samples);
-        Ok(0.5 * self.step() * self.weighted(differences).norm_squared())
+        let differences = self.weighted(self.differences(&samples));
+        let differences = self.after_arrival(unknowns, differences);
+        Ok(0.5 * self.step() * differences.norm_squared())
+    }
+
+    /// So many of the differences are of the first sample.
+    fn of_first(&self) -> usize {
+        self.measured.first().map_or(0, Vec::len)
+    }
+
+    /// How many differences stand before those of readings.
+    pub(super) fn relations(&self) -> usize {
+        self.arrival.as_ref().map_or(0, |arrival| arrival.factor.nrows())
+    }
+
+    /// Differences by the loss, with what is known before them in the place of the first sample.
+    fn after_arrival(&self, unknowns: &DVector<f64>, mut differences: DVector<f64>) -> DVector<f64> {
+        let (loss, sigma) = self.loss;
+        if loss != Loss::Squares {
+            differences.apply(|value| *value = loss.residual(*value, sigma).0);
+        }
+        let Some(arrival) = &self.arrival else { return differences };
+        let (off, _) = arrival.off(&self.free, unknowns);
+        let own = self.of_first();
+        DVector::from_iterator(
+            off.len() + differences.len() - own,
+            off.iter().copied().chain(differences.iter().skip(own).copied()),
+        )
     }
 
     fn differences(&self, samples: &[Sample]) -> DVector<f64> {
@@ -118,16 +154,47 @@ impl Window<'_> {
         for (i, row) in rows.enumerate() {
             slopes.set_row(i, &row);
         }
-        let mut pull = differences.clone();
         if let Some(weights) = &self.weights {
             slopes = weights.weighted_slopes(&slopes);
-            pull = weights.back(&differences);
         }
+        let mut pull = differences.clone();
+        let (loss, sigma) = self.loss;
+        if loss != Loss::Squares {
+            for (i, value) in pull.iter_mut().enumerate() {
+                let (residual, slope) = loss.residual(*value, sigma);
+                slopes.row_mut(i).scale_mut(slope);
+                *value = residual * slope;
+            }
+        }
+        if let Some(weights) = &self.weights {
+            pull = weights.back(&pull);
+        }
+        let mut skipped = 0;
+        if let Some(arrival) = &self.arrival {
+            skipped = self.of_first();
+            let (_, own) = arrival.off(&self.free, unknowns);
+            let mut all = DMatrix::zeros(own.nrows() + slopes.nrows() - skipped, p);
+            all.rows_mut(0, own.nrows()).copy_from(&own);
+            let rest = slopes.nrows() - skipped;
+            all.rows_mut(own.nrows(), rest).copy_from(&slopes.rows(skipped, rest));
+            slopes = all;
+        }
+        let counted = differences.clone();
+        let differences = self.after_arrival(unknowns, differences);
         let mut hessian = slopes.tr_mul(&slopes);
         let bends = samples.iter().flat_map(|sample| &sample.output_bends);
-        for (pull, bend) in pull.iter().zip(bends) {
+        for (pull, bend) in pull.iter().zip(bends).skip(skipped) {
             hessian += bend * *pull;
         }
+        let relations = self.relations();
+        let counted = DVector::from_iterator(
+            relations + counted.len() - skipped,
+            differences
+                .iter()
+                .take(relations)
+                .copied()
+                .chain(counted.iter().skip(skipped).map(|value| loss.counted(*value, sigma))),
+        );
         let step = self.step();
         let end = samples.last();
         Ok(WindowExpansion {
@@ -137,6 +204,7 @@ impl Window<'_> {
             end: end.map(|sample| sample.state.clone()).unwrap_or_default(),
             end_slopes: end.map(|sample| sample.slopes.clone()).unwrap_or_default(),
             left,
+            counted,
             differences,
             slopes,
         })

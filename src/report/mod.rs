@@ -12,11 +12,19 @@ mod formula;
 mod layout;
 mod motion;
 mod names;
+mod notebook;
+mod object;
 mod page;
 mod plot;
+mod poses;
 mod ranks;
+mod slow;
+mod slow_observed;
+mod slow_plot;
+mod solid_picture;
 mod stress;
 mod trade;
+mod value;
 
 #[doc(hidden)]
 pub use axis::unit_of;
@@ -36,14 +44,26 @@ pub use layout::Layout;
 #[doc(hidden)]
 pub use motion::ended_in_words;
 pub use motion::{Observed, observe_json, observe_page, observe_text};
+#[doc(hidden)]
+pub use motion::{stream_end_json, stream_end_text, stream_json, stream_text};
+pub use notebook::{claims_html, rank_html};
+pub use object::{claims_json, read_error_json, versioned};
 pub use page::{drops_page, findings_json, findings_text, page};
 #[doc(hidden)]
 pub use page::{forget_seconds, forget_times};
+#[doc(hidden)]
+pub use poses::{conjecture_json, conjecture_text, poses_json, poses_page, poses_text};
 pub use ranks::{
     StateTableWriter, TableForm, accessibility_json, accessibility_text, drops_json, drops_text, global_json,
     global_text, rank_json, rank_text, unseen_field_text,
 };
 #[doc(hidden)]
+pub use slow::{slow_json, slow_page, slow_text};
+#[doc(hidden)]
+pub use slow_observed::SlowObserved;
+pub use solid_picture::{ShownSurface, solid_page};
+#[doc(hidden)]
 pub use stress::{stress_json, stress_pictures, stress_text};
 #[doc(hidden)]
 pub use trade::{trade_front_table, trade_json, trade_plot, trade_text};
+pub use value::{ValueAsked, how_certain, value_json, value_text};

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 
 /// Collects what is asked.
 #[derive(Debug)]
-pub(super) struct Fingerprint(Checksum);
+pub(crate) struct Fingerprint(Checksum);
 
 impl Default for Fingerprint {
     fn default() -> Self {
@@ -57,38 +57,49 @@ impl Fingerprint {
         }
     }
 
+    /// Adds the version of the program, the text of a system's file and what it takes from others: symbols with their values and
+    /// ranges, outputs, the rates of what moves.
+    pub fn system(&mut self, system: &System) {
+        self.text(env!("CARGO_PKG_VERSION"));
+        self.text(&system.source);
+        for (symbol, SymbolInfo { kind, is_angle, default, range }) in system.symbols() {
+            let number = |value: Option<&RBig>| value.map(RBig::to_string).unwrap_or_default();
+            let ends = [default.as_ref(), range.as_ref().map(|r| &r.low), range.as_ref().map(|r| &r.high)];
+            let name = system.symbol_name(symbol);
+            self.text(&format!("{name} {kind:?} {is_angle} {:?}", ends.map(number)));
+        }
+        self.text(&system.known_names().join(","));
+        let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
+        self.nodes(&system.graph, &outputs);
+        for field in system.moving_fields() {
+            for (symbol, rate) in &system.fields[field].components {
+                self.text(system.symbol_name(*symbol));
+                self.nodes(&system.graph, &[*rate]);
+            }
+        }
+    }
+
+    /// Adds a number by its bits.
+    pub fn number(&mut self, number: f64) {
+        self.text(&format!("{:x}", number.to_bits()));
+    }
+
     /// The number.
     pub fn value(&self) -> u64 {
         self.0.value()
     }
 }
 
-/// That of a question as it is asked: the version of the program, the text of the file, what it takes from others, and all options on
-/// which what is found at a state depends. What is told of the worst state beside, as its digits, is no part of it.
+/// That of a question as it is asked: its system, and all options on which what is found at a state depends. What is told of the worst
+/// state beside, as its digits, is no part of it.
 pub(super) fn of_question(system: &System, question: &RankQuestion<'_>, only_if_short: bool) -> u64 {
     let mut found = Fingerprint::default();
-    found.text(env!("CARGO_PKG_VERSION"));
-    found.text(&system.source);
+    found.system(system);
     let RankQuestion { samples, seed, wanted, order, fixed, conditions, .. } = question;
     found.text(&format!("{samples} {seed} {wanted:?} {order:?} {only_if_short} {}", conditions.len()));
     conditions.iter().for_each(|condition| found.text(condition));
     for (symbol, value) in fixed {
         found.text(&format!("{} = {value}", system.symbol_name(*symbol)));
-    }
-    for (symbol, SymbolInfo { kind, is_angle, default, range }) in system.symbols() {
-        let number = |value: Option<&RBig>| value.map(RBig::to_string).unwrap_or_default();
-        let ends = [default.as_ref(), range.as_ref().map(|r| &r.low), range.as_ref().map(|r| &r.high)];
-        let name = system.symbol_name(symbol);
-        found.text(&format!("{name} {kind:?} {is_angle} {:?}", ends.map(number)));
-    }
-    found.text(&system.known_names().join(","));
-    let outputs: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
-    found.nodes(&system.graph, &outputs);
-    for field in system.moving_fields() {
-        for (symbol, rate) in &system.fields[field].components {
-            found.text(system.symbol_name(*symbol));
-            found.nodes(&system.graph, &[*rate]);
-        }
     }
     let avoided: Vec<NodeId> = system.avoid.iter().map(|(_, node)| *node).collect();
     found.nodes(&system.graph, &avoided);

@@ -1,6 +1,7 @@
 //! Parts of a sweep: what was found at some of its states, with all that merging needs, and what they add up to.
 
 use super::counts::SweepCounts;
+use super::cover::{NoCover, in_order};
 use std::ops::Range;
 
 /// What a sweep over some states of a question has found.
@@ -47,6 +48,15 @@ pub enum MergeError {
     Overlap { one: String, other: String, states: Range<u64> },
 }
 
+impl From<NoCover> for MergeError {
+    fn from(why: NoCover) -> MergeError {
+        match why {
+            NoCover::Gap(states) => MergeError::Gap(states),
+            NoCover::Overlap { one, other, both } => MergeError::Overlap { one, other, states: both },
+        }
+    }
+}
+
 /// The states of shard `number` of `of`, counted from one: of so many states a stretch that differs from the others by one at most.
 ///
 /// ```
@@ -87,7 +97,7 @@ impl RankPart {
     /// # Errors
     /// Parts with gaps or overlaps, or of another question.
     pub(super) fn merge(
-        mut parts: Vec<(String, RankPart)>,
+        parts: Vec<(String, RankPart)>,
         asked: u64,
         states: u64,
     ) -> Result<RankPart, MergeError> {
@@ -96,20 +106,12 @@ impl RankPart {
                 return Err(MergeError::OtherQuestion(name.clone()));
             }
         }
-        parts.sort_by_key(|(_, part)| (part.first, part.last));
-        let mut parts = parts.into_iter();
-        let (mut name, mut whole) = parts.next().ok_or(MergeError::NoParts)?;
-        if whole.first > 0 {
-            return Err(MergeError::Gap(0..whole.first));
+        if parts.is_empty() {
+            return Err(MergeError::NoParts);
         }
+        let mut parts = in_order(parts, RankPart::range, states)?.into_iter();
+        let (mut name, mut whole) = parts.next().ok_or(MergeError::NoParts)?;
         for (next_name, next) in parts {
-            if next.first < whole.last && next.first < next.last {
-                let states = next.first..whole.last.min(next.last);
-                return Err(MergeError::Overlap { one: name, other: next_name, states });
-            }
-            if next.first > whole.last {
-                return Err(MergeError::Gap(whole.last..next.first));
-            }
             let rows = |part: &RankPart| -> Vec<bool> {
                 part.branches.iter().map(|branch| branch.rows.is_some()).collect()
             };
@@ -126,9 +128,6 @@ impl RankPart {
             if next.last > whole.last {
                 (name, whole.last) = (next_name, next.last);
             }
-        }
-        if whole.last < states {
-            return Err(MergeError::Gap(whole.last..states));
         }
         Ok(whole)
     }

@@ -1,12 +1,11 @@
 //! A part of a sweep as JSON that is whole or refused.
 //!
-//! It tells no times, so that whoever sweeps the same states writes the same to the last byte. Real numbers that are compared are
-//! written as the 64 bits that they are.
+//! It tells no times, so that whoever sweeps the same states writes the same to the last byte.
 
 use super::counts::{SweepCounts, WorstState};
 use super::part::{BranchCounts, RankPart};
+use super::sealed::{Bits, CONTRADICTS, PartError, seal, unseal};
 use super::unseen::{UnseenDirections, UnseenExample, UnseenKind};
-use crate::file::Checksum;
 use crate::number::Rung;
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
@@ -18,24 +17,10 @@ use std::collections::BTreeMap;
 /// What the text of a part begins with; another number where its fields mean something else.
 const FORMAT: &str = "palmistry rank part 1";
 
-/// Why a text is no part.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PartError {
-    /// It is something else.
-    #[error("this is no part of a sweep ({0})")]
-    Foreign(String),
-    /// It was cut or changed: its checksum is another, or its numbers contradict each other.
-    #[error("this part of a sweep is damaged: {0}")]
-    Damaged(&'static str),
-}
-
 impl RankPart {
     /// As JSON, with a checksum; nothing where it is not whole.
     pub fn text(&self) -> Option<String> {
-        let part = WrittenPart::of(self);
-        let body = serde_json::to_string(&part).ok().filter(|_| self.is_whole())?;
-        let whole = Written { format: FORMAT.to_owned(), checksum: hex(Checksum::of(&body)), part };
-        Some(format!("{}\n", serde_json::to_string_pretty(&whole).ok()?))
+        if self.is_whole() { seal(FORMAT, WrittenPart::of(self)) } else { None }
     }
 
     /// Reads a part.
@@ -43,18 +28,8 @@ impl RankPart {
     /// # Errors
     /// The text is something else, or was cut or changed.
     pub fn read(text: &str) -> Result<RankPart, PartError> {
-        let Written { format, checksum, part } =
-            serde_json::from_str(text).map_err(|why| PartError::Foreign(why.to_string()))?;
-        if format != FORMAT {
-            return Err(PartError::Foreign(format!("its format is not '{FORMAT}'")));
-        }
-        let body = serde_json::to_string(&part).unwrap_or_default();
-        if checksum != hex(Checksum::of(&body)) {
-            return Err(PartError::Damaged("it was cut or changed, and its checksum is another"));
-        }
-        let part = part.read();
-        let contradicts = PartError::Damaged("its numbers contradict each other");
-        if part.is_consistent() { Ok(part) } else { Err(contradicts) }
+        let part = unseal::<WrittenPart>(FORMAT, text)?.read();
+        if part.is_consistent() { Ok(part) } else { Err(CONTRADICTS) }
     }
 
     fn is_consistent(&self) -> bool {
@@ -90,29 +65,6 @@ impl RankPart {
     }
 }
 
-fn hex(number: u64) -> String {
-    format!("{number:016x}")
-}
-
-/// A number as its bits.
-#[derive(Clone, Copy)]
-struct Bits(u64);
-
-impl Serialize for Bits {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(&hex(self.0))
-    }
-}
-
-impl<'de> Deserialize<'de> for Bits {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = Cow::<str>::deserialize(deserializer)?;
-        let digits = text.len() == 16 && text.bytes().all(|b| b.is_ascii_hexdigit());
-        let found = u64::from_str_radix(&text, 16).ok().filter(|_| digits);
-        found.map(Bits).ok_or_else(|| D::Error::custom("a number is written as sixteen hexadecimal digits"))
-    }
-}
-
 /// A rational number of any length, as its text.
 #[derive(Clone)]
 struct Rational(RBig);
@@ -142,14 +94,6 @@ fn rational(text: &str) -> Option<RBig> {
     };
     let (top, bottom) = (whole(top)?, whole(bottom)?);
     (!bottom.is_zero()).then(|| RBig::from_parts(IBig::from(sign) * IBig::from(top), bottom))
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Written {
-    format: String,
-    checksum: String,
-    part: WrittenPart,
 }
 
 #[derive(Serialize, Deserialize)]

@@ -4,6 +4,7 @@
 use super::asked::RankQuestion;
 use super::cells::by_signs;
 use super::fingerprint::{Fingerprint, of_question};
+use super::given_states::GivenStates;
 use super::part::{BranchCounts, MergeError, RankPart};
 use super::prepared_branch::{Extent, PreparedBranch};
 use super::question::{RankAnswer, RankError};
@@ -166,6 +167,26 @@ impl<'q> RankPreparation<'q> {
         symbols.sort_unstable();
         symbols.dedup();
         symbols
+    }
+
+    /// What decides states that are handed over instead of drawn, also such as lie outside of the sample box.
+    ///
+    /// # Errors
+    /// Conditions with several branches, roots whose sign depends on where the state lies (what holds on one side does not on the
+    /// other), and words too long to be written down.
+    pub fn at_given_states(mut self, system: &mut System) -> Result<GivenStates, RankError> {
+        let no = |why: &str| RankError::NotAtGivenStates(why.to_owned());
+        let branch = self.branches.pop().filter(|_| self.branches.is_empty());
+        let branch = branch.ok_or_else(|| {
+            no("the conditions, or the signs on which roots depend, have several branches, and states of any may be handed over")
+        })?;
+        if !branch.cell.guards.is_empty() {
+            return Err(no(
+                "what the outputs tell depends on signs, and states of all signs may be handed over",
+            ));
+        }
+        let found = branch.into_given_states(system, self.question.wanted);
+        found.ok_or_else(|| no("the words of Lie derivatives are too long to be written down"))
     }
 
     /// How many branches of the conditions there are.

@@ -80,6 +80,11 @@ impl PreparedSweep {
         found.value()
     }
 
+    /// What decides the rank at a state, whoever drew it.
+    pub fn into_decider(self) -> RankDecider<'static> {
+        self.decider
+    }
+
     /// The state of an index.
     fn state(&self, index: u64) -> Result<State, LocusError> {
         match &self.stream {
@@ -302,7 +307,7 @@ impl PreparedSweep {
 }
 
 /// The row of a table for a state.
-fn row_of(index: u64, decided: &StateDecision) -> StateRow {
+pub(super) fn row_of(index: u64, decided: &StateDecision) -> StateRow {
     match decided {
         StateDecision::Pole(_) => StateRow::of_nothing(index),
         StateDecision::Report(StateReport { rank, certainty, spectrum, .. }) => StateRow {

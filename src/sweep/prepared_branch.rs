@@ -2,15 +2,18 @@
 //! all were.
 
 use super::asked::{RankQuestion, held_conditions};
+use super::certainty::Certainty;
 use super::counts::SweepCounts;
 use super::deviation::standard_deviations;
+use super::given_states::GivenStates;
 use super::part::BranchCounts;
 use super::prepared::PreparedSweep;
 use super::question::{BranchAnswer, RankError, TakenRow, guarded, held_parameters, named_unknowns};
 use super::series::PreparedSeries;
 use super::states::{Stretch, SweepOptions, SweepReport, Told};
+use super::stream::Stream;
 use super::table::TableOf;
-use crate::expression::{Graph, Guard, NodeId, Symbol};
+use crate::expression::{Graph, Guard, NodeId, Symbol, expand_angles};
 use crate::observability::{
     Branch, Codistribution, Frame, Length, Locus, Probe, SignCell, UnseenMotions, unseen_motions,
 };
@@ -137,6 +140,20 @@ impl PreparedBranch {
             full,
             rows,
         })
+    }
+
+    /// What decides states that are handed over; none where there are no words.
+    pub fn into_given_states(self, system: &mut System, wanted: Certainty) -> Option<GivenStates> {
+        let ByStates::Rows(prepared) = self.full else { return None };
+        if !self.wanted {
+            return None;
+        }
+        let is_angle = &system.angle_test();
+        let rows = expand_angles(&mut system.graph, &self.codistribution.needed_entries(), is_angle);
+        // a stream of drawn states needs full columns, one of given states does not
+        let stream = Stream::new(system, &self.locus, &rows);
+        let most = self.codistribution.most();
+        Some(GivenStates::new(stream, prepared.into_decider(), self.locus, most, wanted))
     }
 
     /// What the rows are, to the last bit, as a text.

@@ -118,7 +118,7 @@ pub enum RankError {
     #[error(transparent)]
     Unsolved(#[from] Unsolved),
     /// A symbol that is both held and solved for.
-    #[error("'{0}' is fixed with --at and solved for in a condition; choose one")]
+    #[error("'{0}' is held fixed and solved for in a condition; choose one")]
     HeldAndSolved(String),
     /// No field moves the states, or every state is a pole.
     #[error(transparent)]
@@ -126,6 +126,9 @@ pub enum RankError {
     /// No state can be drawn.
     #[error(transparent)]
     Locus(#[from] LocusError),
+    /// States that are handed over cannot be decided; in words, why.
+    #[error("{0}")]
+    NotAtGivenStates(String),
     /// Parts that do not make a whole.
     #[error(transparent)]
     Merge(#[from] MergeError),

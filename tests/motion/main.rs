@@ -3,6 +3,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod implicit;
 mod mechanics;
 mod observe;
 mod observers;
+mod slow;

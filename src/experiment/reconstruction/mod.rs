@@ -16,6 +16,7 @@ pub use track::{on_palm, shown, turned};
 
 use super::recovered::{Reconstruction, TouchTrack, WholeMotion, WholeSample};
 use super::run::{Answer, Experiment};
+use super::scene::{Method, SceneError};
 use super::simulation::NOMINAL;
 use super::simulation::deviation;
 use crate::mechanics::Palm;
@@ -52,6 +53,27 @@ impl Experiment {
         }
         let (shape, coverage) = from_track(&track, !answer.track.updates.is_empty());
         Some(Reconstruction { track, shape, coverage, whole: None })
+    }
+
+    /// What every observer makes of the readings, as [`Experiment::run`], and the shape that they tell, which stands with the answer that
+    /// is shown.
+    ///
+    /// # Errors
+    /// As [`Experiment::task`].
+    pub fn run_with_shape(
+        &self,
+        interrupt: &AtomicBool,
+        done: &dyn Fn(Method),
+    ) -> Result<Vec<Answer>, SceneError> {
+        let mut answers = self.run(interrupt, done)?;
+        if let Some(found) = self.reconstruct(&answers, interrupt) {
+            let place = shown(&answers)
+                .and_then(|shown| answers.iter().position(|answer| std::ptr::eq(answer, shown)));
+            if let Some(place) = place {
+                answers[place].reconstruction = Some(Box::new(found));
+            }
+        }
+        Ok(answers)
     }
 
     /// What an answer says of the outline sample by sample; none where [`Experiment::reconstruct`] has none.

@@ -1,5 +1,6 @@
 //! Holds every value of a scene to what it may be, and settles which of two ways of saying a thing was used.
 
+mod columns;
 mod observer;
 mod physics;
 
@@ -11,6 +12,9 @@ use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+/// The name of standard input.
+pub(super) const STREAM_NAME: &str = "-";
+
 /// The most samples that a scene may ask for: each takes about a kilobyte.
 const MOST_SAMPLES: usize = 1_000_000;
 
@@ -19,6 +23,8 @@ const MOST_SAMPLES: usize = 1_000_000;
 pub(super) struct Source {
     /// How many there are of each, where they are simulated.
     pub samples: Option<usize>,
+    /// Whether something is said of the errors of readings.
+    pub is_noisy: bool,
     /// Whether a body between palms is described.
     pub has_palms: bool,
 }
@@ -120,6 +126,7 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
     checks.sensor(&sensor)?;
     checks.channels(&channels, keys.data.record.is_some())?;
     checks.positive("data.spike", keys.data.spike, "usual departures")?;
+    let columns = checks.columns(keys.columns)?;
     let palm_forms = checks.forms(keys.palms.as_ref().and_then(|palms| palms.radii))?;
     let has_palms = keys.body.is_some() || keys.palms.is_some();
     let span =
@@ -147,12 +154,15 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         checks.jitter(sensor.jitter, span)?;
         checks.delays(&channels, span)?;
     }
-    let source = Source { samples: span.map(|(_, samples)| samples), has_palms: simulated.is_some() };
+    let is_noisy = sensor.noise > 0.0 || sensor.resolution > 0.0 || !channels.is_empty();
+    let source =
+        Source { is_noisy, samples: span.map(|(_, samples)| samples), has_palms: simulated.is_some() };
     let observer = checks.observer(keys.observer, source)?;
     checks.study(&keys.study, &observer, span.is_some())?;
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
     let mut data = keys.data;
-    data.record = data.record.map(|record| folder.join(record));
+    data.record =
+        data.record.map(|record| if record == Path::new(STREAM_NAME) { record } else { folder.join(record) });
     Ok(Scene {
         title: keys.title,
         model: folder.join(keys.model),
@@ -162,6 +172,7 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         palm_forms,
         sensor,
         channels,
+        columns,
         data,
         observer,
         study: keys.study,

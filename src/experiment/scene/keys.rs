@@ -4,7 +4,7 @@ use super::observing::{Channel, Data, Method, Sensor, Study};
 use super::place::Places;
 use super::simulated::Body;
 use crate::mechanics::moving::{Course, PushedPalm};
-use crate::observer::{HighGain, Kalman, Shooting, Unscented, WhenBlind};
+use crate::observer::{HighGain, Kalman, Loss, Shooting, Unscented, WhenBlind};
 use crate::system::Problem;
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
@@ -29,6 +29,8 @@ pub(super) struct SceneKeys {
     pub inputs: Option<BTreeMap<String, String>>,
     #[serde(default)]
     pub sensor: SensorKeys,
+    #[serde(default)]
+    pub columns: BTreeMap<String, ColumnKeys>,
     #[serde(default)]
     pub data: Data,
     pub observer: ObserverKeys,
@@ -121,6 +123,47 @@ impl<'de> Deserialize<'de> for ChannelKeys {
     }
 }
 
+/// Where a column comes from, as it is written: the name in the file, or a table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct ColumnKeys {
+    pub from: Option<String>,
+    pub unit: Option<String>,
+    pub factor: Option<f64>,
+    pub offset: Option<f64>,
+}
+
+impl<'de> Deserialize<'de> for ColumnKeys {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Table {
+            from: Option<String>,
+            unit: Option<String>,
+            factor: Option<f64>,
+            offset: Option<f64>,
+        }
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = ColumnKeys;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a string")
+            }
+
+            fn visit_str<E>(self, from: &str) -> Result<ColumnKeys, E> {
+                Ok(ColumnKeys { from: Some(from.to_owned()), ..ColumnKeys::default() })
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ColumnKeys, A::Error> {
+                let Table { from, unit, factor, offset } =
+                    Table::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(ColumnKeys { from, unit, factor, offset })
+            }
+        }
+        deserializer.deserialize_any(Either)
+    }
+}
+
 fn one() -> u64 {
     1
 }
@@ -154,6 +197,14 @@ pub(super) struct ObserverKeys {
     pub when_blind: WhenBlind,
     #[serde(default = "unity")]
     pub blind: f64,
+    #[serde(default = "yes")]
+    pub inherit: bool,
+    #[serde(default)]
+    pub whole: bool,
+    #[serde(default)]
+    pub bounds: BTreeMap<String, [f64; 2]>,
+    #[serde(default)]
+    pub loss: Loss,
     #[serde(default)]
     pub shooting: Shooting,
     #[serde(default)]
@@ -191,6 +242,10 @@ impl<'de> Deserialize<'de> for GuessKeys {
         }
         deserializer.deserialize_any(Either)
     }
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn five() -> usize {

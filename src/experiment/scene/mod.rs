@@ -4,18 +4,21 @@
 //! text each stands. Nothing here simulates or estimates.
 
 mod check;
+mod columns;
 mod keys;
 mod observing;
-mod place;
+pub(in crate::experiment) mod place;
 mod simulated;
 
 pub use crate::system::ReadError as SceneError;
+pub use columns::SceneColumn;
 pub use observing::{BasinStudy, Channel, Data, Guess, Method, NoiseStudy, ObserverSettings, Sensor, Study};
+pub(in crate::experiment) use simulated::sample_times;
 pub use simulated::{Body, Palms, SceneOutline, Simulated, SimulatedSystem};
 
 use crate::mechanics::Palm;
-use crate::observer::FaultRules;
-use crate::system::{Problem, load};
+use crate::observer::{ColumnNames, FaultRules};
+use crate::system::{Problem, System, load};
 use place::Places;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -43,6 +46,8 @@ pub struct Scene {
     pub sensor: Sensor,
     /// `[sensor.NAME]`: how well single columns are read, by name.
     pub channels: BTreeMap<String, Channel>,
+    /// `[columns]`: columns of a recording that have other names or units than in the model, by the model's names.
+    pub columns: BTreeMap<String, SceneColumn>,
     /// `[data]`: recorded data, and what to do with a faulty row.
     pub data: Data,
     /// `[observer]`: what is to be found out, and how.
@@ -64,7 +69,8 @@ impl Scene {
         let scene = Scene::parse(&name, &text)?;
         let named = [("model", Some(&scene.model)), ("data.record", scene.data.record.as_ref())];
         for (place, file) in named.into_iter().filter_map(|(place, file)| Some((place, file?))) {
-            if !crate::file::is_file(file) {
+            let is_stream = place == "data.record" && file == Path::new(check::STREAM_NAME);
+            if !is_stream && !crate::file::is_file(file) {
                 let message = format!("there is no file {}", file.display());
                 let help = "a file is looked for from the folder in which the scene lies";
                 return Err(scene.error_at(place, message, "named here", help));
@@ -96,6 +102,21 @@ impl Scene {
         // the text was read before: it has places
         let span = Places::of(&self.text).map_or(0..0, |places| places.value(place));
         Problem::new(&span, message, label).help(help).locate(&self.name, &self.text)
+    }
+
+    /// The text that was read.
+    #[doc(hidden)]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The columns of a recording by the names and units of a system.
+    ///
+    /// # Errors
+    /// The model knows no such name, or measures it in a unit of another kind.
+    pub fn column_names(&self, system: &System) -> Result<ColumnNames, SceneError> {
+        columns::names(&self.columns, system, &self.text)
+            .map_err(|problem| problem.locate(&self.name, &self.text))
     }
 
     /// The rules by which a record of this scene is held to be faulty: those of `[data]`, with the sensors' jitter and

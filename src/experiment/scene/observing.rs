@@ -1,8 +1,8 @@
 //! What is measured, and what is to be found out from it.
 
 use crate::observer::{
-    HighGain, Integration, Kalman, MovingWindow, MultipleShooting, Observer, OnFault, Shooting, Unscented,
-    WhenBlind, WindowSearch,
+    HighGain, Integration, Kalman, Loss, MovingWindow, MultipleShooting, Observer, OnFault, Shooting,
+    Unscented, WhenBlind, WindowSearch,
 };
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
@@ -49,7 +49,7 @@ impl Default for Channel {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Data {
-    /// `record`: the file, CSV or Parquet; relative to the scene in the file, and here to where the program runs.
+    /// `record`: the file, CSV or Parquet, or `-` for standard input; relative to the scene in the file, and here to where the program runs.
     pub record: Option<PathBuf>,
     /// `on_fault`: `"stop"`, unless `"skip"` is given.
     pub on_fault: OnFault,
@@ -88,6 +88,14 @@ pub struct ObserverSettings {
     /// `blind`: the relative standard deviation (its bound by the size of the state) beyond which a state is not seen;
     /// 1 unless given.
     pub blind: f64,
+    /// `inherit`: whether a window begins with what those before it have learned; true unless given.
+    pub inherit: bool,
+    /// `whole`: whether all samples are one window, which grows from `window` samples to all; false unless given.
+    pub whole: bool,
+    /// `bounds`: between what some of what is sought lies.
+    pub bounds: BTreeMap<String, [f64; 2]>,
+    /// `loss`: how misfits are weighed; by their squares unless given.
+    pub loss: Loss,
     /// `[observer.shooting]`.
     pub shooting: Shooting,
     /// `[observer.kalman]`.

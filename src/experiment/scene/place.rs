@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The places of a text.
-pub(super) struct Places<'a> {
+pub(in crate::experiment) struct Places<'a> {
     table: Spanned<DeTable<'a>>,
     length: usize,
 }

@@ -33,7 +33,7 @@ impl Simulated {
 }
 
 /// The times of so many samples, as [`Simulated::times`].
-fn sample_times(duration: f64, samples: usize, jitter: f64, seed: u64) -> Vec<f64> {
+pub(in crate::experiment) fn sample_times(duration: f64, samples: usize, jitter: f64, seed: u64) -> Vec<f64> {
     let steps = samples.saturating_sub(1);
     let even = duration / steps.max(1) as f64;
     if jitter <= 0.0 {

@@ -2,7 +2,8 @@ mod mistakes;
 
 use super::*;
 use crate::mechanics::moving::{Course, Drive, Knots, Oscillation, PushedPalm};
-use crate::observer::{HighGain, Kalman, OnFault, Shooting, Unscented, WhenBlind};
+use crate::observer::{HighGain, Kalman, Loss, OnFault, Shooting, Unscented, WhenBlind};
+use std::collections::BTreeMap;
 
 const WHOLE: &str = r#"title = "Both palms turn at one constant rate"
 model = "../proofs/general.proof"
@@ -173,6 +174,10 @@ fn every_key_arrives_where_it_belongs() {
         steps: 4,
         when_blind: WhenBlind::Hold,
         blind: 0.5,
+        inherit: true,
+        whole: false,
+        bounds: BTreeMap::new(),
+        loss: Loss::Squares,
         shooting: Shooting { starts: 3, ..Shooting::default() },
         kalman: Kalman { prior: 0.2, ..Kalman::default() },
         unscented: Unscented { kappa: 0.0, ..Unscented::default() },

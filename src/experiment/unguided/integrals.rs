@@ -15,6 +15,10 @@ pub(super) struct PalmSample {
     /// By how much the normal turns in a metre of contact, counterclockwise; and which way the contact goes round the body, 1 or -1.
     pub bend: f64,
     pub side: f64,
+    /// How fast the lever grows with the contact.
+    pub lever_slope: f64,
+    /// The contact force, along the normal.
+    pub force: f64,
 }
 
 /// What the constraint needs at one sample.
@@ -58,35 +62,49 @@ impl Rule {
     fn of(times: &[f64]) -> Rule {
         let last = times.len() - 4;
         let first: Vec<usize> = (0..times.len() - 1).map(|i| i.saturating_sub(1).min(last)).collect();
-        let weights = first.iter().enumerate().map(|(i, first)| {
-            let nodes = &times[*first..first + 4];
+        let mut weights: Vec<[f64; 4]> = Vec::with_capacity(first.len());
+        for (i, first_node) in first.iter().enumerate() {
+            let nodes = &times[*first_node..first_node + 4];
+            if i > 0 && is_alike(times, [i - 1, i], [first[i - 1], *first_node]) {
+                weights.push(weights[i - 1]);
+                continue;
+            }
             let (middle, half) = ((times[i] + times[i + 1]) / 2.0, (times[i + 1] - times[i]) / 2.0);
-            let mut weights = [0.0; 4];
+            let mut own = [0.0; 4];
             for at in [middle - half / 3f64.sqrt(), middle + half / 3f64.sqrt()] {
-                for (j, weight) in weights.iter_mut().enumerate() {
+                for (j, weight) in own.iter_mut().enumerate() {
                     let others = (0..4).filter(|other| *other != j);
                     *weight +=
                         half * others.map(|o| (at - nodes[o]) / (nodes[j] - nodes[o])).product::<f64>();
                 }
             }
-            weights
-        });
-        let weights = weights.collect();
+            weights.push(own);
+        }
         Rule { first, weights }
     }
 
-    /// The integral from the first sample to each.
-    fn integrate(&self, values: &[f64]) -> Vec<f64> {
-        let mut sum = 0.0;
+    /// The integrals of some functions from the first sample to each.
+    fn integrate<const K: usize>(&self, values: &[[f64; K]]) -> Vec<[f64; K]> {
+        let mut sum = [0.0; K];
         let mut all = Vec::with_capacity(values.len());
-        all.push(0.0);
+        all.push(sum);
         for (first, weights) in self.first.iter().zip(&self.weights) {
-            let nodes = &values[*first..first + 4];
-            sum += weights.iter().zip(nodes).map(|(weight, value)| weight * value).sum::<f64>();
+            for (weight, node) in weights.iter().zip(&values[*first..first + 4]) {
+                for (sum, value) in sum.iter_mut().zip(node) {
+                    *sum += weight * value;
+                }
+            }
             all.push(sum);
         }
         all
     }
+}
+
+/// Whether the nodes of two intervals lie alike, but for the rounding of times: nearly all recordings are even.
+fn is_alike(times: &[f64], [before, here]: [usize; 2], [first_before, first]: [usize; 2]) -> bool {
+    let step = times[here + 1] - times[here];
+    let off = |k: usize| (times[first + k] - times[here]) - (times[first_before + k] - times[before]);
+    here - first == before - first_before && (0..4).all(|k| off(k).abs() < 1e-12 * step)
 }
 
 impl Integrals {
@@ -96,7 +114,6 @@ impl Integrals {
         let n = times.len();
         let rule = Rule::of(times);
         let mut samples = vec![Sample::default(); n];
-        let mut forces = vec![[0.0; 2]; n];
         for (i, sample) in samples.iter_mut().enumerate() {
             sample.time = times[i] - times[0];
             for p in 0..2 {
@@ -105,55 +122,51 @@ impl Integrals {
                 let side = if p == 0 { 1.0 } else { -1.0 };
                 let point = palms[p].at(&contacts[p][i]);
                 let ([along, above], [nx, ny]) = (point.place, point.normal);
-                let palm = PalmSample {
+                let bend = side * point.curvature;
+                let height = along * nx + above * ny;
+                let mut palm = PalmSample {
                     normal: [nx * cosine - side * ny * sine, nx * sine + side * ny * cosine],
                     lever: side * (along * ny - above * nx),
-                    height: along * nx + above * ny,
+                    height,
                     rate: readings.rates[p][i],
-                    bend: side * point.curvature,
+                    bend,
                     side,
+                    lever_slope: side + bend * height,
+                    force: 0.0,
                 };
                 let torque = readings.torques[p][i] - readings.inertia[p] * readings.accelerations[p][i];
-                forces[i][p] = torque / palm.lever;
+                palm.force = torque / palm.lever;
                 sample.palms[p] = palm;
             }
         }
-        let over = |samples: &[Sample], of: &dyn Fn(usize, &Sample) -> f64| -> Vec<f64> {
-            rule.integrate(&samples.iter().enumerate().map(|(i, sample)| of(i, sample)).collect::<Vec<_>>())
-        };
-        let pushed = |i: usize, sample: &Sample, axis: usize| -> f64 {
-            (0..2).map(|p| forces[i][p] * sample.palms[p].normal[axis]).sum()
-        };
         let gravity = [0.0, readings.gravity];
-        for (axis, weight) in gravity.into_iter().enumerate() {
-            let velocity = over(&samples, &|i, sample| pushed(i, sample, axis) / mass + weight);
-            samples.iter_mut().zip(velocity).for_each(|(sample, value)| sample.velocity[axis] = value);
-            let place = over(&samples, &|_, sample| sample.velocity[axis]);
-            samples.iter_mut().zip(place).for_each(|(sample, value)| sample.place[axis] = value);
-        }
-        // A' = sum f (n_y, -n_x)
-        let turning = |i: usize, sample: &Sample| [pushed(i, sample, 1), -pushed(i, sample, 0)];
-        for axis in 0..2 {
-            let a = over(&samples, &|i, sample| turning(i, sample)[axis]);
-            let b = over(&samples, &|i, sample| sample.time * turning(i, sample)[axis]);
-            for (sample, (a, b)) in samples.iter_mut().zip(a.into_iter().zip(b)) {
-                (sample.a[axis], sample.b[axis]) = (a, b);
-            }
-        }
-        let c = over(&samples, &|i, sample| {
-            let levers: f64 = (0..2).map(|p| forces[i][p] * sample.palms[p].lever).sum();
-            let [x, y] = turning(i, sample);
-            levers - x * sample.place[0] - y * sample.place[1]
+        let pushes: Vec<[f64; 2]> = samples
+            .iter()
+            .map(|sample| [0, 1].map(|axis| sample.palms.iter().map(|p| p.force * p.normal[axis]).sum()))
+            .collect();
+        let known = samples.iter().zip(&pushes).map(|(sample, [x, y])| {
+            // A' = sum f (n_y, -n_x)
+            [x / mass, y / mass + gravity[1], *y, -x, sample.time * y, -sample.time * x]
         });
-        samples.iter_mut().zip(c).for_each(|(sample, value)| sample.c = value);
+        let known = rule.integrate(&known.collect::<Vec<_>>());
+        for (sample, [vx, vy, ax, ay, bx, by]) in samples.iter_mut().zip(known) {
+            (sample.velocity, sample.a, sample.b) = ([vx, vy], [ax, ay], [bx, by]);
+        }
+        let places = rule.integrate(&samples.iter().map(|sample| sample.velocity).collect::<Vec<_>>());
+        samples.iter_mut().zip(places).for_each(|(sample, place)| sample.place = place);
+        let turns = samples.iter().zip(&pushes).map(|(sample, [x, y])| {
+            let levers: f64 = sample.palms.iter().map(|palm| palm.force * palm.lever).sum();
+            [levers - y * sample.place[0] + x * sample.place[1]]
+        });
+        let turns = rule.integrate(&turns.collect::<Vec<_>>());
+        samples.iter_mut().zip(turns).for_each(|(sample, [c])| sample.c = c);
 
         let mean = |values: &[f64]| values.iter().sum::<f64>() / n as f64;
         let length = contacts.iter().map(|contacts| mean(contacts).abs()).sum::<f64>() / 2.0;
         let turned = readings.rates.iter().flatten().fold(0.0, |most: f64, rate| most.max(rate.abs()));
         let fastest = contacts.iter().map(|contacts| fastest(times, contacts)).fold(0.0, f64::max);
-        let pushes =
-            (0..n).map(|i| pushed(i, &samples[i], 0).hypot(pushed(i, &samples[i], 1) + mass * gravity[1]));
-        let acceleration = pushes.fold(0.0, f64::max) / mass;
+        let pushed = pushes.iter().map(|[x, y]| x.hypot(y + mass * gravity[1]));
+        let acceleration = pushed.fold(0.0, f64::max) / mass;
         let rate = 1.5 * (fastest / length + turned + (acceleration / length).sqrt());
         let meeting = meeting(&samples[0])?;
         let log_k = readings.gyration.map(|gyration| -(mass * gyration * gyration).ln());
@@ -170,6 +183,11 @@ impl Integrals {
             let square = self.radii(centre).iter().map(|r| r * r).sum::<f64>() / 2.0;
             (2.0 / (self.mass * square.max((0.3 * self.length).powi(2)))).ln()
         })
+    }
+
+    /// A body that turns faster than this is none: so large errors of one that spins explain everything.
+    pub fn fastest(&self) -> f64 {
+        2.0 * self.rate
     }
 
     /// The distances of a point from the palms' tangents at the first contacts.

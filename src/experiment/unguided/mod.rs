@@ -16,8 +16,10 @@
 //! ```
 //!
 //! so that the constraint is a polynomial in `c0`, `v0`, `omega0` and `k` at every sample: nothing is integrated while they are sought.
-//! `search` seeks them. No shape, no curvature and no derivative of a contact is in it.
+//! `search` seeks them; where contacts err, their errors are carried through the integrals (`carried`). No shape, no curvature and no derivative of a contact is in it.
 
+mod carried;
+mod descent;
 mod integrals;
 mod normal;
 mod scene;
@@ -73,6 +75,8 @@ pub struct FirstState {
     pub centre: [f64; 2],
     /// Its velocity.
     pub velocity: [f64; 2],
+    /// The least standard deviations that `r1`, `r2` and `omega0` can have, by the stated noise of the contacts; zeros where none is stated.
+    pub deviations: [f64; 3],
     /// The root of the mean square by which the contacts would have to be elsewhere.
     pub misfit: f64,
 }

@@ -4,8 +4,9 @@
 //! rates beside, all unknowns are let go. Coarse grids come first: most windows need no other. What is accepted at once explains the readings.
 
 use super::FirstState;
+use super::descent::{Free, at_one_rate, descend, deviations, refine};
 use super::integrals::Integrals;
-use super::normal::{Free, Look, Unknowns, at_one_rate, descend};
+use super::normal::{Look, Unknowns};
 
 /// One pass over the grid.
 struct Pass {
@@ -22,7 +23,7 @@ struct Pass {
 }
 
 const PASSES: [Pass; 4] = [
-    Pass { rates: 12, samples: 10, steps: 4, kept: 4, starts: [true, false, false] },
+    Pass { rates: 10, samples: 8, steps: 3, kept: 3, starts: [true, false, false] },
     Pass { rates: 16, samples: 16, steps: 5, kept: 6, starts: [false, true, false] },
     Pass { rates: 32, samples: 20, steps: 8, kept: 10, starts: [true, true, true] },
     Pass { rates: 128, samples: 40, steps: 12, kept: 24, starts: [true, true, true] },
@@ -44,7 +45,13 @@ pub(super) fn search(all: &Integrals) -> Option<FirstState> {
             let coarse = Look { stride: pass.stride(all), softened: SOFTENED[0] * all.rate };
             let (drawn, _) = descend(all, candidate, Free::Drawn, coarse, 12);
             let fine = Look { stride: 1, softened: SOFTENED[1] * all.rate };
-            let (found, cost) = descend(all, drawn, Free::All, fine, 30);
+            let (mut found, mut cost) = descend(all, drawn, Free::All, fine, 30);
+            if found[4].abs() > all.fastest() {
+                continue;
+            }
+            if !is_nothing(all, cost) {
+                (found, cost) = refine(all, found, 8);
+            }
             if !is_body(all, &found) || best.is_some_and(|(_, least)| cost >= least) {
                 continue;
             }
@@ -100,6 +107,11 @@ fn is_body(all: &Integrals, x: &Unknowns) -> bool {
         && x.iter().all(|value| value.is_finite())
 }
 
+/// Whether nothing is left.
+fn is_nothing(all: &Integrals, cost: f64) -> bool {
+    cost <= 2.0 * all.samples.len() as f64 * (NOTHING * all.length).powi(2)
+}
+
 /// Whether what is left is the noise of the contacts: below five deviations of the sum of as many squares.
 fn is_explained(all: &Integrals, cost: f64) -> bool {
     let n = 2.0 * all.samples.len() as f64;
@@ -115,6 +127,7 @@ fn first_state(all: &Integrals, x: &Unknowns, cost: f64) -> FirstState {
         gyration: ((-x[5]).exp() / all.mass).sqrt(),
         centre,
         velocity: [x[2], x[3]],
+        deviations: deviations(all, x).map(|deviation| deviation * all.sigma.unwrap_or(0.0)),
         misfit: (cost / (2.0 * all.samples.len() as f64)).sqrt(),
     }
 }

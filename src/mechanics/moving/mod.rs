@@ -43,10 +43,10 @@ pub(crate) use drive::Drive;
 #[doc(hidden)]
 pub use drive::{Course, Oscillation, PushedPalm};
 pub(crate) use form::{BodyForm, CentreOfMass, FormError, Knots};
-pub(crate) use random::SplineDraws;
+pub(crate) use random::{DrawnSpline, SplineDraws};
 pub(crate) use scene::{DEFAULT_TOLERANCE, MovingScene, SceneError};
 pub(crate) use shape::Shape;
-pub(crate) use simulate::simulate;
+pub(crate) use simulate::{checked_times, simulate};
 #[doc(hidden)]
-pub use trajectory::Ended;
-pub(crate) use trajectory::{Moment, Trajectory};
+pub use trajectory::{Ended, Jump};
+pub(crate) use trajectory::{Moment, PalmMoment, Trajectory};

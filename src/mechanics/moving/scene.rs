@@ -55,6 +55,8 @@ pub enum SceneError {
          or give the body another orientation or rate"
     )]
     NotHeld { palm: usize, force: f64 },
+    #[error("slow motion: {0}")]
+    NotSlow(&'static str),
     #[error("{0} at the start; give other palm angles or another orientation")]
     Start(Breach),
 }

@@ -13,14 +13,11 @@ const FEWEST_STEPS: f64 = 256.0;
 /// The end of a contact is sought until it is known to so many seconds.
 const LOCATED: f64 = 1e-14;
 
-/// Moves the scene from time zero and reports its moments at the sample times, which increase.
-///
-/// The motion ends before the last of them where a contact does; see [`Ended`].
+/// The last of sample times that are finite, not negative and increase.
 ///
 /// # Errors
-/// Where a value of the scene or a time cannot be used, or a palm would have to pull at the start.
-pub fn simulate(scene: &MovingScene, times: &[f64]) -> Result<Trajectory, SceneError> {
-    let last = times.last().ok_or(SceneError::NoTimes)?;
+/// The first that is not so, or that there are none.
+pub fn checked_times(times: &[f64]) -> Result<f64, SceneError> {
     let mut before = -f64::MIN_POSITIVE;
     for (index, &time) in (1..).zip(times) {
         if !(time > before && time.is_finite()) {
@@ -28,6 +25,17 @@ pub fn simulate(scene: &MovingScene, times: &[f64]) -> Result<Trajectory, SceneE
         }
         before = time;
     }
+    times.last().copied().ok_or(SceneError::NoTimes)
+}
+
+/// Moves the scene from time zero and reports its moments at the sample times, which increase.
+///
+/// The motion ends before the last of them where a contact does; see [`Ended`].
+///
+/// # Errors
+/// Where a value of the scene or a time cannot be used, or a palm would have to pull at the start.
+pub fn simulate(scene: &MovingScene, times: &[f64]) -> Result<Trajectory, SceneError> {
+    let last = checked_times(times)?;
     scene.check()?;
 
     let mut moments = Vec::with_capacity(times.len());
@@ -41,13 +49,13 @@ pub fn simulate(scene: &MovingScene, times: &[f64]) -> Result<Trajectory, SceneE
                     // an end at once after a sample is that sample
                     let fresh = stop.at.filter(|at| at.time > now.time);
                     moments.extend(fresh.map(|at| Moment::of(scene, at.time, &at.state)));
-                    return Ok(Trajectory { moments, ended: stop.ended, start_energy });
+                    return Ok(Trajectory { moments, ended: stop.ended, start_energy, jumps: Vec::new() });
                 }
             }
         }
         moments.push(Moment::of(scene, time, &now.state));
     }
-    Ok(Trajectory { moments, ended: Ended::Completed, start_energy })
+    Ok(Trajectory { moments, ended: Ended::Completed, start_energy, jumps: Vec::new() })
 }
 
 /// An end before the next sample, and the last state before it unless the integrator gave up.

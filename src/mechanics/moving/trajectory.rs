@@ -106,6 +106,21 @@ impl Ended {
     }
 }
 
+/// A sudden turn: the pose in which the body lay has ceased to be stable (3.43), and it falls to the next that is. Angles in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// When, in seconds.
+    pub time: f64,
+    /// The palms' angles then: palm 1 against the X axis, palm 2 against palm 1.
+    pub palms: [f64; 2],
+    /// The body's orientation before.
+    pub from: f64,
+    /// And after.
+    pub to: f64,
+    /// By how much the centre of mass came down, in metres.
+    pub drop: f64,
+}
+
 /// A motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
@@ -114,6 +129,8 @@ pub struct Trajectory {
     pub ended: Ended,
     /// Kinetic and potential energy at time zero, in joules.
     pub start_energy: f64,
+    /// Sudden turns, in order; only slow motion has them.
+    pub jumps: Vec<Jump>,
 }
 
 impl Trajectory {

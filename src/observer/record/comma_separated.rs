@@ -8,10 +8,10 @@ use csv::{ReaderBuilder, Trim, WriterBuilder};
 use std::io::{Error, Write};
 use std::path::Path;
 
-const COMMENT: u8 = b'#';
+pub(super) const COMMENT: u8 = b'#';
 
 /// What some programs put in front of a text in UTF-8.
-const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+pub(super) const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
 /// The names of the columns, and the rows.
 pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
@@ -22,18 +22,8 @@ pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
         ReaderBuilder::new().flexible(true).trim(Trim::All).comment(Some(COMMENT)).from_reader(bytes);
     let complain = |e: csv::Error| complain(e.to_string());
     let header = reader.byte_headers().map_err(complain)?.clone();
-    let names: Vec<String> =
-        header.iter().map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect();
-    let refuse = |why: String| {
-        let help = "the first line names the columns, for instance: time,s1,s2".to_owned();
-        Err(RecordError::Header { path: path.to_owned(), why, help })
-    };
-    if names.is_empty() {
-        return refuse("the file is empty".to_owned());
-    }
-    if let Some(nameless) = names.iter().position(String::is_empty) {
-        return refuse(format!("column {} has no name", nameless + 1));
-    }
+    let names = names(&header, path)?;
+    let refuse = |why: String| Err(no_header(path, why));
     let mut rows = Vec::new();
     for line in reader.byte_records() {
         let line = line.map_err(complain)?;
@@ -47,9 +37,27 @@ pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
     Ok(Table { names, rows, ..Table::default() })
 }
 
+fn no_header(path: &Path, why: String) -> RecordError {
+    let help = "the first line names the columns, for instance: time,s1,s2".to_owned();
+    RecordError::Header { path: path.to_owned(), why, help }
+}
+
+/// The names in a header.
+pub(super) fn names(header: &csv::ByteRecord, path: &Path) -> Result<Vec<String>, RecordError> {
+    let names: Vec<String> =
+        header.iter().map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect();
+    if names.is_empty() {
+        return Err(no_header(path, "the file is empty".to_owned()));
+    }
+    match names.iter().position(String::is_empty) {
+        Some(nameless) => Err(no_header(path, format!("column {} has no name", nameless + 1))),
+        None => Ok(names),
+    }
+}
+
 /// The line on which a row begins, counted from one. The format's reader tells where it began to look for the row,
 /// with empty lines and comments still before it.
-fn line_number(bytes: &[u8], from: &csv::Position) -> u64 {
+pub(super) fn line_number(bytes: &[u8], from: &csv::Position) -> u64 {
     let mut line = from.line();
     let mut rest = usize::try_from(from.byte()).ok().and_then(|at| bytes.get(at..)).unwrap_or_default();
     while let [first, ..] = rest
@@ -62,7 +70,7 @@ fn line_number(bytes: &[u8], from: &csv::Position) -> u64 {
     line
 }
 
-fn cell(bytes: &[u8]) -> Cell {
+pub(super) fn cell(bytes: &[u8]) -> Cell {
     let text = String::from_utf8_lossy(bytes);
     match text.trim() {
         "" => Cell::Missing,
@@ -83,10 +91,18 @@ fn shortened(text: &str) -> String {
 pub(super) fn write(record: &Record, file: &mut dyn Write) -> std::io::Result<()> {
     let mut writer = WriterBuilder::new().from_writer(file);
     let header = std::iter::once(record.first_name()).chain(record.names.iter().map(String::as_str));
-    writer.write_record(header).map_err(Error::from)?;
+    writer.write_record(header).map_err(io_error)?;
     for (row, time) in record.times.iter().enumerate() {
         let values = std::iter::once(*time).chain(record.columns.iter().map(|column| column[row]));
-        writer.write_record(values.map(|value| format!("{value:?}"))).map_err(Error::from)?;
+        writer.write_record(values.map(|value| format!("{value:?}"))).map_err(io_error)?;
     }
     writer.flush()
+}
+
+/// What the system says, as it says it: a pipe whose reader has gone away is to be known as such.
+fn io_error(error: csv::Error) -> Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => Error::other(format!("{other:?}")),
+    }
 }

@@ -5,6 +5,7 @@
 //! whose times increase. This module knows nothing of palms or observers: which columns are needed is the caller's.
 
 mod check;
+mod columns;
 mod comma_separated;
 mod error;
 mod fault;
@@ -14,6 +15,7 @@ mod metadata;
 mod parquet_file;
 mod rows;
 mod spike;
+mod stream;
 mod table;
 #[cfg(feature = "parquet")]
 mod thrift;
@@ -21,9 +23,11 @@ mod write;
 
 #[cfg(test)]
 pub(crate) use check::check;
+pub use columns::{ColumnNames, ColumnSource};
 pub use error::RecordError;
 pub use fault::{Fault, FaultKind, FaultRules, OnFault};
 pub(crate) use rows::RecordRows;
+pub(crate) use stream::{RowStream, STREAM};
 pub(crate) use table::{Cell, Row};
 
 use std::path::Path;
@@ -97,8 +101,8 @@ impl Record {
         Ok(Record { over: Some(name.to_owned()), ..record })
     }
 
-    /// The name of the first column.
-    fn first_name(&self) -> &str {
+    /// The name of the first column: that of times, unless the record is over something else.
+    pub fn first_name(&self) -> &str {
         self.over.as_deref().unwrap_or(TIME)
     }
 
@@ -128,6 +132,19 @@ impl Record {
         rules: &FaultRules,
     ) -> Result<RecordReading, RecordError> {
         RecordRows::read(path, needed)?.settle(rules)
+    }
+
+    /// The same of a file that has some columns under other names and in other units; `needed` are the names that models give them.
+    ///
+    /// # Errors
+    /// As [`Record::read_checked`]; and where a column that is named is not there.
+    pub fn read_named(
+        path: &Path,
+        needed: &[&str],
+        names: &ColumnNames,
+        rules: &FaultRules,
+    ) -> Result<RecordReading, RecordError> {
+        RecordRows::read_named(path, needed, names)?.settle(rules)
     }
 
     /// Writes the record, CSV or Parquet by the extension, so that it is read back bit for bit (in CSV but for the

@@ -1,9 +1,10 @@
 //! A record as it stands in its file: cells that may be unreadable, and rows that may be too short or too long.
 
+use super::columns::ColumnPlan;
 #[cfg(feature = "parquet")]
 use super::parquet_file;
 use super::table::{Cell, Row, Table};
-use super::{Fault, FaultKind, Record, RecordError, TIME, comma_separated};
+use super::{ColumnNames, Fault, FaultKind, Record, RecordError, TIME, comma_separated};
 use crate::system::nearest;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -17,6 +18,10 @@ pub struct RecordRows {
     pub(super) rows: Vec<Row>,
     /// Which columns are judged, as indices; the first is that of the times.
     pub(super) needed: Vec<usize>,
+    /// The names of the columns in the file.
+    pub(super) shown: Vec<String>,
+    /// So many rows stand before these in the file.
+    pub(super) before: usize,
 }
 
 impl RecordRows {
@@ -26,8 +31,20 @@ impl RecordRows {
     /// # Errors
     /// The file cannot be read, lacks a column or has no row.
     pub fn read(path: &Path, needed: &[&str]) -> Result<RecordRows, RecordError> {
+        RecordRows::read_named(path, needed, &ColumnNames::default())
+    }
+
+    /// The same of a file that has some columns under other names and in other units.
+    ///
+    /// # Errors
+    /// As [`RecordRows::read`], and where a column that is named is not there.
+    pub fn read_named(
+        path: &Path,
+        needed: &[&str],
+        columns: &ColumnNames,
+    ) -> Result<RecordRows, RecordError> {
         let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-        let Table { names, rows, foreign } = match extension.as_deref() {
+        let table = match extension.as_deref() {
             Some("csv") => comma_separated::read(path)?,
             #[cfg(feature = "parquet")]
             Some("parquet") => parquet_file::read(path)?,
@@ -35,34 +52,19 @@ impl RecordRows {
             Some("parquet") => return Err(RecordError::NoParquet { path: path.to_owned() }),
             _ => return Err(RecordError::Extension { path: path.to_owned() }),
         };
-        let mut seen = BTreeSet::new();
-        if let Some(twice) = names.iter().find(|name| !seen.insert(name.as_str())) {
-            let why = format!("the column '{twice}' is there twice");
-            let help = "give every column a name of its own".to_owned();
-            return Err(RecordError::Header { path: path.to_owned(), why, help });
-        }
-        let index = |column: &str| {
-            names.iter().position(|name| name == column).ok_or_else(|| missing(path, &names, column))
-        };
-        let mut judged = vec![index(TIME)?];
-        if needed.is_empty() {
-            judged.extend((0..names.len()).filter(|i| names[*i] != TIME));
-        }
-        for column in needed {
-            let column = index(column)?;
-            if !judged.contains(&column) {
-                judged.push(column);
-            }
-        }
+        twice(path, &table.names)?;
+        let plan = columns.plan(path, &table.names)?;
+        let judged = judged(path, &plan, needed)?;
+        let Table { names, rows, foreign } = plan.table(table);
         if let Some((column, what)) = foreign.iter().find(|(index, _)| judged.contains(index)) {
-            let why = format!("the column '{}' holds {what}, not numbers", names[*column]);
+            let why = format!("the column '{}' holds {what}, not numbers", plan.shown[*column]);
             let help = "write it as doubles; times are seconds".to_owned();
             return Err(RecordError::Header { path: path.to_owned(), why, help });
         }
         if rows.is_empty() {
             return Err(RecordError::NoRows { path: path.to_owned() });
         }
-        Ok(RecordRows { path: path.to_owned(), names, rows, needed: judged })
+        Ok(RecordRows { path: path.to_owned(), names, rows, needed: judged, shown: plan.shown, before: 0 })
     }
 
     /// The record of the rows to keep, numbered from one, and the names of the columns that hold something other than
@@ -95,18 +97,55 @@ impl RecordRows {
     pub(super) fn fault(&self, row: usize, column: Option<usize>, kind: FaultKind) -> Fault {
         let place = self.rows.get(row);
         Fault {
-            row: row + 1,
+            row: self.before + row + 1,
             line: place.and_then(|row| row.line),
             time: place.and_then(|row| row.cells.get(self.needed[0])).and_then(Cell::finite),
-            column: column.and_then(|c| self.names.get(c).cloned()),
+            column: column.and_then(|c| self.shown.get(c).cloned()),
             kind,
         }
     }
 }
 
+/// No two columns have one name.
+pub(super) fn twice(path: &Path, names: &[String]) -> Result<(), RecordError> {
+    let mut seen = BTreeSet::new();
+    match names.iter().find(|name| !seen.insert(name.as_str())) {
+        Some(twice) => {
+            let why = format!("the column '{twice}' is there twice");
+            let help = "give every column a name of its own".to_owned();
+            Err(RecordError::Header { path: path.to_owned(), why, help })
+        }
+        None => Ok(()),
+    }
+}
+
+/// The columns that are judged: the times first; where none is needed beside them, all.
+pub(super) fn judged(path: &Path, plan: &ColumnPlan, needed: &[&str]) -> Result<Vec<usize>, RecordError> {
+    let names = &plan.names;
+    let index = |column: &str| {
+        let place = names.iter().position(|name| name == column);
+        place.ok_or_else(|| missing(path, &plan.shown, column))
+    };
+    let mut judged = vec![index(TIME)?];
+    if needed.is_empty() {
+        judged.extend((0..names.len()).filter(|i| names[*i] != TIME));
+    }
+    for column in needed {
+        let column = index(column)?;
+        if !judged.contains(&column) {
+            judged.push(column);
+        }
+    }
+    Ok(judged)
+}
+
 fn missing(path: &Path, names: &[String], column: &str) -> RecordError {
     let help = match nearest(column, names.iter().map(String::as_str)) {
-        Some(name) => format!("perhaps '{name}' is meant; the header must name it '{column}'"),
+        Some(name) => {
+            format!(
+                "perhaps '{name}' is meant; the header must name it '{column}', or a scene so: [columns] {column} = \"{name}\""
+            )
+        }
         None if names.len() == 1 => {
             format!("its header is the one name {:?}; columns are separated by commas", names[0])
         }

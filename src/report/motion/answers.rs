@@ -74,7 +74,7 @@ pub fn fault_lines(faults: &[Fault]) -> Vec<String> {
 }
 
 /// States with what was recovered, what is true, the error and the bound, by name.
-fn states(observed: &Observed<'_>, time: f64, recovered: &[f64], bounds: Option<&[f64]>) -> Value {
+pub(super) fn states(observed: &Observed<'_>, time: f64, recovered: &[f64], bounds: Option<&[f64]>) -> Value {
     let truth = observed.experiment.truth_at(time);
     let mut states = Map::new();
     for (i, name) in observed.experiment.names().into_iter().enumerate() {
@@ -91,7 +91,7 @@ fn states(observed: &Observed<'_>, time: f64, recovered: &[f64], bounds: Option<
     Value::Object(states)
 }
 
-fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
+pub(super) fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
     let mut found = json!({
         "from": update.from,
         "to": update.to,
@@ -116,6 +116,12 @@ fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
             "noise": finite(fit.sigma),
             "noise_from": noise_from(fit.from),
         });
+    }
+    if update.is_heir {
+        found["inherits"] = json!(true);
+    }
+    if update.discounted > 0 {
+        found["discounted"] = json!(update.discounted);
     }
     if !update.suspects.is_empty() {
         found["suspects"] = update
@@ -344,7 +350,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
     text
 }
 
-fn state_lines(
+pub(super) fn state_lines(
     text: &mut String,
     observed: &Observed<'_>,
     names: &[&str],

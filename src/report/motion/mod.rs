@@ -11,8 +11,10 @@ pub(super) mod plot;
 pub(super) mod reconstruction;
 pub(super) mod section;
 pub(super) mod shape;
+pub(super) mod stream;
 pub(super) mod study_plot;
 pub(super) mod table;
 
 pub use answers::{Observed, ended_in_words, observe_json, observe_text};
 pub use page::observe_page;
+pub use stream::{stream_end_json, stream_end_text, stream_json, stream_text};

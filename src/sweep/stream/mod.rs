@@ -264,7 +264,7 @@ fn watches(graph: &mut Graph, guards: impl Iterator<Item = Guard>, computed: &[N
 }
 
 /// The one value of a plain coordinate, where there is only one.
-fn held(source: &Source) -> Option<RBig> {
+pub(in crate::sweep) fn held(source: &Source) -> Option<RBig> {
     match source {
         Source::Fixed(Coordinate::Number(value)) => Some(value.clone()),
         Source::Between(low, high) if low == high => Some(low.clone()),

@@ -5,6 +5,7 @@
 //! shown to fail), or read from `general.proof`. Every state is drawn from a fixed seed.
 
 mod balance;
+mod bounds;
 mod chapter3;
 mod chapter4;
 mod chapter5;

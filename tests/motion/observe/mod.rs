@@ -6,6 +6,8 @@
 mod broken;
 mod channels;
 mod circular;
+mod columns;
+mod inherited;
 mod noise;
 mod options;
 mod random;
@@ -13,6 +15,7 @@ mod recorded;
 mod recovered;
 mod refused;
 mod shape;
+mod stream;
 mod systems;
 mod witness;
 mod wrong;

@@ -7,7 +7,7 @@ use palmistry::observer::UpdateEnd;
 use serde_json::Value;
 use std::path::Path;
 
-const SYSTEMS: [&str; 5] = ["van_der_pol", "lorenz", "two_tanks", "beacons", "epidemic"];
+const SYSTEMS: [&str; 6] = ["van_der_pol", "lorenz", "two_tanks", "beacons", "motor", "epidemic"];
 
 /// A scene of the project's systems, that can be read from anywhere.
 fn scene(name: &str) -> String {

@@ -3,7 +3,7 @@
 use super::super::keys::{GuessKeys, ObserverKeys};
 use super::super::{Guess, ObserverSettings, Study};
 use super::{Checks, MOST_SAMPLES, Problem, Source};
-use crate::observer::CalibrationKind;
+use crate::observer::{CalibrationKind, Loss};
 
 /// The most first guesses that a study may try.
 const MOST_GUESSES: usize = 10_000_000;
@@ -28,6 +28,7 @@ impl Checks<'_> {
                 return Err(self.wrong_key(&place, message, "leave it out here or in 'estimate'"));
             }
         }
+        self.estimation(&keys, source)?;
         let guess = self.guess(keys.guess, keys.guess_off, &keys.estimate, source)?;
         self.names("observer.clamp", &keys.clamp, |name| format!("'{name}'"))?;
         for (index, name) in keys.clamp.iter().enumerate() {
@@ -53,6 +54,10 @@ impl Checks<'_> {
         self.not_negative("observer.unscented.kappa", keys.unscented.kappa, "")?;
         self.positive("observer.high_gain.gain", keys.high_gain.gain, "1/s")?;
         Ok(ObserverSettings {
+            inherit: keys.inherit,
+            whole: keys.whole,
+            bounds: keys.bounds,
+            loss: keys.loss,
             methods: keys.methods,
             estimate: keys.estimate,
             known: keys.known,
@@ -68,6 +73,33 @@ impl Checks<'_> {
             unscented: keys.unscented,
             high_gain: keys.high_gain,
         })
+    }
+
+    /// What is asked of the estimates of windows.
+    fn estimation(&self, keys: &ObserverKeys, source: Source) -> Result<(), Problem> {
+        for (name, [low, high]) in &keys.bounds {
+            let place = format!("observer.bounds.{name}");
+            self.sought(&place, name, &keys.estimate)?;
+            if low.is_nan() || high.is_nan() || low >= high {
+                let message = format!("no number of '{name}' lies from {low} to {high}");
+                return Err(self.wrong(&place, message, "give the least value first; inf is none"));
+            }
+        }
+        if let Loss::Huber(corner) = keys.loss {
+            if !(corner.is_finite() && corner >= 1.0) {
+                let help = "give the number of standard deviations from which on a reading counts less: 1 or more, 1.345 by custom";
+                return Err(self.wrong("observer.loss", format!("a corner at {corner} is none"), help));
+            }
+            if !source.is_noisy {
+                let help = "add noise = ... under [sensor]: the corner is a multiple of it";
+                return Err(self.wrong(
+                    "observer.loss",
+                    "a robust loss needs the noise of the readings",
+                    help,
+                ));
+            }
+        }
+        Ok(())
     }
 
     fn guess(

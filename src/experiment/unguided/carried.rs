@@ -1,0 +1,175 @@
+//! The residuals in units in which their errors are independent and alike: what an error of a contact changes is carried on.
+//!
+//! A contact that errs by `e` moves the residual at its own sample by the rate at which the constraint changes along the palm. It also
+//! makes the force err, which is a torque over the contact's lever, and the force's error stays in velocity, place and rate
+//! at all later samples. So the residuals' errors hang together; least squares that weighs each by its own error alone wastes most of what
+//! readings with noise tell. The errors of `(c, v, omega)` from sample to sample are a Markov chain driven by the contacts' errors, and
+//! what a filter does not foresee of the residuals is white (T. Kailath, An innovations approach to least-squares estimation, 1968): the
+//! covariance of all residuals is never formed, and a window costs as many operations as it has samples.
+//!
+//! The integrals of errors are those of the trapezoidal rule: these are weights.
+
+use super::integrals::{Integrals, Sample};
+use super::normal::{Normal, Unknowns, swept};
+
+/// `c`, `v` and `omega`.
+const N: usize = 5;
+/// The residual, and its derivatives by the unknowns.
+const COLUMNS: usize = 7;
+
+type Vector = [f64; N];
+
+/// What the filter foresees of the errors of `(c, v, omega)`: their covariance in units of a contact's variance, and what the
+/// residuals before tell of them, for the residual and each of its derivatives.
+struct Carried {
+    covariance: [Vector; N],
+    foreseen: [[f64; COLUMNS]; N],
+}
+
+impl Carried {
+    /// The residuals of a sample with their derivatives, less what is foreseen, in units in which what is not is independent and alike.
+    fn whiten(&mut self, mut rows: [[f64; COLUMNS]; 2], at: &Errors) -> [[f64; COLUMNS]; 2] {
+        let mut gain = [[0.0; N]; 2];
+        let mut covariance = [[0.0; 2]; 2];
+        for p in 0..2 {
+            for i in 0..N {
+                let foreseen: f64 = (0..N).map(|j| self.covariance[i][j] * at.by[p][j]).sum();
+                gain[p][i] = foreseen + at.later[0][i] * at.own[p][0] + at.later[1][i] * at.own[p][1];
+                for (q, by) in at.by.iter().enumerate() {
+                    covariance[p][q] += by[i] * foreseen;
+                }
+                for (value, foreseen) in rows[p].iter_mut().zip(&self.foreseen[i]) {
+                    *value -= at.by[p][i] * foreseen;
+                }
+            }
+            for (q, value) in covariance[p].iter_mut().enumerate() {
+                *value += at.own[p][0] * at.own[q][0] + at.own[p][1] * at.own[q][1];
+            }
+            covariance[p][p] += at.other;
+        }
+        // Cholesky's factor, two by two
+        let first = 1.0 / covariance[0][0].sqrt();
+        let mixed = covariance[1][0] * first;
+        let second = 1.0 / (covariance[1][1] - mixed * mixed).max(at.other).sqrt();
+        let unmixed = |of: [f64; 2]| [of[0] * first, (of[1] - mixed * of[0] * first) * second];
+        let [above, below] = &mut rows;
+        for (a, b) in above.iter_mut().zip(below) {
+            [*a, *b] = unmixed([*a, *b]);
+        }
+        let parts: [[f64; 2]; N] = std::array::from_fn(|i| unmixed([gain[0][i], gain[1][i]]));
+        for i in 0..N {
+            for j in 0..N {
+                self.covariance[i][j] += at.later[0][i] * at.later[0][j] + at.later[1][i] * at.later[1][j]
+                    - parts[i][0] * parts[j][0]
+                    - parts[i][1] * parts[j][1];
+            }
+            for (column, foreseen) in self.foreseen[i].iter_mut().enumerate() {
+                *foreseen += parts[i][0] * rows[0][column] + parts[i][1] * rows[1][column];
+            }
+        }
+        rows
+    }
+
+    /// To the next sample: the place moves with the velocity, and the forces turn the body about another place.
+    fn pass(&mut self, time: f64, turning: [f64; 2]) {
+        for (axis, turning) in turning.iter().enumerate() {
+            for column in 0..COLUMNS {
+                let [place, velocity] = [self.foreseen[axis][column], self.foreseen[2 + axis][column]];
+                self.foreseen[4][column] -= time * turning * place;
+                self.foreseen[axis][column] += time * velocity;
+            }
+            for column in 0..N {
+                let [place, velocity] = [self.covariance[axis][column], self.covariance[2 + axis][column]];
+                self.covariance[4][column] -= time * turning * place;
+                self.covariance[axis][column] += time * velocity;
+            }
+        }
+        for row in &mut self.covariance {
+            for (axis, turning) in turning.iter().enumerate() {
+                row[4] -= time * turning * row[axis];
+                row[axis] += time * row[2 + axis];
+            }
+        }
+    }
+}
+
+/// What errors change at a sample.
+struct Errors {
+    /// The residuals' derivatives by `(c, v, omega)`.
+    by: [Vector; 2],
+    /// Those by both contacts here.
+    own: [[f64; 2]; 2],
+    /// What each contact's error changes of `(c, v, omega)` for all later samples.
+    later: [Vector; 2],
+    /// The variance of what else there is.
+    other: f64,
+}
+
+/// The normal equations of the whitened residuals at some unknowns; `softened` as in [`super::normal::Look`].
+pub(super) fn expand(all: &Integrals, x: &Unknowns, softened: f64) -> Normal {
+    let [cx, cy, vx, vy, rate, log_k] = *x;
+    let k = log_k.exp();
+    let mut normal = Normal::default();
+    let mut carried = Carried { covariance: [[0.0; N]; N], foreseen: [[0.0; COLUMNS]; N] };
+    let samples = &all.samples;
+    for (i, sample) in samples.iter().enumerate() {
+        let time = sample.time;
+        let before = if i == 0 { time } else { samples[i - 1].time };
+        let after = samples.get(i + 1).map_or(time, |next| next.time);
+        let turned = sample.c - sample.a[0] * cx - sample.a[1] * cy - sample.b[0] * vx - sample.b[1] * vy;
+        let omega = rate + k * turned;
+        let slopes =
+            [-k * sample.a[0], -k * sample.a[1], -k * sample.b[0], -k * sample.b[1], 1.0, k * turned];
+        let place = [cx + vx * time + sample.place[0], cy + vy * time + sample.place[1]];
+        let velocity = [vx + sample.velocity[0], vy + sample.velocity[1]];
+        let mut rows = [[0.0; COLUMNS]; 2];
+        let mut at = Errors {
+            by: [[0.0; N]; 2],
+            own: [[0.0; 2]; 2],
+            later: [[0.0; N]; 2],
+            other: softened * softened,
+        };
+        for (p, palm) in sample.palms.iter().enumerate() {
+            let [nx, ny] = palm.normal;
+            let arm = palm.lever - ny * place[0] + nx * place[1];
+            let off = nx * velocity[0] + ny * velocity[1] + omega * arm - palm.rate * palm.lever;
+            at.by[p] = [-omega * ny, omega * nx, nx, ny, arm];
+            let [x, y, ..] = at.by[p];
+            let turns = slopes.map(|slope| slope * arm);
+            rows[p] = [
+                off,
+                turns[0] + x,
+                turns[1] + y,
+                turns[2] + nx + x * time,
+                turns[3] + ny + y * time,
+                turns[4],
+                turns[5],
+            ];
+            // the force's derivative by the contact: the torque stays
+            let along = -palm.force * palm.lever_slope / palm.lever;
+            let across = palm.force * palm.bend;
+            let force = [along * nx - across * ny, along * ny + across * nx];
+            let turn = -k * (place[0] * force[1] - place[1] * force[0]);
+            at.later[p] = [0.0, 0.0, force[0] / all.mass, force[1] / all.mass, turn];
+            at.own[p][p] = palm.side * swept(palm, place, velocity, omega);
+        }
+        // the trapezoidal rule: half of an error counts here
+        let [here, held] = [(time - before) / 2.0, (after - before) / 2.0];
+        for p in 0..2 {
+            for q in 0..2 {
+                let sum: f64 = at.by[p].iter().zip(&at.later[q]).map(|(by, later)| by * later).sum();
+                at.own[p][q] += here * sum;
+            }
+        }
+        at.later.iter_mut().flatten().for_each(|value| *value *= held);
+        carried.whiten(rows, &at).iter().for_each(|row| normal.add(row));
+        carried.pass(after - time, turning(sample).map(|turning| k * turning));
+    }
+    normal
+}
+
+/// `A'`.
+fn turning(sample: &Sample) -> [f64; 2] {
+    let pushed = |axis: usize| sample.palms.iter().map(|palm| palm.force * palm.normal[axis]).sum::<f64>();
+    [pushed(1), -pushed(0)]
+}

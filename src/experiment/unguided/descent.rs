@@ -1,0 +1,187 @@
+//! Steps that make the residuals smaller.
+
+use super::carried;
+use super::integrals::Integrals;
+use super::normal::{self, Look, Normal, Unknowns};
+
+/// Which unknowns are free.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Free {
+    /// The velocity alone; `k` is that of a disc.
+    Velocity,
+    /// Centre and velocity; `k` is that of a disc.
+    Motion,
+    /// All, `k` drawn to that of a disc as strongly as the residuals let it.
+    Drawn,
+    /// All.
+    All,
+}
+
+impl Free {
+    fn places(self, is_k_known: bool) -> std::ops::Range<usize> {
+        match self {
+            Free::Velocity => 2..4,
+            Free::Motion => 0..4,
+            Free::Drawn | Free::All if is_k_known => 0..5,
+            Free::Drawn | Free::All => 0..6,
+        }
+    }
+}
+
+/// The solution of a part of the normal equations with the diagonal made larger by a part of itself, by Cholesky; the lower triangle is
+/// given.
+fn solve(normal: &Normal, places: &std::ops::Range<usize>, damping: f64) -> Option<[f64; 6]> {
+    let (start, size) = (places.start, places.len());
+    let mut l = [[0.0; 6]; 6];
+    for i in 0..size {
+        for j in 0..=i {
+            let mut value = normal.matrix[start + i][start + j];
+            if i == j {
+                value *= 1.0 + damping;
+            }
+            value -= l[i][..j].iter().zip(&l[j][..j]).map(|(a, b)| a * b).sum::<f64>();
+            l[i][j] = if i != j {
+                value / l[j][j]
+            } else if value > 0.0 {
+                value.sqrt()
+            } else {
+                return None;
+            };
+        }
+    }
+    let mut y = [0.0; 6];
+    for i in 0..size {
+        let sum: f64 = (0..i).map(|m| l[i][m] * y[m]).sum();
+        y[i] = (-normal.gradient[start + i] - sum) / l[i][i];
+    }
+    let mut step = [0.0; 6];
+    for i in (0..size).rev() {
+        let sum: f64 = (i + 1..size).map(|m| l[m][i] * step[start + m]).sum();
+        step[start + i] = (y[i] - sum) / l[i][i];
+    }
+    step.iter().all(|value| value.is_finite()).then_some(step)
+}
+
+/// How strongly `k` is drawn to that of a disc, in parts of the residuals.
+const DRAWN: f64 = 0.3;
+/// `k` changes by no more than this factor's logarithm in one step.
+const LONGEST: f64 = 1.5;
+
+/// Levenberg and Marquardt's method from a start; the unknowns and the sum of the squares that it ends with.
+pub(super) fn descend(
+    all: &Integrals,
+    start: Unknowns,
+    free: Free,
+    look: Look,
+    steps: usize,
+) -> (Unknowns, f64) {
+    let places = free.places(all.log_k.is_some());
+    let is_tied = matches!(free, Free::Velocity | Free::Motion);
+    let tied = |x: &mut Unknowns| {
+        if is_tied {
+            x[5] = all.likely_log_k([x[0], x[1]]);
+        }
+    };
+    let mut x = start;
+    tied(&mut x);
+    let mut damping = 1e-3;
+    let mut normal = normal::expand(all, &x, look);
+    let mut reached = normal.cost;
+    for taken in 0..steps {
+        let (draw, likely) = match free {
+            Free::Drawn if all.log_k.is_none() => (DRAWN * normal.cost, all.likely_log_k([x[0], x[1]])),
+            _ => (0.0, 0.0),
+        };
+        let drawn = |cost: f64, x: &Unknowns| cost + draw * (x[5] - likely) * (x[5] - likely);
+        normal.matrix[5][5] += draw;
+        normal.gradient[5] += draw * (x[5] - likely);
+        let before = drawn(normal.cost, &x);
+        let mut better = None;
+        for _ in 0..6 {
+            if let Some(mut step) = solve(&normal, &places, damping) {
+                step[5] = step[5].clamp(-LONGEST, LONGEST);
+                let mut there: Unknowns = std::array::from_fn(|i| x[i] + step[i]);
+                tied(&mut there);
+                let cost = normal::cost(all, &there, look);
+                if drawn(cost, &there) < before {
+                    better = Some((there, cost));
+                    break;
+                }
+            }
+            damping *= 8.0;
+        }
+        let Some((there, cost)) = better else { break };
+        let is_settled = drawn(cost, &there) > before * (1.0 - 1e-6);
+        (x, reached) = (there, cost);
+        damping *= 0.1;
+        // who takes no further step needs no derivatives
+        if is_settled || taken + 1 == steps {
+            break;
+        }
+        normal = normal::expand(all, &x, look);
+    }
+    (x, reached)
+}
+
+/// Centre and velocity by linear least squares for a body that turns at one rate; none where they are not told.
+pub(super) fn at_one_rate(all: &Integrals, rate: f64, look: Look) -> Option<Unknowns> {
+    // with no k the constraint is linear in the centre and the velocity: one step without damping solves it
+    let x = [0.0, 0.0, 0.0, 0.0, rate, f64::NEG_INFINITY];
+    let step = solve(&normal::expand(all, &x, look), &(0..4), 1e-12)?;
+    Some([step[0], step[1], step[2], step[3], rate, all.likely_log_k([step[0], step[1]])])
+}
+
+/// Rates below this part of the largest likely one are softened where errors are carried on.
+const SOFTENED: f64 = 0.0005;
+
+/// Levenberg and Marquardt's method by the residuals as the errors of contacts leave them, all unknowns let go; the unknowns and the sum of
+/// the squares that it ends with.
+pub(super) fn refine(all: &Integrals, start: Unknowns, steps: usize) -> (Unknowns, f64) {
+    let places = Free::All.places(all.log_k.is_some());
+    let softened = SOFTENED * all.rate;
+    let mut x = start;
+    let mut normal = carried::expand(all, &x, softened);
+    let mut damping = 1e-6;
+    for _ in 0..steps {
+        let mut better = None;
+        for _ in 0..5 {
+            if let Some(mut step) = solve(&normal, &places, damping) {
+                step[5] = step[5].clamp(-LONGEST, LONGEST);
+                let there: Unknowns = std::array::from_fn(|i| x[i] + step[i]);
+                let next = carried::expand(all, &there, softened);
+                if there[4].abs() <= all.fastest() && next.cost < normal.cost {
+                    better = Some((there, next));
+                    break;
+                }
+            }
+            damping = (damping * 30.0).max(1e-4);
+        }
+        let Some((there, next)) = better else { break };
+        let is_settled = next.cost > normal.cost * (1.0 - 1e-4);
+        (x, normal) = (there, next);
+        damping *= 0.03;
+        if is_settled {
+            break;
+        }
+    }
+    (x, if normal.cost.is_nan() { f64::INFINITY } else { normal.cost })
+}
+
+/// The least standard deviations of the palms' radii and the rate at some unknowns, for contacts whose errors have the deviation one; infinite where
+/// they are not told.
+pub(super) fn deviations(all: &Integrals, x: &Unknowns) -> [f64; 3] {
+    let places = Free::All.places(all.log_k.is_some());
+    let normal = carried::expand(all, x, SOFTENED * all.rate);
+    let [first, second] = all.samples[0].palms.map(|palm| palm.normal);
+    let sought = [
+        [first[0], first[1], 0.0, 0.0, 0.0, 0.0],
+        [second[0], second[1], 0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+    ];
+    sought.map(|direction| {
+        let towards = Normal { gradient: direction.map(|value| -value), ..normal.clone() };
+        let column = solve(&towards, &places, 0.0);
+        let variance = column.map(|column| column.iter().zip(&direction).map(|(a, b)| a * b).sum::<f64>());
+        variance.filter(|variance| *variance >= 0.0).map_or(f64::INFINITY, f64::sqrt)
+    })
+}

@@ -1,0 +1,187 @@
+//! Window after window, each with what those before it have learned.
+//!
+//! A window hands on what its readings tell of the state at its end as the triangular factor of an information matrix: the rows
+//! `R (x - m)` have independent errors as large as a reading's. The next window takes them as readings beside its own, in the place of the
+//! first sample, which both share (C. V. Rao, J. B. Rawlings, D. Q. Mayne, Constrained state estimation for nonlinear discrete-time systems, 2003, who call
+//! them the arrival cost; G. J. Bierman, Factorization Methods for Discrete Sequential Estimation, 1977, for the factor). States that do
+//! not move are so shared by all windows.
+
+use super::fit::NoiseFrom;
+use super::learned::{Arrival, Learned};
+use super::task::{Task, Track, Update, UpdateEnd};
+use super::trace::is_asked;
+use super::window::Window;
+use super::{MovingWindow, Order, weights};
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What is made of a window of which nothing is inherited: its update, and other states that fit as well.
+type Anew<'f> = dyn Fn(&[f64], &Range<usize>, &[usize], &Learned) -> (Update, Vec<Update>) + 'f;
+
+impl MovingWindow {
+    /// Window after window: each begins with what those before it have learned, and anew where its readings contradict that.
+    pub(super) fn observe_by(
+        &self,
+        task: &Task<'_>,
+        anew: impl Fn(&[f64], &Range<usize>, &[usize], &Learned) -> (Update, Vec<Update>),
+    ) -> Track {
+        let anew: &Anew<'_> = &anew;
+        let mut track = Track::default();
+        let mut learned = Learned::before(task);
+        let samples = task.signals.times().len();
+        let is_first = task.learned.is_none();
+        let fewest = if is_first { self.window.min(samples) } else { self.window };
+        let mut row = 0;
+        while row + 1 < samples && !task.interrupted() {
+            // windows share a sample: where one ends the next begins
+            let rows = row..(row + self.window.max(2)).min(samples - 1) + 1;
+            let clamped: &[usize] = if is_first && row == 0 { &task.clamped } else { &[] };
+            let mut start = task.full_state(&learned.belief, row);
+            let mut arrival = None;
+            // too few samples to compare are only followed, and seen if those before were
+            if rows.len() >= fewest {
+                let (update, others) = self.next_update(task, &rows, clamped, &learned, anew, &mut track);
+                learned.is_asked |= is_asked(&update);
+                learned.sees = !matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
+                start = [&update.estimate[..], &update.outputs].concat();
+                let own = Self::inheriting(task, &learned, clamped).filter(|_| update.is_heir);
+                arrival = self.learn(own.as_ref().unwrap_or(task), &update, &rows, clamped);
+                self.note_bounds(task, &update, &mut track);
+                track.updates.push(update);
+                track.others.extend(others);
+            }
+            learned.belief = self.follow(task, &start, &rows, learned.sees, &mut track);
+            learned.arrival = arrival;
+            row = rows.end - 1;
+        }
+        track.hand_on(learned);
+        track
+    }
+
+    /// The update of the next window. What contradicts what was learned before is an update that does not fit, and another one follows it that
+    /// knows nothing of before.
+    fn next_update(
+        &self,
+        task: &Task<'_>,
+        rows: &Range<usize>,
+        clamped: &[usize],
+        learned: &Learned,
+        anew: &Anew<'_>,
+        track: &mut Track,
+    ) -> (Update, Vec<Update>) {
+        let Some(own) = Self::inheriting(task, learned, clamped) else {
+            return anew(&learned.belief, rows, clamped, learned);
+        };
+        let mut update = self.update_and_ask(&own, &learned.belief, rows, clamped, false);
+        update.is_heir = true;
+        if update.is_borne_out() {
+            return (update, Vec::new());
+        }
+        let (fresh, others) = anew(&learned.belief, rows, clamped, learned);
+        if fresh.is_borne_out() && update.is_contradicted() {
+            let time = update.from;
+            track.remarks.push(format!(
+                "at {time:.3} s the readings contradict what the windows before told of what does not move, or of where it is: begun anew"
+            ));
+            track.updates.push(update);
+        }
+        (fresh, others)
+    }
+
+    /// Says what lies at a bound that was told: its deviation is that of an unknown that is free.
+    fn note_bounds(&self, task: &Task<'_>, update: &Update, track: &mut Track) {
+        for ((value, bounds), name) in update.estimate.iter().zip(&task.bounds).zip(&task.full.states) {
+            if let Some(bound) = bounds.iter().find(|bound| *bound == value) {
+                track
+                    .remarks
+                    .push(format!("from {:.3} s '{name}' is held at its bound {bound}", update.from));
+            }
+        }
+    }
+}
+
+impl Arrival {
+    /// What a window tells of the state at its last sample, where the state at its first is this and nothing of it was kept from
+    /// moving; none where that is no number.
+    fn after(window: &Window<'_>, state: &[f64]) -> Option<Arrival> {
+        let n = state.len();
+        let free: Vec<usize> = (0..n).collect();
+        let window = Window { free, ..window.clone() };
+        let here = window.expand(&window.unknowns(state), Order::First).ok()?;
+        if here.slopes.nrows() < n || here.end.iter().any(|value| !value.is_finite()) {
+            return None;
+        }
+        let factor = here.slopes.qr().unpack_r();
+        // R x at the first sample is R F^-1 x at the last
+        let carried = here.end_slopes.transpose().lu().solve(&factor.transpose())?.transpose();
+        let factor = carried.qr().unpack_r();
+        let is_told = factor.iter().all(|value| value.is_finite());
+        is_told.then_some(Arrival { mean: here.end, factor })
+    }
+}
+
+impl Learned {
+    /// What is known before any sample is read.
+    pub(super) fn nothing(task: &Task<'_>) -> Learned {
+        Learned::belief_alone(task.guess.clone())
+    }
+
+    /// What is known at the first sample of a task.
+    pub(super) fn before(task: &Task<'_>) -> Learned {
+        task.learned.as_ref().map_or_else(|| Learned::nothing(task), |learned| (**learned).clone())
+    }
+
+    /// Of a filter, with the covariance of its state.
+    pub(super) fn of_filter(
+        task: &Task<'_>,
+        state: &DVector<f64>,
+        spread: &DMatrix<f64>,
+        variances: DVector<f64>,
+    ) -> Learned {
+        let n = task.estimated();
+        Learned {
+            belief: state.as_slice()[..n].to_vec(),
+            deviations: Some(variances.iter().take(n).map(|variance| variance.max(0.0).sqrt()).collect()),
+            filter: Some((state.clone(), spread.clone())),
+            ..Learned::nothing(task)
+        }
+    }
+}
+
+impl MovingWindow {
+    /// A task with what was learned before a window, where it may be taken: a window of which something is clamped, or whose driving columns err,
+    /// stands alone.
+    pub(super) fn inheriting<'t>(task: &Task<'t>, learned: &Learned, clamped: &[usize]) -> Option<Task<'t>> {
+        let arrival = learned.arrival.clone().filter(|_| task.inherit && clamped.is_empty())?;
+        Some(Task { arrival: Some(arrival), exact: false, ..task.clone() })
+    }
+
+    /// What an update of some rows leaves to the next window: nothing where it has no answer that the readings bear out, or where readings have
+    /// no errors, so that nothing is to be weighed.
+    pub(super) fn learn(
+        &self,
+        task: &Task<'_>,
+        update: &Update,
+        rows: &Range<usize>,
+        clamped: &[usize],
+    ) -> Option<Arc<Arrival>> {
+        let has_errors = update.fit.is_some_and(|fit| fit.from != NoiseFrom::Computation);
+        if !(task.inherit && has_errors && update.is_borne_out() && clamped.is_empty())
+            || weights::are_needed(task)
+        {
+            return None;
+        }
+        let task = Task { exact: false, ..task.clone() };
+        let window = Self::window(&task, &update.estimate, rows, clamped);
+        let state = [&update.estimate[..], &update.outputs].concat();
+        Arrival::after(&window, &state).map(Arc::new)
+    }
+}
+
+impl Track {
+    /// Notes what is handed on.
+    pub(super) fn hand_on(&mut self, learned: Learned) {
+        self.learned = Some(Arc::new(learned));
+    }
+}

@@ -1,0 +1,45 @@
+//! What an observer has learned by a sample, for whoever goes on from there: the next window, or the next part of a stream.
+
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+
+/// What is known of a state before its window is read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrival {
+    /// The state, with the outputs that are followed.
+    pub mean: Vec<f64>,
+    /// The factor: a row a relation, a column a state, in units of a reading.
+    pub factor: DMatrix<f64>,
+}
+
+impl Arrival {
+    /// The relations of some unknowns at their values: what is off, and the derivatives.
+    pub(super) fn off(&self, free: &[usize], unknowns: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let apart = DVector::from_fn(free.len(), |i, _| unknowns[i] - self.mean[free[i]]);
+        let slopes = self.factor.select_columns(free);
+        (&slopes * apart, slopes)
+    }
+}
+
+/// What an observer has learned by a sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Learned {
+    /// What is believed of what is sought.
+    pub belief: Vec<f64>,
+    /// The standard deviations of that, where a filter has them.
+    pub deviations: Option<Vec<f64>>,
+    /// Whether the readings before told the state.
+    pub(super) sees: bool,
+    /// Whether it is known which errors would not be noticed.
+    pub(super) is_asked: bool,
+    pub(super) arrival: Option<Arc<Arrival>>,
+    /// The state of a filter, and its covariance or a factor of it.
+    pub(super) filter: Option<(DVector<f64>, DMatrix<f64>)>,
+}
+
+impl Learned {
+    /// A state that is believed, and nothing of how well it is known.
+    pub(crate) fn belief_alone(belief: Vec<f64>) -> Learned {
+        Learned { belief, deviations: None, sees: true, is_asked: false, arrival: None, filter: None }
+    }
+}

@@ -1,0 +1,99 @@
+//! The bounds of a body's volume from the contacts of simulated motions, and its support function: truth is the body's own.
+
+use nalgebra::Vector3;
+use palmistry::mechanics::moving::Course;
+use palmistry::mechanics::spatial::*;
+use palmistry::shape::sphere::*;
+use std::f64::consts::{PI, TAU};
+
+/// Contacts of a body that is laid near a pose and turns at a rate, on three palms at rest.
+fn contacts(solid: &ConvexSolid, turn: [f64; 3], rate: [f64; 3]) -> Vec<SurfaceTouch> {
+    let palm = |azimuth: f64| SpatialPalm { azimuth, inertia: 0.5, ..Default::default() };
+    let mut scene = SpatialScene {
+        mass: 1.0,
+        inertia_over_mass: solid.uniform_inertia(),
+        solid: solid.clone(),
+        orientation: Orientation::by(&Vector3::from(turn)),
+        rate,
+        gravity: [0.0, 0.0, -9.81],
+        palms: [0.0, TAU / 3.0, 2.0 * TAU / 3.0].map(palm),
+        drive: SpatialDrive::Prescribed([PI / 3.0; 3].map(|start| Course { start, ..Course::default() })),
+        tolerance: 1e-10,
+    };
+    scene.orientation = balanced_orientation(&scene).unwrap().expect("a pose of balance");
+    let times: Vec<f64> = (0..=22).map(|i| f64::from(i) * 0.08).collect();
+    let found = simulate_solid(&scene, &times).unwrap();
+    let palms = found.moments.iter().flat_map(|moment| moment.palms);
+    palms.map(|palm| SurfaceTouch { point: palm.touched, normal: palm.outward.normalize() }).collect()
+}
+
+/// Figure 5.3's ellipsoid, four times. One run alone may leave it unbounded, and says so by a direction that no contact looks along.
+#[test]
+fn bounds_of_figure_5_3_hold_its_volume() {
+    let solid = ConvexSolid::new(SolidForm::Ellipsoid { semi_axes: [2.5, 2.0, 1.0] }, None).unwrap();
+    let runs = [
+        ([0.2, -0.3, 0.4], [0.0, 0.3, 0.3]),
+        ([1.2, 0.4, -0.6], [0.3, -0.2, 0.4]),
+        ([-0.4, 1.3, 0.8], [-0.3, 0.3, -0.2]),
+        ([0.3, -0.8, 2.6], [0.2, 0.4, 0.5]),
+    ];
+    let mut touches: Vec<SurfaceTouch> = Vec::new();
+    let mut last = 0.0;
+    let mut told = Vec::new();
+    for (turn, rate) in runs {
+        touches.extend(contacts(&solid, turn, rate));
+        let inner = contact_hull(&touches).unwrap().volume;
+        assert!(inner.low() >= last && inner.high() < solid.volume(), "{inner}");
+        last = inner.high();
+        match half_space_intersection(&touches).unwrap() {
+            OuterBound::Bounded(outer) => {
+                assert!(outer.volume.low() > solid.volume());
+                told.push(outer.volume.high());
+            }
+            OuterBound::Unbounded { direction } => {
+                assert!(touches.iter().all(|touch| touch.normal.dot(&direction) < 1e-14));
+                told.push(f64::INFINITY);
+            }
+        }
+    }
+    assert!(told.windows(2).all(|pair| pair[1] <= pair[0]), "{told:?}");
+    let round = rounded_hull(&touches, 0.4).unwrap().volume;
+    assert!(last < round.low() && round.high() < solid.volume(), "{round}");
+    let mut least = told[3];
+    for radius in [20.0, 6.25] {
+        let balls = ball_intersection(&touches, radius).unwrap().volume;
+        assert!(solid.volume() < balls.high() && balls.high() < least, "{balls} {least}");
+        least = balls.high();
+    }
+    println!(
+        "hull {last}, rounded {}, body {}, half-spaces {told:?}, balls {least}",
+        round.low(),
+        solid.volume()
+    );
+    assert!(last > 12.0 && least < 25.0);
+}
+
+/// A body made of harmonics is found where it was touched, from curves on it alone.
+#[test]
+fn the_support_function_is_found_from_curves() {
+    let harmonic = |powers, coefficient| Harmonic { powers, coefficient };
+    let terms = vec![harmonic([2, 0, 0], 0.1), harmonic([0, 3, 0], 0.03), harmonic([1, 1, 1], -0.05)];
+    let solid = ConvexSolid::new(SolidForm::Harmonics { mean: 1.2, terms }, None).unwrap();
+    let mut touches = contacts(&solid, [0.5, 0.1, -0.4], [0.4, -0.5, 0.6]);
+    touches.extend(contacts(&solid, [-1.0, 0.9, 0.7], [-0.5, 0.4, 0.8]));
+    let samples: Vec<SolidSample> = touches.iter().map(|touch| SolidSample::of(touch, 1e22)).collect();
+    let found = fit_solid(&samples, Some(3)).unwrap();
+    // no body has more degrees than three here, so that curves tell all of it
+    for direction in [[0.3, -0.5, 0.8], [1.0, 0.2, 0.1], [-0.6, 0.6, -0.5], [0.0, 0.0, 1.0]] {
+        let n = Vector3::from(direction).normalize();
+        let off = found.support.support(&n) - solid.support(&n).extent;
+        assert!(
+            off.abs() < 1e-7 && off.abs() < 6.0 * found.deviation(&n) + 1e-12,
+            "{off} {}",
+            found.deviation(&n)
+        );
+        let (point, _) = found.support.point_and_bend(&n);
+        assert!((point - solid.support(&n).point).norm() < 1e-6);
+        assert!(found.support.least_radius(&n) > 0.1);
+    }
+}

@@ -1,0 +1,153 @@
+//! What windows hand on, estimates over whole records, bounds, and a robust loss.
+//!
+//! Oracle: a point that moves at one speed, read with errors. The best line through all readings, its deviations and its misfit are
+//! known in closed form (regression), whatever the windows.
+
+use crate::common::{folder, write};
+use crate::observe::{NEVER, answers, experiment};
+use palmistry::observer::UpdateEnd;
+
+const NOISE: f64 = 0.05;
+const SAMPLES: usize = 201;
+
+/// A point at `x(t) = x0 + v t`, in windows of 40 steps.
+fn point(more: &str) -> (tempfile::TempDir, palmistry::experiment::Experiment) {
+    let folder = folder();
+    write(
+        &folder,
+        "point.proof",
+        "system \"A point\" state x, v drift f x' = v v' = 0 output x sample x in [-5, 5] v in [-5, 5]",
+    );
+    let model = folder.path().join("point.proof");
+    let scene = format!(
+        "title = \"A point\"\nmodel = \"{}\"\nduration = 10\nsamples = {SAMPLES}\n[start]\nx = 1.0\nv = 0.5\n[sensor]\nnoise = {NOISE}\n\
+         [observer]\nmethods = [\"trust-region\"]\nestimate = [\"x\", \"v\"]\nguess = {{ x = 0.3, v = 0.1 }}\nwindow = 40\n{more}",
+        model.display()
+    );
+    (folder, experiment(&scene))
+}
+
+/// The best line `a + b t` through some readings, and the standard deviations of `a` and `b`.
+fn line(times: &[f64], values: &[f64]) -> ([f64; 2], [f64; 2]) {
+    let n = times.len() as f64;
+    let (t, x) = (times.iter().sum::<f64>() / n, values.iter().sum::<f64>() / n);
+    let square: f64 = times.iter().map(|time| (time - t).powi(2)).sum();
+    let slope = times.iter().zip(values).map(|(time, value)| (time - t) * (value - x)).sum::<f64>() / square;
+    let deviation = NOISE / square.sqrt();
+    ([x - slope * t, slope], [NOISE * (1.0 / n + t * t / square).sqrt(), deviation])
+}
+
+#[test]
+fn the_last_window_knows_what_all_readings_tell() {
+    let (_folder, experiment) = point("");
+    let track = &answers(&experiment)[0].track;
+    assert_eq!(track.updates.len(), 5);
+    assert!(track.is_sound() && track.remarks.is_empty(), "{:?}", track.remarks);
+    let times = experiment.signals.times();
+    let values = experiment.signals.column(0);
+    for (place, update) in track.updates.iter().enumerate() {
+        assert_eq!((&update.end, update.is_heir), (&UpdateEnd::Converged, place > 0));
+        // all readings up to the end of this window
+        let rows = 40 * (place + 1) + 1;
+        let shifted: Vec<f64> = times[..rows].iter().map(|time| time - update.from).collect();
+        let (best, deviations) = line(&shifted, &values[..rows]);
+        for i in 0..2 {
+            assert!((update.estimate[i] - best[i]).abs() < 1e-6 * deviations[i], "{place} {i}");
+            assert!((update.deviations[i] / deviations[i] - 1.0).abs() < 1e-6, "{place} {i}");
+        }
+        let fit = update.fit.unwrap();
+        // a window has its own readings but the one it shares, and two relations in the place of that
+        assert_eq!(fit.degrees, if place == 0 { 41 - 2 } else { 40 + 2 - 2 });
+    }
+    // where nothing is inherited each window stands alone
+    let (_folder, alone) = point("inherit = false\n");
+    let alone = &answers(&alone)[0].track;
+    let own = &alone.updates[4];
+    let (best, deviations) =
+        line(&times[160..].iter().map(|time| time - own.from).collect::<Vec<_>>(), &values[160..]);
+    assert!(!own.is_heir && (own.estimate[1] - best[1]).abs() < 1e-6 * deviations[1]);
+    assert!(own.deviations[1] > 5.0 * track.updates[4].deviations[1]);
+}
+
+#[test]
+fn a_whole_record_is_one_window() {
+    let (_folder, experiment) = point("whole = true\n");
+    let track = &answers(&experiment)[0].track;
+    assert_eq!((track.updates.len(), track.estimates.len()), (1, SAMPLES));
+    let (best, deviations) = line(experiment.signals.times(), experiment.signals.column(0));
+    let update = &track.updates[0];
+    for i in 0..2 {
+        assert!((update.estimate[i] - best[i]).abs() < 1e-6 * deviations[i]);
+        assert!((update.deviations[i] / deviations[i] - 1.0).abs() < 1e-6);
+    }
+}
+
+/// What changes in the middle contradicts what was learned: that is said, and the next window begins anew.
+#[test]
+fn what_contradicts_earlier_windows_is_told() {
+    let (_folder, mut experiment) = point("");
+    let times = experiment.signals.times().to_vec();
+    let bent: Vec<f64> = experiment
+        .signals
+        .column(0)
+        .iter()
+        .zip(&times)
+        .map(|(value, time)| value - 1.2 * (time - 4.0).max(0.0))
+        .collect();
+    experiment.signals = palmistry::observer::Signals::new(times, vec![("x".to_owned(), bent)]).unwrap();
+    let track = &experiment.run(&NEVER, &|_| ()).unwrap()[0].track;
+    let ends: Vec<bool> = track.updates.iter().map(palmistry::observer::Update::is_borne_out).collect();
+    // the third window begins where the speed changes: with what was learned it does not fit, and by itself it does
+    assert_eq!(ends, [true, true, false, true, true, true]);
+    assert_eq!(track.updates[2].end, UpdateEnd::DoesNotFit);
+    assert!(!track.is_sound() && track.remarks.iter().any(|remark| remark.contains("contradict")));
+    assert!((track.updates[5].estimate[1] + 0.7).abs() < 5.0 * track.updates[5].deviations[1]);
+}
+
+#[test]
+fn estimates_stay_within_bounds() {
+    let (_folder, experiment) = point("bounds = { v = [0.6, 2.0] }\n");
+    let track = &answers(&experiment)[0].track;
+    assert_eq!(track.updates[0].estimate[1], 0.6);
+    assert!(
+        track.remarks.iter().any(|remark| remark.contains("'v' is held at its bound 0.6")),
+        "{:?}",
+        track.remarks
+    );
+    // the true speed is 0.5: the longer it is watched the less it is explained
+    assert!(!track.is_sound());
+    let (_folder, experiment) = point("bounds = { v = [0.0, 2.0], x = [-inf, inf] }\n");
+    let track = &answers(&experiment)[0].track;
+    assert!(track.is_sound() && track.remarks.is_empty());
+}
+
+/// One reading in ten is two units off, forty deviations. Least squares say that nothing fits; with a robust loss the line is found, and
+/// the number of readings that count less is told.
+#[test]
+fn a_robust_loss_finds_the_line_among_outliers() {
+    for (more, is_found) in [("whole = true\n", false), ("whole = true\nloss = \"huber\"\n", true)] {
+        let (_folder, mut experiment) = point(more);
+        let times = experiment.signals.times().to_vec();
+        let off = |(i, value): (usize, &f64)| if i % 10 == 3 { value + 2.0 } else { *value };
+        let values = experiment.signals.column(0).iter().enumerate().map(off).collect();
+        experiment.signals =
+            palmistry::observer::Signals::new(times, vec![("x".to_owned(), values)]).unwrap();
+        let track = &experiment.run(&NEVER, &|_| ()).unwrap()[0].track;
+        let update = &track.updates[0];
+        assert_eq!(update.is_borne_out(), is_found, "{update:?}");
+        let distance = (update.estimate[0] - 1.0).abs() / update.deviations[0];
+        assert_eq!(distance < 6.0, is_found, "{distance}");
+        if is_found {
+            // twenty outliers, and of the others about one in six lies beyond 1.345 deviations
+            assert!((20..=70).contains(&update.discounted), "{}", update.discounted);
+            assert!(update.fit.unwrap().chi_square < 201.0);
+        }
+    }
+    // of a model that is wrong nearly all readings lie beyond the corner: that is no outlier
+    let (_folder, mut experiment) = point("whole = true\nloss = \"huber\"\n");
+    let times = experiment.signals.times().to_vec();
+    let bent = times.iter().map(|time| 3.0 * (2.0 * time).sin()).collect();
+    experiment.signals = palmistry::observer::Signals::new(times, vec![("x".to_owned(), bent)]).unwrap();
+    let track = &experiment.run(&NEVER, &|_| ()).unwrap()[0].track;
+    assert!(!track.updates[0].is_borne_out(), "{:?}", track.updates[0]);
+}

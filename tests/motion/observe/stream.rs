@@ -1,0 +1,301 @@
+//! Readings that arrive: real processes, pipes and signals.
+//!
+//! Oracles: the same readings from a file, and the operating system.
+
+use crate::common::{folder, palmistry, write};
+use crate::observe::observe;
+use serde_json::Value;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+
+/// Nothing here takes a tenth of it.
+const HUNG: Duration = Duration::from_secs(240);
+
+const MODEL: &str = "system \"A spring of unknown stiffness\" state x : m, v : m/s, k : 1/s^2 drift f x' = v v' = -k*x k' = 0 output x \
+                     sample x in [-2, 2] v in [-2, 2] k in [1, 5]";
+
+const SCENE: &str = "title = \"A spring\"\nmodel = \"spring.proof\"\nduration = 8\nsamples = 401\nseed = 5\n[start]\nx = 0.7\nv = -0.9\nk = 2.3\n\
+                     [sensor]\nnoise = 0.001\n[observer]\nmethods = [\"trust-region\", \"kalman\"]\nestimate = [\"x\", \"v\", \"k\"]\n\
+                     guess_off = 0.05\nwindow = 80\nsteps = 30\n";
+
+/// A scene of a spring in a folder, and the file of what is read of it.
+fn spring(scene: &str) -> (tempfile::TempDir, PathBuf, String) {
+    let folder = folder();
+    write(&folder, "spring.proof", MODEL);
+    let scene = write(&folder, "spring.toml", scene);
+    let output = palmistry(&["observe", scene.to_str().unwrap(), "--record", "-"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let readings = String::from_utf8(output.stdout).unwrap();
+    // nothing but the readings is printed
+    assert_eq!(readings.lines().count(), 402);
+    assert!(readings.lines().skip(1).all(|line| line.split(',').all(|cell| cell.parse::<f64>().is_ok())));
+    (folder, scene, readings)
+}
+
+/// The program that listens.
+fn listening(scene: &Path) -> (Child, Receiver<Value>) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_palmistry"))
+        .args(["observe", scene.to_str().unwrap(), "--data", "-", "--json"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let (sender, lines) = channel();
+    let out = BufReader::new(child.stdout.take().unwrap());
+    std::thread::spawn(move || {
+        for line in out.lines() {
+            // errors are printed over several lines: these are no answers
+            let Ok(found) = serde_json::from_str::<Value>(&line.unwrap()) else { break };
+            if sender.send(found).is_err() {
+                break;
+            }
+        }
+    });
+    (child, lines)
+}
+
+/// What a run has come to: the lines that were left, the exit status, and the words.
+fn end_of(mut child: Child, lines: &Receiver<Value>) -> (Vec<Value>, Option<i32>, String) {
+    drop(child.stdin.take());
+    let mut left = Vec::new();
+    while let Ok(line) = lines.recv_timeout(HUNG) {
+        left.push(line);
+    }
+    let status = child.wait().unwrap();
+    let mut words = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut words).unwrap();
+    assert!(!words.contains("panicked"), "{words}");
+    (left, status.code(), words)
+}
+
+fn rows(readings: &str, range: std::ops::Range<usize>) -> String {
+    readings.lines().skip(range.start).take(range.len()).map(|line| format!("{line}\n")).collect()
+}
+
+fn state(update: &Value, name: &str, what: &str) -> f64 {
+    update["states"][name][what].as_f64().unwrap_or_else(|| panic!("{name} {what}: {update}"))
+}
+
+#[test]
+fn what_is_piped_gives_what_a_file_gives() {
+    let (folder, scene, readings) = spring(SCENE);
+    let line = "\"$0\" observe \"$1\" --record - | \"$0\" observe \"$1\" --data - --json";
+    let output = Command::new("bash")
+        .args(["-c", line, env!("CARGO_BIN_EXE_palmistry"), scene.to_str().unwrap()])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let (end, windows) = lines.split_last().unwrap();
+    assert_eq!((end["ended"].as_str(), end["windows"].as_u64()), (Some("whole"), Some(5)), "{end}");
+    assert_eq!(end["rows"].as_u64(), Some(401));
+    let file = write(&folder, "spring.csv", readings);
+    let (output, whole) = observe(&scene, &["--data", file.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{whole}");
+    let updates = whole["observers"][0]["updates"].as_array().unwrap();
+    assert_eq!((updates.len(), windows.len()), (5, 5));
+    for (i, (window, update)) in windows.iter().zip(updates).enumerate() {
+        let own = &window["observers"][0]["updates"][0];
+        assert_eq!(own["inherits"].as_bool(), (i > 0).then_some(true), "{own}");
+        for name in ["x", "v", "k"] {
+            // the curves between samples are the same but for rounding
+            let bound = state(update, name, "bound");
+            assert!((state(own, name, "recovered") - state(update, name, "recovered")).abs() < 1e-6 * bound);
+            assert!((state(own, name, "bound") / bound - 1.0).abs() < 1e-6);
+        }
+    }
+    for place in 0..2 {
+        let (last, end) = (&windows[4]["observers"][place]["end"], &whole["observers"][place]["end"]);
+        for name in ["x", "v", "k"] {
+            assert!((state(last, name, "recovered") - state(end, name, "recovered")).abs() < 1e-9, "{place}");
+        }
+    }
+    // a filter says how well it knows
+    assert!(state(&windows[4]["observers"][1]["end"], "k", "bound") > 0.0);
+}
+
+/// A window is answered as soon as its rows are there with the few after it, while the writer still writes; and what was
+/// asked to stop keeps what it had.
+#[test]
+fn answers_arrive_before_the_stream_ends_and_stay_when_it_is_stopped() {
+    let (_folder, scene, readings) = spring(SCENE);
+    for name in ["INT", "TERM"] {
+        let (mut child, lines) = listening(&scene);
+        let mut input = child.stdin.take().unwrap();
+        // cut in the middle of rows
+        for piece in rows(&readings, 0..110).as_bytes().chunks(999) {
+            input.write_all(piece).unwrap();
+            input.flush().unwrap();
+        }
+        let first = lines.recv_timeout(HUNG).expect("an answer while the stream goes on");
+        assert_eq!((first["window"].as_u64(), first["samples"].as_u64()), (Some(1), Some(81)));
+        let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status();
+        assert!(sent.unwrap().success());
+        // the writer is still there
+        let (left, status, words) = {
+            let mut left = Vec::new();
+            while let Ok(line) = lines.recv_timeout(HUNG) {
+                left.push(line);
+            }
+            let status = child.wait().unwrap().code();
+            let mut words = String::new();
+            child.stderr.take().unwrap().read_to_string(&mut words).unwrap();
+            (left, status, words)
+        };
+        drop(input);
+        assert_eq!(status, Some(3), "{name}: {words}");
+        assert!(words.contains("cut off: interrupted"), "{words}");
+        let end = left.last().unwrap();
+        assert_eq!((end["ended"].as_str(), end["interrupted"].as_bool()), (Some("interrupted"), Some(true)));
+        assert!(end["windows"].as_u64().unwrap() >= 1);
+    }
+}
+
+#[test]
+fn a_faulty_row_ends_a_stream_or_is_skipped() {
+    let (_folder, scene, readings) = spring(SCENE);
+    let row = readings.lines().nth(200).unwrap();
+    let broken = readings.replacen(row, &format!("{},abc", row.split(',').next().unwrap()), 1);
+    let (mut child, lines) = listening(&scene);
+    child.stdin.take().unwrap().write_all(broken.as_bytes()).unwrap();
+    let (left, status, words) = end_of(child, &lines);
+    assert_eq!(status, Some(2), "{words}");
+    let (end, windows) = left.split_last().unwrap();
+    // two windows lie before it, and a part of the third
+    assert_eq!(windows.len(), 3, "{end}");
+    assert_eq!(windows[2]["samples"].as_u64(), Some(39));
+    let message = end["error"]["message"].as_str().unwrap();
+    for word in ["row 200", "line 201", "x", "abc"] {
+        assert!(message.contains(word) && words.contains(word), "{word}: {message}, {words}");
+    }
+    let skip = format!("{SCENE}[data]\non_fault = \"skip\"\n");
+    let (_folder, scene, _) = spring(&skip);
+    let (mut child, lines) = listening(&scene);
+    child.stdin.take().unwrap().write_all(broken.as_bytes()).unwrap();
+    let (left, status, words) = end_of(child, &lines);
+    assert_eq!(status, Some(0), "{words}");
+    let end = left.last().unwrap();
+    assert_eq!((end["ended"].as_str(), end["faulty_rows"].as_u64()), (Some("whole"), Some(1)), "{end}");
+    let faults: Vec<&str> = left
+        .iter()
+        .filter_map(|line| line["faults"].as_array())
+        .flatten()
+        .filter_map(Value::as_str)
+        .collect();
+    assert!(faults.len() == 1 && faults[0].contains("line 201"), "{faults:?}");
+}
+
+#[test]
+fn a_row_that_is_cut_off_is_none() {
+    let (_folder, scene, readings) = spring(SCENE);
+    for cut in ["4.0,0.12", "4.0,", "4."] {
+        let text = rows(&readings, 0..201) + cut;
+        let (mut child, lines) = listening(&scene);
+        child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+        let (left, status, words) = end_of(child, &lines);
+        assert_eq!(status, Some(3), "{words}");
+        let end = left.last().unwrap();
+        assert!(end["ended"].as_str().unwrap().contains("line 202 has no end"), "{end}");
+        assert_eq!((end["windows"].as_u64(), end["rows"].as_u64()), (Some(3), Some(200)));
+        assert!(words.contains("line 202"), "{words}");
+    }
+}
+
+#[test]
+fn nobody_listens_any_more() {
+    let (_folder, scene, readings) = spring(SCENE);
+    let line = "\"$0\" observe \"$1\" --data - --json | head -c 10 > /dev/null; exit ${PIPESTATUS[0]}";
+    let mut child = Command::new("bash")
+        .args(["-c", line, env!("CARGO_BIN_EXE_palmistry"), scene.to_str().unwrap()])
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut input = child.stdin.take().unwrap();
+    let _ = input.write_all(readings.as_bytes());
+    let mut time = 8.0;
+    for _ in 0..20_000 {
+        time += 0.02;
+        if input.write_all(format!("{time},0.1\n").as_bytes()).is_err() {
+            // who writes on is told by the system
+            break;
+        }
+    }
+    drop(input);
+    let output = child.wait_with_output().unwrap();
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{words}");
+    assert!(words.contains("nobody reads"), "{words}");
+}
+
+#[test]
+fn what_a_stream_cannot_do_is_refused() {
+    let (folder, scene, _) = spring(SCENE);
+    for (arguments, word) in [
+        (&["--data", "-", "--out", "x"][..], "--out"),
+        (&["--data", "-", "--studies"], "--studies"),
+        (&["--data", "-", "--track", "x.csv"], "--track"),
+        (&["--record", "-", "--json"], "--json"),
+        (&["--record", "-", "--out", "x"], "--out"),
+    ] {
+        let output = palmistry(&[&["observe", scene.to_str().unwrap()], arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains(word), "{arguments:?}");
+    }
+    let whole = write(&folder, "whole.toml", SCENE.replace("window", "whole = true\nwindow"));
+    for (scene, text, word) in [
+        (&scene, "", "no rows"),
+        (&scene, "time,y\n0,1\n1,1\n2,1\n", "'x'"),
+        (&scene, "time,x\n0,1\n", "one row"),
+        (&scene, "time,x\n", "no rows"),
+        (&whole, "time,x\n0,1\n", "no whole"),
+    ] {
+        let (mut child, lines) = listening(scene);
+        let _ = child.stdin.take().unwrap().write_all(text.as_bytes());
+        let (left, status, words) = end_of(child, &lines);
+        assert!(left.is_empty(), "{left:?}");
+        assert_eq!(status, Some(2), "{text:?}: {words}");
+        assert!(words.contains(word), "{text:?}: {words}");
+    }
+}
+
+/// A column that stands still in the first window is a constant of the model there, and what comes after may be otherwise: the answers go on with it.
+#[test]
+fn a_column_may_change_after_the_first_window() {
+    let folder = folder();
+    write(
+        &folder,
+        "cart.proof",
+        "system \"A cart that is pushed\" state x : m, v : m/s known u(t) : m/s^2 drift f x' = v v' = u output x \
+         sample x in [-2, 2] v in [-2, 2]",
+    );
+    let scene = "title = \"A cart\"\nmodel = \"cart.proof\"\nseed = 3\n[data]\nrecord = \"-\"\n[sensor]\nnoise = 0.001\n[observer]\n\
+                 methods = [\"trust-region\", \"kalman\"]\nestimate = [\"x\", \"v\"]\nguess = { x = 0.1, v = 0.1 }\nwindow = 50\n";
+    let scene = write(&folder, "cart.toml", scene);
+    // pushed evenly from the hundredth step on: x by hand; readings err by a wave below the noise
+    let step = 0.01;
+    let mut text = "time,x,u\n".to_owned();
+    for i in 0..301 {
+        let (t, late) = (step * f64::from(i), step * f64::from((i - 100).max(0)));
+        let push = if i >= 100 { 0.8 } else { 0.0 };
+        let x = 0.2 + 0.3 * t + 0.4 * late * late + 0.0008 * f64::from(i * i).sin();
+        text += &format!("{t:?},{x:?},{push:?}\n");
+    }
+    let (mut child, lines) = listening(&scene);
+    child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+    let (left, _, words) = end_of(child, &lines);
+    let (end, windows) = left.split_last().unwrap();
+    assert_eq!((end["ended"].as_str(), windows.len()), (Some("whole"), 6), "{end} {words}");
+    let remarks: Vec<String> =
+        windows.iter().map(|window| window["observers"][0]["remarks"].to_string()).collect();
+    let told: Vec<bool> = remarks.iter().map(|remarks| remarks.contains("'u' changes")).collect();
+    assert_eq!(told.iter().filter(|told| **told).count(), 1, "{remarks:?}");
+    // the speed at the end is 0.3 + 0.8 * 2
+    let last = &windows[5]["observers"][0]["end"];
+    assert!((state(last, "v", "recovered") - 1.9).abs() < 0.02, "{last}");
+}
