@@ -1,0 +1,54 @@
+"""Systems that are seen only through their outputs: the answers of the program `palmistry`, to the last bit, in Python.
+
+    import palmistry
+    system = palmistry.System.read("pendulum.proof")
+    system.prove()                                  # every claim with its verdict
+    system.rank(samples=100_000)                    # what is seen, certified state by state
+    system.eval("L(f, f, phi)", at={"phi": "1/3", "omega": 2}, digits=40)
+    system.verdicts(states)                         # numpy in, numpy out
+    system.certify(boxes=1000)                      # full rank on whole boxes
+    palmistry.observe("scene.toml")                 # observers, on simulated or recorded readings
+    palmistry.from_sympy(states, fields, outputs)   # a proof file from SymPy expressions
+
+`palmistry.recheck` (a second checker) and `palmistry.cluster` (sweeps over many machines) need nothing of this, and work from the source
+tree too, where nothing is compiled.
+"""
+
+_HOMES = {
+    "Certificate": "answers",
+    "Claim": "answers",
+    "Claims": "answers",
+    "Error": "errors",
+    "EvaluationError": "errors",
+    "Observation": "answers",
+    "Page": "answers",
+    "Rank": "answers",
+    "ReadError": "errors",
+    "System": "system",
+    "Table": "tables",
+    "Value": "answers",
+    "Verdicts": "answers",
+    "from_casadi": "translation",
+    "from_sympy": "translation",
+    "latex": "system",
+    "observe": "system",
+    "verify": "system",
+}
+
+__all__ = sorted(_HOMES)
+
+
+def __getattr__(name):
+    """Loads what is asked for: the compiled half only where it is needed."""
+    home = _HOMES.get(name)
+    if home is None:
+        raise AttributeError(f"module 'palmistry' has no attribute '{name}'")
+    import importlib
+
+    found = getattr(importlib.import_module(f"palmistry.{home}"), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__():
+    return sorted([*globals(), *__all__])

@@ -51,7 +51,8 @@ def missing(command, shards, folder, program="palmistry"):
 def sweep(command, shards, folder, client, program="palmistry", merge=(), threads=1, retries=5, rounds=3, progress=True):
     """Does what is missing of `command` in so many shards on a cluster, and merges: the JSON of the answer, as an object.
 
-    command: the words of the command, as ["rank", "mysystem.proof", "--samples", "1000000"]; paths as the workers see them.
+    command: the words of the command, as ["rank", "mysystem.proof", "--samples", "1000000"], or ["observe", "scene.toml"] for the studies
+    of a scene; paths as the workers see them.
     merge: further words for the merge alone, as ["--digits", "40"]. threads: of each process; with one thread for each worker
     the processors are shared best. retries: how often a shard that fails is tried again by Dask; rounds: how often what is still missing
     is submitted, since a file may be lost after its task has ended. Raises `Failed` with the program's own words.

@@ -9,6 +9,8 @@ import threading
 import time
 import unittest
 
+from common import PROGRAM, ROOT, built
+
 from palmistry.cluster import Failed, missing, sweep
 
 try:
@@ -16,14 +18,32 @@ try:
 except ImportError:
     Client = None
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-BUILT = [os.path.join(ROOT, "target", kind, "palmistry") for kind in ("release", "quick", "debug")]
-PROGRAM = os.environ.get("PALMISTRY", next((path for path in BUILT if os.path.exists(path)), BUILT[0]))
 FILE = os.path.join(ROOT, "proofs", "moll2002", "general.proof")
 SHARDS = 24
+STUDIES = """title = "s"
+model = "scene.proof"
+duration = 1
+samples = 21
+[start]
+x = 1.2
+y = -0.5
+[sensor]
+noise = 0.01
+[observer]
+methods = ["trust-region"]
+estimate = ["x", "y"]
+window = 20
+steps = 10
+[study.noise]
+levels = [1e-3, 1e-2]
+seeds = 4
+[study.basin]
+x = [-2, 2]
+y = [-2, 2]
+points = 2
+"""
 SAMPLES = int(os.environ.get("PALMISTRY_CLUSTER_SAMPLES", "24000"))
 
-built = unittest.skipUnless(os.path.exists(PROGRAM), "the program is not built: cargo build --release, or name it in PALMISTRY")
 clustered = unittest.skipUnless(Client, "Dask is not installed: pip install 'palmistry[dask]'")
 
 
@@ -86,6 +106,20 @@ class Cluster(unittest.TestCase):
             self.assertEqual(found[0], json.loads(merged))
             self.assertEqual(found[0]["samples"], SAMPLES)
             self.assertEqual(parts(folder), SHARDS)
+
+    def test_the_studies_of_a_scene_are_swept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = os.path.join(folder, "scene.toml")
+            with open(os.path.join(folder, "scene.proof"), "w", encoding="utf-8") as file:
+                file.write("system \"s\" state x, y drift f x' = y y' = 1.4*(1 - x^2)*y - x output x sample x in [-2, 2] y in [-2, 2]\n")
+            with open(scene, "w", encoding="utf-8") as file:
+                file.write(STUDIES)
+            command, parts = ["observe", scene], os.path.join(folder, "parts")
+            found = sweep(command, 3, parts, self.client, PROGRAM)
+            self.assertEqual(found, json.loads(output(*command, "--studies", "--no-times", "--json")))
+            self.assertEqual([level["seeds"] for level in found["noise"]], [4, 4])
+            self.assertEqual([len(basin["arrives"]) for basin in found["basins"]], [4])
+            self.assertEqual(sorted(os.listdir(parts)), [f"observe-{number}-of-3.json" for number in (1, 2, 3)])
 
     def test_a_damaged_part_is_done_again_and_a_whole_one_is_not(self):
         command = ["rank", FILE, "--samples", "300"]

@@ -1,0 +1,297 @@
+"""A system, and what can be asked of it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Union
+
+from .answers import Certificate, Claims, Observation, Page, Rank, Value, Verdicts
+from .errors import Error
+
+try:
+    from . import _native
+except ImportError as why:  # pragma: no cover
+    raise ImportError(
+        "the compiled half of palmistry is not there: install the package (pip install ./python), whose source tree alone has only "
+        "palmistry.recheck and palmistry.cluster"
+    ) from why
+
+if TYPE_CHECKING:
+    import numpy
+
+#: Values by name: numbers, fractions, or texts such as '1/3'; or all of it as one text, 'x=1/3, y=.5'.
+At = Union[Mapping[str, Any], str, None]
+
+
+def _number(value: Any) -> str:
+    """A number as the language reads it. A float is the decimal that Python prints, not the fraction that its bits are."""
+    if isinstance(value, str):
+        return value
+    item = getattr(value, "item", None)  # numpy's scalars
+    if item is not None:
+        value = item()
+    if isinstance(value, bool):
+        raise Error(f"{value} is not a number", "give a number, a fraction, or a text such as '1/3'")
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def _pairs(values: At) -> list[str]:
+    """Values as texts of the form name=value."""
+    if values is None:
+        return []
+    if isinstance(values, str):
+        return values.split(",")
+    return [f"{name}={_number(value)}" for name, value in values.items()]
+
+
+def _ranges(ranges: Mapping[str, Any] | str | None) -> list[str]:
+    """Ranges as texts of the form name=low..high."""
+    if ranges is None:
+        return []
+    if isinstance(ranges, str):
+        return ranges.split(",")
+    found = []
+    for name, value in ranges.items():
+        low, high = value if isinstance(value, (tuple, list)) else (value, value)
+        found.append(f"{name}={_number(low)}..{_number(high)}")
+    return found
+
+
+def _several(texts: str | Iterable[str]) -> list[str]:
+    return [texts] if isinstance(texts, str) else list(texts)
+
+
+def _wanted(verdict: str) -> bool:
+    if verdict not in ("certified", "computed"):
+        raise Error(f"'{verdict}' is no kind of verdict", "it is 'certified' or 'computed'")
+    return verdict == "certified"
+
+
+class System:
+    """A system `x' = f(x) + u g(x)`, `y = h(x)`, as a proof file declares it, with what the file claims of it.
+
+    A system does not change. While something is asked other Python threads run, and Ctrl-C ends the question within 0.2 s. The answers are those of
+    the program, to the last bit: they depend neither on the number of threads (RAYON_NUM_THREADS) nor on the machine.
+    """
+
+    def __init__(self, native: Any) -> None:
+        self._native = native
+        self._deciders: dict[Any, Any] = {}
+
+    @staticmethod
+    def read(path: str | os.PathLike[str]) -> System:
+        """Reads a proof file. Raises ReadError, with the place, where it is none."""
+        return System(_native.System.read(os.fspath(path)))
+
+    @staticmethod
+    def parse(text: str, name: str = "the text", folder: str | os.PathLike[str] = "") -> System:
+        """Reads a system from a text; what it imports is looked for in `folder`. Raises ReadError, with the place."""
+        return System(_native.System.parse(text, name, os.fspath(folder)))
+
+    @property
+    def title(self) -> str:
+        return self._native.title
+
+    @property
+    def name(self) -> str:
+        """The name of the file."""
+        return self._native.name
+
+    @property
+    def source(self) -> str:
+        """The text of the file."""
+        return self._native.source
+
+    @property
+    def states(self) -> list[str]:
+        """The names of the states, in the order of the file: the columns of a codistribution, but for those that are known."""
+        return self._native.states
+
+    @property
+    def parameters(self) -> list[str]:
+        """All other symbols."""
+        return self._native.parameters
+
+    @property
+    def fields(self) -> dict[str, str]:
+        """The vector fields with their roles: 'drift', 'input', or 'field' for one that moves nothing."""
+        return dict(self._native.fields)
+
+    @property
+    def outputs(self) -> list[str]:
+        """The outputs as they are written."""
+        return self._native.outputs
+
+    @property
+    def claims(self) -> list[str]:
+        """The ids of the claims."""
+        return self._native.claims
+
+    def unit(self, name: str) -> str | None:
+        """The unit of a symbol; None where the file says nothing of it."""
+        return self._native.unit(name)
+
+    def prove(self, only: str | Iterable[str] = (), seed: int = 1) -> Claims:
+        """Decides the claims: each is proved, refuted with a witness, or undecided.
+
+        only: ids, parts of ids before a dot, or patterns with '*'. seed: of the random points.
+        """
+        return Claims(self._native.prove(_several(only), seed))
+
+    def rank(
+        self,
+        samples: int | None = None,
+        *,
+        seed: int = 1,
+        at: At = None,
+        where: str | Iterable[str] = (),
+        order: int | None = None,
+        verdict: str = "certified",
+        digits: int | None = None,
+        table: bool = False,
+        coordinates: bool = False,
+        times: bool = True,
+    ) -> Rank:
+        """The rank of the observability codistribution, at almost all states and at sampled ones.
+
+        samples: how many states are drawn; by default 1000 where the words are short, else none. seed: of these states.
+        at: states and parameters held fixed, angles in radians. where: conditions, as 'sin(phi) = 0' or '0 < x < 1'.
+        order: words of exactly up to so many fields. verdict: 'certified' or 'computed'. digits: of the worst state's singular values.
+        table: a row a state in `.states`; coordinates: these too. times: whether `seconds` are told, which no two runs have alike.
+        """
+        found = self._native.rank(
+            samples, seed, _pairs(at), _several(where), order, _wanted(verdict), digits, times, table or coordinates, coordinates
+        )
+        return Rank(found)
+
+    def eval(self, expression: str, at: At = None, digits: int = 20, verdict: str = "certified") -> Value:
+        """The value of an expression of the language at a point, to `digits` significant decimal digits, all of them certain.
+
+        at: values by name, angles in radians; what is left out has the value of the file. A float is taken for the decimal that Python prints.
+        Raises EvaluationError where there is no value, ReadError where the expression is none.
+        """
+        if not 1 <= digits <= 10_000:
+            raise Error(f"{digits} digits are not possible", "between 1 and 10000 are")
+        return Value(self._native.eval(expression, _pairs(at), digits, _wanted(verdict)))
+
+    def _decider(self, at: At, order: int | None, certified: bool = True) -> Any:
+        key = (tuple(_pairs(at)), order, certified)
+        if key not in self._deciders:
+            self._deciders[key] = self._native.decider(list(key[0]), order, certified)
+        return self._deciders[key]
+
+    def coordinates(self, at: At = None, order: int | None = None) -> list[str]:
+        """The coordinates that a state has in `verdicts`, in this order: states, and parameters without a value."""
+        return self._decider(at, order).coordinates
+
+    def verdicts(
+        self,
+        states: numpy.ndarray | Mapping[str, Any] | Sequence[Any],
+        *,
+        at: At = None,
+        order: int | None = None,
+        verdict: str = "certified",
+    ) -> Verdicts:
+        """The rank at states of one's own, a block at a time, with the singular values: shape (states,) each.
+
+        states: an array of shape (states, coordinates) with the columns of `coordinates()`, angles in radians; or arrays of shape (states,)
+        by name, as a dict, a pandas.DataFrame or a structured array has them. Columns that are contiguous doubles are not copied: an array in
+        Fortran's order, or arrays by name. verdict: what every rank has to be; the cheapest numbers that suffice are taken, and better ones where a
+        state needs them. A rank that is short is certified where the state is rational, that is where no sine of a double stands in the rows.
+        at, order: as in `rank`. Whether a state lies in the sample box is not asked.
+        """
+        import numpy
+
+        decider = self._decider(at, order, _wanted(verdict))
+        names = decider.coordinates
+        if not names:
+            raise Error("every coordinate has one value, and there are no states to look at", "ask rank()")
+        found = _columns(states, names)
+        columns = [numpy.ascontiguousarray(column, dtype=numpy.float64) for column in found]
+        for name, column in zip(names, columns):
+            if column.ndim != 1:
+                raise Error(f"the values of '{name}' have shape {column.shape}", "one value a state is needed: shape (states,)")
+        return Verdicts(**decider.verdicts(columns))
+
+    def certify(
+        self,
+        *,
+        box: Mapping[str, Any] | str | None = None,
+        boxes: int | None = None,
+        budget: float = 10.0,
+        rows: str = "codistribution",
+        order: int | None = None,
+        map: tuple[str, str] | None = None,
+    ) -> Certificate:
+        """Proves full rank on boxes of states, and says on which part of the sample box.
+
+        box: other ranges by name, as (low, high); one number holds it fixed. boxes: look at so many boxes, which gives the same result everywhere;
+        otherwise for `budget` seconds. rows: 'codistribution' or 'own', the file's matrix of that name. order: as in `rank`.
+        map: the two coordinates of the picture.
+        """
+        if rows not in ("codistribution", "own"):
+            raise Error(f"'{rows}' are no rows", "these are 'codistribution' and 'own'")
+        if rows == "own" and order is not None:
+            raise Error("the file's own rows have no order", "leave out order, or rows='own'")
+        if not 0 < budget < float("inf"):
+            raise Error("the budget is a positive number of seconds")
+        return Certificate(self._native.certify(_ranges(box), boxes, float(budget), rows == "own", order, map))
+
+    def __repr__(self) -> str:
+        return f"<system '{self.title}': {len(self.states)} states, {len(self.outputs)} outputs, {len(self.claims)} claims>"
+
+
+def _columns(states: Any, names: list[str]) -> list[Any]:
+    """The columns of some states, in the order of names."""
+    import numpy
+
+    named = getattr(getattr(states, "dtype", None), "names", None)  # a structured array
+    if named is None and isinstance(states, Mapping):
+        named = list(states)
+    if named is None and hasattr(states, "columns") and hasattr(states, "loc"):
+        named = list(states.columns)  # a DataFrame
+    if named is not None:
+        missing = [name for name in names if name not in named]
+        beside = [name for name in named if name not in names]
+        if missing:
+            raise Error(f"there are no values of {', '.join(missing)}", f"the coordinates are {', '.join(names)}")
+        if beside:
+            raise Error(
+                f"a state has no coordinate {', '.join(map(str, beside))}",
+                f"the coordinates are {', '.join(names)}; others have one value, which `at` changes",
+            )
+        return [numpy.asarray(states[name]) for name in names]
+    array = numpy.asarray(states)
+    if array.ndim != 2 or array.shape[1] != len(names):
+        raise Error(f"the states have shape {array.shape}", f"needed is (states, {len(names)}), with the columns {', '.join(names)}")
+    return [array[:, place] for place in range(len(names))]
+
+
+def observe(
+    scene: str | os.PathLike[str],
+    data: str | os.PathLike[str] | None = None,
+    *,
+    seed: int | None = None,
+    studies: bool = False,
+    times: bool = True,
+) -> Observation:
+    """Runs the observers of a scene, on simulated readings or on those of a file.
+
+    scene: a TOML file. data: readings as CSV or Parquet. seed: another one than the scene's. studies: run these too. times: whether `seconds` are told.
+    """
+    data = None if data is None else os.fspath(data)
+    return Observation(_native.observe(os.fspath(scene), data, seed, studies, times))
+
+
+def verify(folder: str | os.PathLike[str], *, seed: int = 1, times: bool = True) -> Page:
+    """Takes a paper, a folder or one proof file, through everything, into a page; `.json` is what was found."""
+    import json
+
+    found, page = _native.verify(os.fspath(folder), seed, times)
+    return Page(page, json.loads(found))
+
+
+def latex(text: str) -> str | None:
+    """An expression or a statement of the language in LaTeX; None where the text is neither."""
+    return _native.latex(text)
