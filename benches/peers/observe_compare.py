@@ -1,4 +1,4 @@
-"""Observers from random guesses in the sample box: ours, scipy's least squares by shooting, CasADi with IPOPT by multiple shooting, and
+"""Observers from the middle of the sample box, over several recordings, or from random guesses in it (--random): ours, scipy's least squares by shooting, CasADi with IPOPT by multiple shooting, and
 filterpy's unscented filter, on the same recordings.
 
 A method has arrived that is, in all that is sought, within five of the bound's deviations of the truth or one percent of its size (the
@@ -41,7 +41,8 @@ def arguments():
     parser = argparse.ArgumentParser(prog="benches/observe-compare", description=__doc__)
     parser.add_argument("--binary", default=str(ROOT / "target/release/palmistry"), help="built if it is not given")
     parser.add_argument("--quick", action="store_true", help="two guesses: whether all works")
-    parser.add_argument("--guesses", type=int, default=20, help="guesses for each system and noise (default %(default)s)")
+    parser.add_argument("--recordings", type=int, default=20, help="recordings with noise of each system, from the middle of the box (default %(default)s)")
+    parser.add_argument("--random", type=int, default=0, metavar="GUESSES", help="random guesses for each system and noise instead, on one recording")
     parser.add_argument("--limit", type=float, default=60, help="seconds for each (default %(default)g)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", action="append", default=[], metavar="SYSTEM", help="measure this system alone")
@@ -50,17 +51,18 @@ def arguments():
     parser.add_argument("--json", action="store_true", help="everything, for programs")
     options = parser.parse_args()
     if options.quick:
-        options.guesses = min(options.guesses, 2)
+        options.recordings, options.random = min(options.recordings, 2), min(options.random, 2)
     return options
 
 
-def scene(system, noisy, guess, method):
-    """The system's scene with another method, guess and noise."""
+def scene(system, noisy, guess, method, seed):
+    """The system's scene with another method, guess, noise and seed."""
     text = (FOLDER / f"{system.name}.toml").read_text()
     text = re.sub(r'^model = "', f'model = "{FOLDER}/', text, flags=re.M)
     text = re.sub(r"^methods = .*$", f'methods = ["{method}"]', text, flags=re.M)
     if not noisy:
         text = re.sub(r"^noise = .*$", "noise = 0", text, flags=re.M)
+    text = re.sub(r"^duration", f"seed = {seed}\nduration", text, flags=re.M)
     values = ", ".join(f"{name} = {value!r}" for name, value in guess.items())
     return re.sub(r"^window = ", f"guess = {{ {values} }}\nwindow = ", text, flags=re.M)
 
@@ -74,12 +76,12 @@ def observe(options, path, more=()):
     return json.loads(run.stdout)
 
 
-def recording(options, system, noisy, folder):
+def recording(options, system, noisy, seed, folder):
     """Times, readings a row a sample, the truth at the first and the last sample, noise, and the bound at the first."""
     text = (FOLDER / f"{system.name}.toml").read_text()
     start = {name: float(value) for name, value in re.findall(r"^(\w+) = (-?[\d.e-]+)$", text.split("[start]")[1].split("[")[0], re.M)}
     path, record, motion = (Path(folder) / name for name in ("scene.toml", "record.csv", "motion.csv"))
-    path.write_text(scene(system, noisy, start, "trust-region"))
+    path.write_text(scene(system, noisy, start, "trust-region", seed))
     found = observe(options, path, ["--record", str(record), "--motion", str(motion)])
     rows = list(csv.reader(record.open()))[1:]
     outputs = len(system.read)
@@ -93,9 +95,9 @@ def recording(options, system, noisy, folder):
     return {"times": times, "read": read, "truth": truth, "bound": bound, "sigma": sigma or 1e-9}
 
 
-def ours(options, system, noisy, guess, method, folder):
+def ours(options, system, noisy, guess, method, seed, folder):
     path = Path(folder) / "guess.toml"
-    path.write_text(scene(system, noisy, guess, method))
+    path.write_text(scene(system, noisy, guess, method, seed))
     observer = observe(options, path)["observers"][0]
     told = observer["end"] if method in FILTERS else observer["updates"][0]
     seconds = observer["seconds"] if method in FILTERS else told["seconds"]
@@ -129,7 +131,7 @@ def by_casadi(system, data, guess, limit):
     """A node at every sample, four steps of Runge and Kutta between two, constants once; nodes begin at the guess, and at what is read."""
     times, read = data["times"], data["read"]
     names = list(system.box)
-    constants = [i for i, name in enumerate(names) if name in {"mu", "sigma", "r", "b", "a1", "a2", "beta", "gamma"}]
+    constants = [i for i, name in enumerate(names) if name in {"mu", "sigma", "r", "b", "a1", "a2", "beta", "gamma", "load"}]
     moving = [i for i in range(len(names)) if i not in constants]
     scale = np.array([max(abs(low), abs(high)) for low, high in system.box.values()])
     problem = casadi.Opti()
@@ -244,16 +246,24 @@ def measured(options, folder):
         if options.only and system.name not in options.only:
             continue
         for noisy in (False, True):
-            data = recording(options, system, noisy, folder)
-            data["spread"] = np.maximum((data["read"].max(0) - data["read"].min(0)) / 2, 1e-9)
             draws = random.Random(options.seed)
-            for _ in range(options.guesses):
-                guess = {name: draws.uniform(low, high) for name, (low, high) in system.box.items()}
+            middle = {name: (low + high) / 2 for name, (low, high) in system.box.items()}
+            if options.random:
+                one = lambda: {name: draws.uniform(low, high) for name, (low, high) in system.box.items()}
+                trials = [(options.seed, one()) for _ in range(options.random)]
+            else:
+                # without noise all recordings are one
+                trials = [(options.seed + k, middle) for k in range(options.recordings if noisy else 1)]
+            data, of = None, None
+            for seed, guess in trials:
+                if of != seed:
+                    data, of = recording(options, system, noisy, seed, folder), seed
+                    data["spread"] = np.maximum((data["read"].max(0) - data["read"].min(0)) / 2, 1e-9)
                 for method in [*OURS, *PEERS]:
                     begin, seconds = time.monotonic(), None
                     try:
                         if method in OURS:
-                            state, seconds = ours(options, system, noisy, guess, method, folder)
+                            state, seconds = ours(options, system, noisy, guess, method, seed, folder)
                         else:
                             with warnings.catch_warnings(), np.errstate(all="ignore"):
                                 warnings.simplefilter("ignore")
@@ -278,14 +288,15 @@ def cell(runs, noisy):
     parts = [f"{len(arrived)} of {len(runs)}"]
     ratios = [run["error_over_bound"] for run in arrived if run["error_over_bound"] is not None]
     if noisy and ratios:
-        parts.append(f"{statistics.median(ratios):.1f}")
+        # of recordings with errors of their own the root of the mean square, which is one of who is as good as can be
+        parts.append(f"{math.sqrt(statistics.fmean(ratio**2 for ratio in ratios)):.2f}")
     parts.append(duration(statistics.median(run["seconds"] for run in runs)))
     return ", ".join(parts)
 
 
 def table(runs, noisy):
     names = list(dict.fromkeys(run["system"] for run in runs))
-    head = "arrived of guesses, error over bound, time" if noisy else "arrived of guesses, time"
+    head = "arrived, error over bound, time" if noisy else "arrived, time"
     lines = [f"| {'with noise' if noisy else 'without noise'}: {head} | " + " | ".join(name.replace("_", " ") for name in names) + " |"]
     lines.append("|---|" + "---:|" * len(names))
     for method in [*OURS, *PEERS]:
@@ -315,8 +326,9 @@ def main():
     if options.json:
         print(json.dumps(runs, indent=1))
         return
+    how = f"{options.random} random guesses each" if options.random else f"from the middle of the box, one recording without noise and {options.recordings} with it"
     remark = f" {options.remark}" if options.remark else ""
-    text = f"{table(runs, False)}\n\n{table(runs, True)}\n\n{machine()}; {options.guesses} guesses each, seed {options.seed}, medians.{remark}\n"
+    text = f"{table(runs, False)}\n\n{table(runs, True)}\n\n{machine()}; {how}, seeds from {options.seed} on, {options.limit:g} s at most; times are medians.{remark}\n"
     print(text)
     if options.book:
         book = BOOK.read_text()

@@ -47,6 +47,18 @@ def epidemic(f, s, u):
     return [-beta * sus * i, beta * sus * i - alpha * e, alpha * e - gamma * i, alpha * e, 0 * e, 0 * e]
 
 
+def motor(f, s, u):
+    ia, ib, w, th, load = s
+    resistance, inductance, flux, inertia, friction = 0.5, 0.005, 0.1, 0.001, 0.001
+    return [
+        (u[0] - resistance * ia + flux * w * f.sin(th)) / inductance,
+        (u[1] - resistance * ib - flux * w * f.cos(th)) / inductance,
+        (flux * (ib * f.cos(th) - ia * f.sin(th)) - friction * w - load) / inertia,
+        w,
+        0 * w,
+    ]
+
+
 BEACONS = ((-4, -3), (5, -2), (1, 6))
 
 SYSTEMS = [
@@ -75,6 +87,15 @@ SYSTEMS = [
         lambda t: (1 + 0.3 * math.sin(t), 0.6 * math.cos(0.8 * t)),
         angles=("theta",),
         read=(None, None, None),
+    ),
+    Observed(
+        "motor",
+        {"ia": (-5, 5), "ib": (-5, 5), "w": (-20, 40), "th": (-3, 3), "load": (-0.2, 0.2)},
+        motor,
+        lambda f, s: [s[0], s[1]],
+        lambda t: (-3 * math.sin(20 * t), 3 * math.cos(20 * t)),
+        angles=("th",),
+        read=(0, 1),
     ),
     Observed(
         "epidemic",
