@@ -110,6 +110,9 @@ pub mod claim;
 #[doc(hidden)]
 pub mod mechanics;
 
+// the surface of stable poses of a body between slow palms
+pub mod pose_surface;
+
 // states recovered from what is measured
 pub mod observer;
 

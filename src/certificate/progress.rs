@@ -39,6 +39,8 @@ pub(super) struct Searches {
 
 /// The curve has a point wherever the number of boxes has grown by this factor.
 const STEP: f64 = 1.25;
+/// So many proved boxes are kept before it is seen which are the largest.
+const MOST_UNSORTED: usize = 100_000;
 /// The time for which an open box is looked at in the end.
 const SECONDS_TO_EXPLAIN: f64 = 2e-6;
 
@@ -81,7 +83,7 @@ impl Searches {
 
     /// The part whose next boxes promise most. What is open shrinks like a power of the number of boxes, so that the
     /// logarithm of what is proved grows with each further box by about the ratio of these two.
-    fn next(&self) -> Option<(usize, Turn)> {
+    fn next(&self, deepest: usize) -> Option<(usize, Turn)> {
         let promise = |search: &Search| {
             let proved = search.proved.at_least().max(1e-3);
             (1.0 - proved) / (proved * (search.boxes + 1) as f64)
@@ -90,7 +92,8 @@ impl Searches {
             .searches
             .iter()
             .enumerate()
-            .filter_map(|(place, search)| search.turn().map(|turn| (promise(search), (place, turn))));
+            .filter_map(|(place, search)| search.turn().map(|turn| (promise(search), (place, turn))))
+            .filter(|(_, (_, turn))| turn.depth <= deepest);
         turns.reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, next)| next)
     }
 
@@ -100,6 +103,38 @@ impl Searches {
         &mut self,
         parts: &[Part],
         limits: Limits,
+        interrupt: &AtomicBool,
+        progress: &(dyn Fn(Progress) + Sync),
+    ) {
+        self.run_within(parts, limits, None, interrupt, progress);
+    }
+
+    /// The same with boxes of at most so many halvings, all of them: what becomes of a box depends on it alone, so that what comes out then
+    /// does not depend on the order in which they are looked at. At the end all boxes are in an order of their own.
+    pub fn run_to_depth(
+        &mut self,
+        parts: &[Part],
+        limits: Limits,
+        halvings: usize,
+        interrupt: &AtomicBool,
+        progress: &(dyn Fn(Progress) + Sync),
+    ) {
+        self.turn = None;
+        self.run_within(parts, limits, Some(halvings), interrupt, progress);
+        self.sort();
+    }
+
+    /// Puts all boxes into the order that depends on nothing but what they are.
+    pub fn sort(&mut self) {
+        self.turn = None;
+        self.searches.iter_mut().for_each(Search::sort);
+    }
+
+    fn run_within(
+        &mut self,
+        parts: &[Part],
+        limits: Limits,
+        halvings: Option<usize>,
         interrupt: &AtomicBool,
         progress: &(dyn Fn(Progress) + Sync),
     ) {
@@ -113,8 +148,13 @@ impl Searches {
             if left == 0 || limits.seconds.is_some_and(|most| needed >= most) {
                 break;
             }
-            let Some((place, turn)) = self.turn.or_else(|| self.next()) else { break };
-            let rest = self.searches[place].step(&parts[place], turn, left);
+            let next = self.turn.or_else(|| self.next(halvings.unwrap_or(usize::MAX)));
+            let Some((place, turn)) = next else { break };
+            let search = &mut self.searches[place];
+            let rest = search.step(&parts[place], turn, left, halvings.is_some());
+            if search.kept.len() > MOST_UNSORTED + search.most_kept {
+                search.keep_largest();
+            }
             self.turn = rest.map(|rest| (place, rest));
             self.seconds = seconds + begin.elapsed().as_secs_f64();
             let now = self.now();

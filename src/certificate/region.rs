@@ -78,6 +78,21 @@ impl Region {
         }
     }
 
+    /// Looks at all boxes of at most so many halvings, unless the time of the limits or an interrupt ends it before. What comes out depends on
+    /// where the search stands and on that number, and on nothing else: not on threads, and not on how boxes are dealt out
+    /// ([`Region::take_share`]).
+    pub fn run_to_depth(
+        &mut self,
+        halvings: usize,
+        limits: Limits,
+        interrupt: &AtomicBool,
+        progress: &(dyn Fn(Progress) + Sync),
+    ) {
+        if !self.problem.minors.is_empty() {
+            self.searches.run_to_depth(&self.problem.parts, limits, halvings, interrupt, progress);
+        }
+    }
+
     /// The proved fraction of the volume, rounded down.
     pub fn proved(&self) -> f64 {
         self.searches.proved()

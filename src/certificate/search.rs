@@ -151,8 +151,26 @@ impl Search {
         Some(Turn { depth: *depth, boxes: queue.len().min(LONGEST_TURN) })
     }
 
-    /// Looks at the boxes of a turn, the oldest first, at most so many. Returns what is left of the turn.
-    pub fn step(&mut self, part: &Part, turn: Turn, most: u64) -> Option<Turn> {
+    /// The order of boxes that depends on nothing but what they are: the largest first.
+    pub fn sort(&mut self) {
+        for boxes in self.open.values_mut() {
+            boxes.make_contiguous().sort_by(|a, b| a.sides.cmp(&b.sides));
+        }
+        self.left.sort_by(|a, b| (a.depth(), &a.sides).cmp(&(b.depth(), &b.sides)));
+        self.sections.sort();
+        self.keep_largest();
+    }
+
+    /// Forgets proved boxes beyond those that are kept, the smallest first.
+    pub fn keep_largest(&mut self) {
+        let depth = |sides: &[Side]| sides.iter().map(|side| usize::from(side.depth)).sum::<usize>();
+        self.kept.sort_by(|a, b| (depth(&a.sides), &a.sides).cmp(&(depth(&b.sides), &b.sides)));
+        self.kept.truncate(self.most_kept);
+    }
+
+    /// Looks at the boxes of a turn, the oldest first, at most so many. Returns what is left of the turn. Where `keep_all`, whoever calls
+    /// it sorts and forgets proved boxes beyond those that are kept.
+    pub fn step(&mut self, part: &Part, turn: Turn, most: u64, keep_all: bool) -> Option<Turn> {
         let queue = self.open.get_mut(&turn.depth)?;
         let count = turn.boxes.min(queue.len()).min(usize::try_from(most).unwrap_or(usize::MAX));
         let block: Vec<Cell> = queue.drain(..count).collect();
@@ -170,7 +188,7 @@ impl Search {
             match judged {
                 BoxJudgement::Proved(minor) => {
                     self.proved.add(cell.depth());
-                    if self.kept.len() < self.most_kept {
+                    if keep_all || self.kept.len() < self.most_kept {
                         self.kept.push(ProvedCell { sides: cell.sides.clone(), minor });
                     }
                     if !self.plane.is_empty() {

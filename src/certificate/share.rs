@@ -154,13 +154,8 @@ impl Region {
                 search.append(found);
             }
         }
-        for search in &mut merged.searches {
-            search
-                .kept
-                .sort_by_key(|cell| cell.sides.iter().map(|side| usize::from(side.depth)).sum::<usize>());
-            search.kept.truncate(search.most_kept); // the largest are first
-        }
-        merged.turn = None;
+        // as a search to a depth leaves them
+        merged.sort();
         self.searches = merged;
         Ok(())
     }

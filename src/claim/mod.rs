@@ -15,6 +15,7 @@ mod evidence;
 mod existence;
 mod identity;
 mod inequality;
+mod point;
 mod pole;
 mod question;
 mod rank_bounds;
@@ -31,6 +32,7 @@ mod witness;
 
 pub use decide::{decide, decide_all, decide_all_keeping, prove};
 pub use evidence::Kept;
+pub use point::{EvaluationError, ValueAtPoint, evaluate};
 #[doc(hidden)]
 pub use selection::{Selection, UnmetPattern};
 #[doc(hidden)]

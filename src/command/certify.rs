@@ -1,12 +1,10 @@
 //! `palmistry certify`: full rank proved on whole regions.
 
-use super::arguments::number;
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::{Files, Form, fraction_bar};
 use super::shards::{NO_WHOLE, Parts, Shards};
 use super::{Status, Unusable};
 use clap::{Args, ValueEnum};
-use dashu::rational::RBig;
 use indicatif::ProgressBar;
 use palmistry::System;
 use palmistry::certificate::{Limits, Progress, Region, RegionAnswer, RegionPart, RegionRows};
@@ -14,9 +12,7 @@ use palmistry::evidence::{WrittenBoxes, certificate_file};
 use palmistry::expression::Symbol;
 use palmistry::file::{note, read_text};
 use palmistry::report::{percent, region_curve, region_json, region_map, region_text, unit_of};
-use palmistry::system::Kind;
 use serde_json::json;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -32,7 +28,7 @@ use std::time::Instant;
 #[command(after_help = "Examples:
   palmistry certify proofs/martinelli2005/polar.proof --box r=1/10..10 --budget 30
   palmistry certify general.proof --boxes 20000 --state open.txt                  a search that has open boxes
-  palmistry certify general.proof --boxes 100000 --state open.txt --shard 3/64 --part parts    a share of them
+  palmistry certify general.proof --depth 30 --state open.txt --shard 3/64 --part parts        a share of them
   palmistry certify general.proof --state open.txt --merge parts --merged next.txt")]
 pub(crate) struct Certify {
     /// The proof file.
@@ -51,6 +47,9 @@ pub(crate) struct Certify {
     /// Look at N boxes, however long it takes: the same result on every machine and any number of threads.
     #[arg(long, value_name = "N", conflicts_with = "budget")]
     boxes: Option<u64>,
+    /// Look at all boxes of at most N halvings: the same result however the boxes are dealt out, to the last bit.
+    #[arg(long, value_name = "N", conflicts_with_all = ["budget", "boxes"], value_parser = clap::value_parser!(u16).range(0..=1000))]
+    depth: Option<u16>,
     /// Which rows are to have full rank.
     #[arg(long, value_enum, default_value = "codistribution")]
     rows: Rows,
@@ -107,7 +106,7 @@ impl Certify {
     pub fn run(self) -> miette::Result<Status> {
         let begin = Instant::now();
         let mut system = System::read(&self.file)?;
-        let ranges = ranges(&system, &self.ranges)?;
+        let ranges = system.given_ranges(&self.ranges)?;
         let rows = match (self.rows, self.order) {
             (Rows::Own, Some(_)) => {
                 return Err(Unusable::report(
@@ -226,15 +225,19 @@ impl Certify {
         while !interrupted() && !region.is_finished() {
             let rest = self.budget - begin.elapsed().as_secs_f64();
             let slice = if state.is_some() { SECONDS_BETWEEN_SAVES } else { f64::INFINITY };
-            let limits = match left {
-                Some(left) => Limits { seconds: Some(slice), boxes: Some(left) },
-                None => Limits { seconds: Some(rest.min(slice)), boxes: None },
+            let limits = match (left, self.depth) {
+                (Some(_), _) | (None, Some(_)) => Limits { seconds: Some(slice), boxes: left },
+                (None, None) => Limits { seconds: Some(rest.min(slice)), boxes: None },
             };
-            if rest <= 0.0 && left.is_none() || left == Some(0) {
+            let is_over = rest <= 0.0 && left.is_none() && self.depth.is_none();
+            if is_over || left == Some(0) {
                 break;
             }
-            let before = region.boxes();
-            region.run(limits, &INTERRUPTED, &|now| show(&bar, now));
+            let (before, tell) = (region.boxes(), |now| show(&bar, now));
+            match self.depth {
+                Some(depth) => region.run_to_depth(depth.into(), limits, &INTERRUPTED, &tell),
+                None => region.run(limits, &INTERRUPTED, &tell),
+            }
             let done = region.boxes() - before;
             left = left.map(|left| left - done.min(left));
             if let Some(file) = state {
@@ -245,7 +248,7 @@ impl Certify {
                 }
             }
             if done == 0 {
-                break; // the rest of the time is for explaining the open boxes, or too many of these are open
+                break; // all boxes of the depth are done, the rest of the time is for explaining the open boxes, or too many of these are open
             }
         }
         bar.finish_and_clear();
@@ -270,7 +273,7 @@ impl Certify {
     fn map_of(&self, system: &System) -> miette::Result<Option<(Symbol, Symbol)>> {
         match self.map.as_slice() {
             [] => Ok(None),
-            [x, y] if x.trim() != y.trim() => Ok(Some((symbol(system, x)?, symbol(system, y)?))),
+            [x, y] if x.trim() != y.trim() => Ok(Some((system.own_symbol(x)?, system.own_symbol(y)?))),
             _ => Err(Unusable::report("a map has two coordinates", "as in --map omega0,r1")),
         }
     }
@@ -305,44 +308,4 @@ fn resume(region: &mut Region, file: &Path) -> miette::Result<()> {
         note(&format!("{} is finished: no box in it is open any more", file.display()));
     }
     Ok(())
-}
-
-/// The symbol of a name.
-fn symbol(system: &System, name: &str) -> miette::Result<Symbol> {
-    let name = name.trim();
-    let own = || system.symbols().filter(|(_, info)| info.kind != Kind::Imported).map(|(symbol, _)| symbol);
-    own().find(|symbol| system.symbol_name(*symbol) == name).ok_or_else(|| {
-        let names: Vec<&str> = own().map(|symbol| system.symbol_name(symbol)).collect();
-        Unusable::report(
-            format!("'{name}' is no state or parameter of {}", system.name),
-            format!("these are: {}", names.join(", ")),
-        )
-    })
-}
-
-/// Reads `name=low..high`, for the states and parameters of a system.
-fn ranges(system: &System, texts: &[String]) -> miette::Result<BTreeMap<Symbol, (RBig, RBig)>> {
-    let mut found = BTreeMap::new();
-    for text in texts.iter().filter(|text| !text.trim().is_empty()) {
-        let form = || {
-            Unusable::report(
-                format!("'{text}' is not of the form name=low..high"),
-                "as in --box omega0=1/2..3,r1=-1..1",
-            )
-        };
-        let (name, range) = text.split_once('=').ok_or_else(form)?;
-        let (low, high) = range.split_once("..").ok_or_else(form)?;
-        let symbol = symbol(system, name)?;
-        let (low, high) = (number(low)?, number(high)?);
-        if low > high {
-            return Err(Unusable::report(
-                format!("the range of '{}' is empty: {low} is above {high}", name.trim()),
-                "the low end comes first; the same number twice holds it fixed",
-            ));
-        }
-        if found.insert(symbol, (low, high)).is_some() {
-            return Err(Unusable::report(format!("'{}' is given twice", name.trim()), "give it once"));
-        }
-    }
-    Ok(found)
 }

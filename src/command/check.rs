@@ -2,9 +2,10 @@
 
 use super::Status;
 use super::interrupt::{begin_to_tell, interrupted};
-use super::output::{Files, Form, proof_files, read_error_json};
+use super::output::{Files, Form, proof_files};
 use clap::Args;
 use palmistry::System;
+use palmistry::report::read_error_json;
 use palmistry::system::{Examination, MOST_PROBLEMS};
 use serde_json::{Value, json};
 use std::path::PathBuf;

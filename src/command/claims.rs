@@ -7,7 +7,9 @@ use super::terminal::layout;
 use clap::Args;
 use palmistry::checker::VerdictFile;
 use palmistry::claim::{Kept, Selection, UnmetPattern};
-use palmistry::report::{ClaimsForm, ClaimsSummary, Shown, claim_json, claims_text, junit, statement_latex};
+use palmistry::report::{
+    ClaimsForm, ClaimsSummary, Shown, claim_json, claims_json, claims_text, junit, statement_latex,
+};
 use palmistry::{Outcome, System};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -95,13 +97,7 @@ impl Claims {
 
     /// What was found, as JSON.
     pub fn object(&self, outcomes: &[Outcome], seconds: f64) -> Value {
-        json!({
-            "ok": outcomes.iter().all(|outcome| outcome.ok) && !interrupted(),
-            "interrupted": interrupted(),
-            "seed": self.seed,
-            "seconds": seconds,
-            "claims": outcomes.iter().map(|outcome| self.claim(outcome)).collect::<Vec<_>>(),
-        })
+        claims_json(outcomes, |outcome| self.claim(outcome), self.seed, seconds, interrupted())
     }
 
     /// What was found, as text.

@@ -17,7 +17,9 @@ mod lsp;
 mod man;
 mod new;
 mod observe;
+mod observe_stream;
 mod output;
+mod poses;
 mod prove;
 mod rank;
 mod recheck;
@@ -71,6 +73,7 @@ enum Verb {
     Stress(stress::Stress),
     Eval(eval::Eval),
     Observe(observe::Observe),
+    Poses(poses::Poses),
     Import(import::Import),
     New(new::New),
     Fmt(fmt::Fmt),
@@ -163,6 +166,7 @@ impl Verb {
             Verb::Stress(verb) => verb.json,
             Verb::Eval(verb) => verb.json,
             Verb::Observe(verb) => verb.json,
+            Verb::Poses(verb) => verb.json,
             Verb::Import(verb) => verb.json,
             Verb::New(verb) => verb.json,
             Verb::Fmt(verb) => verb.json,
@@ -185,6 +189,7 @@ impl Verb {
             Verb::Stress(verb) => verb.run(),
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Poses(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Import(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::New(verb) => verb.run(),
             Verb::Fmt(verb) => verb.run(),

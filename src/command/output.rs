@@ -4,20 +4,11 @@ use super::{Status, Unusable};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::Report;
 use palmistry::observer::Record;
+use palmistry::report::{read_error_json, versioned};
 use palmistry::{ReadError, file};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-
-/// The version of all objects that are printed and written as JSON: another one where a field goes, or means something else. A
-/// field that is added is no other version. `book/src/json.md` tells the fields.
-const JSON_VERSION: u32 = 1;
-
-/// An object with its version.
-pub(crate) fn versioned(mut object: Value) -> Value {
-    object["version"] = json!(JSON_VERSION);
-    object
-}
 
 /// Prints an object to standard output, indented, with its version.
 pub(crate) fn print_json(object: &Value) -> miette::Result<()> {
@@ -106,6 +97,12 @@ impl Files {
         }
     }
 
+    /// What a run has come to that prints nothing else: whether all was written.
+    pub fn status(self, status: Status) -> Status {
+        self.note_failures();
+        if self.whole() { status } else { Status::Unwritten }
+    }
+
     /// Whether all was written so far.
     pub fn whole(&self) -> bool {
         self.failures.is_empty()
@@ -171,21 +168,6 @@ pub(crate) fn error_json(report: &Report) -> Value {
         error = read_error_json(read);
     }
     json!({ "error": error })
-}
-
-/// What is wrong with a file, and where, as one object.
-pub(crate) fn read_error_json(error: &ReadError) -> Value {
-    let (line, column) = error.line_and_column();
-    let mut object = json!({
-        "message": error.message,
-        "file": error.source_code.name(),
-        "line": line,
-        "column": column,
-    });
-    if let Some(help) = &error.help {
-        object["help"] = json!(help);
-    }
-    object
 }
 
 /// What is wrong with the command line, as JSON: the first line is the message, the rest says what to do.

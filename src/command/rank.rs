@@ -1,6 +1,6 @@
 //! `palmistry rank`: is the state seen in the outputs?
 
-use super::arguments::{Wanted, assignments};
+use super::arguments::Wanted;
 use super::interrupt::{INTERRUPTED, begin_to_tell};
 use super::output::{Files, Form, progress};
 use super::reparametrise::reparametrisation;
@@ -128,7 +128,7 @@ impl Rank {
         if self.global {
             return self.tell_values(&mut system);
         }
-        let fixed: BTreeMap<_, _> = assignments(&system, &self.at)?.into_iter().collect();
+        let fixed: BTreeMap<_, _> = system.given_values(&self.at)?.into_iter().collect();
         let samples = self.samples.unwrap_or(RankQuestion::default().samples);
         let bar = progress(samples, "sampling states");
         let question = &RankQuestion {

@@ -34,6 +34,13 @@ pub(crate) struct Shards {
     pub missing: Option<Vec<String>>,
 }
 
+impl Shards {
+    /// Whether anything is asked about shards.
+    pub fn are_asked(&self) -> bool {
+        self.shard.is_some() || self.merge.is_some() || self.missing.is_some()
+    }
+}
+
 /// One of several shards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {

@@ -1,12 +1,14 @@
 //! `palmistry verify`: a paper taken through everything.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, watched};
-use super::output::{Files, Form, progress, versioned};
+use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::file;
 use palmistry::paper::{Findings, Paper, VerifyOptions, verify_into};
-use palmistry::report::{errata_markdown, findings_json, findings_text, forget_seconds, forget_times, page};
+use palmistry::report::{
+    errata_markdown, findings_json, findings_text, forget_seconds, forget_times, page, versioned,
+};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -17,7 +17,7 @@ pub(crate) use packed::{files_in, identity, is_file, is_folder};
 pub use read::read_text;
 pub(crate) use read::{ReadFailure, read_bytes};
 #[doc(hidden)]
-pub use standard::{look_at_standard_output, note, print};
+pub use standard::{look_at_standard_output, note, print, print_heard};
 #[doc(hidden)]
 pub use write::{remove_unfinished, write_whole};
 

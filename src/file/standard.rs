@@ -48,6 +48,17 @@ pub fn print(text: &str) -> Result<()> {
     }
 }
 
+/// The same, and whether anybody still reads.
+///
+/// # Errors
+/// As [`print`].
+pub fn print_heard(text: &str) -> Result<bool> {
+    match output()?.write_all(text.as_bytes()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+        result => result.map(|()| true),
+    }
+}
+
 /// Writes a line to standard error, if that can be written.
 pub fn note(line: &str) {
     let _ = std::io::stderr().write_all(format!("{line}\n").as_bytes());

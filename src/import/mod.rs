@@ -132,6 +132,13 @@ pub struct ImportedModel {
     pub renamed: Vec<(String, String)>,
 }
 
+/// Names of another program as names of the language, in the same order: Greek letters spelled out, what may not stand in a name replaced, words
+/// of the language avoided, and no two names made one. Those that may stay as they are do so.
+pub fn our_names(foreign: &[String]) -> Vec<String> {
+    let names = names::ForeignNames::of(foreign.iter().map(String::as_str));
+    foreign.iter().map(|name| names.ours(name).to_owned()).collect()
+}
+
 /// Reads a foreign file and writes it as a proof file, which is read back.
 ///
 /// # Errors

@@ -387,8 +387,18 @@ fn no_entry(text: &str, input: &Text<'_>, after_an_entry: bool) -> Expected {
         error.what = "an operator, or the next entry on a line of its own".to_owned();
         error.help = Some("a product is written with '*'".to_owned());
     } else {
+        // words that are names too begin an entry only where a title follows
+        if let "set" | "pole" | "map" | "line" = word.as_str() {
+            error.what = format!("a title in quotation marks behind '{word}'");
+            let step = "; a step of discrete time is written in a drift, as in x+ = e";
+            let help = if word == "map" { step } else { "" };
+            error.help = Some(format!("the reference of the language shows what a {word} consists of{help}"));
+            return error;
+        }
         error.what = ENTRY.to_owned();
-        let near = super::error::nearest(&word, ENTRIES).map(|near| format!("perhaps you meant '{near}'"));
+        let near = super::error::nearest(&word, ENTRIES)
+            .filter(|near| *near != word)
+            .map(|near| format!("perhaps you meant '{near}'"));
         let go_on = || "or an operator, if the expression above goes on here".to_owned();
         error.help = near.or_else(|| after_an_entry.then(go_on));
     }

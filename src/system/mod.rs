@@ -21,6 +21,7 @@ mod examine;
 mod extent;
 mod format;
 mod functions;
+mod given;
 mod grammar;
 mod imports;
 mod lie;
@@ -44,13 +45,14 @@ pub mod vocabulary;
 mod written;
 
 pub(crate) use determinant::determinant;
-pub use dimension::{Base, Dimension};
+pub use dimension::{Base, Dimension, ScaledUnit, scaled_unit};
 pub use error::ReadError;
 #[cfg(feature = "cli")]
 pub(crate) use error::boundary;
 pub(crate) use error::{Problem, line_and_column, nearest};
 pub use examine::Examination;
 pub use format::format_text;
+pub use given::{GivenError, given_number};
 #[doc(hidden)]
 pub use grammar::parse_statement;
 pub use model::{Assignment, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Time, Value};

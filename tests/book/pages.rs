@@ -51,7 +51,9 @@ pub fn go_through(path: &Path, folder: &Path) -> Findings {
     let name = path.file_name().expect("a name").to_string_lossy().into_owned();
     // the papers lie where they do as seen from the project's folder
     let papers = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs");
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     std::os::unix::fs::symlink(papers, folder.join("proofs")).expect("a link");
+    std::os::unix::fs::symlink(examples, folder.join("examples")).expect("a link");
     let mut page = Page {
         name,
         folder,

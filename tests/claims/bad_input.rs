@@ -57,6 +57,7 @@ fn mistakes_are_shown_at_their_place() {
         ("range_of_no_number", "sample r1 in [0, g*r1]\n"),
         ("unknown_import", "use other = \"nowhere.proof\"\n"),
         ("nothing_that_begins_an_entry", "claims 1: r1 = r1\n"),
+        ("a_map_without_a_title", "map f\n  r1+ = 2*r1\n"),
         ("state_after_a_field", "field f\n  r1' = 1\n  omega0' = 2\nstate late\n"),
         ("rank_at_a_point", "claim 1: rank at {r1 = 2} = 2\n"),
         ("rank_with_a_name", "let r = rank\n"),

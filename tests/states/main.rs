@@ -10,6 +10,7 @@ mod certify;
 mod certify_domains;
 mod certify_verdicts;
 mod discrete;
+mod given;
 mod models;
 mod neighbours;
 mod observable;

@@ -8,7 +8,7 @@ use palmistry::RankQuestion;
 use palmistry::certificate::{Limits, Region, RegionRows};
 use palmistry::checker::{Effort, VerdictFile};
 use palmistry::claim::{Kept, decide_all_keeping};
-use palmistry::experiment::Scene;
+use palmistry::experiment::{Experiment, Scene, Studies, StudyPart};
 use palmistry::import::{ForeignFormat, ImportQuestion, import};
 use palmistry::observer::{FaultRules, OnFault, Record};
 use palmistry::sweep::{RankPart, RankPreparation};
@@ -366,6 +366,33 @@ fn part() {
     let reader = Watched::new("part", move |bytes| {
         if let Ok(text) = std::str::from_utf8(bytes)
             && let Ok(part) = RankPart::read(text)
+        {
+            // blanks may stand anywhere
+            let said = part.text().expect("it is whole");
+            assert!(said == expected || part.range().is_empty(), "a damaged part is read");
+        }
+    });
+    reader.try_all(&[whole.into_bytes()]);
+}
+
+/// A part of a scene's studies. What was damaged is refused, or says the same.
+#[test]
+fn study_part() {
+    let path = root().join("examples/systems/van_der_pol.toml");
+    let scene = std::fs::read_to_string(&path).unwrap();
+    let short = scene.replace("duration = 8\nsamples = 161", "duration = 1\nsamples = 21");
+    let short = short.replace("window = 160\nsteps = 50", "window = 20\nsteps = 8");
+    let studies =
+        "[study.noise]\nlevels = [1e-3]\nseeds = 3\n[study.basin]\nx = [-2, 2]\ny = [-2, 2]\npoints = 2\n";
+    let scene = Scene::parse(path.to_str().unwrap(), &format!("{short}{studies}")).unwrap();
+    let experiment = Experiment::new(scene, None).unwrap();
+    let never = false.into();
+    let studies = Studies::new(&experiment, &never).unwrap();
+    let whole = studies.part(1..6, &never, &|| ()).unwrap().text().unwrap();
+    let expected = whole.clone();
+    let reader = Watched::new("study_part", move |bytes| {
+        if let Ok(text) = std::str::from_utf8(bytes)
+            && let Ok(part) = StudyPart::read(text)
         {
             // blanks may stand anywhere
             let said = part.text().expect("it is whole");

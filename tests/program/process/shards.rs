@@ -13,6 +13,19 @@ const SYSTEM: &str = "system \"s\"\nstate x, y, z\ndrift f\n  x' = y*z\n  y' = z
 const FEW_MINORS: &str = "system \"s\"\nstate x, y\ndrift f\n  x' = y\n  y' = -x\noutput x^2 + y^2*x\n\
                           sample x in [-1, 2] y in [-1, 3]\n";
 
+/// One whose minors cost little.
+const CUBIC: &str = "system \"s\"\nstate x, y\ndrift f\n  x' = y\n  y' = -x\noutput x^3 + y\nsample x in [-1, 2] y in [-1, 3]\n";
+
+const OSCILLATOR: &str = "system \"s\"\nstate x, y\nparam mu = 1.4\ndrift f\n  x' = y\n  y' = mu*(1 - x^2)*y - x\noutput x\n\
+                          sample x in [-2, 2] y in [-2, 2]\n";
+
+const SCENE: &str = "title = \"s\"\nmodel = \"s.proof\"\nduration = 1\nsamples = 21\n[start]\nx = 1.2\ny = -0.5\n\
+                     [sensor]\nnoise = 0.01\n[observer]\nmethods = [\"trust-region\", \"newton\"]\nestimate = [\"x\", \"y\"]\n\
+                     window = 20\nsteps = 10\n";
+
+const STUDIES: &str = "[study.noise]\nlevels = [1e-3, 1e-2]\nseeds = 4\n\
+                       [study.basin]\nx = [-2, 2]\ny = [-2, 2]\npoints = 2\n";
+
 struct Case {
     folder: tempfile::TempDir,
     command: Vec<String>,
@@ -30,6 +43,14 @@ impl Case {
         let mut command = vec![(*verb).to_owned(), file];
         command.extend(more.iter().map(|word| (*word).to_owned()));
         Case { folder, command }
+    }
+
+    /// A scene of an oscillator, with these studies.
+    fn scene(studies: &str) -> Case {
+        let mut case = Case::of(OSCILLATOR, &["observe"]);
+        let scene = write(&case.folder, "s.toml", format!("{SCENE}{studies}"));
+        case.command = vec!["observe".to_owned(), scene.display().to_string()];
+        case
     }
 
     fn path(&self, name: &str) -> String {
@@ -123,6 +144,68 @@ fn parts_that_are_no_whole_are_refused_by_name() {
     assert!(case.refused(&["--missing", &parts, "none"]).contains("'none' is no number of shards"));
 }
 
+/// The studies of a scene are trials that are dealt out: 8 draws of noise, and 4 first guesses for each of two methods.
+#[test]
+fn studies_in_shards_are_those_of_one_run() {
+    let case = Case::scene(STUDIES);
+    let one_run = case.succeeds(&["--studies", "--no-times", "--json"]);
+    let found: Value = serde_json::from_str(&one_run).unwrap();
+    assert_eq!((found["noise"].as_array().unwrap().len(), found["basins"].as_array().unwrap().len()), (2, 2));
+    assert_eq!(found["noise"][1]["seeds"], 4);
+    for of in ["1", "3", "7"] {
+        let parts = case.path(of);
+        let missing = case.succeeds(&["--missing", &parts, of]);
+        for number in missing.lines().rev() {
+            let shard = format!("{number}/{of}");
+            assert!(case.succeeds(&["--shard", &shard, "--part", &parts]).starts_with("written: "));
+        }
+        assert_eq!(case.succeeds(&["--missing", &parts, of]), "");
+        // to the last byte
+        assert_eq!(case.succeeds(&["--merge", &parts, "--json"]), one_run, "{of}");
+    }
+    let parts = case.path("3");
+    assert_eq!(files(&parts), ["observe-1-of-3.json", "observe-2-of-3.json", "observe-3-of-3.json"]);
+    assert_eq!(case.succeeds(&["--merge", &parts]), case.succeeds(&["--studies", "--no-times"]));
+    let again = json(&case.run(&["--shard", "2/3", "--part", &parts, "--json"]));
+    assert_eq!((&again["was_there"], &again["whole"]), (&json!(true), &json!(true)));
+    // one that is damaged counts as missing, and is made again to the same bytes
+    let path = Path::new(&parts).join("observe-2-of-3.json");
+    let whole = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+    assert_eq!(case.succeeds(&["--missing", &parts, "3"]), "2\n");
+    assert!(case.refused(&["--merge", &parts]).contains("observe-2-of-3.json: this is no part of a sweep"));
+    case.succeeds(&["--shard", "2/3", "--part", &parts]);
+    assert_eq!(std::fs::read(&path).unwrap(), whole);
+    // gaps, overlaps, other questions
+    std::fs::remove_file(&path).unwrap();
+    assert!(case.refused(&["--merge", &parts]).contains("no part has the trials 5 to 9"));
+    case.succeeds(&["--shard", "2/4", "--part", &parts]);
+    let said = case.refused(&["--merge", &parts]);
+    assert!(said.contains("observe-1-of-3.json") && said.contains("both have the trials 4 to 4"), "{said}");
+    let said = case.refused(&["--seed", "2", "--merge", &parts]);
+    assert!(said.contains("observe-1-of-3.json belongs to another question"), "{said}");
+    write(&case.folder, "s.proof", OSCILLATOR.replace("= 1.4", "= 1.5"));
+    let said = case.refused(&["--shard", "1/3", "--part", &parts]);
+    assert!(said.contains("observe-1-of-3.json belongs to another question"), "{said}");
+}
+
+#[test]
+fn what_is_no_study_cannot_be_cut() {
+    let case = Case::scene("");
+    let parts = case.path("parts");
+    for asked in
+        [&["--shard", "1/2", "--part", &parts][..], &["--merge", &parts], &["--missing", &parts, "2"]]
+    {
+        assert!(case.refused(asked).contains("the scene has no studies"), "{asked:?}");
+    }
+    let case = Case::scene(STUDIES);
+    let record = case.path("record.csv");
+    case.succeeds(&["--record", &record]);
+    let said = case.refused(&["--data", &record, "--shard", "1/2", "--part", &parts]);
+    assert!(said.contains("a study needs the truth"), "{said}");
+    assert_eq!(case.run(&["--shard", "1/2", "--part", &parts, "--out", &parts]).status.code(), Some(2));
+}
+
 /// By pairs of shards the tables have each state once; as CSV and as Parquet they say the same.
 #[test]
 fn a_table_has_a_row_for_each_state() {
@@ -171,6 +254,45 @@ fn a_table_has_a_row_for_each_state() {
     assert_eq!(count, 500);
     let said = case.refused(&["--table", &case.path("states.txt")]);
     assert!(said.contains("neither a .csv nor a .parquet file"), "{said}");
+}
+
+/// To a depth it is the same however boxes are dealt out: oracle, the one search, which knows of no shares.
+#[test]
+fn boxes_to_a_depth_are_those_of_one_search() {
+    let case = Case::of(CUBIC, &["certify"]);
+    let (state, alone) = (case.path("open.txt"), case.path("alone.txt"));
+    case.succeeds(&["--boxes", "40", "--state", &state]);
+    std::fs::copy(&state, &alone).unwrap();
+    let saved = |path: &str| std::fs::read_to_string(path).unwrap();
+    // the time that a search took is in its file, and no part of what it found
+    let told = |text: &str| {
+        let mut found: Value = serde_json::from_str(text).unwrap();
+        let found_fields = found.as_object_mut().unwrap();
+        found_fields.retain(|name, _| name != "seconds" && name != "curve");
+        assert!(found["boxes"].as_u64() > Some(100), "{found}");
+        found
+    };
+    let one = told(&case.succeeds(&["--depth", "13", "--state", &alone, "--json"]));
+    assert_ne!(saved(&state), saved(&alone));
+    let verdicts = [case.path("one.json"), case.path("merged.json")];
+    // nothing is open up to there any more, and what is deeper is left alone
+    let again = ["--depth", "13", "--state", &alone, "--json", "--verdicts", &verdicts[0]];
+    let mut again = told(&case.succeeds(&again));
+    again.as_object_mut().unwrap().remove("verdict_boxes");
+    assert_eq!(again, one);
+    for of in ["1", "3", "7"] {
+        let parts = case.path(of);
+        for number in case.succeeds(&["--state", &state, "--missing", &parts, of]).lines() {
+            let shard = format!("{number}/{of}");
+            case.succeeds(&["--depth", "13", "--state", &state, "--shard", &shard, "--part", &parts]);
+        }
+        let merged = ["--state", &state, "--merge", &parts, "--json", "--verdicts", &verdicts[1]];
+        let mut merged = told(&case.succeeds(&merged));
+        merged.as_object_mut().unwrap().remove("verdict_boxes");
+        assert_eq!(merged, one, "{of}");
+        // and the proved boxes that are kept, with their minors
+        assert_eq!(saved(&verdicts[0]), saved(&verdicts[1]), "{of}");
+    }
 }
 
 /// What was open is dealt out, each box to one: nothing is lost and nothing counts twice, and going on from there is going on.
