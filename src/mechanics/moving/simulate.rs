@@ -86,7 +86,8 @@ fn advance(scene: &MovingScene, from: TimedState, end: f64, longest: f64) -> Res
 }
 
 /// Where the contacts hold for the last time between a state in which they do and a time at which they do not, by
-/// bisection; each state is integrated from the first one.
+/// bisection. Each state is integrated from the last one that held, so that all of them are of one motion: integrated from the first
+/// one they differ by the tolerance, which near parallel palms is more in the forces than what is sought.
 fn locate(scene: &MovingScene, held: TimedState, broken: f64, mut by: Breach) -> (TimedState, Breach) {
     let (mut low, mut high) = (held, broken);
     while high - low.time > LOCATED {
@@ -94,7 +95,7 @@ fn locate(scene: &MovingScene, held: TimedState, broken: f64, mut by: Breach) ->
         if middle <= low.time || middle >= high {
             break;
         }
-        let (all, failure) = steps(scene, held, middle, middle - held.time);
+        let (all, failure) = steps(scene, low, middle, middle - low.time);
         let Some(&state) = all.last().filter(|_| failure.is_none()) else { break };
         match breach(&state, scene) {
             None => low = state,
