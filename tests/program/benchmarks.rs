@@ -15,23 +15,23 @@ const MODELS: [(&str, usize, usize, usize); 40] = [
     ("chemical_network", 12, 12, 2),
     ("chemostat", 6, 5, 4),
     ("chua", 7, 7, 4),
-    ("crauste", 18, 17, 5),
-    ("fujita", 26, 21, 4),
+    ("crauste", 18, 17, 7),
+    ("fujita", 25, 25, 8),
     ("goodwin", 11, 9, 4),
     ("hiv_latent", 14, 12, 4),
     ("hiv_load", 9, 8, 4),
     ("induction_motor", 5, 5, 5),
     ("lorenz", 6, 6, 4),
     ("mammillary4", 11, 11, 3),
-    ("mapk5", 34, 34, 2),
+    ("mapk5", 34, 34, 5),
     ("michaelis_menten", 5, 4, 5),
-    ("nfkb", 28, 27, 3),
+    ("nfkb", 28, 27, 5),
     ("parallel_vehicles", 3, 3, 8),
     ("pharm", 11, 11, 2),
     ("pmsm_standstill", 4, 4, 7),
     ("quadrotor_imu", 10, 9, 6),
-    ("quadruple_tank", 10, 10, 3),
-    ("raia", 32, 30, 3),
+    ("quadruple_tank", 10, 10, 4),
+    ("raia", 32, 30, 4),
     ("relative_range", 7, 7, 2),
     ("roessler", 6, 6, 5),
     ("saturated_exchange", 9, 8, 4),
@@ -88,14 +88,22 @@ fn all_claims_are_decided_and_checked_again() {
     let output = palmistry(&["prove", "proofs/benchmarks", "--json", "--verdicts", verdicts]);
     assert!(output.status.success());
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    let mut errata = Vec::new();
     for claim in json(&output)["claims"].as_array().unwrap() {
-        assert_eq!(claim["verdict"], "proved", "{claim}");
+        if claim["verdict"] == "erratum" {
+            errata.push(claim["id"].as_str().unwrap().to_owned());
+        } else {
+            assert_eq!(claim["verdict"], "proved", "{claim}");
+        }
         let file = claim["file"].as_str().unwrap().rsplit('/').next().unwrap();
         *counts.entry(file.trim_end_matches(".proof").to_owned()).or_default() += 1;
     }
     let expected: BTreeMap<String, usize> =
         MODELS.iter().map(|(name, _, _, claims)| ((*name).to_owned(), *claims)).collect();
     assert_eq!(counts, expected);
+    // the mistakes of the collections from which five files had been written
+    errata.sort();
+    assert_eq!(errata, ["binding", "inhibition", "kinase", "late_effectors", "messenger"]);
     let output = palmistry(&["recheck", verdicts]);
     assert!(output.status.success());
     let text = String::from_utf8_lossy(&output.stdout);
