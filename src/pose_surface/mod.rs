@@ -14,6 +14,8 @@ mod certify;
 mod contact_chart;
 mod enclosed;
 mod families;
+#[cfg(test)]
+mod figure_3_17;
 mod plan;
 mod potential;
 mod sheets;

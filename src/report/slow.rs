@@ -1,11 +1,12 @@
 //! What slow palms tell of a body: text, JSON, and a page with the pictures of figures 3.6, 3.7 and 3.8 and the body in motion.
 
-use crate::experiment::slow::{SlowTrack, StudyRow, ThesisMethod, TrackError, WayTally, median_and_worst};
+use crate::experiment::slow::{Arrangement, FoundJump, SlowAnswers, SlowTrack, ThesisMethod, TrackError};
 use crate::report::document::document;
 use crate::report::motion::ended_in_words;
 use crate::report::slow_observed::SlowObserved;
-use crate::report::slow_plot::{animation, curves, frames, speed};
-use maud::{Markup, PreEscaped, html};
+use crate::report::slow_plot::{animation, curves, frames};
+use crate::report::slow_study::{number, study_json, study_section, study_text};
+use maud::{PreEscaped, html};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -101,14 +102,6 @@ fn mean_radius(observed: &SlowObserved<'_>) -> f64 {
     truth.or(found).unwrap_or(1.0)
 }
 
-/// Beside each other what stands in the table of a study.
-fn tally(way: &WayTally) -> [String; 2] {
-    [&way.radius, &way.phi0].map(|values| match median_and_worst(values) {
-        Some([median, worst]) => format!("{median:.1e} ({worst:.1e})"),
-        None => "-".to_owned(),
-    })
-}
-
 /// What was found, as text.
 pub fn slow_text(observed: &SlowObserved<'_>) -> String {
     let (experiment, answers) = (observed.experiment, observed.answers);
@@ -142,47 +135,41 @@ pub fn slow_text(observed: &SlowObserved<'_>) -> String {
     if answers.together.is_none() {
         out.push_str("all readings at once: no start could be followed; nothing is recovered\n");
     }
+    if !answers.jumps.is_empty() {
+        let _ = writeln!(
+            out,
+            "jumps that the readings tell, and where descent leads: {}",
+            jumps_in_words(answers)
+        );
+    }
+    if let Some(both) = &answers.arrangements {
+        let _ = writeln!(out, "3.48 and 3.49: {}", arrangements_in_words(both));
+    }
     let votes: Vec<String> =
         answers.votes.iter().take(4).map(|vote| format!("{:.6} m ({})", vote.height, vote.votes)).collect();
     let _ = writeln!(out, "heights told by zeros of 3.37's numerator: {}", votes.join(", "));
-    for row in observed.study {
-        let _ = writeln!(
-            out,
-            "{} {} samples, resolution {} m: {} of {} recovered, {} silent failures, {} jumped",
-            row.family.name(),
-            row.samples,
-            row.resolution,
-            row.recovered,
-            row.bodies,
-            row.silent,
-            row.jumped
-        );
-        if let Some([median, worst]) = median_and_worst(&row.outline) {
-            let _ = writeln!(out, "  outline: median {median:.2e} m, worst {worst:.2e} m");
-        }
-        for (name, way) in ways_of(row) {
-            let [radius, phi0] = tally(way);
-            let each = way.seconds / row.bodies.max(1) as f64;
-            let _ = writeln!(out, "  {name}: radius {radius}, phi0 {phi0} rad, {each:.3} s");
-        }
-    }
+    out.push_str(&study_text(observed.study));
     if observed.interrupted {
         out.push_str("interrupted: this is what was done until then\n");
     }
     out
 }
 
-fn ways_of(row: &StudyRow) -> [(&'static str, &WayTally); 3] {
-    [
-        ("thesis, true radii", &row.thesis),
-        ("quadrature, true height", &row.quadrature),
-        ("all at once, nothing known", &row.together),
-    ]
+/// Jumps in one line.
+fn jumps_in_words(answers: &SlowAnswers) -> String {
+    let one = |jump: &FoundJump| {
+        let word = if jump.predicted { "as descent says" } else { "another pose than descent says" };
+        format!("before sample {} by {:.4} rad, {word}", jump.row + 1, jump.turn)
+    };
+    answers.jumps.iter().map(one).collect::<Vec<_>>().join("; ")
 }
 
-/// A number, or null where it is none.
-fn number(x: f64) -> Value {
-    if x.is_finite() { json!(x) } else { Value::Null }
+/// What 3.48 and 3.49 say of both arrangements.
+fn arrangements_in_words(both: &[Arrangement; 2]) -> String {
+    let one = |name: &str, at: &Arrangement| {
+        format!("{name} {:.2e} m^2 over {} patches, E {:.2e}", at.area, at.patches, at.error())
+    };
+    format!("{}; {}", one("as found", &both[0]), one("the thesis's way, restarted at the jumps,", &both[1]))
 }
 
 /// What was found, as JSON.
@@ -219,23 +206,6 @@ pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
         json!({ "ended": ended_in_words(&truth.trajectory.ended), "jumps": jumps.collect::<Vec<_>>() })
     });
     let votes = answers.votes.iter().map(|vote| json!({ "height": vote.height, "votes": vote.votes }));
-    let study = observed.study.iter().map(|row| {
-        let ways = ways_of(row).map(|(name, way)| {
-            let each = |values: &[f64]| values.iter().map(|x| number(*x)).collect::<Vec<_>>();
-            json!({ "name": name, "radius_errors": each(&way.radius), "phi0_errors": each(&way.phi0), "seconds": way.seconds })
-        });
-        json!({
-            "family": row.family.name(),
-            "samples": row.samples,
-            "resolution": row.resolution,
-            "bodies": row.bodies,
-            "jumped": row.jumped,
-            "recovered": row.recovered,
-            "silent": row.silent,
-            "outline_errors": row.outline.iter().map(|x| number(*x)).collect::<Vec<_>>(),
-            "ways": ways,
-        })
-    });
     json!({
         "scene": experiment.scene.title,
         "motion": "quasistatic",
@@ -244,44 +214,12 @@ pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
         "simulation": simulation,
         "shape": together,
         "ways": ways.collect::<Vec<_>>(),
+        "jumps": answers.jumps.iter().map(|jump| json!({ "row": jump.row, "turn": jump.turn, "predicted": jump.predicted })).collect::<Vec<_>>(),
+        "arrangements": answers.arrangements.map(|both| both.map(|at| json!({ "patches": at.patches, "area": at.area, "force": at.force, "contact": at.contact, "error": at.error() }))),
         "heights": votes.collect::<Vec<_>>(),
-        "study": study.collect::<Vec<_>>(),
+        "study": study_json(observed.study),
         "interrupted": observed.interrupted,
     })
-}
-
-fn study_section(rows: &[StudyRow]) -> Markup {
-    html! {
-        p { "Medians over all bodies, the worst in brackets; errors of a support radius in parts of the mean radius, of the orientation in rad. An infinite one stopped on the way." }
-        table {
-            thead { tr {
-                th { "family" } th { "samples" } th { "resolution" } th { "way" } th { "radius" } th { "phi0" } th { "s a body" }
-            } }
-            tbody {
-                @for row in rows {
-                    @for (name, way) in ways_of(row) {
-                        @let [radius, phi0] = tally(way);
-                        tr {
-                            td { (row.family.name()) } td { (row.samples) } td { (row.resolution) " m" } td { (name) }
-                            td { (radius) } td { (phi0) } td { (format!("{:.3}", way.seconds / row.bodies.max(1) as f64)) }
-                        }
-                    }
-                }
-            }
-        }
-        @for row in rows {
-            p {
-                (row.family.name()) ", " (row.samples) " samples, resolution " (row.resolution) " m: "
-                b { (row.recovered) " of " (row.bodies) " recovered, " (row.silent) " silent failures" }
-                "; " (row.jumped) " bodies that jumped were drawn anew"
-                @if let Some([median, worst]) = median_and_worst(&row.outline) {
-                    "; greatest error of the outline: median " (format!("{median:.1e} m, worst {worst:.1e} m"))
-                }
-                "."
-            }
-        }
-        (PreEscaped(speed(rows)))
-    }
 }
 
 /// The page as HTML.
@@ -328,6 +266,8 @@ pub fn slow_page(observed: &SlowObserved<'_>) -> String {
                     }
                 }
                 @if answers.together.is_none() { p.bad { "All readings at once: no start could be followed; nothing is recovered." } }
+                @if !answers.jumps.is_empty() { p { "Jumps that the readings tell, and where descent in the recovered potential leads: " (jumps_in_words(answers)) "." } }
+                @if let Some(both) = &answers.arrangements { p { "The errors 3.48 and 3.49 of segments, for comparison: " (arrangements_in_words(both)) "." } }
                 p {
                     "Heights of the centre of mass at the first sample that zeros of 3.37's numerator tell, with their number: "
                     @for vote in answers.votes.iter().take(6) { (format!("{:.5} m ({}) ", vote.height, vote.votes)) }

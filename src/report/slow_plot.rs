@@ -1,6 +1,7 @@
 //! Pictures of a slow body, written as SVG: the motion, what was touched, errors, speed.
 
 use crate::experiment::slow::{SlowTrack, StudyRow, median_and_worst};
+use crate::report::moved_body::{MovedPose, moved_body, rows};
 use crate::report::slow_observed::SlowObserved;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write;
@@ -12,33 +13,25 @@ const FRAMES: usize = 27;
 /// Points of an outline.
 const OUTLINE: usize = 96;
 
-/// The pose of a sample: orientation, centre of mass, palms' angles.
-struct Pose {
-    phi0: f64,
-    centre: [f64; 2],
-    palms: [f64; 2],
-    contacts: [f64; 2],
-}
-
 /// The track that is shown: the whole one, where there is none the quadrature's.
 fn shown<'a>(observed: &SlowObserved<'a>) -> Option<&'a SlowTrack> {
     let answers = observed.answers;
     answers.together.as_ref().map(|found| &found.track).or(answers.quadrature.as_ref())
 }
 
-fn pose(observed: &SlowObserved<'_>, row: usize) -> Option<Pose> {
+fn pose(observed: &SlowObserved<'_>, row: usize) -> Option<MovedPose> {
     let readings = &observed.experiment.readings;
     let (palms, contacts) = (readings.palms[row], readings.contacts[row]);
     if let Some(truth) = &observed.experiment.truth {
         let at = truth.trajectory.moments.get(row)?;
-        return Some(Pose { phi0: at.phi0, centre: at.centre, palms, contacts });
+        return Some(MovedPose { phi0: at.phi0, centre: at.centre, palms, contacts });
     }
     let track = shown(observed)?;
     let [r1, r2] = *track.radii.get(row)?;
     let (first, second, opening) = (palms[0], palms[0] + palms[1], palms[1].sin());
     let centre =
         [(second.cos() * r1 + first.cos() * r2) / opening, (second.sin() * r1 + first.sin() * r2) / opening];
-    Some(Pose { phi0: track.phi0[row], centre, palms, contacts })
+    Some(MovedPose { phi0: track.phi0[row], centre, palms, contacts })
 }
 
 /// The outline in the body's frame: the true one, or the one that was found.
@@ -56,67 +49,11 @@ fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
     [cosine * x - sine * y, sine * x + cosine * y]
 }
 
-fn path(points: &[[f64; 2]], scale: f64) -> String {
-    let mut out = String::new();
-    for (i, [x, y]) in points.iter().enumerate() {
-        let _ = write!(out, "{}{:.1},{:.1}", if i == 0 { "M" } else { "L" }, x * scale, -y * scale);
-    }
-    out.push('Z');
-    out
-}
-
-/// Samples that are shown, evenly.
-fn rows(count: usize, most: usize) -> Vec<usize> {
-    let shown = count.min(most);
-    (0..shown).map(|i| if shown < 2 { 0 } else { i * (count - 1) / (shown - 1) }).collect()
-}
-
-/// The body and its palms in motion, over and over, by the elements of SVG alone.
+/// The body and its palms in motion.
 pub(super) fn animation(observed: &SlowObserved<'_>) -> String {
     let rows = rows(observed.experiment.readings.rows(), MOVED);
-    let poses: Vec<Pose> = rows.iter().filter_map(|row| pose(observed, *row)).collect();
-    let points = outline(observed);
-    if poses.len() < 2 || points.is_empty() {
-        return "<p>There is no motion to show.</p>".to_owned();
-    }
-    let reach = points.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
-    let far = poses.iter().map(|at| at.centre[0].hypot(at.centre[1])).fold(0.0, f64::max) + reach;
-    let scale = 210.0 / far;
-    let join = |of: &dyn Fn(&Pose) -> String| poses.iter().map(of).collect::<Vec<_>>().join(";");
-    let degrees = |angle: f64| -angle.to_degrees();
-    let duration = "dur=\"12s\" repeatCount=\"indefinite\" calcMode=\"linear\"";
-    let palm = |of: &dyn Fn(&Pose) -> f64, colour: &str| {
-        format!(
-            "<line x1=\"0\" y1=\"0\" x2=\"{:.0}\" y2=\"0\" stroke=\"{colour}\" stroke-width=\"4\"><animateTransform attributeName=\"transform\" type=\"rotate\" values=\"{}\" {duration}/></line>",
-            1.1 * far * scale,
-            join(&|at| format!("{:.2}", degrees(of(at))))
-        )
-    };
-    let moved = join(&|at| format!("{:.1} {:.1}", at.centre[0] * scale, -at.centre[1] * scale));
-    let rotated = join(&|at| format!("{:.2}", degrees(at.phi0)));
-    let contact = |palm: usize| {
-        let place = |at: &Pose| {
-            let angle = if palm == 0 { at.palms[0] } else { at.palms[0] + at.palms[1] };
-            [at.contacts[palm] * angle.cos() * scale, -at.contacts[palm] * angle.sin() * scale]
-        };
-        format!(
-            "<circle r=\"4\" fill=\"#c8283c\"><animate attributeName=\"cx\" values=\"{}\" {duration}/><animate attributeName=\"cy\" values=\"{}\" {duration}/></circle>",
-            join(&|at| format!("{:.1}", place(at)[0])),
-            join(&|at| format!("{:.1}", place(at)[1]))
-        )
-    };
-    format!(
-        "<svg role=\"img\" aria-label=\"The body and its palms in motion\" viewBox=\"-250 -230 500 260\" width=\"500\" height=\"260\">{}{}\
-         <g><animateTransform attributeName=\"transform\" type=\"translate\" values=\"{moved}\" {duration}/>\
-         <g><animateTransform attributeName=\"transform\" type=\"rotate\" values=\"{rotated}\" {duration}/>\
-         <path d=\"{}\" fill=\"#9cbfd8\" fill-opacity=\"0.6\" stroke=\"#0072b2\"/><circle r=\"3\" fill=\"#282c34\"/><line x1=\"0\" y1=\"0\" x2=\"{:.1}\" y2=\"0\" stroke=\"#282c34\"/></g></g>{}{}</svg>",
-        palm(&|at| at.palms[0], "#0072b2"),
-        palm(&|at| at.palms[0] + at.palms[1], "#d55e00"),
-        path(&points, scale),
-        0.6 * reach * scale,
-        contact(0),
-        contact(1),
-    )
+    let poses: Vec<MovedPose> = rows.iter().filter_map(|row| pose(observed, *row)).collect();
+    moved_body(&outline(observed), &poses)
 }
 
 /// Figure 3.6: after every tenth of the samples the points that were touched so far, as they were found.
@@ -265,8 +202,9 @@ pub(super) fn speed(rows: &[StudyRow]) -> String {
             let seconds = way.seconds / row.bodies.max(1) as f64;
             let error = median_and_worst(&way.radius).map_or(f64::INFINITY, |[median, _]| median);
             if seconds > 0.0 && error > 0.0 && error.is_finite() {
+                let order = row.order.map_or_else(String::new, |order| format!(", order {order}"));
                 let title = format!(
-                    "{}, {} samples, resolution {} m",
+                    "{}, {} samples, resolution {} m{order}",
                     row.family.name(),
                     row.samples,
                     row.resolution

@@ -97,17 +97,36 @@ fn a_rounded_and_jittered_sensor_tells_a_small_body() {
     assert!(error.radius < 5.0 * worst && worst < 3e-5, "{error:?} {worst}");
 }
 
-/// A body that jumps on the way is not explained by one shape that never does, and that is said; pads that are too short end the motion.
+/// A run with a jump is one shape for both segments, nothing known: the body to rounding, the jump between its own two samples and where descent in the recovered potential leads.
 #[test]
-fn what_is_not_explained_is_said() {
+fn a_run_with_a_jump_is_one_shape() {
     let jumping = "shape = { kind = \"harmonics\", mean = 1.0, harmonics = [[0, 0], [0.12, 0.0], [0.03, 0.02]] }\n\
                    centre_of_mass = [0.25, 0.1]\nmass = 1.0";
-    let moved = experiment(&scene(160, jumping, "plan = { margin = 0.3, rounds = 1 }", ""));
-    let jumps = &moved.truth.as_ref().unwrap().trajectory.jumps;
-    assert!(!jumps.is_empty());
-    for jump in jumps {
-        assert!(jump.drop > 0.0 && (jump.to - jump.from).abs() > 0.05, "{jump:?}");
-    }
+    let moved = experiment(&scene(120, jumping, "plan = { margin = 0.3, rounds = 1 }", ""));
+    let truth = &moved.truth.as_ref().unwrap().trajectory;
+    assert_eq!(truth.jumps.len(), 1);
+    let jump = truth.jumps[0];
+    assert!(jump.drop > 0.0 && (jump.to - jump.from).abs() > 1.0, "{jump:?}");
+    let answers = run(&moved);
+    assert!(answers.explained);
+    let found = answers.together.as_ref().unwrap();
+    let error = moved.error(&found.track).unwrap();
+    assert!(error.radius < 1e-10 && error.phi0 < 1e-9, "{error:?}");
+    assert_eq!(answers.jumps.len(), 1);
+    let told = answers.jumps[0];
+    assert!(told.predicted);
+    assert!(truth.moments[told.row - 1].time < jump.time && jump.time <= truth.moments[told.row].time);
+    // the quadrature does not know of the height that was lost
+    let quadrature = moved.error(answers.quadrature.as_ref().unwrap()).unwrap();
+    assert!(quadrature.radius > 0.05, "{quadrature:?}");
+    // 3.48 of what was found is what patches leave between their samples; the thesis's way is off by more even where it is told the jump
+    let [ours, thesis] = answers.arrangements.unwrap();
+    assert!(ours.area < 0.5 * thesis.area && ours.error() < thesis.error(), "{ours:?} {thesis:?}");
+}
+
+/// Pads that are too short end the motion.
+#[test]
+fn a_pad_that_is_too_short_ends_the_motion() {
     let short = experiment(&scene(60, BODY, &format!("{PLAN}\nlengths = [3.0, 3.0]"), ""));
     let trajectory = &short.truth.as_ref().unwrap().trajectory;
     assert!(

@@ -5,21 +5,29 @@
 //!
 //! Nothing here has seen the body: what a simulation knows comes in through readings alone.
 
+mod families;
+mod keys;
+mod ladder;
 mod local;
+mod patches;
 mod quadrature;
 mod readings;
 mod run;
 mod scene;
+mod segments;
 mod start;
 mod study;
 mod thesis;
 mod together;
 
+pub use families::Family;
+pub use patches::Arrangement;
 pub use quadrature::{SlowTrack, by_quadrature};
 pub use readings::SlowReadings;
 pub use run::{SlowAnswers, SlowExperiment, SlowTruth, TrackError};
-pub use scene::{Family, SlowPalms, SlowScene, SlowStudy};
+pub use scene::{SlowPalms, SlowScene, SlowStudy};
+pub use segments::{FoundJump, found_jumps, from_segments};
 pub use start::{Vote, from_nothing, votes};
-pub use study::{StudyRow, WayTally, median_and_worst, slow_study};
+pub use study::{JumpTally, StudyRow, WayTally, median_and_worst, slow_study};
 pub use thesis::{ThesisMethod, ThesisTrack, by_thesis};
 pub use together::SlowShape;

@@ -1,6 +1,7 @@
 //! What slow palms read of a body, and what follows from the readings without any shape.
 
 use super::local::{Stencil, derivative};
+use std::ops::Range;
 
 /// Readings of both palms at sample times. SI units, angles in radians.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,13 +85,13 @@ impl SlowReadings {
         self.times.len()
     }
 
-    /// The first samples.
-    pub(super) fn first(&self, rows: usize) -> SlowReadings {
+    /// The samples of a stretch.
+    pub(super) fn part(&self, rows: &Range<usize>) -> SlowReadings {
         SlowReadings {
-            times: self.times[..rows].to_vec(),
-            palms: self.palms[..rows].to_vec(),
-            rates: self.rates[..rows].to_vec(),
-            contacts: self.contacts[..rows].to_vec(),
+            times: self.times[rows.clone()].to_vec(),
+            palms: self.palms[rows.clone()].to_vec(),
+            rates: self.rates[rows.clone()].to_vec(),
+            contacts: self.contacts[rows.clone()].to_vec(),
             sigma: self.sigma,
         }
     }

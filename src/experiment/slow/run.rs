@@ -1,10 +1,13 @@
 //! A scene of slow motion, simulated or recorded, and what every way makes of its readings.
 
+use super::keys::COLUMNS;
 use super::local::derivative;
+use super::patches::{Arrangement, arrangements};
 use super::quadrature::{SlowTrack, by_quadrature};
 use super::readings::SlowReadings;
-use super::scene::{COLUMNS, SlowScene};
-use super::start::{EXACT, Vote, from_nothing, votes};
+use super::scene::SlowScene;
+use super::segments::{FoundJump, found_jumps, from_segments};
+use super::start::{EXACT, Vote, from_nothing, from_nothing_briefly, votes};
 use super::thesis::{ThesisMethod, ThesisTrack, by_thesis};
 use super::together::SlowShape;
 use crate::experiment::simulation::{deviation, normal, outline};
@@ -16,6 +19,7 @@ use crate::system::ReadError;
 use miette::Diagnostic;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 use std::time::Instant;
 
@@ -55,6 +59,10 @@ pub struct SlowAnswers {
     pub together: Option<SlowShape>,
     /// Whether it explains the readings.
     pub explained: bool,
+    /// Where the body jumps in what was found.
+    pub jumps: Vec<FoundJump>,
+    /// 3.48 and 3.49 of what was found, and of the thesis's way restarted at these jumps from the radii that were found.
+    pub arrangements: Option<[Arrangement; 2]>,
     /// Quadrature from the height at the first sample: the true one, or the one that was found.
     pub quadrature: Option<SlowTrack>,
     /// The thesis's way from the radii at the first sample, by each method.
@@ -131,7 +139,7 @@ impl SlowExperiment {
         let timed = |seconds: &mut f64, begin: Instant| *seconds = begin.elapsed().as_secs_f64();
         let mut seconds = [f64::NAN; 3];
         let begin = Instant::now();
-        let together = from_nothing(readings, interrupt);
+        let together = from_any(readings, interrupt);
         timed(&mut seconds[0], begin);
         done("all readings at once");
         let explained = together.as_ref().is_some_and(|found| found.explains(EXACT));
@@ -162,13 +170,37 @@ impl SlowExperiment {
             misled = Some(by_thesis(readings, off, ThesisMethod::PredictorCorrector));
         }
         done("the thesis's way");
-        SlowAnswers { explained, together, quadrature, thesis, misled, votes: votes(readings), seconds }
+        let jumps = match &together {
+            Some(found) if explained => found_jumps(readings, found),
+            _ => Vec::new(),
+        };
+        let arrangements = together.as_ref().map(|found| arrangements(readings, &found.track, &jumps));
+        SlowAnswers {
+            explained,
+            jumps,
+            arrangements,
+            together,
+            quadrature,
+            thesis,
+            misled,
+            votes: votes(readings),
+            seconds,
+        }
     }
 
     /// How far a whole track is from the truth; none where this is not known, or the track stopped before.
     pub fn error(&self, track: &SlowTrack) -> Option<TrackError> {
         track_error(&self.truth.as_ref()?.trajectory, track)
     }
+}
+
+/// A shape from few starts; where none explains the readings one for all segments between jumps; where there is none either from all starts.
+fn from_any(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
+    let explains = |found: &SlowShape| found.explains(EXACT);
+    from_nothing_briefly(readings, interrupt)
+        .filter(explains)
+        .or_else(|| from_segments(readings, interrupt).filter(explains))
+        .or_else(|| from_nothing(readings, interrupt))
 }
 
 /// The errors of a track, which has to have all samples.
@@ -181,7 +213,11 @@ pub(super) fn track_error(truth: &Trajectory, track: &SlowTrack) -> Option<Track
     let radius = radii
         .flat_map(|(r, at)| [0, 1].map(|i: usize| (r[i] - at.palms[i].r).abs()))
         .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
-    let off: Vec<f64> = track.phi0.iter().zip(moments).map(|(phi0, at)| phi0 - at.phi0).collect();
+    // whole turns at a jump are no errors
+    let first = track.phi0[0] - moments[0].phi0;
+    let off: Vec<f64> = (track.phi0.iter().zip(moments))
+        .map(|(phi0, at)| (phi0 - at.phi0 - first + PI).rem_euclid(TAU) - PI)
+        .collect();
     let ends =
         off.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |ends, x| [ends[0].min(*x), ends[1].max(*x)]);
     let phi0 = (ends[1] - ends[0]) / 2.0;

@@ -1,133 +1,12 @@
 //! Scenes of slow motion: `motion = "quasistatic"`.
 
+use super::super::scene::Body;
 use super::super::scene::place::Places;
-use super::super::scene::{Body, sample_times};
-use crate::mechanics::moving::{Course, Knots};
-use crate::mechanics::resting::plan_3_14;
-use crate::system::{Problem, ReadError, load};
-use serde::Deserialize;
+use super::families::Family;
+use crate::mechanics::moving::Course;
+use crate::system::{Problem, ReadError};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
-/// The word that makes a scene one of slow motion.
-const SLOW: &str = "quasistatic";
-
-/// The most samples; each is a row of every least squares problem.
-const MOST_SAMPLES: usize = 20_000;
-
-/// The most bodies of a study.
-const MOST_BODIES: usize = 10_000;
-
-/// The columns that a recording has to have, by the names that the scene may change.
-pub(super) const COLUMNS: [&str; 4] = ["phi1", "phi2", "s1", "s2"];
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    title: String,
-    motion: String,
-    #[serde(default = "one")]
-    seed: u64,
-    duration: Option<f64>,
-    samples: Option<usize>,
-    rate: Option<f64>,
-    body: Option<Body>,
-    palms: Option<PalmKeys>,
-    #[serde(default)]
-    sensor: SensorKeys,
-    data: Option<DataKeys>,
-    study: Option<StudyKeys>,
-}
-
-fn one() -> u64 {
-    1
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PalmKeys {
-    plan: Option<PlanKeys>,
-    prescribed: Option<[Course; 2]>,
-    lengths: Option<[f64; 2]>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PlanKeys {
-    margin: f64,
-    rounds: f64,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct SensorKeys {
-    noise: f64,
-    resolution: f64,
-    jitter: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DataKeys {
-    record: PathBuf,
-    #[serde(default)]
-    columns: BTreeMap<String, String>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StudyKeys {
-    bodies: usize,
-    families: Vec<Family>,
-    samples: Vec<usize>,
-    #[serde(default = "exact_only")]
-    resolutions: Vec<f64>,
-    #[serde(default = "size")]
-    size: f64,
-}
-
-fn exact_only() -> Vec<f64> {
-    vec![0.0]
-}
-
-fn size() -> f64 {
-    0.02
-}
-
-/// Random bodies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Family {
-    /// Harmonics 2 to 6, drawn evenly up to half of what convexity leaves to one alone.
-    Harmonics,
-    /// The same, the centre of mass off the centroid by up to 0.3 of the mean radius.
-    OffCentre,
-    /// Section 3.4: closed splines through three points, the parameter even.
-    Uniform,
-    /// The same, the parameter by the root of the points' distances.
-    Centripetal,
-}
-
-impl Family {
-    /// As a scene says it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Family::Harmonics => "harmonics",
-            Family::OffCentre => "off-centre",
-            Family::Uniform => "uniform",
-            Family::Centripetal => "centripetal",
-        }
-    }
-
-    /// The knots of a spline.
-    pub(super) fn knots(self) -> Option<Knots> {
-        match self {
-            Family::Harmonics | Family::OffCentre => None,
-            Family::Uniform => Some(Knots::Uniform),
-            Family::Centripetal => Some(Knots::Centripetal),
-        }
-    }
-}
+use std::path::PathBuf;
 
 /// `[study]`: many bodies.
 #[derive(Clone, Debug, PartialEq)]
@@ -142,6 +21,14 @@ pub struct SlowStudy {
     pub resolutions: Vec<f64>,
     /// The mean radius of the bodies, in m.
     pub size: f64,
+    /// How far the plan keeps from where palms pull, in radians, and how often it goes round.
+    pub margin: f64,
+    /// Of the plan of figure 3.14.
+    pub rounds: f64,
+    /// The last order of harmonics, each a row of its own; none leaves it to the readings.
+    pub orders: Vec<usize>,
+    /// Only bodies that jump at least and at most so often; without it those that never do.
+    pub jumps: Option<[usize; 2]>,
 }
 
 /// How palms move.
@@ -176,193 +63,14 @@ pub struct SlowScene {
     pub columns: BTreeMap<String, String>,
     /// `[study]`.
     pub study: Option<SlowStudy>,
-    name: String,
-    text: String,
+    pub(super) name: String,
+    pub(super) text: String,
 }
 
 impl SlowScene {
-    /// Reads a scene of slow motion; none where the file is a scene of another kind, or none.
-    ///
-    /// # Errors
-    /// What is wrong with the file, and where.
-    pub fn read(path: &Path) -> Option<Result<SlowScene, ReadError>> {
-        let text = load(path).ok()?;
-        let value = toml::from_str::<toml::Table>(&text).ok()?;
-        let is_slow = value.get("motion").is_some();
-        is_slow.then(|| SlowScene::parse(&path.display().to_string(), &text))
-    }
-
-    /// Reads a scene from a text; files are looked for from the folder of `name`.
-    ///
-    /// # Errors
-    /// What is wrong with the text, and where.
-    pub fn parse(name: &str, text: &str) -> Result<SlowScene, ReadError> {
-        let places = Places::of(text).map_err(|problem| problem.locate(name, text))?;
-        let keys: Result<Keys, Problem> = toml::from_str(text).map_err(|error| places.explain(&error));
-        keys.and_then(|keys| checked(keys, &places, name, text)).map_err(|problem| problem.locate(name, text))
-    }
-
     /// An error at a value of this scene.
     pub fn error_at(&self, place: &str, message: impl Into<String>, help: impl Into<String>) -> ReadError {
         let span = Places::of(&self.text).map_or(0..0, |places| places.value(place));
         Problem::new(&span, message, "here").help(help).locate(&self.name, &self.text)
     }
-}
-
-fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SlowScene, Problem> {
-    let wrong = |place: &str, message: String, help: &str| {
-        Problem::new(&places.value(place), message, "this").help(help)
-    };
-    if keys.title.trim().is_empty() {
-        return Err(wrong("title", "the title is empty".into(), "say what the experiment is, in a line"));
-    }
-    if keys.motion != SLOW {
-        let message = format!("the motion '{}' is not known", keys.motion);
-        return Err(wrong(
-            "motion",
-            message,
-            "say motion = \"quasistatic\", or leave it out where bodies have inertia",
-        ));
-    }
-    let sensor = &keys.sensor;
-    for (place, value) in [
-        ("sensor.noise", sensor.noise),
-        ("sensor.resolution", sensor.resolution),
-        ("sensor.jitter", sensor.jitter),
-    ] {
-        if !(value >= 0.0 && value.is_finite()) {
-            return Err(wrong(
-                place,
-                format!("it must not be negative, and is {value}"),
-                "give zero or a number above it",
-            ));
-        }
-    }
-    let folder = Path::new(name).parent().unwrap_or(Path::new(""));
-    let (record, columns) = match keys.data {
-        Some(data) => (Some(folder.join(&data.record)), data.columns),
-        None => (None, BTreeMap::new()),
-    };
-    if let Some(unknown) = columns.keys().find(|name| !COLUMNS.contains(&name.as_str())) {
-        let message = format!("'{unknown}' is no column that is needed");
-        return Err(wrong(&format!("data.columns.{unknown}"), message, "needed are phi1, phi2, s1 and s2"));
-    }
-    let study = keys.study.map(|study| checked_study(study, &wrong)).transpose()?;
-    let mut scene = SlowScene {
-        title: keys.title,
-        seed: keys.seed,
-        times: Vec::new(),
-        body: keys.body,
-        palms: None,
-        noise: sensor.noise,
-        resolution: sensor.resolution,
-        record,
-        columns,
-        study,
-        name: name.to_owned(),
-        text: text.to_owned(),
-    };
-    let simulates = keys.palms.is_some() || scene.body.is_some() || keys.duration.is_some();
-    if scene.record.is_some() {
-        if simulates {
-            let help = "leave out [data]; or leave out duration, samples or rate, [body] and [palms]";
-            return Err(wrong("data", "the data is both simulated and recorded".into(), help));
-        }
-        return Ok(scene);
-    }
-    let (Some(palms), true, Some(duration)) = (keys.palms, scene.body.is_some(), keys.duration) else {
-        let help = "give duration, samples or rate, [body] and [palms]; or name a recording in [data]: record = \"run.csv\"";
-        return Err(wrong("title", "nothing is recorded and what is simulated is not all said".into(), help));
-    };
-    if !(duration > 0.0 && duration.is_finite()) {
-        return Err(wrong(
-            "duration",
-            format!("it has to be positive, and is {duration}"),
-            "give a number above zero, in s",
-        ));
-    }
-    let samples = match (keys.samples, keys.rate) {
-        (Some(samples), None) => samples,
-        (None, Some(rate)) if rate > 0.0 && rate.is_finite() => (duration * rate).min(1e9) as usize + 1,
-        (None, Some(rate)) => {
-            return Err(wrong(
-                "rate",
-                format!("it has to be positive, and is {rate}"),
-                "give a number above zero, in Hz",
-            ));
-        }
-        _ => {
-            return Err(wrong(
-                "title",
-                "give 'samples' or 'rate', and not both".into(),
-                "for instance samples = 270",
-            ));
-        }
-    };
-    if !(8..=MOST_SAMPLES).contains(&samples) {
-        let place = if keys.rate.is_some() { "rate" } else { "samples" };
-        let help = format!("let there be 8 to {MOST_SAMPLES}");
-        return Err(wrong(place, format!("there would be {samples} samples"), &help));
-    }
-    let step = duration / (samples - 1) as f64;
-    if sensor.jitter > 0.8 * step {
-        let message = format!("a jitter of {} s is too much for samples {step:.3e} s apart", sensor.jitter);
-        return Err(wrong("sensor.jitter", message, "give at most 0.8 of the time between samples"));
-    }
-    scene.times = sample_times(duration, samples, sensor.jitter, scene.seed);
-    let lengths = palms.lengths.unwrap_or([f64::INFINITY; 2]);
-    if lengths.iter().any(|length| length.is_nan() || *length <= 0.0) {
-        return Err(wrong(
-            "palms.lengths",
-            "a pad has to have a positive length".into(),
-            "give both in m, as in [0.0555, 0.0555]",
-        ));
-    }
-    let courses = match (palms.plan, palms.prescribed) {
-        (Some(plan), None) => plan_3_14(plan.margin, plan.rounds, duration).map_err(|error| {
-            wrong("palms.plan", error.to_string(), "for instance plan = { margin = 0.15, rounds = 2 }")
-        })?,
-        (None, Some(courses)) => courses,
-        _ => {
-            let help = "give plan = { margin = 0.15, rounds = 2 }, the plan of figure 3.14, or both courses as prescribed = [..]";
-            return Err(wrong("palms", "it has to be said how the palms move, once".into(), help));
-        }
-    };
-    scene.palms = Some(SlowPalms { courses, lengths });
-    Ok(scene)
-}
-
-fn checked_study(
-    study: StudyKeys,
-    wrong: &dyn Fn(&str, String, &str) -> Problem,
-) -> Result<SlowStudy, Problem> {
-    if !(1..=MOST_BODIES).contains(&study.bodies) {
-        return Err(wrong("study.bodies", format!("there cannot be {}", study.bodies), "give 1 to 10000"));
-    }
-    if study.families.is_empty() || study.samples.is_empty() || study.resolutions.is_empty() {
-        return Err(wrong(
-            "study",
-            "a list is empty".into(),
-            "leave nothing to try for none of families, samples and resolutions",
-        ));
-    }
-    if study.samples.iter().any(|samples| !(24..=MOST_SAMPLES).contains(samples)) {
-        return Err(wrong("study.samples", "too few or too many samples".into(), "give 24 to 20000"));
-    }
-    if study.resolutions.iter().any(|resolution| !(*resolution >= 0.0 && resolution.is_finite())) {
-        return Err(wrong(
-            "study.resolutions",
-            "a resolution is negative or none".into(),
-            "give zero or more, in m",
-        ));
-    }
-    if !(study.size > 0.0 && study.size.is_finite()) {
-        return Err(wrong(
-            "study.size",
-            format!("it has to be positive, and is {}", study.size),
-            "give the mean radius in m",
-        ));
-    }
-    let StudyKeys { bodies, families, samples, resolutions, size } = study;
-    Ok(SlowStudy { bodies, families, samples, resolutions, size })
 }

@@ -4,6 +4,7 @@
 //! is a vote for the height at the first sample; zeros at which the body rests are scattered votes. Where noise drowns the numerator, closure tells: the same direction touched twice has one radius, so that one closed
 //! support function goes through all radii of a track only where the constant is right.
 
+use super::ladder::Orders;
 use super::quadrature::{Quadrature, SlowTrack};
 use super::readings::SlowReadings;
 use super::together::{SlowShape, Together};
@@ -17,6 +18,9 @@ const SCAN: f64 = 0.02;
 
 /// So many starts go on.
 const STARTS: usize = 8;
+
+/// So many of them where only a window is looked at.
+const BRIEF_STARTS: usize = 3;
 
 /// So many of them are gone through by parts.
 const PARTED: usize = 2;
@@ -156,6 +160,43 @@ fn left_height(grid: &[Option<Closed>], i: usize, by: isize) -> Option<f64> {
 /// Shape and motion from the readings alone, nothing known at the start: several constants by closure, all readings at once from each, and what is left of the readings
 /// as the judge. None where no start can be followed; whether the readings are explained says [`SlowShape::explains`].
 pub fn from_nothing(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
+    from_nothing_within(readings, Orders::CHOSEN, interrupt)
+}
+
+/// The same with orders that are told.
+pub(super) fn from_nothing_within(
+    readings: &SlowReadings,
+    orders: Orders,
+    interrupt: &dyn Fn() -> bool,
+) -> Option<SlowShape> {
+    let wholly = Effort { starts: STARTS, orders: &[ORDER, 4, 2], parted: PARTED };
+    search(readings, orders, &wholly, interrupt)
+}
+
+/// The same with few starts: for a window of which there are many.
+pub(super) fn from_nothing_briefly(
+    readings: &SlowReadings,
+    interrupt: &dyn Fn() -> bool,
+) -> Option<SlowShape> {
+    let briefly = Effort { starts: BRIEF_STARTS, orders: &[ORDER, 3], parted: 0 };
+    search(readings, Orders::CHOSEN, &briefly, interrupt)
+}
+
+/// How much is tried.
+struct Effort {
+    starts: usize,
+    /// Of the closed functions from which is begun.
+    orders: &'static [usize],
+    /// So many starts are gone through by parts.
+    parted: usize,
+}
+
+fn search(
+    readings: &SlowReadings,
+    orders: Orders,
+    effort: &Effort,
+    interrupt: &dyn Fn() -> bool,
+) -> Option<SlowShape> {
     let quadrature = Quadrature::of(readings);
     let together = Together::of(readings);
     let mut best: Option<SlowShape> = None;
@@ -169,14 +210,16 @@ pub fn from_nothing(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Op
     };
     let heights = starts(readings, &quadrature);
     // the whole from every start; then, where nothing explains it, from its beginning on
-    for by_parts in [false, true] {
-        for height in &heights[..if by_parts { heights.len().min(PARTED) } else { heights.len() }] {
+    for (by_parts, count, closed_orders) in
+        [(false, effort.starts, effort.orders), (true, effort.parted, &[ORDER][..])]
+    {
+        for height in heights.iter().take(count) {
             let track = quadrature.track(&readings.times, *height);
-            for order in if by_parts { &[ORDER][..] } else { &[ORDER, 4, 2] } {
+            for order in closed_orders {
                 let Some((support, _)) = closed(readings, &track, *order) else { continue };
                 let found = match by_parts {
-                    false => together.explain(&support, &track.phi0, interrupt),
-                    true => Together::explain_by_parts(readings, &support, &track.phi0, interrupt),
+                    false => together.explain(&support, &track.phi0, orders, interrupt),
+                    true => Together::explain_by_parts(readings, &support, &track.phi0, orders, interrupt),
                 };
                 if better(&mut best, found) {
                     return best;

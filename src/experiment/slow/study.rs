@@ -1,31 +1,31 @@
 //! Many bodies: how often, how well and how fast each way finds a shape.
 
+use super::families::Family;
+use super::ladder::Orders;
 use super::quadrature::by_quadrature;
 use super::run::{readings_of, track_error};
-use super::scene::{Family, SlowScene};
-use super::start::{EXACT, from_nothing};
+use super::scene::{SlowScene, SlowStudy};
+use super::segments::{found_jumps, from_segments};
+use super::start::{EXACT, from_nothing_within};
 use super::thesis::{ThesisMethod, by_thesis};
 use crate::mechanics::Palm;
-use crate::mechanics::moving::{
-    BodyForm, CentreOfMass, DEFAULT_TOLERANCE, Drive, FormError, MovingScene, Shape, SplineDraws,
-};
+use crate::mechanics::moving::{DEFAULT_TOLERANCE, Drive, FormError, MovingScene, Shape, Trajectory};
 use crate::mechanics::resting::{follow_resting, plan_3_14};
 use crate::shape::SupportSeries;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-/// Two rounds of the plan of figure 3.14 with this margin, in radians.
-const MARGIN: f64 = 0.15;
-const ROUNDS: f64 = 2.0;
+/// How long the plan takes, in s: nothing depends on it.
 const DURATION: f64 = 100.0;
 
 /// An outline that is off by less than this part of the mean radius (or so many times the resolution) is recovered.
 const RECOVERED: f64 = 1e-2;
 const RECOVERED_RESOLUTIONS: f64 = 2.0;
 
-/// Draws for a body that neither jumps nor leaves the palms.
+/// Draws for a body that jumps as often as is asked and does not leave the palms.
 const MOST_DRAWS: usize = 200;
 
 /// What one way did, over all bodies of a row. Errors are in parts of the mean radius, and in radians.
@@ -47,6 +47,19 @@ impl WayTally {
     }
 }
 
+/// Runs with the same number of jumps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JumpTally {
+    /// All of them.
+    pub runs: usize,
+    /// Those whose whole outline was recovered.
+    pub recovered: usize,
+    /// Those in which every jump was found between its own two samples, and no other.
+    pub located: usize,
+    /// The jumps of those that were recovered, and how many of them descent in the recovered potential leads to.
+    pub predicted: [usize; 2],
+}
+
 /// The median and the worst of a list; none of an empty one.
 pub fn median_and_worst(values: &[f64]) -> Option<[f64; 2]> {
     let mut sorted = values.to_vec();
@@ -63,10 +76,14 @@ pub struct StudyRow {
     pub samples: usize,
     /// The resolution, in m.
     pub resolution: f64,
+    /// The last order of harmonics; none leaves it to the readings.
+    pub order: Option<usize>,
     /// The bodies.
     pub bodies: usize,
-    /// The bodies that were drawn beside them and jumped.
+    /// The bodies that were drawn beside them and jumped, or did not as often as is asked.
     pub jumped: usize,
+    /// Of runs with jumps, by their number.
+    pub jumps: BTreeMap<usize, JumpTally>,
     /// Sections 3.3 and 3.4, from the true radii.
     pub thesis: WayTally,
     /// From the true height.
@@ -79,40 +96,6 @@ pub struct StudyRow {
     pub recovered: usize,
     /// The bodies that were not, although the residual says that the readings are explained.
     pub silent: usize,
-}
-
-/// A body of a family.
-fn draw(family: Family, size: f64, random: &mut ChaCha8Rng) -> Result<Shape, FormError> {
-    if let Some(knots) = family.knots() {
-        let drawn = SplineDraws::new(random.random(), knots).until_convex()?;
-        // of this mean radius: splines scale with their points
-        let BodyForm::Spline { radii, knots } = drawn.form else { return Ok(drawn.shape) };
-        let scale = size * TAU / drawn.shape.perimeter();
-        return Shape::new(
-            &BodyForm::Spline { radii: radii.map(|r| r * scale), knots },
-            CentreOfMass::Uniform,
-        );
-    }
-    loop {
-        let harmonic = |k: u32, random: &mut ChaCha8Rng| {
-            let k = f64::from(k);
-            let most = if k < 2.0 { 0.0 } else { size / (k * k - 1.0) / k };
-            [(); 2].map(|()| random.random_range(-1.0..=1.0) * most)
-        };
-        let harmonics: Vec<[f64; 2]> = (1..=6).map(|k| harmonic(k, random)).collect();
-        let form = BodyForm::Harmonics { mean: size, harmonics };
-        let (angle, part): (f64, f64) = (random.random_range(0.0..TAU), random.random_range(0.05..=0.3));
-        let found = match family {
-            Family::OffCentre => {
-                Shape::new(&form, CentreOfMass::At([part * size * angle.cos(), part * size * angle.sin()]))
-            }
-            _ => Shape::new(&form, CentreOfMass::Uniform),
-        };
-        match found {
-            Err(FormError::NotConvex { .. } | FormError::TooClose { .. }) => (),
-            found => return found,
-        }
-    }
 }
 
 /// The greatest difference of two outlines about their centres of mass over all directions, in m, one of them turned so that it is least.
@@ -146,41 +129,60 @@ pub fn slow_study(
     done: &dyn Fn(),
 ) -> Result<Vec<StudyRow>, FormError> {
     let Some(study) = &scene.study else { return Ok(Vec::new()) };
+    let orders: Vec<Option<usize>> =
+        if study.orders.is_empty() { vec![None] } else { study.orders.iter().copied().map(Some).collect() };
     let mut rows = Vec::new();
     for &family in &study.families {
         for &samples in &study.samples {
             for &resolution in &study.resolutions {
-                let mut row = StudyRow {
-                    family,
-                    samples,
-                    resolution,
-                    bodies: 0,
-                    jumped: 0,
-                    thesis: WayTally::default(),
-                    quadrature: WayTally::default(),
-                    together: WayTally::default(),
-                    outline: Vec::new(),
-                    recovered: 0,
-                    silent: 0,
-                };
-                // the same bodies in every row of a family
-                let mut random = ChaCha8Rng::seed_from_u64(scene.seed);
-                while row.bodies < study.bodies && row.jumped < MOST_DRAWS * study.bodies && !interrupt() {
-                    let shape = draw(family, study.size, &mut random)?;
-                    if one_body(&mut row, shape, study.size, scene.seed, interrupt) {
-                        done();
+                for &order in &orders {
+                    let mut row = StudyRow::begun(family, samples, resolution, order);
+                    // the same bodies in every row of a family
+                    let mut random = ChaCha8Rng::seed_from_u64(scene.seed);
+                    while row.bodies < study.bodies && row.jumped < MOST_DRAWS * study.bodies && !interrupt()
+                    {
+                        let shape = family.draw(study.size, &mut random)?;
+                        if one_body(&mut row, shape, study, scene.seed, interrupt) {
+                            done();
+                        }
                     }
+                    rows.push(row);
                 }
-                rows.push(row);
             }
         }
     }
     Ok(rows)
 }
 
-/// Adds a body to a row; false where it jumps.
-fn one_body(row: &mut StudyRow, shape: Shape, size: f64, seed: u64, interrupt: &dyn Fn() -> bool) -> bool {
-    let Ok(courses) = plan_3_14(MARGIN, ROUNDS, DURATION) else { return false };
+impl StudyRow {
+    fn begun(family: Family, samples: usize, resolution: f64, order: Option<usize>) -> StudyRow {
+        StudyRow {
+            family,
+            samples,
+            resolution,
+            order,
+            bodies: 0,
+            jumped: 0,
+            jumps: BTreeMap::new(),
+            thesis: WayTally::default(),
+            quadrature: WayTally::default(),
+            together: WayTally::default(),
+            outline: Vec::new(),
+            recovered: 0,
+            silent: 0,
+        }
+    }
+}
+
+/// Adds a body to a row; false where it does not jump as often as is asked, that is not at all unless something is said.
+fn one_body(
+    row: &mut StudyRow,
+    shape: Shape,
+    study: &SlowStudy,
+    seed: u64,
+    interrupt: &dyn Fn() -> bool,
+) -> bool {
+    let Ok(courses) = plan_3_14(study.margin, study.rounds, DURATION) else { return false };
     let times: Vec<f64> = (0..row.samples).map(|i| DURATION * i as f64 / (row.samples - 1) as f64).collect();
     let moved = MovingScene {
         mass: 1.0,
@@ -195,14 +197,17 @@ fn one_body(row: &mut StudyRow, shape: Shape, size: f64, seed: u64, interrupt: &
         tolerance: DEFAULT_TOLERANCE,
         shape,
     };
+    let [least, most] = study.jumps.unwrap_or_default();
     let followed = follow_resting(&moved, &times);
-    let Some(truth) =
-        followed.ok().filter(|truth| truth.jumps.is_empty() && truth.moments.len() == times.len())
+    let Some(truth) = followed
+        .ok()
+        .filter(|truth| (least..=most).contains(&truth.jumps.len()) && truth.moments.len() == times.len())
     else {
         row.jumped += 1;
         return false;
     };
     let readings = readings_of(&truth, 0.0, row.resolution, seed);
+    let size = study.size;
     row.bodies += 1;
     let first = &truth.moments[0];
     let begin = Instant::now();
@@ -212,7 +217,12 @@ fn one_body(row: &mut StudyRow, shape: Shape, size: f64, seed: u64, interrupt: &
     let quadrature = by_quadrature(&readings, first.centre[1]);
     row.quadrature.add(track_error(&truth, &quadrature), size, begin.elapsed().as_secs_f64());
     let begin = Instant::now();
-    let found = from_nothing(&readings, interrupt);
+    let found = if study.jumps.is_some() {
+        from_segments(&readings, interrupt)
+    } else {
+        let least = row.order.map_or(0, |order| order / 2);
+        from_nothing_within(&readings, Orders { least, most: row.order }, interrupt)
+    };
     let error = found.as_ref().and_then(|found| track_error(&truth, &found.track));
     row.together.add(error, size, begin.elapsed().as_secs_f64());
     let outline =
@@ -222,5 +232,25 @@ fn one_body(row: &mut StudyRow, shape: Shape, size: f64, seed: u64, interrupt: &
     row.outline.push(outline);
     row.recovered += usize::from(recovered && explained);
     row.silent += usize::from(!recovered && explained);
+    if study.jumps.is_some() {
+        let tally = row.jumps.entry(truth.jumps.len()).or_default();
+        tally.runs += 1;
+        if let Some(found) = found.filter(|_| recovered && explained) {
+            tally.recovered += 1;
+            let told = found_jumps(&readings, &found);
+            let after: Vec<usize> = told.iter().map(|jump| jump.row).collect();
+            tally.located += usize::from(after == rows_after(&truth));
+            tally.predicted[0] += told.len();
+            tally.predicted[1] += told.iter().filter(|jump| jump.predicted).count();
+        }
+    }
     true
+}
+
+/// The first samples after jumps.
+fn rows_after(truth: &Trajectory) -> Vec<usize> {
+    let mut rows: Vec<usize> =
+        (truth.jumps.iter()).map(|jump| truth.moments.partition_point(|at| at.time < jump.time)).collect();
+    rows.dedup();
+    rows
 }

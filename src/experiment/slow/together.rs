@@ -2,8 +2,8 @@
 //!
 //! At palm angles that are known the body lies where `G = A r_1' + B r_2'` vanishes and grows; which of these poses, says the one in which it lay at the last step of
 //! the search. From there the contacts follow, and their derivatives by the coefficients `c` are exact: by the pose's, `d phi0/dc = (A b_1' + B b_2')/(A r_1'' + B r_2'')`
-//! with the basis `b`, and by the coefficients' own. The turn of the body's frame is a choice; the search does not move it. Levenberg and Marquardt's steps by QR, orders
-//! of harmonics raised while G. Schwarz's criterion says that they tell something; the inverse of the last normal matrix is Cramér and Rao's bound.
+//! with the basis `b`, and by the coefficients' own. The turn of the body's frame is a choice; the search does not move it. Levenberg and Marquardt's steps by QR; the
+//! inverse of the last normal matrix is Cramér and Rao's bound. Which orders are tried says `ladder`.
 
 use super::quadrature::SlowTrack;
 use super::readings::{Sampled, SlowReadings};
@@ -11,18 +11,8 @@ use crate::shape::{ShapeEstimate, SupportSeries, convex_deviation};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Orders that are tried, as far as the readings can tell them.
-const LADDER: [usize; 14] = [3, 5, 8, 12, 16, 24, 32, 48, 64, 80, 100, 130, 160, 200];
-
-/// Under noise beyond this part of the mean contact higher orders than this tell nothing.
-const IS_NOISY: f64 = 1e-5;
-const MOST_NOISY: usize = 48;
-
 /// So many deviations of chi-square are not chance.
 const CERTAIN: f64 = 5.0;
-
-/// Orders in a row that tell nothing end the ladder.
-const PATIENCE: usize = 2;
 
 /// Steps for an order.
 const STEPS: usize = 40;
@@ -32,14 +22,6 @@ const SETTLED: f64 = 1e-6;
 
 /// The standard deviation of exact readings, in parts of the mean contact.
 const NOMINAL: f64 = 1e-13;
-
-/// From an order on, a misfit above this part of the mean contact and so many deviations is that of another motion.
-const HOPELESS: [(usize, f64); 3] = [(16, 3e-2), (32, 1e-2), (64, 3e-3)];
-const HOPELESS_NOISE: f64 = 5.0;
-
-/// Parts of the readings that are explained one after the other, and a misfit with which it is not gone on, in deviations.
-const PARTS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
-const HOPELESS_PART: f64 = 20.0;
 
 /// In one step no pose turns by more than this, in radians: it is another pose then.
 const LARGEST_TURN: f64 = 0.5;
@@ -70,26 +52,26 @@ impl SlowShape {
 
 /// A point of the search.
 #[derive(Clone)]
-struct Point {
-    coefficients: Vec<f64>,
-    phi0: Vec<f64>,
+pub(super) struct Point {
+    pub coefficients: Vec<f64>,
+    pub phi0: Vec<f64>,
     /// What is left of the contacts, in deviations, and of what convexity says of the coefficients.
-    left: DVector<f64>,
-    cost: f64,
+    pub left: DVector<f64>,
+    pub cost: f64,
     stiffness: f64,
 }
 
 pub(super) struct Together<'a> {
     sampled: Vec<Sampled>,
     angles: Vec<[f64; 2]>,
-    readings: &'a SlowReadings,
-    sigma: f64,
+    pub readings: &'a SlowReadings,
+    pub sigma: f64,
     /// A mean radius by which convexity's bounds are measured.
-    size: f64,
+    pub size: f64,
 }
 
 /// Radius and its derivatives at both contacts.
-type Touched = [[f64; 4]; 2];
+pub(super) type Touched = [[f64; 4]; 2];
 
 impl<'a> Together<'a> {
     pub fn of(readings: &'a SlowReadings) -> Together<'a> {
@@ -104,12 +86,12 @@ impl<'a> Together<'a> {
         }
     }
 
-    fn touched(&self, row: usize, phi0: f64, series: &SupportSeries) -> Touched {
+    pub fn touched(&self, row: usize, phi0: f64, series: &SupportSeries) -> Touched {
         self.angles[row].map(|angle| series.support(angle - phi0))
     }
 
     /// The stable pose next to a given one, downhill, by Newton's steps while they stay near and halved brackets else.
-    fn pose(&self, row: usize, start: f64, series: &SupportSeries, farthest: f64) -> Option<(f64, f64)> {
+    pub fn pose(&self, row: usize, start: f64, series: &SupportSeries, farthest: f64) -> Option<(f64, f64)> {
         let (a, b) = (self.sampled[row].second[0], self.sampled[row].first[0]);
         let slope = |phi0: f64| {
             let [first, second] = self.touched(row, phi0, series);
@@ -163,7 +145,7 @@ impl<'a> Together<'a> {
         (stiffness > 0.0).then_some((high, stiffness))
     }
 
-    fn contacts(&self, row: usize, [first, second]: &Touched) -> [f64; 2] {
+    pub fn contacts(&self, row: usize, [first, second]: &Touched) -> [f64; 2] {
         let [sine, cosine] = self.sampled[row].opening;
         [
             (first[0] * cosine + second[0]) / sine + first[1],
@@ -171,13 +153,20 @@ impl<'a> Together<'a> {
         ]
     }
 
+    /// The root of the mean square of what is left of the contacts at a shape, each pose the next one to what is given, in m.
+    pub fn left_at(&self, support: &SupportSeries, near: &[f64]) -> Option<f64> {
+        let rows = 2 * self.sampled.len();
+        let at = self.settled(support.coefficients(), near, LARGEST_TURN)?;
+        Some((at.left.rows(0, rows).norm_squared() / rows as f64).sqrt() * self.sigma)
+    }
+
     /// A point at coefficients, every pose the next one to what is given.
-    fn point(&self, coefficients: Vec<f64>, near: &[f64]) -> Option<Point> {
+    pub fn point(&self, coefficients: Vec<f64>, near: &[f64]) -> Option<Point> {
         self.settled(coefficients, near, LARGEST_TURN)
     }
 
     /// A point to begin at: the poses next to those of a track, however far, or those to which the palms lead the body from the first one, whichever explain more.
-    fn begin(&self, coefficients: &[f64], near: &[f64]) -> Option<Point> {
+    pub fn begin(&self, coefficients: &[f64], near: &[f64]) -> Option<Point> {
         let series = SupportSeries::of_coefficients(coefficients);
         let mut led = Vec::with_capacity(near.len());
         for row in 0..near.len() {
@@ -274,7 +263,7 @@ impl<'a> Together<'a> {
     }
 
     /// Levenberg and Marquardt's way down from a point.
-    fn down(&self, mut at: Point, interrupt: &dyn Fn() -> bool) -> Point {
+    pub fn down(&self, mut at: Point, interrupt: &dyn Fn() -> bool) -> Point {
         let mut damping = 1e-6;
         for _ in 0..STEPS {
             if interrupt() {
@@ -315,84 +304,7 @@ impl<'a> Together<'a> {
         at
     }
 
-    /// From a track that someone else found, up the orders. None where no order can begin there.
-    pub fn explain(
-        &self,
-        start: &SupportSeries,
-        near: &[f64],
-        interrupt: &dyn Fn() -> bool,
-    ) -> Option<SlowShape> {
-        let readings = 2 * self.sampled.len();
-        let criterion = |at: &Point| at.cost + at.coefficients.len() as f64 * (readings as f64).ln();
-        let padded = |from: &[f64], order: usize| -> Vec<f64> {
-            let mut all = from.to_vec();
-            all.resize(1 + 2 * order, 0.0);
-            all
-        };
-        let from = start.coefficients();
-        let mut best: Option<Point> = None;
-        let mut patience = PATIENCE;
-        let mut last: Option<Point> = None;
-        for order in LADDER {
-            let is_noisy = self.readings.sigma > IS_NOISY * self.size;
-            if 2 * (1 + 2 * order) > readings || (is_noisy && order > MOST_NOISY) || interrupt() {
-                break;
-            }
-            let begin = match &last {
-                Some(at) => self.point(padded(&at.coefficients, order), &at.phi0),
-                None => self.begin(&padded(&from, order), near),
-            };
-            let Some(begin) = begin else { continue };
-            let end = self.down(begin, interrupt);
-            let misfit = (end.left.rows(0, readings).norm_squared() / readings as f64).sqrt() * self.sigma;
-            if HOPELESS.iter().any(|(from, part)| {
-                order >= *from && misfit > (HOPELESS_NOISE * self.readings.sigma).max(part * self.size)
-            }) {
-                // another start: harmonics do not mend a motion that is another
-                best = best.or(Some(end));
-                break;
-            }
-            last = Some(end.clone());
-            if best.as_ref().is_none_or(|best| criterion(&end) < criterion(best)) {
-                best = Some(end);
-                patience = PATIENCE;
-            } else {
-                patience -= 1;
-                if patience == 0 {
-                    break;
-                }
-            }
-        }
-        best.map(|best| self.shape(&best))
-    }
-
-    /// The same, over longer and longer parts of the readings: what the first ones tell leads the body through the next ones.
-    pub fn explain_by_parts(
-        readings: &SlowReadings,
-        start: &SupportSeries,
-        near: &[f64],
-        interrupt: &dyn Fn() -> bool,
-    ) -> Option<SlowShape> {
-        let (mut support, mut near) = (start.clone(), near.to_vec());
-        let mut found = None;
-        for part in PARTS {
-            let rows = ((readings.rows() as f64 * part) as usize).min(readings.rows());
-            let first = readings.first(rows);
-            let explained = Together::of(&first).explain(&support, &near[..rows], interrupt)?;
-            let last = rows.checked_sub(1)?;
-            let turned = explained.track.phi0[last] - near[last];
-            near[..rows].copy_from_slice(&explained.track.phi0);
-            near[rows..].iter_mut().for_each(|phi0| *phi0 += turned);
-            support.clone_from(&explained.shape.support);
-            if explained.misfit > HOPELESS_PART * explained.sigma.max(1e-3 * readings.scale()) {
-                return Some(explained).filter(|_| rows == readings.rows());
-            }
-            found = Some(explained);
-        }
-        found
-    }
-
-    fn shape(&self, at: &Point) -> SlowShape {
+    pub fn shape(&self, at: &Point) -> SlowShape {
         let rows = self.sampled.len();
         let p = at.coefficients.len();
         let (triangle, _) = self.triangle(at);

@@ -1,12 +1,14 @@
-//! Pictures of the surface of stable poses: itself, seen from the side (as figures 3.13 and 3.16), the palms' plans (3.14), and the body between its palms.
+//! Pictures of the surface of stable poses: itself, seen from the side (as figures 3.13 and 3.16), the palms' plans (3.14), and the body between its palms, still and in motion.
 
-use crate::pose_surface::{PalmPair, PoseSurvey, plan_of_figure_3_14};
+use crate::pose_surface::{PalmPair, PoseSurvey, plan_of_figure_3_14, readings};
 use crate::report::drawing::{INK, MESH, SOFT, svg};
+use crate::report::moved_body::{MovedPose, moved_body, rows, still_body};
 use plotters::prelude::*;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const PLAN: RGBColor = RGBColor(213, 94, 0);
 const ROUND: RGBColor = RGBColor(0, 114, 178);
+const MEETING: RGBColor = RGBColor(200, 40, 60);
 /// Low orientations to high ones.
 const HEIGHTS: [RGBColor; 6] = [
     RGBColor(68, 1, 84),
@@ -54,6 +56,11 @@ pub(super) fn surface(survey: &PoseSurvey) -> String {
                 ))?;
             }
         }
+        // figure 3.16: where the boundaries meet as both palms close (3.47), the normal at palm 1 being -pi/2 - phi0
+        for fold in &survey.closing_folds {
+            let phi0 = (-FRAC_PI_2 - fold.angle).rem_euclid(TAU);
+            area.draw(&Circle::new(seen(PalmPair::new(0.0, 0.0), phi0), 6, MEETING.filled()))?;
+        }
         text("phi1", (560, 665))?;
         text("phi2", (70, 665))?;
         text("phi0, one turn", (346, 36))?;
@@ -92,9 +99,9 @@ pub(super) fn plans(survey: &PoseSurvey) -> String {
                 plan.path.iter().copied().map(flat).collect::<Vec<_>>(),
                 PLAN.stroke_width(3),
             ))?;
-            for jump in survey.figure_3_14.jumps.iter() {
-                area.draw(&Circle::new(flat(jump.palms), 5, ROUND.filled()))?;
-            }
+        }
+        for jump in &survey.figure_3_14.jumps {
+            area.draw(&Circle::new(flat(jump.palms), 5, ROUND.filled()))?;
         }
         let style = |colour: RGBColor| ("sans-serif", 14).into_font().color(&colour);
         area.draw(&Text::new("plan of figure 3.14, dots where it jumps", (150, 20), style(ROUND)))?;
@@ -105,39 +112,34 @@ pub(super) fn plans(survey: &PoseSurvey) -> String {
     })
 }
 
+/// Points of an outline, and frames of a motion.
+const OUTLINE: usize = 96;
+const MOVED: usize = 120;
+
+fn moved(survey: &PoseSurvey, (palms, phi0): (PalmPair, f64)) -> MovedPose {
+    let [r1, r2] = palms.normals(phi0).map(|angle| survey.body.support(angle)[0]);
+    let (both, sine) = (palms.phi1 + palms.phi2, palms.phi2.sin());
+    MovedPose {
+        phi0,
+        centre: [
+            (both.cos() * r1 + palms.phi1.cos() * r2) / sine,
+            (both.sin() * r1 + palms.phi1.sin() * r2) / sine,
+        ],
+        palms: [palms.phi1, palms.phi2],
+        contacts: readings(&survey.body, palms, phi0),
+    }
+}
+
 /// The body between its palms at some places of a run.
 pub(super) fn frames(survey: &PoseSurvey, poses: &[(PalmPair, f64)], count: usize) -> Vec<String> {
-    let outline = survey.body.outline(120);
-    let mean = survey.body.mean_radius();
-    let frame = |i: usize| {
-        let (palms, phi0) = poses[i * (poses.len() - 1) / (count - 1).max(1)];
-        svg((220, 200), "the body between its palms", |area| -> Drawn {
-            let [r1, r2] = palms.normals(phi0).map(|angle| survey.body.support(angle)[0]);
-            let (both, sine) = (palms.phi1 + palms.phi2, palms.phi2.sin());
-            let centre = [
-                (both.cos() * r1 + palms.phi1.cos() * r2) / sine,
-                (both.sin() * r1 + palms.phi1.sin() * r2) / sine,
-            ];
-            let scale = 60.0 / mean;
-            let pixel = |[x, y]: [f64; 2]| {
-                let at = [110.0 + scale * (x - centre[0]), 100.0 - scale * (y - centre[1])];
-                (at[0].clamp(-4000.0, 4000.0).round() as i32, at[1].clamp(-4000.0, 4000.0).round() as i32)
-            };
-            for angle in [palms.phi1, both] {
-                let end = [20.0 * mean * angle.cos(), 20.0 * mean * angle.sin()];
-                area.draw(&PathElement::new(vec![pixel([0.0; 2]), pixel(end)], INK.stroke_width(3)))?;
-            }
-            let (s, c) = phi0.sin_cos();
-            let placed =
-                |p: &[f64; 2]| pixel([centre[0] + c * p[0] - s * p[1], centre[1] + s * p[0] + c * p[1]]);
-            area.draw(&PathElement::new(
-                outline.iter().chain(&outline[..1]).map(placed).collect::<Vec<_>>(),
-                ROUND.stroke_width(2),
-            ))?;
-            area.draw(&Circle::new(pixel(centre), 3, INK.filled()))?;
-            area.draw(&Circle::new(placed(&outline[0]), 4, PLAN.filled()))?;
-            Ok(())
-        })
-    };
-    if poses.is_empty() { Vec::new() } else { (0..count).map(frame).collect() }
+    let (outline, mean) = (survey.body.outline(OUTLINE), survey.body.mean_radius());
+    let places = rows(poses.len(), count).into_iter();
+    places.map(|place| still_body(&outline, &moved(survey, poses[place]), mean)).collect()
+}
+
+/// The body and its palms along a run.
+pub(super) fn motion(survey: &PoseSurvey, poses: &[(PalmPair, f64)]) -> String {
+    let shown: Vec<MovedPose> =
+        rows(poses.len(), MOVED).into_iter().map(|place| moved(survey, poses[place])).collect();
+    moved_body(&survey.body.outline(OUTLINE), &shown)
 }

@@ -1,6 +1,6 @@
 //! What was found of one body: as text, as one object, as a page.
 
-use super::picture::{frames, plans, surface};
+use super::picture::{frames, motion, plans, surface};
 use crate::pose_surface::{
     NoPlan, PosePlan, PoseSurvey, StablePose, SurfaceComponent, path_length, plan_of_figure_3_14,
 };
@@ -177,15 +177,18 @@ pub fn poses_page(survey: &PoseSurvey) -> String {
                 h2 { "The surface of stable poses" }
                 p { "Each line joins stable poses of neighbouring palm angles between which the body slides. Where lines end inside the triangle is a fold, the inside boundary (3.43): there the body jumps." }
                 (row(vec![surface(survey), plans(survey)]))
-                p { "Circles over the palm angles are the darker the more stable poses there are." }
+                p { "Circles over the palm angles are the darker the more stable poses there are (as figures 3.13 and 3.16)." }
+                @if !survey.closing_folds.is_empty() { p { "Red: inside and outside boundary meet there as both palms close (3.47)." } }
             }
             section #plans {
                 h2 { "Plans" }
                 @if let Ok(plan) = &survey.touch_all {
                     p { "A plan that touches every normal: " (plan_words(&survey.touch_all)) "." }
+                    (PreEscaped(motion(survey, &plan.slide.poses)))
                     (row(frames(survey, &plan.slide.poses, 8)))
                 } @else { p { (plan_words(&survey.touch_all)) } }
                 p { "The plan of figure 3.14, two rounds." }
+                (PreEscaped(motion(survey, &survey.figure_3_14.poses)))
                 (row(frames(survey, &survey.figure_3_14.poses, 8)))
             }
             section #found { h2 { "All that was found" } pre { (poses_text(survey)) } }
