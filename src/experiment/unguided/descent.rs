@@ -4,28 +4,18 @@ use super::carried;
 use super::integrals::Integrals;
 use super::normal::{self, Look, Normal, Unknowns};
 
-/// Which unknowns are free.
+/// How freely the unknowns are sought.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Free {
-    /// The velocity alone; `k` is that of a disc.
-    Velocity,
-    /// Centre and velocity; `k` is that of a disc.
-    Motion,
     /// All, `k` drawn to that of a disc as strongly as the residuals let it.
     Drawn,
     /// All.
     All,
 }
 
-impl Free {
-    fn places(self, is_k_known: bool) -> std::ops::Range<usize> {
-        match self {
-            Free::Velocity => 2..4,
-            Free::Motion => 0..4,
-            Free::Drawn | Free::All if is_k_known => 0..5,
-            Free::Drawn | Free::All => 0..6,
-        }
-    }
+/// The places of what is free.
+fn places(all: &Integrals) -> std::ops::Range<usize> {
+    if all.log_k.is_some() { 0..5 } else { 0..6 }
 }
 
 /// The solution of a part of the normal equations with the diagonal made larger by a part of itself, by Cholesky; the lower triangle is
@@ -64,6 +54,8 @@ fn solve(normal: &Normal, places: &std::ops::Range<usize>, damping: f64) -> Opti
 
 /// How strongly `k` is drawn to that of a disc, in parts of the residuals.
 const DRAWN: f64 = 0.3;
+/// What is left of a contact, in parts of its length, where no further step is worth it.
+const ROUNDING: f64 = 1e-8;
 /// `k` changes by no more than this factor's logarithm in one step.
 const LONGEST: f64 = 1.5;
 
@@ -75,15 +67,11 @@ pub(super) fn descend(
     look: Look,
     steps: usize,
 ) -> (Unknowns, f64) {
-    let places = free.places(all.log_k.is_some());
-    let is_tied = matches!(free, Free::Velocity | Free::Motion);
-    let tied = |x: &mut Unknowns| {
-        if is_tied {
-            x[5] = all.likely_log_k([x[0], x[1]]);
-        }
-    };
+    let places = places(all);
+    // a start for a descent by all samples need not be better than these let it
+    let settled = if look.stride > 1 { 1e-2 } else { 1e-6 };
+    let nothing = all.samples.len() as f64 * (ROUNDING * all.length).powi(2);
     let mut x = start;
-    tied(&mut x);
     let mut damping = 1e-3;
     let mut normal = normal::expand(all, &x, look);
     let mut reached = normal.cost;
@@ -100,8 +88,7 @@ pub(super) fn descend(
         for _ in 0..6 {
             if let Some(mut step) = solve(&normal, &places, damping) {
                 step[5] = step[5].clamp(-LONGEST, LONGEST);
-                let mut there: Unknowns = std::array::from_fn(|i| x[i] + step[i]);
-                tied(&mut there);
+                let there: Unknowns = std::array::from_fn(|i| x[i] + step[i]);
                 let cost = normal::cost(all, &there, look);
                 if drawn(cost, &there) < before {
                     better = Some((there, cost));
@@ -111,7 +98,7 @@ pub(super) fn descend(
             damping *= 8.0;
         }
         let Some((there, cost)) = better else { break };
-        let is_settled = drawn(cost, &there) > before * (1.0 - 1e-6);
+        let is_settled = drawn(cost, &there) > before * (1.0 - settled) || cost <= nothing;
         (x, reached) = (there, cost);
         damping *= 0.1;
         // who takes no further step needs no derivatives
@@ -123,21 +110,13 @@ pub(super) fn descend(
     (x, reached)
 }
 
-/// Centre and velocity by linear least squares for a body that turns at one rate; none where they are not told.
-pub(super) fn at_one_rate(all: &Integrals, rate: f64, look: Look) -> Option<Unknowns> {
-    // with no k the constraint is linear in the centre and the velocity: one step without damping solves it
-    let x = [0.0, 0.0, 0.0, 0.0, rate, f64::NEG_INFINITY];
-    let step = solve(&normal::expand(all, &x, look), &(0..4), 1e-12)?;
-    Some([step[0], step[1], step[2], step[3], rate, all.likely_log_k([step[0], step[1]])])
-}
-
 /// Rates below this part of the largest likely one are softened where errors are carried on.
 const SOFTENED: f64 = 0.0005;
 
 /// Levenberg and Marquardt's method by the residuals as the errors of contacts leave them, all unknowns let go; the unknowns and the sum of
 /// the squares that it ends with.
 pub(super) fn refine(all: &Integrals, start: Unknowns, steps: usize) -> (Unknowns, f64) {
-    let places = Free::All.places(all.log_k.is_some());
+    let places = places(all);
     let softened = SOFTENED * all.rate;
     let mut x = start;
     let mut normal = carried::expand(all, &x, softened);
@@ -157,7 +136,7 @@ pub(super) fn refine(all: &Integrals, start: Unknowns, steps: usize) -> (Unknown
             damping = (damping * 30.0).max(1e-4);
         }
         let Some((there, next)) = better else { break };
-        let is_settled = next.cost > normal.cost * (1.0 - 1e-4);
+        let is_settled = next.cost > normal.cost * (1.0 - 1e-3);
         (x, normal) = (there, next);
         damping *= 0.03;
         if is_settled {
@@ -170,7 +149,7 @@ pub(super) fn refine(all: &Integrals, start: Unknowns, steps: usize) -> (Unknown
 /// The least standard deviations of the palms' radii and the rate at some unknowns, for contacts whose errors have the deviation one; infinite where
 /// they are not told.
 pub(super) fn deviations(all: &Integrals, x: &Unknowns) -> [f64; 3] {
-    let places = Free::All.places(all.log_k.is_some());
+    let places = places(all);
     let normal = carried::expand(all, x, SOFTENED * all.rate);
     let [first, second] = all.samples[0].palms.map(|palm| palm.normal);
     let sought = [

@@ -47,8 +47,8 @@ pub(super) struct Integrals {
     pub length: f64,
     /// A rate that is larger than the body's is likely to be.
     pub rate: f64,
-    /// Where the palms' normals through the first contacts meet.
-    pub meeting: [f64; 2],
+    /// An angular acceleration that is larger than the body's is likely to be.
+    pub slope: f64,
 }
 
 /// Over every interval between two samples, the integrals of Lagrange's polynomials through four neighbours.
@@ -168,10 +168,11 @@ impl Integrals {
         let pushed = pushes.iter().map(|[x, y]| x.hypot(y + mass * gravity[1]));
         let acceleration = pushed.fold(0.0, f64::max) / mass;
         let rate = 1.5 * (fastest / length + turned + (acceleration / length).sqrt());
-        let meeting = meeting(&samples[0])?;
+        let slope = 3.0 * acceleration / length;
+        meeting(&samples[0])?;
         let log_k = readings.gyration.map(|gyration| -(mass * gyration * gyration).ln());
         let sigma = readings.sigma;
-        let all = Integrals { samples, mass: *mass, log_k, sigma, length, rate, meeting };
+        let all = Integrals { samples, mass: *mass, log_k, sigma, length, rate, slope };
         let ends = all.samples.last().map_or(f64::NAN, |end| end.c + end.place[0] + end.place[1]);
         (ends.is_finite() && rate.is_finite() && length > 0.0).then_some(all)
     }

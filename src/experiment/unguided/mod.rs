@@ -20,6 +20,7 @@
 
 mod carried;
 mod descent;
+mod grid;
 mod integrals;
 mod normal;
 mod scene;

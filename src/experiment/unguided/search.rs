@@ -1,32 +1,34 @@
-//! The best unknowns without a first guess: a grid over the body's rate, and descents from there.
+//! The best unknowns without a first guess: a grid over the body's rate and its slope, and descents from there.
 //!
-//! At each rate of the grid the centre and its velocity are sought for a body that turns like a disc; where the residuals are smaller than at the
-//! rates beside, all unknowns are let go. Coarse grids come first: most windows need no other. What is accepted at once explains the readings.
+//! What leaves least on the grid is let go on a few samples, what leaves least there on all. Coarse grids come first: most windows need no other. What is
+//! accepted at once explains the readings, by chi-square where the noise is stated; only where nothing does the finer grids are searched.
 
 use super::FirstState;
-use super::descent::{Free, at_one_rate, descend, deviations, refine};
+use super::descent::{Free, descend, deviations, refine};
+use super::grid::Grid;
 use super::integrals::Integrals;
 use super::normal::{Look, Unknowns};
 
-/// One pass over the grid.
+/// One pass over a grid.
 struct Pass {
-    /// Rates, from one end to the other.
-    rates: usize,
-    /// Samples that are looked at.
-    samples: usize,
-    /// Steps at each rate.
-    steps: usize,
-    /// How many are let go.
+    grid: Grid,
+    /// How many of its minima are let go on some samples.
     kept: usize,
-    /// Begins where the normals meet, by linear least squares, from the state at the rate before.
-    starts: [bool; 3],
+    /// So many samples.
+    samples: usize,
+    /// How many of these are let go on all samples.
+    polished: usize,
+}
+
+const fn pass(size: [usize; 2], looked_at: usize, [kept, samples, polished]: [usize; 3]) -> Pass {
+    Pass { grid: Grid { size, samples: looked_at, softened: SOFTENED[0] }, kept, samples, polished }
 }
 
 const PASSES: [Pass; 4] = [
-    Pass { rates: 10, samples: 8, steps: 3, kept: 3, starts: [true, false, false] },
-    Pass { rates: 16, samples: 16, steps: 5, kept: 6, starts: [false, true, false] },
-    Pass { rates: 32, samples: 20, steps: 8, kept: 10, starts: [true, true, true] },
-    Pass { rates: 128, samples: 40, steps: 12, kept: 24, starts: [true, true, true] },
+    pass([10, 5], 6, [5, 8, 3]),
+    pass([16, 8], 8, [16, 12, 6]),
+    pass([32, 16], 12, [40, 16, 10]),
+    pass([96, 32], 16, [200, 20, 24]),
 ];
 
 /// Rates below these parts of the largest are softened: while it is sought, and at the end.
@@ -38,20 +40,14 @@ const NOTHING: f64 = 1e-6;
 /// A body that is no disc turns within this factor like one of its size.
 const UNLIKELY: f64 = 30.0;
 
+/// What leaves more than so many variances of a contact is no state that carried errors explain.
+const NEAR: f64 = 100.0;
+
 pub(super) fn search(all: &Integrals) -> Option<FirstState> {
     let mut best: Option<(Unknowns, f64)> = None;
     for pass in &PASSES {
         for candidate in pass.candidates(all) {
-            let coarse = Look { stride: pass.stride(all), softened: SOFTENED[0] * all.rate };
-            let (drawn, _) = descend(all, candidate, Free::Drawn, coarse, 12);
-            let fine = Look { stride: 1, softened: SOFTENED[1] * all.rate };
-            let (mut found, mut cost) = descend(all, drawn, Free::All, fine, 30);
-            if found[4].abs() > all.fastest() {
-                continue;
-            }
-            if !is_nothing(all, cost) {
-                (found, cost) = refine(all, found, 8);
-            }
+            let (found, cost) = polished(all, candidate);
             if !is_body(all, &found) || best.is_some_and(|(_, least)| cost >= least) {
                 continue;
             }
@@ -61,48 +57,48 @@ pub(super) fn search(all: &Integrals) -> Option<FirstState> {
             }
         }
     }
-    best.map(|(found, cost)| first_state(all, &found, cost))
+    let (mut found, mut cost) = best?;
+    if !is_nothing(all, cost) {
+        let refined = refine(all, found, 30);
+        if is_body(all, &refined.0) {
+            (found, cost) = refined;
+        }
+    }
+    Some(first_state(all, &found, cost))
+}
+
+/// A descent by all samples, by the errors of contacts as they are carried on where their noise is known.
+fn polished(all: &Integrals, candidate: Unknowns) -> (Unknowns, f64) {
+    let look = Look { stride: 1, softened: SOFTENED[1] * all.rate };
+    let Some(sigma) = all.sigma else { return descend(all, candidate, Free::All, look, 30) };
+    // two steps: what carries errors on takes the others
+    let (found, cost) = descend(all, candidate, Free::All, look, 2);
+    let is_near = cost <= NEAR * sigma * sigma * 2.0 * all.samples.len() as f64;
+    if is_near && !is_nothing(all, cost) { refine(all, found, 8) } else { (found, cost) }
 }
 
 impl Pass {
-    fn stride(&self, all: &Integrals) -> usize {
-        (all.samples.len() / self.samples).max(1)
-    }
-
-    /// The best states of bodies like discs, those first that leave least.
+    /// Where descents by all samples begin, those first that leave least of some.
     fn candidates(&self, all: &Integrals) -> Vec<Unknowns> {
-        let look = Look { stride: self.stride(all), softened: SOFTENED[0] * all.rate };
-        let mut profile: Vec<(Unknowns, f64)> = Vec::with_capacity(self.rates);
-        for i in 0..self.rates {
-            // denser about zero
-            let part = 2.0 * i as f64 / (self.rates - 1) as f64 - 1.0;
-            let rate = all.rate * (1.5 * part).sinh() / 1.5f64.sinh();
-            let [x, y] = all.meeting;
-            let meeting = || descend(all, [x, y, 0.0, 0.0, rate, 0.0], Free::Velocity, look, 1).0;
-            let before = || profile.last().map(|(x, _)| [x[0], x[1], x[2], x[3], rate, x[5]]);
-            let starts = [
-                self.starts[0].then(meeting),
-                self.starts[1].then(|| at_one_rate(all, rate, look)).flatten(),
-                self.starts[2].then(before).flatten(),
-            ];
-            let ends = starts.into_iter().flatten().map(|x| descend(all, x, Free::Motion, look, self.steps));
-            let best = ends.filter(|(_, cost)| cost.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1));
-            profile.push(best.unwrap_or(([x, y, 0.0, 0.0, rate, 0.0], f64::INFINITY)));
-        }
-        let at = |i: usize| profile.get(i).map_or(f64::INFINITY, |(_, cost)| *cost);
-        let is_least =
-            |i: &usize| at(*i) <= at(i.wrapping_sub(1)) && at(*i) <= at(i + 1) && at(*i).is_finite();
-        let mut least: Vec<usize> = (0..self.rates).filter(is_least).collect();
-        least.sort_by(|a, b| at(*a).total_cmp(&at(*b)));
-        least.into_iter().take(self.kept).map(|i| profile[i].0).collect()
+        let look =
+            Look { stride: (all.samples.len() / self.samples).max(1), softened: SOFTENED[0] * all.rate };
+        let minima = self.grid.minima(all).into_iter().take(self.kept);
+        let descents = minima.map(|(x, _)| {
+            let (drawn, _) = descend(all, x, Free::Drawn, look, 8);
+            descend(all, drawn, Free::All, look, 8)
+        });
+        let mut ends: Vec<(Unknowns, f64)> = descents.filter(|(_, cost)| cost.is_finite()).collect();
+        ends.sort_by(|a, b| a.1.total_cmp(&b.1));
+        ends.into_iter().take(self.polished).map(|(x, _)| x).collect()
     }
 }
 
-/// Whether the body lies between the palms, and turns like one.
+/// Whether the body lies between the palms, and turns like one and not too fast.
 fn is_body(all: &Integrals, x: &Unknowns) -> bool {
     let centre = [x[0], x[1]];
     let between = all.radii(centre).iter().all(|radius| *radius > 0.0);
     between
+        && x[4].abs() <= all.fastest()
         && (x[5] - all.likely_log_k(centre)).abs() < UNLIKELY.ln()
         && x.iter().all(|value| value.is_finite())
 }
@@ -127,7 +123,7 @@ fn first_state(all: &Integrals, x: &Unknowns, cost: f64) -> FirstState {
         gyration: ((-x[5]).exp() / all.mass).sqrt(),
         centre,
         velocity: [x[2], x[3]],
-        deviations: deviations(all, x).map(|deviation| deviation * all.sigma.unwrap_or(0.0)),
+        deviations: all.sigma.map_or([0.0; 3], |sigma| deviations(all, x).map(|deviation| sigma * deviation)),
         misfit: (cost / (2.0 * all.samples.len() as f64)).sqrt(),
     }
 }
