@@ -121,7 +121,15 @@ def by_scipy(system, data, guess, limit):
     def residual(state):
         if time.process_time() > end:
             raise TimeoutError
-        rates = lambda t, s: system.rates(np, s, system.inputs(t))
+        def rates(t, s):
+            if time.process_time() > end:
+                raise TimeoutError
+            found = np.array(system.rates(np, s, system.inputs(t)), dtype=float)
+            if not np.isfinite(found).all():
+                # scipy shortens a step that is no number for ever
+                raise FloatingPointError
+            return found
+
         try:
             path = solve_ivp(rates, (times[0], times[-1]), state, t_eval=times, rtol=1e-8, atol=1e-10, method="DOP853")
         except (ValueError, FloatingPointError):
