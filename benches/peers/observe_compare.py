@@ -12,6 +12,8 @@ import math
 import os
 import random
 import re
+import resource
+import signal
 import statistics
 import subprocess
 import sys
@@ -43,12 +45,13 @@ def arguments():
     parser.add_argument("--quick", action="store_true", help="two guesses: whether all works")
     parser.add_argument("--recordings", type=int, default=20, help="recordings with noise of each system, from the middle of the box (default %(default)s)")
     parser.add_argument("--random", type=int, default=0, metavar="GUESSES", help="random guesses for each system and noise instead, on one recording")
-    parser.add_argument("--limit", type=float, default=60, help="seconds for each (default %(default)g)")
+    parser.add_argument("--limit", type=float, default=60, help="seconds of the processor for each (default %(default)g)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", action="append", default=[], metavar="SYSTEM", help="measure this system alone")
     parser.add_argument("--remark", default="", help="what is to be said of the machine besides, as that others used it")
     parser.add_argument("--book", action="store_true", help="write the table into the book")
     parser.add_argument("--json", action="store_true", help="everything, for programs")
+    parser.add_argument("--from", dest="runs", action="append", default=[], metavar="FILE", help="measure nothing: the table of what --json wrote, of one or more runs")
     options = parser.parse_args()
     if options.quick:
         options.recordings, options.random = min(options.recordings, 2), min(options.random, 2)
@@ -68,9 +71,15 @@ def scene(system, noisy, guess, method, seed):
 
 
 def observe(options, path, more=()):
+    most = math.ceil(options.limit)
     run = subprocess.run(
-        [options.binary, "observe", str(path), "--json", *more], capture_output=True, text=True, timeout=options.limit
+        [options.binary, "observe", str(path), "--json", *more],
+        capture_output=True,
+        text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (most, most)),
     )
+    if run.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        raise TimeoutError
     if run.returncode > 1:
         raise RuntimeError(run.stdout + run.stderr)
     return json.loads(run.stdout)
@@ -100,20 +109,27 @@ def ours(options, system, noisy, guess, method, seed, folder):
     path.write_text(scene(system, noisy, guess, method, seed))
     observer = observe(options, path)["observers"][0]
     told = observer["end"] if method in FILTERS else observer["updates"][0]
-    seconds = observer["seconds"] if method in FILTERS else told["seconds"]
     states = told["states"] if told else {}
     values = [states[name]["recovered"] for name in system.box]
-    return np.array([math.nan if value is None else value for value in values], dtype=float), seconds
+    return np.array([math.nan if value is None else value for value in values], dtype=float)
 
 
 def by_scipy(system, data, guess, limit):
     times, read = data["times"], data["read"]
-    end = time.monotonic() + limit
+    end = time.process_time() + limit
 
     def residual(state):
-        if time.monotonic() > end:
+        if time.process_time() > end:
             raise TimeoutError
-        rates = lambda t, s: system.rates(np, s, system.inputs(t))
+        def rates(t, s):
+            if time.process_time() > end:
+                raise TimeoutError
+            found = np.array(system.rates(np, s, system.inputs(t)), dtype=float)
+            if not np.isfinite(found).all():
+                # scipy shortens a step that is no number for ever
+                raise FloatingPointError
+            return found
+
         try:
             path = solve_ivp(rates, (times[0], times[-1]), state, t_eval=times, rtol=1e-8, atol=1e-10, method="DOP853")
         except (ValueError, FloatingPointError):
@@ -180,7 +196,7 @@ def by_casadi(system, data, guess, limit):
     if not constants:
         problem.subject_to(values == 0)
     problem.minimize(cost)
-    quiet = {"print_level": 0, "max_wall_time": limit, "max_iter": 500, "tol": 1e-10, "sb": "yes"}
+    quiet = {"print_level": 0, "max_cpu_time": limit, "max_iter": 500, "tol": 1e-10, "sb": "yes"}
     problem.solver("ipopt", {"print_time": False}, quiet)
     try:
         problem.solve()
@@ -240,6 +256,12 @@ def judge(system, data, method, found):
     return arrived, ratio
 
 
+def processor():
+    """Seconds of the processor so far, of this process and those that it waited for: what others do on the machine is not in it."""
+    spent = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(own.ru_utime + own.ru_stime for own in spent)
+
+
 def measured(options, folder):
     found = []
     for system in SYSTEMS:
@@ -260,19 +282,19 @@ def measured(options, folder):
                     data, of = recording(options, system, noisy, seed, folder), seed
                     data["spread"] = np.maximum((data["read"].max(0) - data["read"].min(0)) / 2, 1e-9)
                 for method in [*OURS, *PEERS]:
-                    begin, seconds = time.monotonic(), None
+                    begin = processor()
                     try:
                         if method in OURS:
-                            state, seconds = ours(options, system, noisy, guess, method, seed, folder)
+                            state = ours(options, system, noisy, guess, method, seed, folder)
                         else:
                             with warnings.catch_warnings(), np.errstate(all="ignore"):
                                 warnings.simplefilter("ignore")
                                 state = PEERS[method](system, data, np.array(list(guess.values())), options.limit)
                         arrived, ratio = judge(system, data, method, state)
-                    except (subprocess.TimeoutExpired, TimeoutError, np.linalg.LinAlgError, ValueError):
+                    except (TimeoutError, np.linalg.LinAlgError, ValueError):
                         arrived, ratio = False, None
-                    took = seconds if seconds is not None else time.monotonic() - begin
-                    found.append({"system": system.name, "noisy": noisy, "method": method, "arrived": arrived, "error_over_bound": ratio, "seconds": took})
+                    took = processor() - begin
+                    found.append({"system": system.name, "noisy": noisy, "method": method, "arrived": arrived, "error_over_bound": ratio, "seconds": took, "seed": seed})
             print(f"{system.name}, {'noise' if noisy else 'no noise'}: done", file=sys.stderr, flush=True)
     return found
 
@@ -318,17 +340,24 @@ def machine():
 
 def main():
     options = arguments()
+    if options.runs:
+        tell(options, [run for file in options.runs for run in json.loads(Path(file).read_text())])
+        return
     if options.binary == str(ROOT / "target/release/palmistry"):
         subprocess.run(["cargo", "build", "--release", "--locked", "--quiet"], cwd=ROOT, check=True)
     os.environ |= dict.fromkeys(["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "RAYON_NUM_THREADS"], "1")
     with tempfile.TemporaryDirectory() as folder:
         runs = measured(options, folder)
+    tell(options, runs)
+
+
+def tell(options, runs):
     if options.json:
         print(json.dumps(runs, indent=1))
         return
-    how = f"{options.random} random guesses each" if options.random else f"from the middle of the box, one recording without noise and {options.recordings} with it"
+    how = f"{options.random} random guesses each" if options.random else "from the middle of the box, on so many recordings as each cell says"
     remark = f" {options.remark}" if options.remark else ""
-    text = f"{table(runs, False)}\n\n{table(runs, True)}\n\n{machine()}; {how}, seeds from {options.seed} on, {options.limit:g} s at most; times are medians.{remark}\n"
+    text = f"{table(runs, False)}\n\n{table(runs, True)}\n\n{machine()}; {how}, seeds from {options.seed} on, {options.limit:g} s at most; times are medians, of the processor, ours of the whole process.{remark}\n"
     print(text)
     if options.book:
         book = BOOK.read_text()
