@@ -17,6 +17,7 @@ mod lsp;
 mod man;
 mod new;
 mod observe;
+mod observe_slow;
 mod observe_stream;
 mod output;
 mod poses;

@@ -7,7 +7,7 @@ use super::shards::{NO_WHOLE, Parts, Shards};
 use super::{Status, Unusable};
 use clap::Args;
 use indicatif::ProgressBar;
-use palmistry::experiment::slow::{SlowExperiment, SlowScene, slow_study};
+use palmistry::experiment::slow::SlowScene;
 use palmistry::experiment::{
     Answer, Basin, Experiment, NoiseLevel, Reconstruction, Scene, SceneError, Studies, StudyPart, basins,
     noise_study, shown,
@@ -15,10 +15,7 @@ use palmistry::experiment::{
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
 use palmistry::observer::RecordError;
-use palmistry::report::{
-    Observed, SlowObserved, ended_in_words, forget_seconds, observe_json, observe_page, observe_text,
-    slow_json, slow_page, slow_text,
-};
+use palmistry::report::{Observed, ended_in_words, forget_seconds, observe_json, observe_page, observe_text};
 use palmistry::sweep::shard_of;
 use std::path::{Path, PathBuf};
 
@@ -52,33 +49,33 @@ pub(crate) struct Observe {
     scene: PathBuf,
     /// Readings from a file (CSV or Parquet) instead of a simulation; - is standard input (CSV), answered window by window.
     #[arg(long, value_name = "FILE")]
-    data: Option<PathBuf>,
+    pub(super) data: Option<PathBuf>,
     /// Take this seed and not the scene's.
     #[arg(long, value_name = "S")]
-    seed: Option<u64>,
+    pub(super) seed: Option<u64>,
     /// Run the scene's studies, too.
     #[arg(long)]
-    studies: bool,
+    pub(super) studies: bool,
     /// Write a page with pictures (index.html) and observe.json into this folder.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["shard", "missing"])]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Write the readings to a file, CSV or Parquet by its extension; - is standard output (CSV), and then nothing is observed.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
-    record: Option<PathBuf>,
+    pub(super) record: Option<PathBuf>,
     /// Write all of the simulated motion to a file, CSV or Parquet: poses, contact forces, torques, energies, the truth.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
-    motion: Option<PathBuf>,
+    pub(super) motion: Option<PathBuf>,
     /// Write the outline to a file, CSV or Parquet: for each normal the support radius with its band, and the point.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
-    outline: Option<PathBuf>,
+    pub(super) outline: Option<PathBuf>,
     /// Write what was believed sample by sample to a file, CSV or Parquet: each state with its bound.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["shard", "missing"])]
-    track: Option<PathBuf>,
+    pub(super) track: Option<PathBuf>,
     #[command(flatten)]
-    shards: Shards,
+    pub(super) shards: Shards,
     /// Tell no times: two runs with one seed on one machine then write the same to the last byte, as a merge does, which knows none.
     #[arg(long)]
-    no_times: bool,
+    pub(super) no_times: bool,
     /// Print one JSON object: 'observers' with their 'updates' and 'end', and the studies.
     #[arg(long)]
     pub json: bool,
@@ -241,27 +238,33 @@ impl Observe {
 
 impl Observe {
     /// Whether the record is what is printed.
-    fn records_to_output(&self) -> bool {
+    pub(super) fn records_to_output(&self) -> bool {
         self.record.as_deref() == Some(Path::new("-"))
+    }
+
+    /// Whether no more is asked for than the record, where that is what is printed.
+    pub(super) fn records_alone(&self) -> miette::Result<()> {
+        let asked = [
+            ("--json", self.json),
+            ("--studies", self.studies),
+            ("--out", self.out.is_some()),
+            ("--outline", self.outline.is_some()),
+            ("--track", self.track.is_some()),
+        ];
+        match asked.iter().find(|(_, is_asked)| *is_asked) {
+            Some((name, _)) if self.records_to_output() => {
+                let message = format!(
+                    "with --record - the readings are all that is printed, and nothing is observed: {name} asks for more"
+                );
+                Err(Unusable::report(message, "record to a file, or leave the other out"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Whether what is asked for can be had at once.
     fn goes_together(&self, scene: &Scene, is_stream: bool) -> miette::Result<()> {
-        if self.records_to_output() {
-            let asked = [
-                ("--json", self.json),
-                ("--studies", self.studies),
-                ("--out", self.out.is_some()),
-                ("--outline", self.outline.is_some()),
-                ("--track", self.track.is_some()),
-            ];
-            if let Some((name, _)) = asked.iter().find(|(_, is_asked)| *is_asked) {
-                let message = format!(
-                    "with --record - the readings are all that is printed, and nothing is observed: {name} asks for more"
-                );
-                return Err(Unusable::report(message, "record to a file, or leave the other out"));
-            }
-        }
+        self.records_alone()?;
         if is_stream {
             let asked = [
                 ("--studies", self.studies || self.shards.are_asked()),
@@ -290,76 +293,6 @@ impl Observe {
 const NO_OUTLINE: &str = "no support radius was seen; an outline takes two palms with the outputs s1 and s2, and r1 and r2 sought and seen";
 
 impl Observe {
-    /// A scene with `motion = "quasistatic"`.
-    fn run_slow(self, mut scene: SlowScene) -> miette::Result<Status> {
-        scene.seed = self.seed.unwrap_or(scene.seed);
-        for (given, option) in
-            [(&self.motion, "--motion"), (&self.outline, "--outline"), (&self.track, "--track")]
-        {
-            if given.is_some() {
-                let message = format!("{option} is not for slow motion");
-                return Err(Unusable::report(
-                    message,
-                    "leave it out; --record, --out and --json say all there is",
-                ));
-            }
-        }
-        if self.studies && scene.study.is_none() {
-            return Err(Unusable::report(
-                "the scene has no study",
-                "add [study] to it, or leave out --studies",
-            ));
-        }
-        let bar = progress(4, "simulating");
-        let experiment = SlowExperiment::new(scene, self.data.as_deref())?;
-        bar.inc(1);
-        let mut files = Files::default();
-        if let Some(path) = &self.record {
-            let record = experiment.record().map_err(|error| Unusable::report(error.to_string(), ""))?;
-            files.table(path, &record);
-            files.announce(path);
-        }
-        bar.set_message("observing");
-        let mut answers = experiment.run(&interrupted, &|step| {
-            bar.set_message(step);
-            bar.inc(1);
-        });
-        bar.finish_and_clear();
-        let mut study = Vec::new();
-        if let (true, Some(settings)) = (self.studies, &experiment.scene.study) {
-            let rows = settings.families.len() * settings.samples.len() * settings.resolutions.len();
-            let bar = progress((rows * settings.bodies) as u64, "bodies");
-            study = slow_study(&experiment.scene, &interrupted, &|| bar.inc(1)).map_err(|error| {
-                experiment.scene.error_at("study", error.to_string(), "other families may do")
-            })?;
-            bar.finish_and_clear();
-        }
-        if self.no_times {
-            answers.seconds = [f64::NAN; 3];
-            for row in &mut study {
-                for way in [&mut row.thesis, &mut row.quadrature, &mut row.together] {
-                    way.seconds = f64::NAN;
-                }
-            }
-        }
-        begin_to_tell();
-        let observed = SlowObserved {
-            experiment: &experiment,
-            answers: &answers,
-            study: &study,
-            interrupted: interrupted(),
-        };
-        let json = slow_json(&observed);
-        if let Some(folder) = &self.out {
-            files.text(&folder.join("index.html"), &slow_page(&observed));
-            files.json(&folder.join("observe.json"), &json);
-            files.announce(&folder.join("index.html"));
-        }
-        // readings that no body explains are not a shape
-        let status = Status::of(answers.explained && study.iter().all(|row| row.silent == 0));
-        files.print(Form::of(self.json), json, || slow_text(&observed), status)
-    }
-
     /// The files of `--outline` and `--track`.
     fn write_shape(
         &self,

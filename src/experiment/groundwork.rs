@@ -20,7 +20,9 @@ pub(super) struct Groundwork {
     /// What the columns of a recording are called.
     pub names: ColumnNames,
     pub simulation: Option<Simulation>,
-    /// What the scene describes, whether it is what is read or not.
+    /// The beginning of the motion of a body that the scene describes, where readings come from elsewhere and guesses are off its values.
+    pub begun: Option<Simulation>,
+    /// What the scene describes, whether it is what is read or not; where it is not, no more than its beginning.
     pub described: Option<SystemMotion>,
     /// Whether it is.
     pub simulates: bool,
@@ -41,11 +43,18 @@ impl Groundwork {
             _ => None,
         };
         known_states(&scene, &system)?;
+        let begun = match (&scene.simulated, &scene.observer.guess, simulates) {
+            (Some(simulated), Guess::Off(_), false) => Some(Simulation::beginning(&scene, simulated)?),
+            _ => None,
+        };
         // a recording of what the scene describes is told the same constants
-        let described =
-            scene.system.as_ref().map(|own| SystemMotion::of(&scene, &system, own)).transpose()?;
+        let described = match (&scene.system, simulates) {
+            (Some(own), true) => Some(SystemMotion::of(&scene, &system, own)?),
+            (Some(own), false) => Some(SystemMotion::beginning(&scene, &system, own)?),
+            (None, _) => None,
+        };
         let known = known_constants(&scene, &system, simulation.as_ref(), described.as_ref())?;
-        Ok(Groundwork { scene, system, names, simulation, described, simulates, known })
+        Ok(Groundwork { scene, system, names, simulation, begun, described, simulates, known })
     }
 
     /// What is simulated.

@@ -115,7 +115,7 @@ impl Experiment {
         written: Option<Record>,
         steady: Steady,
     ) -> Result<Experiment, SceneError> {
-        let Groundwork { scene, system, simulation, described, simulates, known, .. } = ground;
+        let Groundwork { scene, system, simulation, begun, described, simulates, known, .. } = ground;
         let RecordReading { record, faults, .. } = reading;
         let (record, origin) = match simulates {
             // simulated times are counted from zero
@@ -133,7 +133,8 @@ impl Experiment {
             scene.error_at("observer.known", error.to_string(), "readings without these", "")
         })?;
         let question = {
-            let truth = |name: &str| match &simulation {
+            // of a recording it is that of what the scene describes
+            let truth = |name: &str| match simulation.as_ref().or(begun.as_ref()) {
                 Some(simulation) => simulation.truth(name)?.first().copied(),
                 None => described.as_ref()?.truth(name)?.first().copied(),
             };

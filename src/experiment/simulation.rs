@@ -19,6 +19,9 @@ pub const TOUCH: [&str; 2] = ["s1", "s2"];
 /// Readings without error are taken to be good to a nanometre, where a bound asks for a figure.
 pub const NOMINAL: f64 = 1e-9;
 
+/// So many samples are the beginning of a motion.
+pub(super) const BEGINNING: usize = 2;
+
 /// A scene's body in motion.
 #[derive(Clone, Debug)]
 pub struct Simulation {
@@ -38,6 +41,18 @@ impl Simulation {
     /// # Errors
     /// Where the body is not convex or the palms cannot hold it, with the place in the scene.
     pub fn of(scene: &Scene, simulated: &Simulated) -> Result<Simulation, SceneError> {
+        Simulation::of_samples(scene, simulated, usize::MAX)
+    }
+
+    /// The beginning of the same motion: its first sample is the first one of all of it.
+    ///
+    /// # Errors
+    /// As [`Simulation::of`].
+    pub(super) fn beginning(scene: &Scene, simulated: &Simulated) -> Result<Simulation, SceneError> {
+        Simulation::of_samples(scene, simulated, BEGINNING)
+    }
+
+    fn of_samples(scene: &Scene, simulated: &Simulated, most: usize) -> Result<Simulation, SceneError> {
         let (shape, draws) = body(scene, simulated)?;
         let constants = constants(scene, simulated, &shape);
         let bodies = Bodies {
@@ -53,7 +68,8 @@ impl Simulation {
             tolerance: DEFAULT_TOLERANCE,
             shape,
         };
-        let times = simulated.times(scene.sensor.jitter, scene.seed);
+        let mut times = simulated.times(scene.sensor.jitter, scene.seed);
+        times.truncate(most);
         let mut trajectory = follow(&bodies, &times).map_err(|error| {
             let place = match error {
                 Refused::NotHeld { .. } | Refused::Start(_) => "palms",

@@ -4,7 +4,7 @@
 //! second witness of the equations, as a body between palms is.
 
 use super::scene::{Channel, Scene, SceneError, Sensor, SimulatedSystem};
-use super::simulation::read_with_errors;
+use super::simulation::{BEGINNING, read_with_errors};
 use crate::observer::{Lost, ModelError, Record, RecordError, Response, ResponseError, ResponseQuestion};
 use crate::system::System;
 use std::collections::BTreeMap;
@@ -26,6 +26,27 @@ impl SystemMotion {
         system: &System,
         simulated: &SimulatedSystem,
     ) -> Result<SystemMotion, SceneError> {
+        SystemMotion::of_samples(scene, system, simulated, usize::MAX)
+    }
+
+    /// The beginning of the same motion: its first sample is the first one of all of it.
+    ///
+    /// # Errors
+    /// As [`SystemMotion::of`].
+    pub(super) fn beginning(
+        scene: &Scene,
+        system: &System,
+        simulated: &SimulatedSystem,
+    ) -> Result<SystemMotion, SceneError> {
+        SystemMotion::of_samples(scene, system, simulated, BEGINNING)
+    }
+
+    fn of_samples(
+        scene: &Scene,
+        system: &System,
+        simulated: &SimulatedSystem,
+        most: usize,
+    ) -> Result<SystemMotion, SceneError> {
         if !system.zero_outputs().is_empty() {
             let help = "simulate with these readings as outputs, solved for, and hand over the record as `[data] record` here";
             let message =
@@ -38,7 +59,8 @@ impl SystemMotion {
             functions: simulated.inputs.clone(),
             inputs: inputs.iter().map(|(field, symbol)| (field.clone(), symbol.clone())).collect(),
         };
-        let times = simulated.times(scene.sensor.jitter, scene.seed);
+        let mut times = simulated.times(scene.sensor.jitter, scene.seed);
+        times.truncate(most);
         let response = system.response(&question, &times).map_err(|error| {
             let (place, help) = match &error {
                 ResponseError::NoSymbol { name, .. } if simulated.start.contains_key(name) => {

@@ -6,8 +6,9 @@
 //! the answer stays. Reference: W. A. Fuller, Measurement Error Models, 1987, section 3.2.
 
 use super::moving_window::MovingWindow;
-use super::task::{Task, Update, UpdateEnd};
+use super::task::Task;
 use super::trace::{is_asked, suspects};
+use super::track::{Update, UpdateEnd};
 use super::weights::{self, Weights};
 use super::{Order, cramer_rao};
 use nalgebra::DVector;

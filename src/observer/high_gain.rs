@@ -2,7 +2,8 @@
 
 use super::flow::advance;
 use super::model::{Formulas, InputSource};
-use super::task::{Observer, SampleEstimate, Task, Track};
+use super::task::{Observer, Task};
+use super::track::{SampleEstimate, Track};
 use super::{Learned, Lost, Model};
 use crate::expression::{NodeId, Symbol, gradient};
 use crate::number::{Duals, Refusal};

@@ -8,8 +8,9 @@
 
 use super::fit::NoiseFrom;
 use super::learned::{Arrival, Learned};
-use super::task::{Task, Track, Update, UpdateEnd};
+use super::task::Task;
 use super::trace::is_asked;
+use super::track::{Track, Update, UpdateEnd};
 use super::window::Window;
 use super::{MovingWindow, Order, weights};
 use nalgebra::{DMatrix, DVector};
@@ -17,7 +18,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// What is made of a window of which nothing is inherited: its update, and other states that fit as well.
-type Anew<'f> = dyn Fn(&[f64], &Range<usize>, &[usize], &Learned) -> (Update, Vec<Update>) + 'f;
+pub(super) type Anew<'f> = dyn Fn(&[f64], &Range<usize>, &[usize], &Learned) -> (Update, Vec<Update>) + 'f;
 
 impl MovingWindow {
     /// Window after window: each begins with what those before it have learned, and anew where its readings contradict that.
@@ -32,27 +33,47 @@ impl MovingWindow {
         let samples = task.signals.times().len();
         let is_first = task.learned.is_none();
         let fewest = if is_first { self.window.min(samples) } else { self.window };
-        let mut row = 0;
+        // what told too little alone stands before the next window
+        let mut row = learned.rows_unseen();
         while row + 1 < samples && !task.interrupted() {
             // windows share a sample: where one ends the next begins
-            let rows = row..(row + self.window.max(2)).min(samples - 1) + 1;
+            let mut rows = row..(row + self.window.max(2)).min(samples - 1) + 1;
             let clamped: &[usize] = if is_first && row == 0 { &task.clamped } else { &[] };
             let mut start = task.full_state(&learned.belief, row);
-            let mut arrival = None;
+            let (mut arrival, mut unseen) = (None, learned.unseen.take());
             // too few samples to compare are only followed, and seen if those before were
             if rows.len() >= fewest {
-                let (update, others) = self.next_update(task, &rows, clamped, &learned, anew, &mut track);
+                let grown = self.grown_by_unseen(task, &rows, unseen.as_deref(), &learned, anew, &mut track);
+                let (own, update, others) = match grown {
+                    Some((before, update, others)) => {
+                        rows.start -= before.rows;
+                        // what was believed there is known better now
+                        track.estimates.truncate(if rows.start == 0 { 0 } else { rows.start + 1 });
+                        track.unseen = track.unseen.saturating_sub(before.rows);
+                        (Self::inheriting(task, &before.before, &[]), update, others)
+                    }
+                    None => {
+                        let (update, others) =
+                            self.next_update(task, &rows, clamped, &learned, anew, &mut track);
+                        (Self::inheriting(task, &learned, clamped), update, others)
+                    }
+                };
+                let is_blind = matches!(update.end, UpdateEnd::Blind { .. });
+                unseen = match is_blind && self.may_grow(task, clamped) {
+                    true => self.unseen_after(&rows, unseen.as_deref(), &learned, &update, &mut track),
+                    false => None,
+                };
                 learned.is_asked |= is_asked(&update);
-                learned.sees = !matches!(update.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_));
+                learned.sees = !is_blind && !matches!(update.end, UpdateEnd::Lost(_));
                 start = [&update.estimate[..], &update.outputs].concat();
-                let own = Self::inheriting(task, &learned, clamped).filter(|_| update.is_heir);
+                let own = own.filter(|_| update.is_heir);
                 arrival = self.learn(own.as_ref().unwrap_or(task), &update, &rows, clamped);
                 self.note_bounds(task, &update, &mut track);
                 track.updates.push(update);
                 track.others.extend(others);
             }
             learned.belief = self.follow(task, &start, &rows, learned.sees, &mut track);
-            learned.arrival = arrival;
+            (learned.arrival, learned.unseen) = (arrival, unseen);
             row = rows.end - 1;
         }
         track.hand_on(learned);
@@ -61,7 +82,7 @@ impl MovingWindow {
 
     /// The update of the next window. What contradicts what was learned before is an update that does not fit, and another one follows it that
     /// knows nothing of before.
-    fn next_update(
+    pub(super) fn next_update(
         &self,
         task: &Task<'_>,
         rows: &Range<usize>,

@@ -2,7 +2,8 @@
 //! see, and the line below which no observer should fall.
 
 use super::Learned;
-use super::task::{Observer, SampleEstimate, Task, Track};
+use super::task::{Observer, Task};
+use super::track::{SampleEstimate, Track};
 
 /// Integrates what is sought with the outputs as they are read, and never compares.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,6 +1,7 @@
 //! The extended Kalman filter, the field's usual choice.
 
-use super::task::{Observer, Task, Track};
+use super::task::{Observer, Task};
+use super::track::Track;
 use super::{Learned, Lost, Order};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Deserialize;

@@ -35,11 +35,28 @@ pub struct Learned {
     pub(super) arrival: Option<Arc<Arrival>>,
     /// The state of a filter, and its covariance or a factor of it.
     pub(super) filter: Option<(DVector<f64>, DMatrix<f64>)>,
+    /// The samples before that told too little.
+    pub(super) unseen: Option<Arc<Unseen>>,
+}
+
+/// Windows that told too little of the state: the next one takes their samples as well.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unseen {
+    /// How many samples back the first of them begins.
+    pub(super) rows: usize,
+    /// What was known there.
+    pub(super) before: Learned,
 }
 
 impl Learned {
     /// A state that is believed, and nothing of how well it is known.
     pub(crate) fn belief_alone(belief: Vec<f64>) -> Learned {
-        Learned { belief, deviations: None, sees: true, is_asked: false, arrival: None, filter: None }
+        let (sees, is_asked) = (true, false);
+        Learned { belief, deviations: None, sees, is_asked, arrival: None, filter: None, unseen: None }
+    }
+
+    /// How many samples before this one the next window takes as well, because they told too little alone.
+    pub(crate) fn rows_unseen(&self) -> usize {
+        self.unseen.as_ref().map_or(0, |unseen| unseen.rows)
     }
 }

@@ -9,6 +9,8 @@
 //!
 //! This floor knows systems, signals and numbers; it knows nothing of palms, bodies or scenes.
 
+mod attempt;
+mod blind;
 mod bound;
 mod calibration;
 mod chi_square;
@@ -18,6 +20,7 @@ mod flow;
 mod high_gain;
 mod inheritance;
 mod integration;
+mod inversion;
 mod jet;
 mod kalman;
 mod learned;
@@ -38,6 +41,7 @@ mod suspect;
 mod task;
 mod told;
 mod trace;
+mod track;
 mod trust_region;
 mod unscented;
 mod weights;
@@ -56,7 +60,7 @@ pub use flow::{ModelFlow, Order, Sample};
 pub use high_gain::HighGain;
 pub use integration::Integration;
 pub use kalman::Kalman;
-pub use learned::{Arrival, Learned};
+pub use learned::{Arrival, Learned, Unseen};
 pub use loss::Loss;
 #[doc(hidden)]
 pub use model::ModelQuestion;
@@ -71,7 +75,8 @@ pub(crate) use record::{RowStream, STREAM, TIME};
 pub use response::{Response, ResponseError, ResponseQuestion};
 pub use signal::{SignalError, Signals};
 pub use suspect::{Suspect, SuspectKind};
-pub use task::{EstimateQuestion, Observer, SampleEstimate, Task, Track, Update, UpdateEnd};
+pub use task::{EstimateQuestion, Observer, Task};
 pub(crate) use told::not_told;
+pub use track::{SampleEstimate, Track, Update, UpdateEnd};
 pub use trust_region::TrustRegion;
 pub use unscented::Unscented;

@@ -8,9 +8,10 @@
 use super::nodes::Segments;
 use super::starts::{bounds, first_nodes, is_angle, range};
 use super::stiff_joints::{Found, seek};
-use super::task::{Observer, Task, Track, Update, UpdateEnd};
+use super::task::{Observer, Task};
 use super::trace::{is_asked, suspects};
-use super::{MovingWindow, WindowSearch, weights};
+use super::track::{Track, Update, UpdateEnd};
+use super::{MovingWindow, WindowSearch, inversion, weights};
 use rayon::prelude::*;
 use serde::Deserialize;
 use std::f64::consts::{PI, TAU};
@@ -25,11 +26,13 @@ pub struct Shooting {
     pub segments: usize,
     /// How often it starts: from the guess and from states of the sample box, each second one with signs kept.
     pub starts: usize,
+    /// Whether it starts from inverted Lie derivatives of the outputs as well, where the system is observable by them.
+    pub derivatives: bool,
 }
 
 impl Default for Shooting {
     fn default() -> Self {
-        Shooting { segments: 24, starts: 8 }
+        Shooting { segments: 24, starts: 8, derivatives: true }
     }
 }
 
@@ -136,12 +139,18 @@ impl MultipleShooting {
         let bounds = [true, false].map(|are_signs_kept| bounds(task, are_signs_kept));
         let spreads = segments.spread.iter().map(|spread| (task.sigma / spread).powi(2));
         let enough = ENOUGH + 2.0 * spreads.fold(0.0, f64::max);
+        let starts = self.shooting.starts.max(1);
         let one = |start: usize| {
-            let bounds = &bounds[start % 2];
-            let nodes = first_nodes(task, &segments, bounds, (belief, rows, clamped), start);
+            let told = (belief, rows, clamped);
+            // the last one is that of the derivatives: signs are kept where they are inverted, and not in the search
+            let (nodes, bounds) = match start < starts {
+                true => (first_nodes(task, &segments, &bounds[start % 2], told, start), &bounds[start % 2]),
+                false => (inversion::nodes(task, &segments, &bounds[0], told)?, &bounds[1]),
+            };
             seek(&segments, nodes, bounds, enough, &|| task.interrupted()).ok()
         };
-        let found: Vec<Option<Found>> = (0..self.shooting.starts.max(1)).into_par_iter().map(one).collect();
+        let all = starts + usize::from(self.shooting.derivatives);
+        let found: Vec<Option<Found>> = (0..all).into_par_iter().map(one).collect();
         let mut found: Vec<Found> = found.into_iter().flatten().collect();
         found.sort_by(|a, b| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
         let mut updates: Vec<Update> = Vec::new();
@@ -172,7 +181,7 @@ impl MultipleShooting {
         updates
     }
 
-    fn segments<'t>(
+    pub(super) fn segments<'t>(
         &self,
         task: &'t Task<'_>,
         belief: &[f64],

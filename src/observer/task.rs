@@ -1,9 +1,9 @@
-//! What every observer is given, and what it gives back.
+//! What every observer is given: signals, models of what made them, and what is known beside them.
 
-use super::fit::{Fit, Noise};
+use super::fit::Noise;
 use super::learned::{Arrival, Learned};
 use super::loss::Loss;
-use super::suspect::Suspect;
+use super::track::Track;
 use super::{
     CalibrationKind, Lost, Model, ModelError, ModelFlow, ModelQuestion, Order, ReadingErrors, Signals,
 };
@@ -247,134 +247,6 @@ impl<'a> Task<'a> {
         let flow = ModelFlow { model: &self.reduced, signals: self.signals, tolerance: self.tolerance };
         let samples = flow.follow(sought, &[], &self.signals.times()[rows], Order::Value)?;
         Ok(samples.into_iter().map(|sample| sample.state).collect())
-    }
-}
-
-/// What an observer believes at a sample.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SampleEstimate {
-    /// In s.
-    pub time: f64,
-    /// What is sought.
-    pub state: Vec<f64>,
-    /// The outputs that the model expected minus those that were read; empty where the observer compares none.
-    pub residual: Vec<f64>,
-}
-
-/// How an update ended.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // names and messages say it
-pub enum UpdateEnd {
-    /// The last step was too short to matter, and what is left is what the errors of the readings explain.
-    Converged,
-    /// The last step was too short to matter, and what is left is more than the errors of the readings explain: another model,
-    /// other errors, or a false minimum.
-    DoesNotFit,
-    /// All steps that were allowed are done.
-    StepsSpent,
-    /// No step made the error smaller.
-    Stuck,
-    /// The readings cannot tell what is sought; the observer held what it believed, or integrated.
-    Blind { weakest: Vec<f64> },
-    /// The model could not be followed.
-    Lost(Lost),
-}
-
-/// One update from a window of samples.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Update {
-    /// The first time, in s.
-    pub from: f64,
-    /// The last time, in s.
-    pub to: f64,
-    /// What is believed of the state at the first time.
-    pub estimate: Vec<f64>,
-    /// What is believed of the outputs that are followed, there.
-    pub outputs: Vec<f64>,
-    /// The least standard deviation that each entry of the estimate could have.
-    pub deviations: Vec<f64>,
-    /// The condition of the sensitivities, scaled.
-    pub condition: f64,
-    /// The error of the output, `k` of 4.77, there.
-    pub cost: f64,
-    /// The root of the mean square of expected minus read there, in the outputs' unit.
-    pub misfit: f64,
-    /// Steps that were taken.
-    pub steps: u64,
-    /// Those of them that had to be shortened, refused or replaced.
-    pub troubled: usize,
-    /// The wall time of the update, in s.
-    pub seconds: f64,
-    /// How it ended.
-    pub end: UpdateEnd,
-    /// How well it explains the readings, where it was found out.
-    pub fit: Option<Fit>,
-    /// Whether it counts what the windows before it have learned, beside its own readings.
-    pub is_heir: bool,
-    /// Readings beyond the corner of a robust loss.
-    pub discounted: usize,
-    /// What else might be wrong with the model: for the first update of a track that converged where the noise is stated.
-    pub suspects: Vec<Suspect>,
-}
-
-impl Update {
-    /// Whether it has an answer that the readings bear out.
-    pub fn is_borne_out(&self) -> bool {
-        let fits = self.fit.is_some_and(|fit| fit.fits);
-        fits && matches!(self.end, UpdateEnd::Converged | UpdateEnd::Stuck)
-    }
-
-    /// Whether the best state that was found leaves more than the errors of the readings explain.
-    pub fn is_contradicted(&self) -> bool {
-        let fails = self.fit.is_some_and(|fit| !fit.fits);
-        fails && matches!(self.end, UpdateEnd::DoesNotFit | UpdateEnd::Stuck)
-    }
-}
-
-/// What an observer makes of a task.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Track {
-    /// What it believed, sample by sample.
-    pub estimates: Vec<SampleEstimate>,
-    /// Its updates, where it works by windows.
-    pub updates: Vec<Update>,
-    /// Other states that fit as well as those of the updates: the readings do not tell them apart.
-    pub others: Vec<Update>,
-    /// Samples at which it could not see, or not follow its model, and held or integrated instead.
-    pub unseen: usize,
-    /// What else is to be said.
-    pub remarks: Vec<String>,
-    /// What is handed to whoever goes on from the last sample.
-    pub learned: Option<Arc<Learned>>,
-}
-
-impl Track {
-    /// Adds what a filter believes at a sample, of so many states that are sought.
-    pub(super) fn believe(&mut self, time: f64, state: &[f64], sought: usize, residual: Vec<f64>) {
-        self.estimates.push(SampleEstimate { time, state: state[..sought].to_vec(), residual });
-    }
-
-    /// Notes that the model could not be followed to a sample, where a filter then holds what it believed.
-    pub(super) fn hold(&mut self, lost: &Lost) {
-        if self.unseen == 0 {
-            self.remarks.push(format!("held, with the outputs as they are read: {lost}"));
-        }
-        self.unseen += 1;
-    }
-
-    /// What it believed last.
-    pub fn last(&self) -> Option<&SampleEstimate> {
-        self.estimates.last()
-    }
-
-    /// Whether one of its updates is contradicted by the readings.
-    pub fn is_contradicted(&self) -> bool {
-        self.updates.iter().any(Update::is_contradicted)
-    }
-
-    /// Whether one of its updates is borne out by the readings, and none is contradicted: of methods that work by windows.
-    pub fn is_sound(&self) -> bool {
-        self.updates.iter().any(Update::is_borne_out) && !self.is_contradicted()
     }
 }
 

@@ -7,7 +7,8 @@
 use super::chi_square::noncentrality;
 use super::fit::{Fit, NoiseFrom};
 use super::suspect::{Suspect, SuspectKind};
-use super::task::{Task, Update, UpdateEnd};
+use super::task::Task;
+use super::track::{Update, UpdateEnd};
 use super::window::{Window, WindowExpansion};
 use super::{Lost, Model, ModelFlow, ModelQuestion, Order, Signals};
 use nalgebra::{DMatrix, DVector};

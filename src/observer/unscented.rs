@@ -1,6 +1,7 @@
 //! The unscented Kalman filter: no derivative is taken, points about the estimate are followed instead.
 
-use super::task::{Observer, Task, Track};
+use super::task::{Observer, Task};
+use super::track::Track;
 use super::{Learned, Lost, Order};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;

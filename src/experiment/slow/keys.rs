@@ -168,6 +168,8 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SlowSc
     }
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
     let (record, columns) = match keys.data {
+        // standard input is in no folder
+        Some(data) if data.record == Path::new("-") => (Some(data.record), data.columns),
         Some(data) => (Some(folder.join(&data.record)), data.columns),
         None => (None, BTreeMap::new()),
     };

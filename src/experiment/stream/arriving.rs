@@ -18,6 +18,8 @@ pub struct Buffer {
     pub columns: Vec<Vec<f64>>,
     /// The place of the first row of the next window; those before carry its curves.
     pub first: usize,
+    /// So many rows before it are read again with it.
+    pub again: usize,
 }
 
 impl Buffer {
@@ -28,7 +30,7 @@ impl Buffer {
 
     /// Lets go of what carries no curve any more.
     pub fn drop_before(&mut self) {
-        let gone = self.first.saturating_sub(MARGIN);
+        let gone = self.first.saturating_sub(MARGIN + self.again);
         self.times.drain(..gone);
         self.columns.iter_mut().for_each(|column| drop(column.drain(..gone)));
         self.first -= gone;

@@ -112,6 +112,8 @@ impl<'a> Observing<'a> {
             };
             let is_heard = tell(&report);
             arriving.buffer.first += count - 1;
+            let unseen = self.so_far.learned.iter().flatten().map(|learned| learned.rows_unseen());
+            arriving.buffer.again = unseen.max().unwrap_or(0);
             arriving.buffer.drop_before();
             if !is_heard {
                 arriving.end.cut_off = Some("nobody reads the answers any more".to_owned());
@@ -136,10 +138,11 @@ impl<'a> Observing<'a> {
         Some(self.names[*place].clone())
     }
 
-    /// The signals of the next rows.
-    fn signals(&self, buffer: &Buffer, count: usize) -> Result<Signals, SceneError> {
+    /// The signals of the next rows, and of so many before them.
+    fn signals(&self, buffer: &Buffer, again: usize, count: usize) -> Result<Signals, SceneError> {
         let margin = if self.has_margins { MARGIN } else { 0 };
-        let from = buffer.first.saturating_sub(margin);
+        let shown = buffer.first - again;
+        let from = shown.saturating_sub(margin);
         let to = (buffer.first + count + margin).min(buffer.times.len());
         let times = buffer.times[from..to].iter().map(|time| time - self.so_far.origin).collect();
         let column = |(place, name): (usize, &String)| {
@@ -151,19 +154,27 @@ impl<'a> Observing<'a> {
         let signals = Signals::new(times, columns).map_err(|error| {
             self.experiment.scene.error_at("data", error.to_string(), "these readings", "")
         })?;
-        let first = buffer.first - from;
-        Ok(signals.showing(first..first + count))
+        let first = shown - from;
+        Ok(signals.showing(first..first + again + count))
     }
 
     fn answer(&mut self, buffer: &Buffer, count: usize) -> Result<Vec<StreamAnswer>, SceneError> {
-        let signals = self.signals(buffer, count)?;
+        let rows_unseen =
+            |learned: &Option<Arc<Learned>>| learned.as_ref().map_or(0, |learned| learned.rows_unseen());
+        let again: Vec<usize> = self.so_far.learned.iter().map(rows_unseen).collect();
+        let mut signals: BTreeMap<usize, Signals> = BTreeMap::new();
+        for again in &again {
+            if !signals.contains_key(again) {
+                signals.insert(*again, self.signals(buffer, *again, count)?);
+            }
+        }
         let so_far = &mut self.so_far;
         so_far.windows += 1;
         let alarm = FALSE_ALARMS * 6.0 / (PI * so_far.windows as f64).powi(2);
         let remark = so_far.remark.take();
         let mut answers = Vec::new();
-        for (learned, tally) in so_far.learned.iter_mut().zip(&mut so_far.tallies) {
-            let mut task = self.task.with_signals(&signals);
+        for ((learned, tally), again) in so_far.learned.iter_mut().zip(&mut so_far.tallies).zip(&again) {
+            let mut task = self.task.with_signals(&signals[again]);
             task.alarm = Some(alarm);
             task.learned = learned.take();
             let track = self.experiment.observer(tally.method).observe(&task);

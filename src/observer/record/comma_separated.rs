@@ -2,10 +2,10 @@
 //! a comment, spaces around a cell do not count.
 
 use super::table::Table;
-use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row};
+use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row, STREAM};
 use crate::file::read_bytes;
 use csv::{ReaderBuilder, Trim, WriterBuilder};
-use std::io::{Error, Write};
+use std::io::{Error, Read, Write};
 use std::path::Path;
 
 pub(super) const COMMENT: u8 = b'#';
@@ -16,7 +16,10 @@ pub(super) const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 /// The names of the columns, and the rows.
 pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
     let complain = |why: String| RecordError::Unreadable { path: path.to_owned(), why, help: None };
-    let bytes = read_bytes(path, LONGEST_FILE).map_err(|e| complain(e.to_string()))?;
+    let bytes = match path == Path::new(STREAM) {
+        true => standard_input().map_err(|e| complain(e.to_string()))?,
+        false => read_bytes(path, LONGEST_FILE).map_err(|e| complain(e.to_string()))?,
+    };
     let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes);
     let mut reader =
         ReaderBuilder::new().flexible(true).trim(Trim::All).comment(Some(COMMENT)).from_reader(bytes);
@@ -35,6 +38,16 @@ pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
         rows.push(Row { line: line.position().map(|at| line_number(bytes, at)), cells, surplus });
     }
     Ok(Table { names, rows, ..Table::default() })
+}
+
+/// All of standard input.
+fn standard_input() -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().take(LONGEST_FILE + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 > LONGEST_FILE {
+        true => Err(Error::other(format!("it has more than {LONGEST_FILE} bytes"))),
+        false => Ok(bytes),
+    }
 }
 
 fn no_header(path: &Path, why: String) -> RecordError {

@@ -27,13 +27,16 @@ pub use columns::{ColumnNames, ColumnSource};
 pub use error::RecordError;
 pub use fault::{Fault, FaultKind, FaultRules, OnFault};
 pub(crate) use rows::RecordRows;
-pub(crate) use stream::{RowStream, STREAM};
+pub(crate) use stream::RowStream;
 pub(crate) use table::{Cell, Row};
 
 use std::path::Path;
 
 /// The name of the column of times, in seconds.
 pub const TIME: &str = "time";
+
+/// What a stream is called in messages.
+pub(crate) const STREAM: &str = "standard input";
 
 /// Files of more bytes than this are not read: eight hours of ten columns at 100 Hz have fewer, as text.
 const LONGEST_FILE: u64 = 512 << 20;
@@ -106,7 +109,7 @@ impl Record {
         self.over.as_deref().unwrap_or(TIME)
     }
 
-    /// Reads a file of numbers, CSV or Parquet by its extension, and judges no value: times may stand in any order,
+    /// Reads a file of numbers, CSV or Parquet by its extension (`-` is all of standard input, as CSV), and judges no value: times may stand in any order,
     /// and a cell that says `NaN` or `inf` is a number here. `needed` are the columns that must be there beside the
     /// time; none means all. Other columns are kept where they are whole.
     ///

@@ -4,7 +4,7 @@ use super::columns::ColumnPlan;
 #[cfg(feature = "parquet")]
 use super::parquet_file;
 use super::table::{Cell, Row, Table};
-use super::{ColumnNames, Fault, FaultKind, Record, RecordError, TIME, comma_separated};
+use super::{ColumnNames, Fault, FaultKind, Record, RecordError, STREAM, TIME, comma_separated};
 use crate::system::nearest;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ pub struct RecordRows {
 }
 
 impl RecordRows {
-    /// Reads a file, CSV or Parquet by its extension. `needed` are the columns that must be there beside the time and
+    /// Reads a file, CSV or Parquet by its extension; `-` is all of standard input, as CSV. `needed` are the columns that must be there beside the time and
     /// in which a cell that is no number is a fault; none means all.
     ///
     /// # Errors
@@ -43,8 +43,12 @@ impl RecordRows {
         needed: &[&str],
         columns: &ColumnNames,
     ) -> Result<RecordRows, RecordError> {
+        // as it is written: `-` is CSV
+        let is_stream = path == Path::new("-");
+        let path = if is_stream { Path::new(STREAM) } else { path };
         let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
         let table = match extension.as_deref() {
+            _ if is_stream => comma_separated::read(path)?,
             Some("csv") => comma_separated::read(path)?,
             #[cfg(feature = "parquet")]
             Some("parquet") => parquet_file::read(path)?,

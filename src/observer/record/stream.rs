@@ -6,13 +6,10 @@ use super::comma_separated::{BYTE_ORDER_MARK, COMMENT, cell, line_number, names}
 use super::rows::{judged, twice};
 use super::table::Row;
 use super::{
-    Cell, ColumnNames, Fault, FaultKind, FaultRules, OnFault, RecordError, RecordRows, check::check,
+    Cell, ColumnNames, Fault, FaultKind, FaultRules, OnFault, RecordError, RecordRows, STREAM, check::check,
 };
 use csv::{ReaderBuilder, Trim};
 use std::path::{Path, PathBuf};
-
-/// What a stream is called in messages.
-pub const STREAM: &str = "standard input";
 
 /// A line of more bytes has no end.
 const LONGEST_LINE: usize = 1 << 20;

@@ -5,7 +5,7 @@
 
 use crate::common::{folder, write};
 use crate::observe::{NEVER, answers, experiment};
-use palmistry::observer::UpdateEnd;
+use palmistry::observer::{MovingWindow, Observer, UpdateEnd};
 
 const NOISE: f64 = 0.05;
 const SAMPLES: usize = 201;
@@ -150,4 +150,58 @@ fn a_robust_loss_finds_the_line_among_outliers() {
     experiment.signals = palmistry::observer::Signals::new(times, vec![("x".to_owned(), bent)]).unwrap();
     let track = &experiment.run(&NEVER, &|_| ()).unwrap()[0].track;
     assert!(!track.updates[0].is_borne_out(), "{:?}", track.updates[0]);
+}
+
+/// Windows of two steps tell the speed to no better than 0.7, which is more than its size of 0.1: they grow until together they do, and what they say is regression's. Nothing of what
+/// they read is lost, and the deviations by hand say when they see.
+#[test]
+fn windows_that_do_not_see_grow() {
+    let (_folder, experiment) = point("");
+    let (times, values) = (experiment.signals.times(), experiment.signals.column(0));
+    let task = experiment.task(&NEVER).unwrap();
+    let windows = MovingWindow { steps: 20, ..MovingWindow::new(2) };
+    let track = windows.observe(&task);
+    // so many steps make the deviation of the speed less than its guess
+    let sees = |rows: usize| line(&times[..rows], &values[..rows]).1[1] < 0.1;
+    let rows = (1..).map(|i| 2 * i + 1).find(|rows| sees(*rows)).unwrap();
+    let blind =
+        track.updates.iter().take_while(|update| matches!(update.end, UpdateEnd::Blind { .. })).count();
+    assert_eq!(blind, (rows - 1) / 2 - 1, "{rows}");
+    let first = &track.updates[blind];
+    assert_eq!((first.from, first.to, &first.end), (0.0, times[rows - 1], &UpdateEnd::Converged));
+    let (best, deviations) = line(&times[..rows], &values[..rows]);
+    for i in 0..2 {
+        assert!((first.estimate[i] - best[i]).abs() < 1e-6 * deviations[i], "{i}: {first:?}");
+        assert!((first.deviations[i] / deviations[i] - 1.0).abs() < 1e-6, "{i}");
+    }
+    assert!(track.remarks[0].contains(&format!("grown to {rows} samples")), "{:?}", track.remarks);
+    // every sample has one estimate, in order
+    assert!(track.estimates.iter().map(|estimate| estimate.time).eq(times.iter().copied()));
+    assert_eq!(track.unseen, 0);
+    // the last one knows all
+    let last = track.updates.last().unwrap();
+    let shifted: Vec<f64> = times.iter().map(|time| time - last.from).collect();
+    let (best, deviations) = line(&shifted, values);
+    assert!((last.estimate[1] - best[1]).abs() < 1e-5 * deviations[1], "{last:?}");
+    // each for itself they never see, and hold
+    let mut alone = task.clone();
+    alone.inherit = false;
+    let alone = windows.observe(&alone);
+    assert!(alone.updates.iter().all(|update| matches!(update.end, UpdateEnd::Blind { .. })));
+}
+
+/// A speed that nothing tells within eight windows: that is said, and no more of them are kept.
+#[test]
+fn windows_grow_to_a_bound() {
+    let (_folder, experiment) = point("");
+    let task = experiment.task(&NEVER).unwrap();
+    // nothing is seen that is not known to a millionth of its size
+    let windows = MovingWindow { blind: 1e-6, ..MovingWindow::new(2) };
+    let track = windows.observe(&task);
+    assert_eq!(track.updates.len(), 100);
+    assert!(track.updates.iter().all(|update| matches!(update.end, UpdateEnd::Blind { .. })));
+    let told = track.remarks.iter().filter(|remark| remark.contains("8 windows together")).count();
+    // the last of eight is the first of the next eight
+    assert_eq!(told, (100 - 1) / 7, "{:?}", track.remarks);
+    assert_eq!(track.estimates.len(), SAMPLES);
 }

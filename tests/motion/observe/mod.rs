@@ -10,6 +10,7 @@ mod columns;
 mod inherited;
 mod noise;
 mod options;
+mod piped;
 mod random;
 mod recorded;
 mod recovered;

@@ -299,3 +299,44 @@ fn a_column_may_change_after_the_first_window() {
     let last = &windows[5]["observers"][0]["end"];
     assert!((state(last, "v", "recovered") - 1.9).abs() < 0.02, "{last}");
 }
+
+/// A window that cannot see is answered at once, and its rows are read again with those of the next: as of a file. By hand, four steps of 0.05 s tell the speed to 0.32, eight to
+/// 0.13 and twelve to 0.074, where its size is 0.1.
+#[test]
+fn blind_windows_grow() {
+    let folder = folder();
+    let model =
+        "system \"A point\" state x, v drift f x' = v v' = 0 output x sample x in [-5, 5] v in [-5, 5]";
+    write(&folder, "spring.proof", model);
+    let scene = "title = \"A point\"\nmodel = \"spring.proof\"\nduration = 10\nsamples = 201\n[start]\nx = 1.0\nv = 0.5\n[sensor]\nnoise = 0.05\n\
+                 [observer]\nmethods = [\"trust-region\", \"kalman\"]\nestimate = [\"x\", \"v\"]\nguess = { x = 0.3, v = 0.1 }\nwindow = 4\nsteps = 20\n";
+    let scene = write(&folder, "point.toml", scene);
+    let file = folder.path().join("x.csv");
+    let (_, whole) = observe(&scene, &["--record", file.to_str().unwrap()]);
+    let (mut child, lines) = listening(&scene);
+    let readings = std::fs::read_to_string(&file).unwrap();
+    child.stdin.as_mut().unwrap().write_all(readings.as_bytes()).unwrap();
+    let (told, status, words) = end_of(child, &lines);
+    assert_eq!(status, Some(0), "{words}");
+    assert_eq!((told.len(), told[50]["rows"].as_u64()), (51, Some(201)));
+    let updates = whole["observers"][0]["updates"].as_array().unwrap();
+    assert_eq!(updates.len(), 50);
+    for (window, update) in told.iter().zip(updates) {
+        let own = &window["observers"][0]["updates"][0];
+        for key in ["from", "to", "standing", "inherits"] {
+            assert_eq!(own[key], update[key], "{own}");
+        }
+        for name in ["x", "v"] {
+            let off = state(own, name, "recovered") - state(update, name, "recovered");
+            assert!(off.abs() < 1e-6 * state(update, name, "bound"), "{own}");
+        }
+    }
+    let spans: Vec<[f64; 2]> =
+        updates.iter().take(4).map(|u| ["from", "to"].map(|key| u[key].as_f64().unwrap())).collect();
+    let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-9;
+    let expected = [[0.0, 0.2], [0.2, 0.4], [0.0, 0.6], [0.6, 0.8]];
+    assert!(spans.iter().zip(expected).all(|(a, b)| near(*a, b)), "{spans:?}");
+    // the filter goes on from where it was, and reads nothing twice
+    let ends = told[..50].iter().map(|window| &window["observers"][1]["end"]["time"]);
+    assert!(ends.clone().zip(1..).all(|(end, k)| (end.as_f64().unwrap() - 0.2 * f64::from(k)).abs() < 1e-9));
+}

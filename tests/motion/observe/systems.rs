@@ -204,3 +204,26 @@ fn studies_need_no_palms() {
     assert_eq!(found["basins"][0]["fraction"], 1.0);
     assert_eq!(experiment(&scene("beacons")).scene.observer.methods[0], Method::MultipleShooting);
 }
+
+/// Lie derivatives of the outputs, inverted on what was read: one start more, from which the state is found where the guess leads elsewhere.
+#[test]
+fn inverted_derivatives_are_a_start() {
+    let folder = folder();
+    let arrives = |name: &str, derivatives: bool| {
+        let text = with_line(&scene(name), "methods", "methods = [\"multiple-shooting\"]");
+        let text = with_line(&text, "noise", "noise = 0");
+        let shooting = format!("shooting = {{ starts = 1, derivatives = {derivatives} }}\nwindow =");
+        let scene = write(&folder, "scene.toml", text.replace("window =", &shooting));
+        let (_, found) = observe(&scene, &[]);
+        let states = found["observers"][0]["updates"][0]["states"].as_object().unwrap().clone();
+        let off = |state: &Value| {
+            let (recovered, truth) = (state["recovered"].as_f64().unwrap(), state["true"].as_f64().unwrap());
+            (recovered - truth).abs() / truth.abs()
+        };
+        states.values().map(off).fold(0.0, f64::max) < 1e-6
+    };
+    let names = ["van_der_pol", "two_tanks", "lorenz", "motor"];
+    assert!(names.iter().all(|name| arrives(name, true)));
+    let without = names.iter().filter(|name| arrives(name, false)).count();
+    assert!(without < names.len(), "the guess alone leads there, too: nothing is shown");
+}

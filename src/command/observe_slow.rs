@@ -1,0 +1,104 @@
+//! `palmistry observe` of a scene with `motion = "quasistatic"`.
+
+use super::interrupt::{begin_to_tell, interrupted};
+use super::observe::Observe;
+use super::output::{Files, Form, progress};
+use super::{Status, Unusable};
+use palmistry::experiment::slow::{SlowExperiment, SlowScene, slow_study};
+use palmistry::report::{SlowObserved, slow_json, slow_page, slow_text};
+
+impl Observe {
+    /// What does not go with slow motion, or not together.
+    fn slow_goes_together(&self, scene: &SlowScene) -> miette::Result<()> {
+        let not_for_slow = [
+            (self.motion.is_some(), "--motion"),
+            (self.outline.is_some(), "--outline"),
+            (self.track.is_some(), "--track"),
+        ];
+        if let Some((_, option)) = not_for_slow.iter().find(|(is_given, _)| *is_given) {
+            let message = format!("{option} is not for slow motion");
+            return Err(Unusable::report(
+                message,
+                "leave it out; --record, --out and --json say all there is",
+            ));
+        }
+        let cut = [
+            (self.shards.shard.is_some(), "--shard"),
+            (self.shards.merge.is_some(), "--merge"),
+            (self.shards.missing.is_some(), "--missing"),
+        ];
+        if let Some((_, option)) = cut.iter().find(|(is_given, _)| *is_given) {
+            let message = format!("{option} is not for slow motion: its study is not cut into shards");
+            return Err(Unusable::report(
+                message,
+                "run it with --studies; fewer 'bodies' or 'samples' in [study] take less time",
+            ));
+        }
+        if self.studies && scene.study.is_none() {
+            return Err(Unusable::report(
+                "the scene has no study",
+                "add [study] to it, or leave out --studies",
+            ));
+        }
+        self.records_alone()
+    }
+
+    /// Observes a slow scene. Its readings are explained all at once: of standard input, too, the answer comes at the end.
+    pub(super) fn run_slow(self, mut scene: SlowScene) -> miette::Result<Status> {
+        scene.seed = self.seed.unwrap_or(scene.seed);
+        self.slow_goes_together(&scene)?;
+        let bar = progress(4, "simulating");
+        let experiment = SlowExperiment::new(scene, self.data.as_deref())?;
+        bar.inc(1);
+        let mut files = Files::default();
+        if let Some(path) = &self.record {
+            let record = experiment.record().map_err(|error| Unusable::report(error.to_string(), ""))?;
+            files.table(path, &record);
+            files.announce(path);
+        }
+        if self.records_to_output() {
+            // what is printed is the record alone: others may read it
+            bar.finish_and_clear();
+            return Ok(files.status(Status::of(true)));
+        }
+        bar.set_message("observing");
+        let mut answers = experiment.run(&interrupted, &|step| {
+            bar.set_message(step);
+            bar.inc(1);
+        });
+        bar.finish_and_clear();
+        let mut study = Vec::new();
+        if let (true, Some(settings)) = (self.studies, &experiment.scene.study) {
+            let rows = settings.families.len() * settings.samples.len() * settings.resolutions.len();
+            let bar = progress((rows * settings.bodies) as u64, "bodies");
+            study = slow_study(&experiment.scene, &interrupted, &|| bar.inc(1)).map_err(|error| {
+                experiment.scene.error_at("study", error.to_string(), "other families may do")
+            })?;
+            bar.finish_and_clear();
+        }
+        if self.no_times {
+            answers.seconds = [f64::NAN; 3];
+            for row in &mut study {
+                for way in [&mut row.thesis, &mut row.quadrature, &mut row.together] {
+                    way.seconds = f64::NAN;
+                }
+            }
+        }
+        begin_to_tell();
+        let observed = SlowObserved {
+            experiment: &experiment,
+            answers: &answers,
+            study: &study,
+            interrupted: interrupted(),
+        };
+        let json = slow_json(&observed);
+        if let Some(folder) = &self.out {
+            files.text(&folder.join("index.html"), &slow_page(&observed));
+            files.json(&folder.join("observe.json"), &json);
+            files.announce(&folder.join("index.html"));
+        }
+        // readings that no body explains are not a shape
+        let status = Status::of(answers.explained && study.iter().all(|row| row.silent == 0));
+        files.print(Form::of(self.json), json, || slow_text(&observed), status)
+    }
+}

@@ -1,0 +1,193 @@
+//! One attempt in one window: whether something is seen, the search, and what its end is worth.
+
+use super::fit::Misfit;
+use super::task::Task;
+use super::track::{Update, UpdateEnd};
+use super::window::{Window, WindowExpansion};
+use super::{Fit, MovingWindow, Newton, Order, TrustRegion, WindowSearch, cramer_rao};
+use argmin::core::{Executor, State, TerminationReason, TerminationStatus};
+use nalgebra::DVector;
+use std::time::Instant;
+
+/// With a robust loss so many times the steps are allowed.
+const ROBUST: u64 = 8;
+
+impl MovingWindow {
+    /// An attempt in a window; `belief` is what stays believed where there is none. With the differences of what was found.
+    pub(super) fn attempt_in(
+        &self,
+        task: &Task<'_>,
+        window: &Window<'_>,
+        belief: &[f64],
+    ) -> (Update, Option<DVector<f64>>) {
+        let begin = Instant::now();
+        let mut left = None;
+        let sizes = Self::sizes(task, window);
+        let mut update = Update {
+            from: window.times[0],
+            to: window.times[window.times.len() - 1],
+            estimate: belief.to_vec(),
+            outputs: window.start[task.estimated()..].to_vec(),
+            deviations: vec![f64::INFINITY; task.estimated()],
+            condition: f64::INFINITY,
+            cost: f64::INFINITY,
+            misfit: f64::INFINITY,
+            steps: 0,
+            troubled: 0,
+            seconds: 0.0,
+            end: UpdateEnd::Stuck,
+            fit: None,
+            suspects: Vec::new(),
+            is_heir: false,
+            discounted: 0,
+        };
+        let guess = window.unknowns(&window.start);
+        update.end = match window.expand(&guess, Order::First) {
+            Err(lost) => UpdateEnd::Lost(lost),
+            Ok(expansion) => {
+                (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
+                match self.see(task, task.sigma, window, &expansion.slopes, &sizes, &mut update) {
+                    Some(blind) => blind,
+                    None => {
+                        let (end, found) = self.search(task, window, guess, &sizes, &mut update);
+                        left = found;
+                        end
+                    }
+                }
+            }
+        };
+        update.seconds = begin.elapsed().as_secs_f64();
+        (update, left)
+    }
+
+    /// How well a state explains a window.
+    fn fit(&self, task: &Task<'_>, window: &Window<'_>, expansion: &WindowExpansion) -> Fit {
+        let differences = &expansion.counted;
+        let read = || window.measured.iter().flatten();
+        let square: f64 = read().map(|value| value * value).sum();
+        // nothing is read of an implicit output: it is as large as what is sought makes its terms
+        let sizes = Self::sizes(task, window);
+        let term = |i: usize| -> f64 {
+            expansion.slopes.row(i).iter().zip(&sizes).map(|(slope, size)| (slope * size).powi(2)).sum()
+        };
+        let outputs = task.full.outputs.len().max(1);
+        let implicit = (0..differences.len()).filter(|i| task.full.is_implicit(i % outputs));
+        let square = match window.weights {
+            Some(_) => square,
+            None => square + implicit.map(term).sum::<f64>(),
+        };
+        let taken = if task.exact { task.full.states.len() - task.estimated() } else { 0 };
+        let misfit = Misfit {
+            differences,
+            outputs: task.full.outputs.len(),
+            relations: window.relations(),
+            unknowns: window.free.len() + taken,
+            size: (square / read().count().max(1) as f64).sqrt(),
+            alarm: self.alarm(task),
+            least: task.sigma,
+            timing: task.timing,
+        };
+        match &window.weights {
+            Some(weights) => {
+                let (computed, degrees) = (misfit.computed(), misfit.degrees());
+                weights.fit(differences, &expansion.slopes, computed, degrees, misfit.alarm)
+            }
+            None => misfit.fit(task.noise),
+        }
+    }
+
+    /// Sets the bound; says so where something that is sought is not seen.
+    fn see(
+        &self,
+        task: &Task<'_>,
+        sigma: f64,
+        window: &Window<'_>,
+        slopes: &nalgebra::DMatrix<f64>,
+        sizes: &[f64],
+        update: &mut Update,
+    ) -> Option<UpdateEnd> {
+        let bound = cramer_rao(slopes, sigma, sizes);
+        let mut blind = false;
+        update.deviations = vec![0.0; task.estimated()];
+        for ((place, deviation), size) in window.free.iter().zip(&bound.deviations).zip(sizes) {
+            if let Some(own) = update.deviations.get_mut(*place) {
+                *own = *deviation;
+                blind |= deviation.is_nan() || *deviation > self.blind * size;
+            }
+        }
+        update.condition = bound.condition;
+        blind.then_some(UpdateEnd::Blind { weakest: bound.weakest })
+    }
+
+    fn search(
+        &self,
+        task: &Task<'_>,
+        window: &Window<'_>,
+        guess: DVector<f64>,
+        sizes: &[f64],
+        update: &mut Update,
+    ) -> (UpdateEnd, Option<DVector<f64>>) {
+        // beyond the corner of a robust loss the error is no square: each step leaves a part of the way
+        let steps = if task.loss == super::Loss::Squares { self.steps } else { ROBUST * self.steps };
+        macro_rules! run {
+            ($solver:expr) => {
+                Executor::new(window.clone(), $solver)
+                    .configure(|state| state.param(guess).max_iters(steps))
+                    .ctrlc(false)
+                    .run()
+            };
+        }
+        // steps of Newton's method know of no bounds
+        let method = if window.bounds.is_empty() { self.method } else { WindowSearch::TrustRegion };
+        let (state, troubled) = match method {
+            WindowSearch::Newton => match run!(Newton::new(sizes.to_vec())) {
+                Ok(result) => {
+                    let troubled = result.solver.not_convex + result.solver.halved;
+                    (result.state, troubled)
+                }
+                Err(error) => return (lost(error, update.from), None),
+            },
+            WindowSearch::TrustRegion => match run!(TrustRegion::new(sizes.to_vec())) {
+                Ok(result) => (result.state, result.solver.refused),
+                Err(error) => return (lost(error, update.from), None),
+            },
+        };
+        update.steps = state.get_iter();
+        update.troubled = troubled;
+        let Some(found) = state.get_param() else { return (UpdateEnd::Stuck, None) };
+        let whole = window.state(found);
+        update.estimate = whole[..task.estimated()].to_vec();
+        update.outputs = whole[task.estimated()..].to_vec();
+        // the bound belongs to where one is
+        let left = match window.expand(found, Order::First) {
+            Err(lost) => return (UpdateEnd::Lost(lost), None),
+            Ok(expansion) => {
+                (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
+                let fit = self.fit(task, window, &expansion);
+                update.fit = Some(fit);
+                let (loss, sigma) = window.loss;
+                let left = window.weighted(expansion.left.clone());
+                update.discounted = left.iter().filter(|value| loss.is_discounted(**value, sigma)).count();
+                if let Some(blind) = self.see(task, fit.sigma, window, &expansion.slopes, sizes, update) {
+                    update.estimate = window.start[..task.estimated()].to_vec();
+                    update.outputs = window.start[task.estimated()..].to_vec();
+                    return (blind, None);
+                }
+                expansion.differences
+            }
+        };
+        let fits = update.fit.is_some_and(|fit| fit.fits);
+        let end = match state.get_termination_status() {
+            TerminationStatus::Terminated(TerminationReason::SolverConverged) if fits => UpdateEnd::Converged,
+            TerminationStatus::Terminated(TerminationReason::SolverConverged) => UpdateEnd::DoesNotFit,
+            TerminationStatus::Terminated(TerminationReason::MaxItersReached) => UpdateEnd::StepsSpent,
+            _ => UpdateEnd::Stuck,
+        };
+        (end, Some(left))
+    }
+}
+
+fn lost(error: argmin::core::Error, time: f64) -> UpdateEnd {
+    let why = error.to_string();
+    UpdateEnd::Lost(error.downcast::<super::Lost>().unwrap_or(super::Lost { time, why }))
+}

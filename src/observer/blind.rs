@@ -1,0 +1,79 @@
+//! Windows that do not tell the state grow: what they read is not thrown away, but read again together with what comes next.
+//!
+//! A window in which something that is sought is not seen holds or integrates, as it is told to. The next one is tried together with it, from what was known
+//! before both; where that explains the readings it is the answer, and else the window stands alone. So it goes on up to [`MOST`] windows, after which the
+//! first ones are let go, so that no stream keeps more than that.
+
+use super::inheritance::Anew;
+use super::learned::{Learned, Unseen};
+use super::task::Task;
+use super::track::{Track, Update};
+use super::{MovingWindow, weights};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// So many windows are taken together, at most.
+pub const MOST: usize = 8;
+
+impl MovingWindow {
+    /// Whether a window that is blind is read again with the next: not where each stands alone, is whole, or has a weight for each pair of its readings.
+    pub(super) fn may_grow(&self, task: &Task<'_>, clamped: &[usize]) -> bool {
+        task.inherit && !task.whole && clamped.is_empty() && !weights::are_needed(task)
+    }
+
+    /// The update of a window together with those before that told too little, where that is borne out, and what was known before them.
+    pub(super) fn grown_by_unseen<'u>(
+        &self,
+        task: &Task<'_>,
+        rows: &Range<usize>,
+        unseen: Option<&'u Unseen>,
+        learned: &Learned,
+        anew: &Anew<'_>,
+        track: &mut Track,
+    ) -> Option<(&'u Unseen, Update, Vec<Update>)> {
+        let unseen = unseen?;
+        let all = rows.start - unseen.rows..rows.end;
+        let before = Learned { is_asked: learned.is_asked, ..unseen.before.clone() };
+        // what does not come of it is not told: the window then stands alone
+        let mut told = Track::default();
+        let (update, others) = self.next_update(task, &all, &[], &before, anew, &mut told);
+        if !update.is_borne_out() {
+            return None;
+        }
+        track.updates.extend(told.updates);
+        track.remarks.extend(told.remarks);
+        track.remarks.push(format!(
+            "from {:.3} s a window tells too little alone: it has grown to {} samples",
+            update.from,
+            all.len()
+        ));
+        Some((unseen, update, others))
+    }
+
+    /// What the next window takes as well, after one that is blind.
+    pub(super) fn unseen_after(
+        &self,
+        rows: &Range<usize>,
+        unseen: Option<&Unseen>,
+        learned: &Learned,
+        update: &Update,
+        track: &mut Track,
+    ) -> Option<Arc<Unseen>> {
+        let own = rows.len() - 1;
+        let alone = || Unseen { rows: own, before: Learned { unseen: None, ..learned.clone() } };
+        let next = match unseen {
+            Some(unseen) if unseen.rows + 2 * own <= MOST * self.window.max(2) => {
+                Unseen { rows: unseen.rows + own, before: unseen.before.clone() }
+            }
+            Some(_) => {
+                track.remarks.push(format!(
+                    "by {:.3} s {MOST} windows together do not tell what is sought: they grow anew from the last one on",
+                    update.to
+                ));
+                alone()
+            }
+            None => alone(),
+        };
+        Some(Arc::new(next))
+    }
+}
