@@ -19,6 +19,8 @@ mod simulation;
 mod since;
 #[doc(hidden)]
 pub mod slow;
+#[doc(hidden)]
+pub mod solid;
 mod stream;
 mod study;
 mod system_motion;

@@ -1,0 +1,161 @@
+//! The state of a body in space on three flat palms, from their readings, without a first guess and without its shape.
+//!
+//! What palm `i` tells of a body of unknown shape is
+//!
+//! ```text
+//! 0 = y_i = n_i . (c' + omega x (c_i - c) - w_i x (c_i - o_i)),
+//! ```
+//!
+//! with the contact `c_i`, the normal `n_i`, the hinge `o_i` and the palm's rate `w_i` as they are read. A contact lies `p` along the hinge and `q` up the palm, and the
+//! force along the normal follows from the motor's torque: `f q = torque - I w'`. With the sums `F` and `G` of forces and of their moments about the origin, Newton's and Euler's
+//! laws are integrals of readings, polynomial in the centre `c0`, its velocity `v0`, the angular momentum over mass `l0` and `mu = 1/m`,
+//!
+//! ```text
+//! c(t) = c0 + v0 t + g t^2/2 + mu S(t),                                   S'' = F,
+//! l(t) = l0 + mu (int G - c0 x int F - v0 x int t F - g/2 x int t^2 F - mu int S x F),
+//! ```
+//!
+//! and the one thing that has to be integrated anew for every guess is how the body is turned, `R' = R hat(K R^T l)`, `R = 1` at the beginning: `K` is the inverse of the inertia over mass
+//! in a frame that is the world's at the first sample. So 16 numbers are sought: `c0`, `v0`, `omega0 = K l0`, the six of `K`, and `mu`.
+//!
+//! Errors of a contact are in the constraint at that sample, and by force and lever in all integrals after it. `whiten` carries them: they move the initial state as a random walk, so that an
+//! innovations filter with 12 states makes the residuals white; its adjoint tells by how much each contact was off. `refine` corrects readings by that and begins again, which is the maximum of the likelihood over state
+//! and contacts at once (errors in variables), and not of one with readings in the derivatives. `search` finds where to begin.
+//!
+//! Palms' angles, rates and accelerations are taken as exact, contacts and torques with their standard deviations.
+
+// matrices are written by their indices, as in the formulas
+#![allow(clippy::needless_range_loop)]
+
+mod constraint;
+mod descent;
+mod flow;
+mod integrals;
+mod linear;
+mod refine;
+mod rule;
+mod search;
+mod touches;
+mod vector;
+mod whiten;
+
+pub use touches::{SolidPose, SolidTouch};
+
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+/// Fewer samples than these give no state.
+pub(super) const FEWEST: usize = 24;
+
+/// The unknowns.
+pub const UNKNOWNS: usize = 16;
+
+/// One palm at one sample. SI units, angles in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PalmReading {
+    /// Where the contact is: along the hinge and up the palm, from the point of the hinge.
+    pub place: [f64; 2],
+    /// The axis of the hinge, the direction up the palm and the normal towards the body, as columns, in the world.
+    pub frame: Matrix3<f64>,
+    /// The palm's rate about its hinge.
+    pub rate: f64,
+    /// The motor's torque less what moves the palm itself: what the body takes.
+    pub torque: f64,
+}
+
+/// Readings of three palms. SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidReadings {
+    /// They increase.
+    pub times: Vec<f64>,
+    /// Sample by sample.
+    pub palms: Vec<[PalmReading; 3]>,
+    /// A point of each hinge.
+    pub hinges: [Vector3<f64>; 3],
+    /// The acceleration of gravity, any vector.
+    pub gravity: Vector3<f64>,
+    /// The standard deviation of each coordinate of a contact, in m; zero where they are exact.
+    pub contact_deviation: f64,
+    /// The standard deviation of a torque, in N m.
+    pub torque_deviation: f64,
+}
+
+/// What the readings tell of the body at the first sample, in the world's frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidState {
+    /// The centre of mass.
+    pub centre: Vector3<f64>,
+    /// Its velocity.
+    pub velocity: Vector3<f64>,
+    /// The angular velocity.
+    pub rate: Vector3<f64>,
+    /// The inertia about the centre of mass over mass, in m^2.
+    pub inertia_over_mass: Matrix3<f64>,
+    /// In kg.
+    pub mass: f64,
+    /// Of centre, velocity, rate, the inertia's entries 11, 22, 33, 12, 13, 23, and 1/m: what no unbiased estimate is better than, for the deviations that are stated.
+    pub covariance: SMatrix<f64, 16, 16>,
+    /// The sum of the squares of all errors that the readings had to have, in units of their deviations.
+    pub chi_square: f64,
+    /// How many of them are free: the constraints less the unknowns.
+    pub degrees: usize,
+    /// The root of the mean square of the errors that contacts had to have, in m.
+    pub misfit: f64,
+}
+
+impl SolidState {
+    /// All that is sought: centre, velocity, rate, the inertia's entries 11, 22, 33, 12, 13, 23, and 1/m.
+    pub fn entries(&self) -> [f64; UNKNOWNS] {
+        let j = &self.inertia_over_mass;
+        std::array::from_fn(|i| match i {
+            0..3 => self.centre[i],
+            3..6 => self.velocity[i - 3],
+            6..9 => self.rate[i - 6],
+            9..15 => j[vector::PLACES[i - 9]],
+            _ => 1.0 / self.mass,
+        })
+    }
+
+    /// Whether what is left is what the stated deviations explain: below five deviations of the sum of as many squares.
+    pub fn fits(&self) -> bool {
+        let n = self.degrees as f64;
+        self.chi_square <= n + 5.0 * (2.0 * n).sqrt()
+    }
+}
+
+impl SolidReadings {
+    /// The number of samples.
+    pub fn rows(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Whether there are enough readings, all of them numbers, times that increase and contacts off the hinges.
+    fn is_whole(&self) -> bool {
+        let increase = self.times.windows(2).all(|pair| pair[0] < pair[1]);
+        let palms = self.palms.iter().flatten();
+        let finite = palms.clone().all(|palm| {
+            let own = [palm.place[0], palm.place[1], palm.rate, palm.torque];
+            own.iter().chain(palm.frame.iter()).all(|value| value.is_finite())
+        });
+        self.rows() >= FEWEST
+            && self.palms.len() == self.rows()
+            && increase
+            && finite
+            && self.times.iter().all(|time| time.is_finite())
+            && palms.clone().all(|palm| palm.place[1] != 0.0)
+    }
+
+    /// The state at the first sample that explains the readings best among those that were found; none where there are too few
+    /// readings or nothing that is a body explains them.
+    pub fn first_state(&self) -> Option<SolidState> {
+        search::found(self, &|| false)?.state()
+    }
+
+    /// The same with the body at all samples, given up where `interrupt` says so.
+    pub fn explained(&self, interrupt: &dyn Fn() -> bool) -> Option<(SolidState, Vec<SolidPose>)> {
+        let found = search::found(self, interrupt)?;
+        found.state().map(|state| (state, found.poses()))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,236 @@
+//! Errors of contacts and torques, carried through the integrals.
+//!
+//! An error at a sample gives the body an impulse `mu dF` and its angular momentum over mass one of `mu (dG - c x dF)`, each for the time that the sample stands for (the trapezoidal rule); what comes of it later is what would come
+//! of another initial state, turn included. So the constraints are `y_k = J_k z_k + D_k e_k`, `z_{k+1} = z_k + B_k e_k`, with the derivatives `J_k` by 12 numbers of that state. The innovations of this
+//! are white (Kalman's filter where the noise of readings is that of the state); `e = D^T eta + B^T lambda` is the likeliest error, by the adjoint.
+
+use super::constraint::Constrained;
+use super::flow::{Start, TURN};
+use super::integrals::{Integrals, Node, PalmSample};
+use super::linear::{backward, cholesky, forward};
+use super::vector::{Vector, along, cross, dot, scaled};
+
+/// Errors at a sample: of both coordinates of each contact, and of each torque.
+pub(super) const ERRORS: usize = 9;
+/// The numbers of the initial state that errors move.
+const MOVED: usize = 12;
+
+/// How large errors are, and what rates count at least.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Deviations {
+    /// In m.
+    pub contact: f64,
+    /// In N m.
+    pub torque: f64,
+    /// In rad/s: no constraint weighs more than that of a body that turns at this rate against its palm.
+    pub softened: f64,
+}
+
+/// One sample of the filter.
+struct Stage {
+    by: [[f64; MOVED]; 3],
+    direct: [[f64; ERRORS]; 3],
+    impulse: [[f64; ERRORS]; MOVED],
+    /// The triangle of the innovations' covariance, and the gain.
+    triangle: [[f64; 3]; 3],
+    gain: [[f64; 3]; MOVED],
+}
+
+/// The filter over all samples.
+pub(super) struct Whitener {
+    stages: Vec<Stage>,
+}
+
+/// What errors of unit size do to the initial state: a column an error.
+fn impulses(
+    start: &Start,
+    node: &Node,
+    palms: &[PalmSample; 3],
+    sample: &Constrained,
+    spacing: f64,
+    deviations: &Deviations,
+) -> Option<[[f64; ERRORS]; MOVED]> {
+    let mut all = [[0.0; ERRORS]; MOVED];
+    // the turn's derivative by the turn at the beginning, for its inverse
+    let xi = &sample.at.moved;
+    let [a, b, c] = [xi[TURN], xi[TURN + 1], xi[TURN + 2]];
+    let volume = dot(&a, &cross(&b, &c));
+    if volume.abs() < 1e-9 || !volume.is_finite() {
+        return None;
+    }
+    let [bc, ca, ab] = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
+    for (i, palm) in palms.iter().enumerate() {
+        let lever = cross(&palm.contact, &palm.normal);
+        let fall = -palm.force / palm.lever;
+        let along_hinge = ([0.0; 3], scaled(-palm.force, &palm.up), deviations.contact);
+        let up = (
+            scaled(fall, &palm.normal),
+            along(&scaled(fall, &lever), palm.force, &palm.axis),
+            deviations.contact,
+        );
+        let torque =
+            (scaled(1.0 / palm.lever, &palm.normal), scaled(1.0 / palm.lever, &lever), deviations.torque);
+        for (column, (force, moment, size)) in [(2 * i, along_hinge), (2 * i + 1, up), (6 + i, torque)] {
+            let t = start.mu * spacing * size;
+            let velocity: Vector = scaled(t, &force);
+            let centre = scaled(-node.time, &velocity);
+            let spun = scaled(t, &along(&moment, -1.0, &cross(&sample.centre, &force)));
+            // what centre and velocity at the beginning would do to the momentum until now
+            let drawn = along(&cross(&centre, &node.force), 1.0, &cross(&velocity, &node.first));
+            let momentum = along(&spun, start.mu, &drawn);
+            let mut turned = [0.0; 3];
+            for (part, from) in [(&centre, 0), (&velocity, 3), (&momentum, 6)] {
+                for k in 0..3 {
+                    turned = along(&turned, -part[k], &xi[from + k]);
+                }
+            }
+            let turn = [dot(&bc, &turned), dot(&ca, &turned), dot(&ab, &turned)].map(|value| value / volume);
+            for k in 0..3 {
+                all[k][column] = centre[k];
+                all[3 + k][column] = velocity[k];
+                all[6 + k][column] = momentum[k];
+                all[9 + k][column] = turn[k];
+            }
+        }
+    }
+    Some(all)
+}
+
+impl Whitener {
+    /// None where a covariance is not positive.
+    pub fn of(
+        start: &Start,
+        all: &Integrals,
+        samples: &[Constrained],
+        spacing: &[f64],
+        deviations: &Deviations,
+    ) -> Option<Whitener> {
+        let mut spread = [[0.0; MOVED]; MOVED];
+        let mut stages = Vec::with_capacity(samples.len());
+        for (k, sample) in samples.iter().enumerate() {
+            let impulse = impulses(start, &all.nodes[k], &all.palms[k], sample, spacing[k], deviations)?;
+            let by: [[f64; MOVED]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| sample.by[i][j]));
+            // what of an error's impulse has come by its own sample
+            let arrived = match k {
+                0 => 0.0,
+                _ if k + 1 == samples.len() => 1.0,
+                _ => 0.5,
+            };
+            let mut direct = [[0.0; ERRORS]; 3];
+            for i in 0..3 {
+                for e in 0..ERRORS {
+                    let mut value = 0.0;
+                    for (m, row) in impulse.iter().enumerate() {
+                        value += by[i][m] * row[e] * arrived;
+                    }
+                    direct[i][e] = value;
+                }
+                for side in 0..2 {
+                    direct[i][2 * i + side] += deviations.contact * sample.slopes[i][side];
+                }
+            }
+            // spread times the transpose of `by`
+            let mut towards = [[0.0; 3]; MOVED];
+            for (row, to) in spread.iter().zip(&mut towards) {
+                for i in 0..3 {
+                    to[i] = row.iter().zip(&by[i]).map(|(a, b)| a * b).sum();
+                }
+            }
+            let mut covariance = [[0.0; 3]; 3];
+            for i in 0..3 {
+                for j in 0..=i {
+                    let mut value: f64 = direct[i].iter().zip(&direct[j]).map(|(a, b)| a * b).sum();
+                    for m in 0..MOVED {
+                        value += by[i][m] * towards[m][j];
+                    }
+                    covariance[i][j] = value;
+                }
+                covariance[i][i] += (deviations.contact * deviations.softened).powi(2);
+            }
+            let triangle = cholesky(&covariance, 3)?;
+            let mut gain = [[0.0; 3]; MOVED];
+            for m in 0..MOVED {
+                let mut right = towards[m];
+                for i in 0..3 {
+                    right[i] += impulse[m].iter().zip(&direct[i]).map(|(a, b)| a * b).sum::<f64>();
+                }
+                gain[m] = backward(&triangle, 3, &forward(&triangle, 3, &right));
+                // minus gain times covariance times gain, column by column below
+                towards[m] = forward(&triangle, 3, &right);
+            }
+            for m in 0..MOVED {
+                for n in 0..MOVED {
+                    let own: f64 = impulse[m].iter().zip(&impulse[n]).map(|(a, b)| a * b).sum();
+                    spread[m][n] += own - dot(&towards[m], &towards[n]);
+                }
+            }
+            stages.push(Stage { by, direct, impulse, triangle, gain });
+        }
+        Some(Whitener { stages })
+    }
+
+    /// White residuals of a column of constraints.
+    pub fn white(&self, column: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        self.innovations(column).iter().zip(&self.stages).map(|(v, at)| forward(&at.triangle, 3, v)).collect()
+    }
+
+    fn innovations(&self, column: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut state = [0.0; MOVED];
+        let mut all = Vec::with_capacity(column.len());
+        for (stage, value) in self.stages.iter().zip(column) {
+            let innovation: [f64; 3] = std::array::from_fn(|i| {
+                value[i] - stage.by[i].iter().zip(&state).map(|(a, b)| a * b).sum::<f64>()
+            });
+            for (value, gain) in state.iter_mut().zip(&stage.gain) {
+                *value += dot(gain, &innovation);
+            }
+            all.push(innovation);
+        }
+        all
+    }
+
+    /// The likeliest errors that make a column of constraints, in units of their deviations.
+    pub fn errors(&self, column: &[[f64; 3]]) -> Vec<[f64; ERRORS]> {
+        let innovations = self.innovations(column);
+        let mut ahead = [0.0; MOVED];
+        let mut all = vec![[0.0; ERRORS]; column.len()];
+        for (k, stage) in self.stages.iter().enumerate().rev() {
+            let mut eta = backward(&stage.triangle, 3, &forward(&stage.triangle, 3, &innovations[k]));
+            for (gain, value) in stage.gain.iter().zip(&ahead) {
+                eta = along(&eta, -value, gain);
+            }
+            for e in 0..ERRORS {
+                let mut value = 0.0;
+                for i in 0..3 {
+                    value += stage.direct[i][e] * eta[i];
+                }
+                for m in 0..MOVED {
+                    value += stage.impulse[m][e] * ahead[m];
+                }
+                all[k][e] = value;
+            }
+            for m in 0..MOVED {
+                for i in 0..3 {
+                    ahead[m] += stage.by[i][m] * eta[i];
+                }
+            }
+        }
+        all
+    }
+
+    /// The constraints that errors make.
+    pub fn made_by(&self, errors: &[[f64; ERRORS]]) -> Vec<[f64; 3]> {
+        let mut state = [0.0; MOVED];
+        let mut all = Vec::with_capacity(errors.len());
+        for (stage, error) in self.stages.iter().zip(errors) {
+            all.push(std::array::from_fn(|i| {
+                let carried: f64 = stage.by[i].iter().zip(&state).map(|(a, b)| a * b).sum();
+                carried + stage.direct[i].iter().zip(error).map(|(a, b)| a * b).sum::<f64>()
+            }));
+            for (value, row) in state.iter_mut().zip(&stage.impulse) {
+                *value += row.iter().zip(error).map(|(a, b)| a * b).sum::<f64>();
+            }
+        }
+        all
+    }
+}
