@@ -20,6 +20,7 @@ mod inheritance;
 mod integration;
 mod jet;
 mod kalman;
+mod late;
 mod learned;
 mod loss;
 mod model;
