@@ -4,6 +4,7 @@
 //! when all is as expected, 1 when something is not, 2 when the input could not be used or the results could not be
 //! written, and 3 when the work was cut off by a signal and nothing that was found until then is wrong.
 
+mod advise;
 mod arguments;
 mod certify;
 mod check;
@@ -74,6 +75,7 @@ enum Verb {
     Stress(stress::Stress),
     Eval(eval::Eval),
     Observe(observe::Observe),
+    Advise(advise::Advise),
     Poses(poses::Poses),
     Import(import::Import),
     New(new::New),
@@ -167,6 +169,7 @@ impl Verb {
             Verb::Stress(verb) => verb.json,
             Verb::Eval(verb) => verb.json,
             Verb::Observe(verb) => verb.json,
+            Verb::Advise(verb) => verb.json,
             Verb::Poses(verb) => verb.json,
             Verb::Import(verb) => verb.json,
             Verb::New(verb) => verb.json,
@@ -190,6 +193,7 @@ impl Verb {
             Verb::Stress(verb) => verb.run(),
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Advise(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Poses(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Import(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::New(verb) => verb.run(),

@@ -210,7 +210,7 @@ pub(super) fn tell(
     Ok(())
 }
 
-/// Whether the readings can tell the gains and biases that are sought at all.
+/// Whether the readings can tell the gains, biases and delays that are sought at all.
 ///
 /// # Errors
 /// What cannot be told from what.
@@ -232,17 +232,18 @@ pub(super) fn are_told(
     Err(scene.error_at(&format!("observer.estimate[{place}]"), message, "sought here", help))
 }
 
-/// The true value of a sought gain or bias of a simulated sensor; none of any other name.
+/// The true value of a sought gain, bias or delay of a simulated sensor; none of any other name.
 pub(super) fn truth(scene: &Scene, name: &str) -> Option<f64> {
     let (column, kind) = CalibrationKind::of(name)?;
     let channel = scene.channels.get(column).copied().unwrap_or_default();
     Some(match kind {
         CalibrationKind::Gain => channel.gain,
         CalibrationKind::Bias => channel.bias,
+        CalibrationKind::Delay => channel.delay,
     })
 }
 
-/// Whether a name asks for gain or bias of something that the model knows.
+/// Whether a name asks for gain, bias or delay of something that the model knows.
 pub(super) fn is_sought(system: &System, name: &str) -> bool {
     CalibrationKind::of(name).is_some_and(|(column, _)| system.find_symbol(column).is_some())
 }

@@ -7,6 +7,7 @@
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 
+mod advice;
 mod channels;
 mod columns;
 mod groundwork;
@@ -27,6 +28,8 @@ mod system_motion;
 #[doc(hidden)]
 pub mod unguided;
 
+#[doc(hidden)]
+pub use advice::{Advice, AdviceLimits, AdviceQuestion, ExpectedBounds, TriedMotion, advise};
 pub use known_motion::KnownMotion;
 #[doc(hidden)]
 pub use reconstruction::{on_palm, shown, turned};

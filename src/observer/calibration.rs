@@ -1,7 +1,7 @@
-//! Gains and biases of what is read, sought beside the states: constants of a model, at rest.
+//! Gains, biases and delays of what is read, sought beside the states: constants of a model, at rest.
 //!
-//! A reading `r` of `x` is `gain x + bias`. Where `x` is followed that is what is expected of it; where it is taken from its column it
-//! is `(r - bias)/gain`.
+//! A reading `r` of `x` is `gain x(t - delay) + bias`. Where `x` is followed that is what is expected of it; where it is taken from its column it
+//! is `(r - bias)/gain`. Delays are sought of outputs alone, and have no part in expressions: a flow goes back by them (`late`).
 
 use crate::expression::{NodeId, Symbol};
 use crate::system::{Kind, SymbolInfo, System};
@@ -14,6 +14,8 @@ pub enum CalibrationKind {
     Gain,
     /// What is added.
     Bias,
+    /// By how much the reading is late, in s.
+    Delay,
 }
 
 impl CalibrationKind {
@@ -22,6 +24,7 @@ impl CalibrationKind {
         match self {
             CalibrationKind::Gain => "gain",
             CalibrationKind::Bias => "bias",
+            CalibrationKind::Delay => "delay",
         }
     }
 
@@ -29,20 +32,20 @@ impl CalibrationKind {
     pub fn nominal(self) -> f64 {
         match self {
             CalibrationKind::Gain => 1.0,
-            CalibrationKind::Bias => 0.0,
+            CalibrationKind::Bias | CalibrationKind::Delay => 0.0,
         }
     }
 
     /// The column and the kind of a name such as `tau1.gain`; none of any other.
     pub fn of(name: &str) -> Option<(&str, CalibrationKind)> {
         let (column, word) = name.split_once('.')?;
-        let kind =
-            [CalibrationKind::Gain, CalibrationKind::Bias].into_iter().find(|kind| kind.word() == word)?;
+        let kinds = [CalibrationKind::Gain, CalibrationKind::Bias, CalibrationKind::Delay];
+        let kind = kinds.into_iter().find(|kind| kind.word() == word)?;
         (!column.is_empty()).then_some((column, kind))
     }
 }
 
-/// Declares what is sought of the columns' gains and biases as states that no field moves.
+/// Declares what is sought of the columns' gains, biases and delays as states that no field moves.
 pub(super) fn declare(system: &mut System, names: &[String]) {
     for name in names {
         let Some((column, _)) = CalibrationKind::of(name) else { continue };
@@ -56,11 +59,12 @@ pub(super) fn declare(system: &mut System, names: &[String]) {
     }
 }
 
-/// Gain and bias that are sought of a column, as symbols.
+/// Gain, bias and delay that are sought of a column, as symbols.
 pub(super) struct Sought {
     pub column: Symbol,
     pub gain: Option<Symbol>,
     pub bias: Option<Symbol>,
+    pub delay: Option<Symbol>,
 }
 
 /// What is sought of each column.
@@ -72,12 +76,13 @@ pub(super) fn sought(system: &System, followed: &[String]) -> Vec<Sought> {
             continue;
         };
         let place = all.iter().position(|other| other.column == column).unwrap_or_else(|| {
-            all.push(Sought { column, gain: None, bias: None });
+            all.push(Sought { column, gain: None, bias: None, delay: None });
             all.len() - 1
         });
         match kind {
             CalibrationKind::Gain => all[place].gain = Some(symbol),
             CalibrationKind::Bias => all[place].bias = Some(symbol),
+            CalibrationKind::Delay => all[place].delay = Some(symbol),
         }
     }
     all
@@ -93,7 +98,7 @@ pub(super) fn put_in(
 ) {
     let all = sought(system, followed);
     let mut true_values = HashMap::new();
-    for Sought { column, gain, bias } in all {
+    for Sought { column, gain, bias, .. } in all {
         let name = system.symbol_name(column).to_owned();
         let own = system.graph.symbol(column);
         let [gain, bias] = [gain, bias].map(|symbol| symbol.map(|symbol| system.graph.symbol(symbol)));

@@ -84,15 +84,27 @@ impl MovingWindow {
         rows: &std::ops::Range<usize>,
         clamped: &[usize],
     ) -> Vec<f64> {
+        self.seen_at(task, belief, rows, clamped).0
+    }
+
+    /// The same, and the condition of the scaled sensitivities.
+    pub fn seen_at(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        rows: &std::ops::Range<usize>,
+        clamped: &[usize],
+    ) -> (Vec<f64>, f64) {
         let mut window = Self::window(task, belief, rows, clamped);
         let sizes = Self::sizes(task, &window);
-        let mut found = vec![f64::INFINITY; window.free.len()];
+        let (mut found, mut condition) = (vec![f64::INFINITY; window.free.len()], f64::INFINITY);
         let weights = weights::are_needed(task)
             .then(|| Weights::of(task, &window.start, window.times, None, task.signals));
         if let Ok(weights) = weights.transpose() {
             window.weights = weights.map(Arc::new);
             if let Ok(expansion) = window.expand(&window.unknowns(&window.start), Order::First) {
-                found = cramer_rao(&expansion.slopes, task.sigma, &sizes).deviations;
+                let bound = cramer_rao(&expansion.slopes, task.sigma, &sizes);
+                (found, condition) = (bound.deviations, bound.condition);
             }
         }
         let mut bounds = vec![0.0; task.estimated()];
@@ -101,6 +113,6 @@ impl MovingWindow {
                 *own = deviation;
             }
         }
-        bounds
+        (bounds, condition)
     }
 }

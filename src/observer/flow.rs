@@ -6,6 +6,7 @@
 //! control (Dormand and Prince, order 8(5,3)). Nothing is differenced.
 
 use super::jet::{Jet, triangle};
+use super::late::states_before;
 use super::model::{Formulas, InputSource};
 use super::quick_step::QuickSteps;
 use super::{Model, Signals};
@@ -119,17 +120,45 @@ impl ModelFlow<'_> {
         let rates = model.rates.program.load(arithmetic()).map_err(|refusal| refuse(times[0], refusal))?;
         let seen = model.seen.program.load(arithmetic()).map_err(|refusal| refuse(times[0], refusal))?;
         let registers = RefCell::new(Vec::new());
-        let evaluate =
-            |formulas: &Formulas, loaded: &crate::expression::Loaded<'_, Duals<J>>, time, y: &[f64]| {
-                let mut given = vec![0.0; model.columns.len()];
-                self.signals.at(&model.columns, time, &mut given);
-                let input = |source: &InputSource| match *source {
-                    InputSource::State(place) => J::unpack(&y[place * J::LENGTH..(place + 1) * J::LENGTH]),
-                    InputSource::Column(place) | InputSource::Rate(place) => J::constant(given[place]),
-                };
-                let inputs: Vec<J> = formulas.sources.iter().map(input).collect();
-                loaded.run(&inputs, &mut registers.borrow_mut())
+        type LoadedFormulas<'l, J> = crate::expression::Loaded<'l, Duals<J>>;
+        let evaluate = |formulas: &Formulas, loaded: &LoadedFormulas<'_, J>, time, y: &[f64]| {
+            let mut given = vec![0.0; model.columns.len()];
+            self.signals.at(&model.columns, time, &mut given);
+            let input = |source: &InputSource| match *source {
+                InputSource::State(place) => J::unpack(&y[place * J::LENGTH..(place + 1) * J::LENGTH]),
+                InputSource::Column(place) | InputSource::Rate(place) => J::constant(given[place]),
             };
+            let inputs: Vec<J> = formulas.sources.iter().map(input).collect();
+            loaded.run(&inputs, &mut registers.borrow_mut())
+        };
+        let evaluate_at = |formulas: &Formulas, loaded: &LoadedFormulas<'_, J>, time: J, states: &[J]| {
+            let given = self.signals.along(&model.columns, time);
+            let input = |source: &InputSource| match *source {
+                InputSource::State(place) => states[place],
+                InputSource::Column(place) | InputSource::Rate(place) => given[place],
+            };
+            let inputs: Vec<J> = formulas.sources.iter().map(input).collect();
+            loaded.run(&inputs, &mut registers.borrow_mut())
+        };
+        // what is expected of the outputs at a sample: of those that are late what they were before
+        let expected = |time: f64, y: &[f64]| -> Result<Vec<J>, Lost> {
+            let mut values =
+                evaluate(&model.seen, &seen, time, y).map_err(|error| refuse(time, error.refusal))?;
+            if model.delays.iter().all(Option::is_none) {
+                return Ok(values);
+            }
+            let states: Vec<J> = y.chunks(J::LENGTH).map(J::unpack).collect();
+            let followed = |time: J, states: &[J]| {
+                evaluate_at(&model.rates, &rates, time, states).map_err(|error| error.refusal)
+            };
+            for (output, delay) in model.delays.iter().enumerate() {
+                let Some(delay) = delay.map(|place| states[place]) else { continue };
+                let before = states_before(&followed, time, &states, delay, self.signals.between())?;
+                let then = evaluate_at(&model.seen, &seen, J::constant(time) - delay, &before);
+                values[output] = then.map_err(|error| refuse(time, error.refusal))?[output];
+            }
+            Ok(values)
+        };
         let failure: Cell<Option<(f64, Refusal)>> = Cell::new(None);
         let right_hand_side =
             |time: f64, y: &[f64], dy: &mut [f64]| match evaluate(&model.rates, &rates, time, y) {
@@ -159,8 +188,7 @@ impl ModelFlow<'_> {
             if i > 0 {
                 failure.set(None);
                 if quick.take(&right_hand_side, times[i - 1], *time, &mut y, self.tolerance) {
-                    let values = evaluate(&model.seen, &seen, *time, &y)
-                        .map_err(|error| refuse(*time, error.refusal))?;
+                    let values = expected(*time, &y)?;
                     samples.push(sample(*time, start.len(), free.len(), size, &y, &values));
                     continue;
                 }
@@ -173,8 +201,7 @@ impl ModelFlow<'_> {
                     }
                 })?;
             }
-            let values =
-                evaluate(&model.seen, &seen, *time, &y).map_err(|error| refuse(*time, error.refusal))?;
+            let values = expected(*time, &y)?;
             samples.push(sample(*time, start.len(), free.len(), size, &y, &values));
         }
         Ok(samples)

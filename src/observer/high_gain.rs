@@ -167,6 +167,9 @@ impl Canonical {
             return Err(why);
         }
         let mut model = Model::clone(&task.full);
+        if model.delays.iter().any(Option::is_some) {
+            return Err("it takes outputs for states as they are read, and knows no delay".to_owned());
+        }
         if model.outputs.iter().any(|output| model.find(output).is_none()) {
             return Err("an output is not one of the states that are followed".to_owned());
         }

@@ -2,11 +2,11 @@
 
 use crate::number::Differentiable;
 use nalgebra::{Const, SMatrix};
-use num_dual::{Derivative, Dual2SVec64, DualSVec64};
+use num_dual::{Derivative, Dual2SVec64, DualNum, DualSVec64};
 
 /// A number with the derivatives of some order by `P` unknowns, and its places in a row of doubles: the value, the
 /// gradient, the lower triangle of the Hessian.
-pub(super) trait Jet: Differentiable<Base = f64> + Clone {
+pub(super) trait Jet: Differentiable<Base = f64> + DualNum<Primitive = f64> + Copy {
     /// How many doubles.
     const LENGTH: usize;
     fn unpack(places: &[f64]) -> Self;

@@ -23,6 +23,7 @@ mod integration;
 mod inversion;
 mod jet;
 mod kalman;
+mod late;
 mod learned;
 mod loss;
 mod model;

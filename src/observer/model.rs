@@ -1,6 +1,6 @@
 //! What an observer believes: the equations of some states of a system, everything else being given.
 
-use super::{Signals, calibration};
+use super::{CalibrationKind, Signals, calibration};
 use crate::expression::{NodeId, Program, Symbol};
 use crate::number::{rational_from_f64, rational_to_f64};
 use crate::system::{Kind, Role, System};
@@ -41,6 +41,9 @@ pub enum ModelError {
     /// An output is not measured.
     #[error("the output '{name}' is not among the measured columns ({columns})")]
     NotMeasured { name: String, columns: String },
+    /// The delay of what is no output is sought.
+    #[error("the delay of '{column}' cannot be sought: no output of that name depends on what is followed")]
+    DelayOfInput { column: String },
     /// An expression has no value with what is known.
     #[error("with what is told the rate of '{name}' divides by zero")]
     Pole { name: String },
@@ -88,6 +91,8 @@ pub struct Model {
     pub(super) columns: Vec<usize>,
     /// The columns of the outputs; none of those that are zero, which tie states to readings.
     pub(super) measured: Vec<Option<usize>>,
+    /// The place of the state that is an output's delay, of those whose delay is sought.
+    pub(super) delays: Vec<Option<usize>>,
     /// The system with what is known put in, the rates and the outputs in its graph: for who needs derivatives of them.
     pub(super) system: System,
     pub(super) symbols: Vec<Symbol>,
@@ -124,6 +129,7 @@ impl Model {
             seen: Formulas { program: Program::plain(&system.graph, &[]), sources: Vec::new() },
             columns: Vec::new(),
             measured: Vec::new(),
+            delays: Vec::new(),
             system,
             symbols,
             rate_nodes,
@@ -144,6 +150,8 @@ impl Model {
                 model.output_nodes.push(node);
             }
         }
+        let delay = |output: &String| model.find(&format!("{output}.{}", CalibrationKind::Delay.word()));
+        model.delays = model.outputs.iter().map(delay).collect();
         model.rates = model.formulas(&model.rate_nodes.clone(), &HashMap::new(), signals)?;
         model.seen = model.formulas(&model.output_nodes.clone(), &HashMap::new(), signals)?;
         Ok(model)

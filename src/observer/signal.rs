@@ -103,6 +103,11 @@ impl Signals {
         &self.times[self.shown.clone()]
     }
 
+    /// The mean time between two samples, in s; one where there is a single one.
+    pub(super) fn between(&self) -> f64 {
+        self.unit
+    }
+
     /// The place of a column.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|other| other == name)
@@ -159,6 +164,17 @@ impl Signals {
             let samples = &self.columns[*place][start..start + self.points];
             *value = samples.iter().zip(&basis).map(|(sample, weight)| sample * weight).sum();
         }
+    }
+
+    /// The values of some columns at a time that carries derivatives, with theirs.
+    pub(super) fn along<T: DualNum<Primitive = f64> + Copy>(&self, places: &[usize], time: T) -> Vec<T> {
+        let mut basis = [T::from(0.0); POINTS];
+        let start = self.basis(time, &mut basis);
+        let value = |place: &usize| {
+            let samples = &self.columns[*place][start..start + self.points];
+            samples.iter().zip(&basis).fold(T::from(0.0), |sum, (sample, weight)| sum + *weight * *sample)
+        };
+        places.iter().map(value).collect()
     }
 
     /// The rates of change of some columns at a time, per s.

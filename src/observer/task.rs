@@ -116,9 +116,18 @@ impl<'a> Task<'a> {
         if full.outputs.is_empty() {
             return Err(ModelError::Blind);
         }
+        let no_output = |name: &&String| match CalibrationKind::of(name) {
+            Some((column, CalibrationKind::Delay)) => !full.outputs.iter().any(|output| output == column),
+            _ => false,
+        };
+        if let Some((column, _)) = names.iter().find(no_output).and_then(|name| CalibrationKind::of(name)) {
+            return Err(ModelError::DelayOfInput { column: column.to_owned() });
+        }
         let guess: Vec<f64> = wanted.guess.iter().map(|(_, value)| *value).collect();
         let largest = guess.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let size = |(name, value): &(String, f64)| match CalibrationKind::of(name) {
+            // a delay is held against the time between two samples
+            Some((_, CalibrationKind::Delay)) => signals.between(),
             // a bias is held against what is read
             Some((column, CalibrationKind::Bias)) => {
                 let read = signals.find(column).map_or(&[][..], |place| signals.column(place));

@@ -1,4 +1,4 @@
-//! Whether gains and biases that are sought can be told at all: by the rank, before anything is read.
+//! Whether gains, biases and delays that are sought can be told at all: by the rank, before anything is read.
 
 use super::Signals;
 use super::calibration::{CalibrationKind, Sought, declare, sought};
@@ -13,6 +13,11 @@ use std::collections::HashMap;
 /// codistribution at almost all states, modulo primes, with gains and biases as states at rest. A rank falls on special sets and
 /// never rises, so that what is not seen at almost all states is seen at none; what this does not name may still be unseen, and the bound
 /// of a window says so. Nothing is named where the rank is not known, or a column drives the model that is no input.
+///
+/// Of a late output `h - d h'` is seen, on the set where the delay `d` is zero: there its differential is that of `h(x(t - d))`. What is not told there is not told
+/// of any delay: a direction `(xi, 1)` that no output shows at almost all states, `L_xi h = h'` of those that are late and zero of all others, commutes with the motion where
+/// the state is seen otherwise, and its flow then moves states and delays together so that nothing changes. Inputs, on which `h'` depends, are states that are read, driven by what
+/// is their rate of change: constant ones would tell no delay, and others may.
 pub(crate) fn not_told(system: &System, wanted: &EstimateQuestion, signals: &Signals) -> Vec<String> {
     let names: Vec<String> = wanted.guess.iter().map(|(name, _)| name.clone()).collect();
     if !names.iter().any(|name| CalibrationKind::of(name).is_some()) {
@@ -28,7 +33,16 @@ pub(crate) fn not_told(system: &System, wanted: &EstimateQuestion, signals: &Sig
         return Vec::new();
     }
     hold_constants(&mut system, &names, wanted, signals);
-    let answer = generic_answer(&system, &HashMap::new(), Ceiling::Rests);
+    let mut at = HashMap::new();
+    let late = sought(&system, &names).into_iter().filter_map(|own| Some((own.column, own.delay?)));
+    let late: Vec<(Symbol, Symbol)> = late.collect();
+    if !late.is_empty() && delayed(&mut system, &late, wanted).is_none() {
+        return Vec::new();
+    }
+    for (_, delay) in late {
+        at.insert(delay, system.graph.integer(0));
+    }
+    let answer = generic_answer(&system, &at, Ceiling::Rests);
     let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Seen::No);
     let unseen: Vec<&str> = unseen.map(|(symbol, _)| system.symbol_name(*symbol)).collect();
     names.into_iter().filter(|name| unseen.contains(&name.as_str())).collect()
@@ -49,7 +63,7 @@ fn with_calibrations(
             system.fields[place].role = Role::Other;
         }
     }
-    for Sought { column, gain, bias } in sought(system, names) {
+    for Sought { column, gain, bias, .. } in sought(system, names) {
         let name = system.symbol_name(column).to_owned();
         let [gain, bias] = [gain, bias].map(|symbol| symbol.map(|symbol| system.graph.symbol(symbol)));
         if let Some(place) = system.outputs.iter().position(|(output, _)| *output == name) {
@@ -135,4 +149,57 @@ fn hold_constants(system: &mut System, names: &[String], wanted: &EstimateQuesti
     for (output, node) in system.outputs.iter_mut().zip(nodes) {
         output.1 = node;
     }
+}
+
+/// Makes late outputs `h - d h'`, and of each input that is driven a state that is read. None where there is no drift to move them.
+fn delayed(system: &mut System, late: &[(Symbol, Symbol)], wanted: &EstimateQuestion) -> Option<()> {
+    let drift = system.drift()?;
+    let is_read = |column: &Symbol| {
+        system.outputs.iter().any(|(output, _)| output.as_str() == system.symbol_name(*column))
+    };
+    if !late.iter().all(|(column, _)| is_read(column)) {
+        // no delay is sought of what drives the model: that is said where the model is made
+        return None;
+    }
+    let mut driven: Vec<Symbol> = Vec::new();
+    for (field, name) in &wanted.inputs {
+        let place = system.fields.iter().position(|other| other.name == *field)?;
+        let symbol = system.find_symbol(name)?;
+        let input = system.graph.symbol(symbol);
+        for k in 0..system.fields[place].components.len() {
+            let (state, moved) = system.fields[place].components[k];
+            let moved = system.graph.mul(input, moved);
+            let own = system.fields[drift].components.iter().position(|(other, _)| *other == state);
+            match own {
+                Some(own) => {
+                    let before = system.fields[drift].components[own].1;
+                    system.fields[drift].components[own].1 = system.graph.add(before, moved);
+                }
+                None => system.fields[drift].components.push((state, moved)),
+            }
+        }
+        if driven.contains(&symbol) {
+            // one column drives both: it is one state
+            system.fields[place].role = Role::Other;
+            continue;
+        }
+        driven.push(symbol);
+        system.fields[place].components = vec![(symbol, system.graph.integer(1))];
+        system.fields[place].derive_anew();
+        let info = SymbolInfo { kind: Kind::State, is_angle: false, default: None, range: None };
+        system.symbols.insert(symbol, info);
+        system.states.push(symbol);
+        system.outputs.push((name.clone(), input));
+    }
+    system.fields[drift].derive_anew();
+    for (column, delay) in late {
+        let name = system.symbol_name(*column).to_owned();
+        let output = system.outputs.iter().position(|(other, _)| *other == name)?;
+        let node = system.outputs[output].1;
+        let rate = system.lie_derivative(drift, node);
+        let delay = system.graph.symbol(*delay);
+        let part = system.graph.mul(delay, rate);
+        system.outputs[output].1 = system.graph.sub(node, part);
+    }
+    Some(())
 }

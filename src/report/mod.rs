@@ -2,6 +2,7 @@
 //!
 //! Nothing is decided here.
 
+mod advice;
 mod axis;
 mod certificate;
 mod claims;
@@ -28,6 +29,8 @@ mod stress;
 mod trade;
 mod value;
 
+#[doc(hidden)]
+pub use advice::{advice_json, advice_text};
 #[doc(hidden)]
 pub use axis::unit_of;
 #[doc(hidden)]

@@ -69,7 +69,7 @@ fn every_field_of_the_json_is_named() {
         ["v.json", "paper", "out"].map(|name| folder.path().join(name).display().to_string());
     let chapter = chapter("json.md");
     let begin = chapter.split_once("\n## ").expect("parts").0;
-    let runs: [&[&str]; 16] = [
+    let runs: [&[&str]; 17] = [
         &["prove", file, "--verdicts", &verdicts],
         &["recheck", &verdicts],
         &["rank", file, "--samples", "20", "--digits", "5"],
@@ -79,6 +79,7 @@ fn every_field_of_the_json_is_named() {
         &["trade", file, "--samples", "20"],
         &["stress", file, "--samples", "20", "--states", "1"],
         &["observe", "proofs/moll2002/scenes/section_4_6.toml"],
+        &["advise", "proofs/moll2002/scenes/general.toml", "--trials", "4"],
         &["poses", "--shape", "ellipse:1.2,1", "--grid", "6", "--levels", "1"],
         &["poses", "--bodies", "1", "--family", "splines", "--margins", "0.3"],
         &["verify", file, "--out", &out],

@@ -101,6 +101,29 @@ fn gains_biases_and_delays_of_sensors_are_found_or_undone() {
     }
 }
 
+/// Delays of the contacts, alike and not, are found beside the state within four of their bounds in each regime, and the bound is a small part of them. What is
+/// late was made so by the simulation, from the motion itself.
+#[test]
+fn delays_of_contacts_are_found() {
+    for name in REGIMES {
+        for delays in [[1e-3, 0.0], [1e-3, 1e-3], [0.0, 5e-3]] {
+            let sensor =
+                format!("[sensor.s1]\ndelay = {:e}\n[sensor.s2]\ndelay = {:e}\n", delays[0], delays[1]);
+            let seeker = experiment(&seeking(name, "s1.delay\", \"s2.delay", &sensor));
+            let truth = seeker.truth_at(0.0).unwrap();
+            assert_eq!(truth[3..5], delays, "{name}");
+            let update = first(&seeker);
+            assert!(update.is_borne_out(), "{name}, {delays:?}: {update:?}");
+            for ((found, truth), bound) in update.estimate.iter().zip(&truth).zip(&update.deviations) {
+                assert!((found - truth).abs() < 4.0 * bound, "{name}, {delays:?}: {update:?}");
+            }
+            assert!(update.deviations[3..5].iter().all(|bound| *bound < 2e-4), "{name}: {update:?}");
+            let told = |what: &str| update.suspects.iter().any(|suspect| suspect.to_string().contains(what));
+            assert!(!told("delay"), "what is sought is under no suspicion");
+        }
+    }
+}
+
 /// Of a spring that swings freely no reading of its place tells the gain from the amplitude; where gravity pulls, they do.
 #[test]
 fn what_the_rank_does_not_tell_is_refused_in_words() {
@@ -134,6 +157,14 @@ fn what_the_rank_does_not_tell_is_refused_in_words() {
     assert!(refusal(&output, &found).0.starts_with("no readings tell 'u.gain'"), "{found}");
     let (output, found) = observe(&scene("free", "w.gain"), &[]);
     assert!(refusal(&output, &found).0.contains("'w.gain' is no state"), "{found}");
+    // what is late of a free motion is another one of it; what drives it and is on time tells the delay
+    let (output, found) = observe(&scene("free", "x.delay"), &[]);
+    assert_eq!(refusal(&output, &found).0, "no readings tell 'x.delay' from v: the rank is short of them");
+    write(&folder, "driven.proof", model("").replace("v' = 0", "v' = 1"));
+    let (output, found) = observe(&scene("driven", "x.delay"), &[]);
+    assert_ne!(output.status.code(), Some(2), "{found}");
+    let (output, found) = observe(&scene("driven", "u.delay"), &[]);
+    assert!(refusal(&output, &found).0.starts_with("the delay of 'u' cannot be sought"), "{found}");
     // it is told from the amplitude by gravity, and the readings then contradict a model that has it
     let (output, _) = observe(&scene("hung", "x.gain"), &[]);
     assert_eq!(output.status.code(), Some(1));

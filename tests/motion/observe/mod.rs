@@ -3,6 +3,7 @@
 //! The motions come from `palmistry::mechanics`, which knows no equation of the thesis; the observers know only readings and
 //! the equations of `general.proof`. What is recovered is held against the body itself, never against another run.
 
+mod advice;
 mod broken;
 mod channels;
 mod circular;
