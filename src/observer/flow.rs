@@ -153,7 +153,8 @@ impl ModelFlow<'_> {
             };
             for (output, delay) in model.delays.iter().enumerate() {
                 let Some(delay) = delay.map(|place| states[place]) else { continue };
-                let before = states_before(&followed, time, &states, delay, self.signals.between())?;
+                let before = states_before(&followed, time, &states, delay, self.signals.between())
+                    .map_err(|why| Lost { time, why })?;
                 let then = evaluate_at(&model.seen, &seen, J::constant(time) - delay, &before);
                 values[output] = then.map_err(|error| refuse(time, error.refusal))?[output];
             }

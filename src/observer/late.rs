@@ -4,7 +4,6 @@
 //! method of Runge and Kutta, in numbers that carry the derivatives by all unknowns, `d` among them; columns are their curves at
 //! times that carry them too. A delay is a few steps between samples, in which the method errs by less than the curves do.
 
-use super::Lost;
 use super::jet::Jet;
 use crate::number::Refusal;
 
@@ -17,21 +16,20 @@ const PARTS: f64 = 2.0;
 /// The states a delay before a sample, from those at it: `rates` gives theirs at a time, `between` is the time between two samples.
 ///
 /// # Errors
-/// Where the delay is longer than [`MOST_STEPS`], or the equations have no value.
+/// In words where the delay is longer than [`MOST_STEPS`], or the equations have no value.
 pub(super) fn states_before<J: Jet>(
     rates: &dyn Fn(J, &[J]) -> Result<Vec<J>, Refusal>,
     time: f64,
     states: &[J],
     delay: J,
     between: f64,
-) -> Result<Vec<J>, Lost> {
-    let lost = |why: String| Lost { time, why };
+) -> Result<Vec<J>, String> {
     let back = delay.base().abs() / between;
     if back.is_nan() || back > MOST_STEPS {
-        return Err(lost(format!(
+        return Err(format!(
             "a delay of {:.1e} s is more than {MOST_STEPS} times the time between samples",
             delay.base()
-        )));
+        ));
     }
     let steps = (PARTS * back).ceil().max(1.0);
     let step = -delay / J::constant(steps);
@@ -51,7 +49,7 @@ pub(super) fn states_before<J: Jet>(
             let sixth = step / J::constant(6.0);
             Ok((0..states.len()).map(|i| states[i] + sum(i) * sixth).collect::<Vec<J>>())
         })();
-        states = next.map_err(|refusal: Refusal| lost(format!("the model has no value: {refusal}")))?;
+        states = next.map_err(|refusal: Refusal| format!("the model has no value: {refusal}"))?;
         now += step;
     }
     Ok(states)

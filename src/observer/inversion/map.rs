@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::ops::Range;
 
-/// Derivatives of higher order are not asked of readings.
+/// SignalDerivatives of higher order are not asked of readings.
 const MOST_ORDER: usize = 7;
 
 /// Maps of more operations are not evaluated.
@@ -32,14 +32,14 @@ enum Source {
 pub struct ObservabilityMap {
     program: Program,
     sources: Vec<Source>,
-    /// Derivatives of outputs, order by order: so many rows.
+    /// SignalDerivatives of outputs, order by order: so many rows.
     pub rows: usize,
     outputs: usize,
     states: usize,
 }
 
 /// The derivatives of columns at a time, by the column and the order.
-pub type Derivatives = HashMap<usize, Vec<f64>>;
+pub type SignalDerivatives = HashMap<usize, Vec<f64>>;
 
 /// The derivatives of a column at a time, by the polynomial of least squares through the rows about it.
 fn derivatives(
@@ -153,7 +153,7 @@ impl ObservabilityMap {
         rows: &Range<usize>,
         row: usize,
         (stretch, degree): (usize, usize),
-    ) -> Option<Derivatives> {
+    ) -> Option<SignalDerivatives> {
         let half = stretch / 2;
         let first = row.saturating_sub(half).clamp(rows.start, rows.end - stretch);
         let near = first..first + stretch;
@@ -163,7 +163,7 @@ impl ObservabilityMap {
             Source::Signal(column, _) => Some(*column),
             Source::State(_) => None,
         });
-        let mut given = Derivatives::new();
+        let mut given = SignalDerivatives::new();
         for column in columns.chain(driving) {
             if let Entry::Vacant(place) = given.entry(column) {
                 let values = task.signals.column(column);
@@ -174,7 +174,7 @@ impl ObservabilityMap {
     }
 
     /// The rows at a state, and their derivatives by all states.
-    pub fn at(&self, state: &[f64], given: &Derivatives) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    pub fn at(&self, state: &[f64], given: &SignalDerivatives) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let input = |source: &Source| match *source {
             Source::State(place) => state[place],
             Source::Signal(column, order) => given[&column].get(order).copied().unwrap_or(0.0),
@@ -197,7 +197,7 @@ impl ObservabilityMap {
     fn is_regular(
         &self,
         state: &[f64],
-        given: &Derivatives,
+        given: &SignalDerivatives,
         segments: &Segments<'_>,
         free: &[usize],
     ) -> bool {
@@ -215,7 +215,7 @@ impl ObservabilityMap {
     }
 
     /// What was read of the rows.
-    pub fn read(&self, task: &Task<'_>, given: &Derivatives) -> Vec<f64> {
+    pub fn read(&self, task: &Task<'_>, given: &SignalDerivatives) -> Vec<f64> {
         let one = |row: usize| {
             let column = task.full.measured[row % self.outputs];
             column.and_then(|column| given[&column].get(row / self.outputs).copied()).unwrap_or(0.0)

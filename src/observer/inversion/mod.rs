@@ -11,7 +11,7 @@ mod map;
 use super::nodes::{Bounds, Nodes, Segments};
 use super::starts::range;
 use super::task::Task;
-use map::{Derivatives, ObservabilityMap};
+use map::{ObservabilityMap, SignalDerivatives};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -90,7 +90,7 @@ fn solved(
     draws: &[Vec<f64>],
 ) -> Option<Nodes> {
     let at = |segment: &Range<usize>| map.given(task, rows, rows.start + segment.start, polynomials);
-    let given: Vec<Derivatives> = segments.rows.iter().map(at).collect::<Option<_>>()?;
+    let given: Vec<SignalDerivatives> = segments.rows.iter().map(at).collect::<Option<_>>()?;
     let read: Vec<Vec<f64>> = given.iter().map(|given| map.read(task, given)).collect();
     // a row counts in units of what it is in the window
     let size = |row: usize| {
@@ -142,7 +142,7 @@ struct Inversion<'a> {
     map: &'a ObservabilityMap,
     segments: &'a Segments<'a>,
     bounds: &'a Bounds,
-    given: &'a [Derivatives],
+    given: &'a [SignalDerivatives],
     read: &'a [Vec<f64>],
     sizes: &'a [f64],
 }

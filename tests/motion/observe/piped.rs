@@ -106,7 +106,7 @@ fn scenes_of_palms_are_read_from_a_pipe() {
     let all = scenes("proofs/moll2002/scenes");
     let is_slow = |path: &&PathBuf| std::fs::read_to_string(path).unwrap().contains("quasistatic");
     let (slow, quick): (Vec<&PathBuf>, Vec<&PathBuf>) = all.iter().partition(is_slow);
-    assert_eq!((slow.len(), quick.len()), (3, 8));
+    assert_eq!((slow.len(), quick.len()), (4, 8));
     quick.into_iter().for_each(|scene| a_recording_gives_the_same(scene));
     for scene in slow {
         let simulated = json(&palmistry(&["observe", scene.to_str().unwrap(), "--json"]));
@@ -122,7 +122,7 @@ fn scenes_of_palms_are_read_from_a_pipe() {
 #[test]
 fn what_slow_motion_has_not_is_refused() {
     let scene =
-        &scenes("proofs/moll2002/scenes").into_iter().find(|p| p.ends_with("slow_jump.toml")).unwrap();
+        &scenes("proofs/moll2002/scenes").into_iter().find(|p| p.ends_with("slow_touchpad.toml")).unwrap();
     let folder = folder();
     let out = folder.path().join("parts");
     let out = out.to_str().unwrap();
