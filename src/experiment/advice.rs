@@ -310,9 +310,11 @@ fn within(mut course: Course, ([low, high], rate): PalmLimits, duration: f64) ->
         if keeps || (course.rate == 0.0 && course.swings.iter().all(|swing| swing.amplitude == 0.0)) {
             return course;
         }
-        course.rate = if course.rate.abs() < 2.0 * STEP { 0.0 } else { 0.8 * course.rate };
+        // four fifths of two steps are rounded to two again
+        let less = |value: f64| if value.abs() < 2.5 * STEP { 0.0 } else { 0.8 * value };
+        course.rate = less(course.rate);
         for swing in &mut course.swings {
-            swing.amplitude = if swing.amplitude < 2.0 * STEP { 0.0 } else { 0.8 * swing.amplitude };
+            swing.amplitude = less(swing.amplitude);
         }
     }
 }

@@ -32,7 +32,7 @@ pub struct Shooting {
 
 impl Default for Shooting {
     fn default() -> Self {
-        Shooting { segments: 24, starts: 8, derivatives: true }
+        Shooting { segments: 24, starts: 8, derivatives: false }
     }
 }
 
