@@ -301,7 +301,12 @@ proptest! {
             match &path.ended {
                 Ended::Completed => prop_assert_eq!(path.moments.len(), 401),
                 Ended::ContactLost { palm, time } => {
-                    prop_assert!(last.time == *time && last.palms[palm - 1].force < 1e-6);
+                    let force = last.palms[palm - 1].force;
+                    // forces are quotients by the contact's height over the other palm, twice: as contacts come to the joint of palms that
+                    // become one line their rounding grows by its square (2e-5 N was met at 20 micrometres)
+                    let height = last.palms[palm - 1].s * last.palms[1].angle.sin();
+                    let rounding = 1e2 * f64::EPSILON / (height * height);
+                    prop_assert!(last.time == *time && force < 1e-6 + rounding, "{force:e} N at {height:e} m");
                 }
                 Ended::OutOfPalm { palm, time } => {
                     prop_assert!(*palm == 1 && last.time == *time && (last.palms[0].s - length).abs() < 1e-9);
