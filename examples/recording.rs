@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! true at the end: omega = 0.8240 rad/s, k = 2.0000 1/s^2
-//! moving window: omega = 0.8243 rad/s, k = 1.9965 1/s^2
+//! moving window: omega = 0.8249 rad/s, k = 1.9943 1/s^2
 //! Kalman filter: omega = 0.8236 rad/s, k = 2.0014 1/s^2
 //! high gain: omega = -1.0943 rad/s, k = 1.8317 1/s^2
 //! ```
