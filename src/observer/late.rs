@@ -13,12 +13,15 @@ pub const MOST_STEPS: f64 = 16.0;
 /// So many steps of the method lie between two samples, at least.
 const PARTS: f64 = 2.0;
 
+/// The rates of the states at a time.
+type RatesAt<'f, J> = dyn Fn(J, &[J]) -> Result<Vec<J>, Refusal> + 'f;
+
 /// The states a delay before a sample, from those at it: `rates` gives theirs at a time, `between` is the time between two samples.
 ///
 /// # Errors
 /// In words where the delay is longer than [`MOST_STEPS`], or the equations have no value.
 pub(super) fn states_before<J: Jet>(
-    rates: &dyn Fn(J, &[J]) -> Result<Vec<J>, Refusal>,
+    rates: &RatesAt<'_, J>,
     time: f64,
     states: &[J],
     delay: J,

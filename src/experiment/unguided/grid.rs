@@ -126,10 +126,7 @@ fn solved(rows: &[Row], [rate, slope]: [f64; 2], least: f64) -> Option<(Unknowns
     let mut y = [0.0; 4];
     for i in 0..4 {
         for j in 0..=i {
-            let mut value = m[i][j];
-            for k in 0..j {
-                value -= m[i][k] * m[j][k];
-            }
+            let value = (0..j).fold(m[i][j], |value, k| value - m[i][k] * m[j][k]);
             if i == j {
                 if value <= 1e-13 * m[i][i] {
                     return None;
