@@ -86,8 +86,7 @@ fn advance(scene: &MovingScene, from: TimedState, end: f64, longest: f64) -> Res
 }
 
 /// Where the contacts hold for the last time between a state in which they do and a time at which they do not, by
-/// bisection. Each state is integrated from the last one that held, so that all of them are of one motion: integrated from the first
-/// one they differ by the tolerance, which near parallel palms is more in the forces than what is sought.
+/// bisection; each state is integrated from the last one that held.
 fn locate(scene: &MovingScene, held: TimedState, broken: f64, mut by: Breach) -> (TimedState, Breach) {
     let (mut low, mut high) = (held, broken);
     while high - low.time > LOCATED {

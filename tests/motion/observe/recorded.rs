@@ -65,6 +65,18 @@ fn a_recording_gives_the_same_answers_as_the_simulation() {
     }
 }
 
+/// A scene's head and its observer, and nothing that is simulated.
+fn without_body(whole: &str) -> (String, String) {
+    let (head, rest) = whole.split_once("[body]").unwrap();
+    let observer = &rest[rest.find("[observer]").unwrap()..];
+    let head: String = head
+        .lines()
+        .filter(|line| !line.starts_with("duration") && !line.starts_with("samples"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    (head, observer.to_owned())
+}
+
 /// A guess that is off is off the body that the scene describes; where it describes none it is refused.
 #[test]
 fn a_guess_off_needs_what_it_is_off_from() {
@@ -78,18 +90,12 @@ fn a_guess_off_needs_what_it_is_off_from() {
         let guess = found["first_guess"][name].as_f64().unwrap();
         assert!((guess / truth - 1.1).abs() < 1e-9, "{name}: {guess} and {truth}");
     }
-    let whole = text("same_rate");
-    let (head, rest) = whole.split_once("[body]").unwrap();
-    let observer = &rest[rest.find("[observer]").unwrap()..];
-    let head: String = head
-        .lines()
-        .filter(|line| !line.starts_with("duration") && !line.starts_with("samples"))
-        .map(|line| format!("{line}\n"))
-        .collect();
-    let alone = write(&folder, "alone.toml", format!("{head}{observer}"));
-    let (output, found) = replayed(&alone, &path);
+    let (head, observer) = without_body(&text("same_rate"));
+    let alone = write(&folder, "alone.toml", format!("{head}{observer}\n[data]\nrecord = \"x.csv\"\n"));
+    let (output, found) = observe(&alone, &[]);
     let (message, help) = refusal(&output, &found);
-    assert!(!message.is_empty() && !help.is_empty(), "{found}");
+    assert_eq!(message, "recorded data has no truth from which a guess could be off");
+    assert!(help.contains("give the first guess itself"), "{help}");
 }
 
 /// A scene that names its file itself and describes no body, told the constants that a body would have had.
@@ -99,15 +105,9 @@ fn a_scene_without_a_body_takes_constants_and_file_as_told() {
     let (_, simulated) = record(&folder, &scene(&folder, "stop"), "x.csv");
     let told = &simulated["told"];
     let known = ["m", "g", "I1", "I2", "rho"].map(|name| format!("{name} = {}", told[name]));
-    let whole = std::fs::read_to_string(folder.path().join("scene.toml")).unwrap();
-    let (head, rest) = whole.split_once("[body]").unwrap();
-    let observer = &rest[rest.find("[observer]").unwrap()..];
-    let head: String = head
-        .lines()
-        .filter(|line| !line.starts_with("duration") && !line.starts_with("samples"))
-        .map(|line| format!("{line}\n"))
-        .collect();
-    let observer = with(observer, "window = 80", &format!("window = 80\nknown = {{ {} }}", known.join(", ")));
+    let (head, observer) = without_body(&std::fs::read_to_string(folder.path().join("scene.toml")).unwrap());
+    let observer =
+        with(&observer, "window = 80", &format!("window = 80\nknown = {{ {} }}", known.join(", ")));
     let observer = with(&observer, "[data]\n", "[data]\nrecord = \"x.csv\"\n");
     let alone = write(&folder, "alone.toml", format!("{head}{observer}"));
     let (output, found) = observe(&alone, &[]);
