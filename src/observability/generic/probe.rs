@@ -9,6 +9,7 @@ use crate::observability::State;
 use crate::system::{Assignment, System};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Random points that are poles are drawn again so often.
 pub(super) const ATTEMPTS: usize = 40;
@@ -50,6 +51,8 @@ pub(super) fn seen_in(echelon: &Echelon, asked: &[Vec<u64>]) -> Vec<bool> {
 /// The equations of a system, to be evaluated at random points modulo random primes.
 pub struct Probe {
     pub(super) equations: Equations,
+    /// So many coefficients sufficed at the point before. Where they do not there are more: the answer does not depend on them.
+    sufficed: AtomicUsize,
 }
 
 /// Where a probe was run.
@@ -68,7 +71,7 @@ impl Probe {
 
     /// The same, which asks of functions besides whether they are seen.
     pub(super) fn asking(system: &System, conditions: &Assignment, asked: &[NodeId]) -> Probe {
-        Probe { equations: Equations::new(system, conditions, asked) }
+        Probe { equations: Equations::new(system, conditions, asked), sufficed: AtomicUsize::new(0) }
     }
 
     /// The rank by order, at one start: outputs are differentiated while a derivative adds to the span.
@@ -77,7 +80,11 @@ impl Probe {
         let full = equations.columns.len();
         let most = equations.closed.len().max(1);
         let outputs = equations.outputs.max(1);
-        let mut length = if rests { (most.div_ceil(outputs) + 2).min(most) } else { most };
+        let mut length = match self.sufficed.load(Ordering::Relaxed) {
+            _ if !rests => most,
+            0 => (most.div_ceil(outputs) + 2).min(most),
+            before => before,
+        };
         loop {
             let trajectory = equations.trajectory(draw.field, start, (draw.seed, draw.signs), length)?;
             let one = draw.field.one();
@@ -93,8 +100,9 @@ impl Probe {
                 equations.columns.iter().map(|place| value[*place]).collect()
             };
             let asked: Vec<Vec<u64>> = open.split_off(equations.outputs).iter().map(of_unknowns).collect();
-            let (mut order, mut spanned) = (0, 0);
+            let (mut order, mut spanned, mut taken) = (0, 0, 0);
             for k in 0..length {
+                taken = k + 1;
                 let mut further = Vec::new();
                 for covector in open {
                     let value = covector.value();
@@ -123,6 +131,9 @@ impl Probe {
                 }
             }
             if open.is_empty() || spanned == all || length >= most {
+                if rests {
+                    self.sufficed.fetch_max(taken, Ordering::Relaxed);
+                }
                 return Ok(Evaluated { echelon, asked, closed: spanned, order });
             }
             length = (2 * length).min(most);

@@ -1,6 +1,7 @@
 //! Vector fields in symbols that lie in the kernel: with constant components, scalings, of low degree, of low degree over a
 //! common denominator. Each is a solution of linear equations at random points modulo a prime, and proved elsewhere.
 
+use super::ATTEMPTS;
 use super::kernel::{Block, Kernel, KernelSource, Point};
 use super::modular::{Echelon, in_integers, rank, simple_vectors};
 use super::monomial::{Monomial, Polynomial, count, in_brackets, monomials, polynomial_text, value};
@@ -192,10 +193,13 @@ impl Search<'_> {
         if self.is_complete() {
             return;
         }
-        let Some((point, kernel)) = self.source.sample(Some(self.free), rng) else { return };
-        let columns = kernel.basis.first().map_or(0, Vec::len);
-        let all = self.chosen.iter().chain([&field]).map(|field| field.at(self.source, &point, columns));
-        let Some(rows) = all.collect::<Option<Vec<_>>>() else { return };
+        // any point at which the fields have values: what is not seen there is not asked for
+        let at_one_point = |_| {
+            let point = self.source.draw(rng);
+            let all = self.chosen.iter().chain([&field]);
+            all.map(|field| field.at(self.source, &point, self.source.columns())).collect::<Option<Vec<_>>>()
+        };
+        let Some(rows) = (0..ATTEMPTS).find_map(at_one_point) else { return };
         if rank(self.source.residues, &rows) == rows.len() {
             self.chosen.push(field);
         }

@@ -132,6 +132,11 @@ impl KernelSource {
         KernelSource { residues, feeds, mentioned, coordinates, evaluation, variables }
     }
 
+    /// How many columns there are.
+    pub fn columns(&self) -> usize {
+        self.coordinates.len()
+    }
+
     /// The coordinate of a column.
     pub fn coordinate(&self, column: usize) -> Symbol {
         self.coordinates[column]

@@ -45,6 +45,14 @@ fn length(vector: &[i64]) -> (i64, usize) {
     (powers, vector.iter().filter(|e| **e != 0).count())
 }
 
+/// [`length`] of a [`combination`], which is formed for few of those that are looked at.
+fn combined_length(a: &[i64], b: &[i64], factor: i64) -> Option<(i64, usize)> {
+    a.iter().zip(b).try_fold((0i64, 0), |(powers, count), (x, y)| {
+        let entry = x.checked_add(factor.checked_mul(*y)?)?;
+        Some((powers.saturating_add(entry.saturating_abs()), count + usize::from(entry != 0)))
+    })
+}
+
 /// Adds and subtracts vectors of the basis as long as one gets shorter.
 fn reduce(vectors: &mut [Vec<i64>]) -> Option<()> {
     loop {
@@ -52,9 +60,9 @@ fn reduce(vectors: &mut [Vec<i64>]) -> Option<()> {
         for at in 0..vectors.len() {
             for other in (0..vectors.len()).filter(|other| *other != at) {
                 for factor in [1, -1] {
-                    let next = combination(&vectors[at], &vectors[other], factor)?;
-                    if length(&next) < length(&vectors[at]) {
-                        vectors[at] = next;
+                    let (here, there) = (&vectors[at], &vectors[other]);
+                    if combined_length(here, there, factor)? < length(here) {
+                        vectors[at] = combination(here, there, factor)?;
                         shorter = true;
                     }
                 }
