@@ -2,7 +2,7 @@
 
 use numpy::PyArray1;
 use palmistry::certificate::RegionAnswer;
-use palmistry::experiment::{Answer, Basin, Experiment, NoiseLevel, shown};
+use palmistry::experiment::{Answer, Experiment, Studied, shown};
 use palmistry::observer::Record;
 use palmistry::report::{
     ClaimsForm, ClaimsSummary, Layout, Observed, Shown, claim_json, claims_html, claims_json, claims_text,
@@ -128,8 +128,7 @@ impl CertificateFound {
 pub struct ObservationFound {
     pub experiment: Experiment,
     pub answers: Vec<Answer>,
-    pub noise: Vec<NoiseLevel>,
-    pub basins: Vec<Basin>,
+    pub studied: Studied,
     pub times: bool,
 }
 
@@ -138,8 +137,7 @@ impl ObservationFound {
         Observed {
             experiment: &self.experiment,
             answers: &self.answers,
-            noise: &self.noise,
-            basins: &self.basins,
+            studied: &self.studied,
             interrupted: false,
         }
     }

@@ -4,7 +4,7 @@ use crate::answers::{ObservationFound, printed};
 use crate::errors::{unreadable, unusable};
 use crate::work::interruptible;
 use palmistry::ReadError;
-use palmistry::experiment::{Answer, Experiment, Scene, basins, noise_study};
+use palmistry::experiment::{Answer, Experiment, Scene, Studied, basins, curvature_map, noise_study};
 use palmistry::paper::{Paper, VerifyOptions, verify as verify_paper};
 use palmistry::report::{
     expression_latex, findings_json, forget_seconds, forget_times, page, statement_latex,
@@ -38,24 +38,26 @@ pub fn observe(
         let mut scene = Scene::read(&scene)?;
         scene.seed = seed.unwrap_or(scene.seed);
         let experiment = Experiment::new(scene, data.as_deref())?;
-        let study = &experiment.scene.study;
-        if studies && (experiment.simulated().is_none() || study.noise.is_none() && study.basin.is_none()) {
+        if studies && (experiment.simulated().is_none() || experiment.scene.study.is_empty()) {
             return Err(Trouble::NoStudies);
         }
         let mut answers = experiment.run_with_shape(interrupt, &|_| ())?;
         if !times {
             answers.iter_mut().for_each(Answer::forget_times);
         }
-        let (mut noise, mut maps) = (Vec::new(), Vec::new());
+        let (mut studied, study) = (Studied::default(), &experiment.scene.study);
         if let (true, Some(motion)) = (studies, experiment.simulated()) {
             if let Some(settings) = &study.noise {
-                noise = noise_study(&experiment, motion, settings, interrupt, &|| ())?;
+                studied.noise = noise_study(&experiment, motion, settings, interrupt, &|| ())?;
             }
             if let Some(settings) = &study.basin {
-                maps = basins(&experiment, settings, interrupt, &|| ())?;
+                studied.basins = basins(&experiment, settings, interrupt, &|| ())?;
+            }
+            if let Some(settings) = &study.curvature {
+                studied.curvature = Some(curvature_map(&experiment, settings, interrupt, &|| ())?);
             }
         }
-        Ok(ObservationFound { experiment, answers, noise, basins: maps, times })
+        Ok(ObservationFound { experiment, answers, studied, times })
     })?;
     found.map_err(|trouble| match trouble {
         Trouble::Read(error) => unreadable(py, &error),

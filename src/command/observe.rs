@@ -9,8 +9,8 @@ use clap::Args;
 use indicatif::ProgressBar;
 use palmistry::experiment::slow::SlowScene;
 use palmistry::experiment::{
-    Answer, Basin, Experiment, NoiseLevel, Reconstruction, Scene, SceneError, Studies, StudyPart, basins,
-    noise_study, shown,
+    Answer, Experiment, Reconstruction, Scene, SceneError, Studied, Studies, StudyPart, basins,
+    curvature_map, noise_study, shown,
 };
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
@@ -102,18 +102,17 @@ impl Observe {
             let message = "a study needs the truth, and readings from a file have none";
             return Err(Unusable::report(message, "leave out --studies, or simulate"));
         }
-        let study = &experiment.scene.study;
-        if asks_for_studies && study.noise.is_none() && study.basin.is_none() {
+        if asks_for_studies && experiment.scene.study.is_empty() {
             let message = "the scene has no studies";
             return Err(Unusable::report(
                 message,
-                "add [study.noise] or [study.basin] to it, or leave out --studies",
+                "add [study.noise], [study.basin] or [study.curvature] to it, or leave out --studies",
             ));
         }
         let merged = if self.shards.are_asked() {
             match self.shard_or_merge(&experiment, &bar)? {
                 Sharded::Done(status) => return Ok(status),
-                Sharded::Merged(noise, basins) => Some((noise, basins)),
+                Sharded::Merged(studied) => Some(studied),
             }
         } else {
             None
@@ -152,20 +151,15 @@ impl Observe {
             answers.iter_mut().for_each(Answer::forget_times);
         }
         self.write_shape(&experiment, &answers, &mut files)?;
-        let (noise, basins) = match merged {
+        let studied = match merged {
             Some(merged) => merged,
             None if self.studies => studies(&experiment)?,
-            None => (Vec::new(), Vec::new()),
+            None => Studied::default(),
         };
         begin_to_tell();
         let interrupted = interrupted();
-        let observed = Observed {
-            experiment: &experiment,
-            answers: &answers,
-            noise: &noise,
-            basins: &basins,
-            interrupted,
-        };
+        let observed =
+            Observed { experiment: &experiment, answers: &answers, studied: &studied, interrupted };
         let mut json = observe_json(&observed);
         if no_times {
             forget_seconds(&mut json);
@@ -199,7 +193,7 @@ impl Observe {
 enum Sharded {
     /// A shard was done, or those were told that are missing.
     Done(Status),
-    Merged(Vec<NoiseLevel>, Vec<Basin>),
+    Merged(Studied),
 }
 
 impl Observe {
@@ -232,7 +226,7 @@ impl Observe {
         }
         let all = self.shards.merge.as_ref().map_or_else(|| Ok(Vec::new()), |folder| parts.all(folder))?;
         let merged = studies.merge(all).map_err(|why| Unusable::report(why.to_string(), NO_WHOLE))?;
-        Ok(Sharded::Merged(merged.0, merged.1))
+        Ok(Sharded::Merged(merged))
     }
 }
 
@@ -323,21 +317,26 @@ impl Observe {
     }
 }
 
-fn studies(experiment: &Experiment) -> Result<(Vec<NoiseLevel>, Vec<Basin>), SceneError> {
+fn studies(experiment: &Experiment) -> Result<Studied, SceneError> {
     let study = &experiment.scene.study;
     let counted = |length: usize, what: &'static str| -> ProgressBar { progress(length as u64, what) };
-    let mut noise = Vec::new();
+    let mut studied = Studied::default();
     if let (Some(settings), Some(simulation)) = (&study.noise, experiment.simulated()) {
         let bar = counted(settings.levels.len() * settings.seeds, "seeds");
-        noise = noise_study(experiment, simulation, settings, &INTERRUPTED, &|| bar.inc(1))?;
+        studied.noise = noise_study(experiment, simulation, settings, &INTERRUPTED, &|| bar.inc(1))?;
         bar.finish_and_clear();
     }
-    let mut maps = Vec::new();
     if let Some(settings) = &study.basin {
         let guesses = settings.points.pow(2) * experiment.scene.observer.methods.len();
         let bar = counted(guesses, "first guesses");
-        maps = basins(experiment, settings, &INTERRUPTED, &|| bar.inc(1))?;
+        studied.basins = basins(experiment, settings, &INTERRUPTED, &|| bar.inc(1))?;
         bar.finish_and_clear();
     }
-    Ok((noise, maps))
+    if let Some(settings) = &study.curvature {
+        let motions = settings.orientations.len() * settings.rates.len();
+        let bar = counted(motions * (1 + settings.points.pow(2)), "bounds");
+        studied.curvature = Some(curvature_map(experiment, settings, &INTERRUPTED, &|| bar.inc(1))?);
+        bar.finish_and_clear();
+    }
+    Ok(studied)
 }

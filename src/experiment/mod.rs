@@ -3,7 +3,7 @@
 //! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
 //! from a TOML file and checked value by value. A [`Simulation`] moves its body, a [`SystemMotion`] any other system by its own equations; an
 //! [`Experiment`] is a scene with its readings, and runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`],
-//! [`basins`], or stretch by stretch as [`Studies`]); a [`Reconstruction`] is the shape that all of it tells.
+//! [`basins`], [`curvature_map`], or stretch by stretch as [`Studies`]); a [`Reconstruction`] is the shape that all of it tells.
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 
@@ -40,7 +40,7 @@ pub use run::{Answer, Experiment};
 #[doc(hidden)]
 pub use scene::SceneOutline;
 #[doc(hidden)]
-pub use scene::{BasinStudy, NoiseStudy};
+pub use scene::{BasinStudy, CurvatureStudy, NoiseStudy};
 pub use scene::{Channel, Data, Guess, Method, ObserverSettings, Scene, SceneColumn, SceneError, Sensor};
 #[doc(hidden)]
 pub use simulation::NOMINAL;
@@ -49,5 +49,10 @@ pub use stream::{StreamAnswer, StreamEnd, StreamPiece, StreamTally, WindowReport
 #[doc(hidden)]
 pub use study::ARRIVED;
 #[doc(hidden)]
-pub use study::{Basin, NoiseLevel, Studies, StudyMergeError, StudyPart, basins, noise_study};
+pub(crate) use study::NOT_STUDIED;
+#[doc(hidden)]
+pub use study::{
+    Basin, CurvatureMap, CurvatureRatio, NoiseLevel, Studied, StudiedMotion, Studies, StudyMergeError,
+    StudyPart, Told, basins, curvature_map, noise_study,
+};
 pub use system_motion::SystemMotion;

@@ -223,7 +223,11 @@ pub(super) fn body(scene: &Scene, simulated: &Simulated) -> Result<(Shape, Optio
     })
 }
 
-/// Constants of the bodies by the names that the thesis gives them: `m`, `rho`, `I1`, `I2`, `g`, and `b1`, `b2` of circular
+/// The radius of a flat palm to a model of circular ones, in m. An arc of this radius departs from its tangent by `s^2/b/2`, and doubles
+/// tell `b (cos(s/b) - 1)` to an eighth of `b eps`: both are about a hundred-millionth of a metre here.
+const FLAT: f64 = 1e8;
+
+/// Constants of the bodies by the names that the thesis gives them: `m`, `rho`, `I1`, `I2`, `g`, and `b1`, `b2` of models of circular
 /// palms.
 pub(super) fn constants(scene: &Scene, simulated: &Simulated, shape: &Shape) -> BTreeMap<String, f64> {
     let (body, inertia) = (&simulated.body, simulated.palms.inertia);
@@ -234,9 +238,9 @@ pub(super) fn constants(scene: &Scene, simulated: &Simulated, shape: &Shape) -> 
         ("I2", inertia[1]),
         ("g", body.gravity),
     ];
-    let radii = ["b1", "b2"].into_iter().zip(scene.palm_forms).filter_map(|(name, form)| match form {
-        Palm::Circular { radius } => Some((name, radius)),
-        Palm::Flat => None,
+    let radii = ["b1", "b2"].into_iter().zip(scene.palm_forms).map(|(name, form)| match form {
+        Palm::Circular { radius } => (name, radius),
+        Palm::Flat => (name, FLAT),
     });
     constants.into_iter().chain(radii).map(|(name, value)| (name.to_owned(), value)).collect()
 }

@@ -212,6 +212,31 @@ pub struct Study {
     pub noise: Option<NoiseStudy>,
     /// `[study.basin]`: from which first guesses the search arrives.
     pub basin: Option<BasinStudy>,
+    /// `[study.curvature]`: what palms of other curvatures tell.
+    pub curvature: Option<CurvatureStudy>,
+}
+
+impl Study {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        *self == Study::default()
+    }
+}
+
+/// Pairs of palms of other forms, each tried in several motions of the body.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CurvatureStudy {
+    /// `range`: the least and the greatest curvature of either palm, in 1/m: above zero of hollow palms, zero of flat ones.
+    pub range: [f64; 2],
+    /// `points`: how many curvatures of each palm, both ends included.
+    pub points: usize,
+    /// `orientations`: `phi0` at the start of each motion, in rad.
+    pub orientations: Vec<f64>,
+    /// `rates`: `omega0` at the start, in rad/s; each orientation begins with each rate.
+    pub rates: Vec<f64>,
+    /// `noise`: the standard deviation of the contacts' readings, in m.
+    pub noise: f64,
 }
 
 /// Each level of noise, tried with many seeds.

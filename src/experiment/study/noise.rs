@@ -167,7 +167,7 @@ fn noisy(experiment: &Experiment, simulation: &dyn KnownMotion, noise: f64, seed
 }
 
 /// A task whose outputs are read with errors of one level.
-fn at_level<'a>(experiment: &Experiment, task: &Task<'a>, noise: f64) -> Task<'a> {
+pub(super) fn at_level<'a>(experiment: &Experiment, task: &Task<'a>, noise: f64) -> Task<'a> {
     let mut task = task.clone();
     let rounding = experiment.scene.sensor.resolution;
     if deviation(noise, rounding) == 0.0 && !task.errors.is_empty() {

@@ -1,10 +1,11 @@
 //! Stretches of a scene's studies: what came of some of their trials, and what all of them add up to.
 //!
-//! The trials of all studies of a scene stand one after the other: draws of noise, then first guesses.
+//! The trials of all studies of a scene stand one after the other: draws of noise, then first guesses, then bounds between other palms.
 
 use super::super::run::Experiment;
 use super::super::scene::SceneError;
 use super::basin::{Basin, BasinTrials};
+use super::curvature::{CurvatureMap, CurvatureTrials, Told};
 use super::noise::{NoiseLevel, NoiseTrials, Trial};
 use crate::sweep::{Fingerprint, NoCover, in_order};
 use rayon::prelude::*;
@@ -24,6 +25,28 @@ pub struct StudyPart {
     pub(super) last: u64,
     pub(super) noise: Vec<Trial>,
     pub(super) arrives: Vec<bool>,
+    pub(super) told: Vec<Told>,
+}
+
+/// Of an experiment that was not studied.
+pub(crate) static NOT_STUDIED: Studied = Studied { noise: Vec::new(), basins: Vec::new(), curvature: None };
+
+/// What all trials of a scene's studies come to; of those that it does not have nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Studied {
+    /// The error over noise.
+    pub noise: Vec<NoiseLevel>,
+    /// From where each method arrives.
+    pub basins: Vec<Basin>,
+    /// What palms of other curvatures tell.
+    pub curvature: Option<CurvatureMap>,
+}
+
+impl Studied {
+    /// Whether nothing was studied.
+    pub fn is_empty(&self) -> bool {
+        self.noise.is_empty() && self.basins.is_empty() && self.curvature.is_none()
+    }
 }
 
 impl StudyPart {
@@ -74,6 +97,7 @@ pub struct Studies<'a> {
     experiment: &'a Experiment,
     noise: Option<NoiseTrials<'a>>,
     basins: Option<BasinTrials<'a>>,
+    curvature: Option<CurvatureTrials<'a>>,
     asked: u64,
     readings: u64,
 }
@@ -82,7 +106,7 @@ impl<'a> Studies<'a> {
     /// The studies that a scene has, of which there may be none. They need the truth: with readings from a file there is none.
     ///
     /// # Errors
-    /// As [`Experiment::task`], or where a study does not span two states that are sought.
+    /// As [`Experiment::task`], or where a study asks for states that are not sought.
     pub fn new(experiment: &'a Experiment, interrupt: &'a AtomicBool) -> Result<Studies<'a>, SceneError> {
         let study = &experiment.scene.study;
         let of_noise = experiment.simulated().zip(study.noise.as_ref());
@@ -91,8 +115,10 @@ impl<'a> Studies<'a> {
             .transpose()?;
         let of_guesses = study.basin.as_ref().filter(|_| experiment.simulated().is_some());
         let basins = of_guesses.map(|study| BasinTrials::new(experiment, study, interrupt)).transpose()?;
+        let of_palms = study.curvature.as_ref().filter(|_| experiment.simulated().is_some());
+        let curvature = of_palms.map(|study| CurvatureTrials::new(experiment, study)).transpose()?;
         let (asked, readings) = (asked(experiment), readings(experiment));
-        Ok(Studies { experiment, noise, basins, asked, readings })
+        Ok(Studies { experiment, noise, basins, curvature, asked, readings })
     }
 
     /// What is asked, as a number: the version of the program, the text of the scene and of its model with what it takes from other
@@ -103,12 +129,25 @@ impl<'a> Studies<'a> {
 
     /// How many trials there are.
     pub fn trials(&self) -> u64 {
-        (self.draws() + self.basins.as_ref().map_or(0, BasinTrials::count)) as u64
+        (self.draws() + self.guesses() + self.curvature.as_ref().map_or(0, CurvatureTrials::count)) as u64
     }
 
     /// How many of them are draws of noise.
     fn draws(&self) -> usize {
         self.noise.as_ref().map_or(0, NoiseTrials::count)
+    }
+
+    /// How many are first guesses.
+    fn guesses(&self) -> usize {
+        self.basins.as_ref().map_or(0, BasinTrials::count)
+    }
+
+    /// Of a stretch of trials the draws of noise, the first guesses and the bounds, each by their places among all.
+    fn kinds(&self, places: &Range<usize>) -> [Range<usize>; 3] {
+        let ends = [0, self.draws(), self.draws() + self.guesses(), self.trials() as usize];
+        [0, 1, 2].map(|kind| {
+            places.start.clamp(ends[kind], ends[kind + 1])..places.end.clamp(ends[kind], ends[kind + 1])
+        })
     }
 
     /// Makes a stretch of trials, side by side; nothing where that was interrupted. What comes of each depends on its place alone.
@@ -121,8 +160,7 @@ impl<'a> Studies<'a> {
     ) -> Option<StudyPart> {
         let [first, last] = [places.start, places.end].map(|place| place.min(self.trials()));
         let places = first as usize..last as usize;
-        let draws = places.start.min(self.draws())..places.end.min(self.draws());
-        let guesses = places.start.max(self.draws())..places.end.max(self.draws());
+        let [draws, guesses, bounds] = self.kinds(&places);
         let goes_on = || !interrupt.load(Ordering::Relaxed);
         let of_noise = |place: usize| {
             let trial = self.noise.as_ref().filter(|_| goes_on())?.trial(place);
@@ -134,8 +172,15 @@ impl<'a> Studies<'a> {
             done();
             Some(arrives)
         };
+        let of_palms = |place: usize| {
+            let of = self.curvature.as_ref().filter(|_| goes_on())?;
+            let told = of.trial(place - self.draws() - self.guesses());
+            done();
+            Some(told)
+        };
         let noise = draws.into_par_iter().map(of_noise).collect::<Option<Vec<Trial>>>()?;
         let arrives = guesses.into_par_iter().map(of_guess).collect::<Option<Vec<bool>>>()?;
+        let told = bounds.into_par_iter().map(of_palms).collect::<Option<Vec<Told>>>()?;
         // one that was interrupted on its way came to something else
         goes_on().then_some(StudyPart {
             asked: self.asked,
@@ -145,18 +190,16 @@ impl<'a> Studies<'a> {
             last,
             noise,
             arrives,
+            told,
         })
     }
 
-    /// What parts that together are all trials, each once and in any order, come to: what [`noise_study`](super::noise_study) and
-    /// [`basins`](super::basins) find in one run, to the last bit.
+    /// What parts that together are all trials, each once and in any order, come to: what [`noise_study`](super::noise_study),
+    /// [`basins`](super::basins) and [`curvature_map`](super::curvature_map) find in one run, to the last bit.
     ///
     /// # Errors
     /// Parts with gaps or overlaps, of another question, or from other readings.
-    pub fn merge(
-        &self,
-        parts: Vec<(String, StudyPart)>,
-    ) -> Result<(Vec<NoiseLevel>, Vec<Basin>), StudyMergeError> {
+    pub fn merge(&self, parts: Vec<(String, StudyPart)>) -> Result<Studied, StudyMergeError> {
         if parts.is_empty() {
             return Err(StudyMergeError::NoParts);
         }
@@ -168,21 +211,24 @@ impl<'a> Studies<'a> {
             if part.readings != self.readings {
                 return Err(StudyMergeError::OtherReadings(name.clone()));
             }
-            let draws = self.draws() as u64;
-            let of_noise = part.last.min(draws) - part.first.min(draws);
+            let kinds = self.kinds(&(part.first as usize..part.last as usize));
+            let lengths = [part.noise.len(), part.arrives.len(), part.told.len()];
             let has_all = |trial: &Trial| trial.estimate().is_none_or(|estimate| estimate.len() == sought);
-            if part.noise.len() as u64 != of_noise || !part.noise.iter().all(has_all) {
+            if kinds.map(|places| places.len()) != lengths || !part.noise.iter().all(has_all) {
                 return Err(StudyMergeError::Contradicts(name.clone()));
             }
         }
-        let (mut noise, mut arrives) = (Vec::new(), Vec::new());
+        let (mut noise, mut arrives, mut told) = (Vec::new(), Vec::new(), Vec::new());
         for (_, part) in in_order(parts, StudyPart::range, self.trials())? {
             noise.extend(part.noise);
             arrives.extend(part.arrives.into_iter().map(Some));
+            told.extend(part.told.into_iter().map(Some));
         }
-        let levels = self.noise.as_ref().map(|all| all.levels(&noise));
-        let basins = self.basins.as_ref().map(|all| all.basins(&arrives));
-        Ok((levels.unwrap_or_default(), basins.unwrap_or_default()))
+        Ok(Studied {
+            noise: self.noise.as_ref().map_or_else(Vec::new, |all| all.levels(&noise)),
+            basins: self.basins.as_ref().map_or_else(Vec::new, |all| all.basins(&arrives)),
+            curvature: self.curvature.as_ref().map(|all| all.map(&told)),
+        })
     }
 }
 
@@ -222,9 +268,27 @@ fn readings(experiment: &Experiment) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::{Scene, basins, noise_study};
+    use crate::experiment::{Scene, basins, curvature_map, noise_study};
     use crate::sweep::UNINTERRUPTED;
     use std::path::PathBuf;
+
+    /// Two curvatures of each palm in one motion, a window of ten samples: five trials.
+    #[test]
+    fn a_map_over_curvatures_is_one_run_to_the_last_bit() {
+        let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/proofs/moll2002/scenes"));
+        let text = std::fs::read_to_string(folder.join("circular_palms.toml")).unwrap();
+        let text = text.split("[study").next().unwrap().replace("window = 80", "window = 10");
+        let study = "\n[study.curvature]\nrange = [-0.2, 0.25]\npoints = 2\norientations = [3.4]\nrates = [-0.8]\nnoise = 1e-4\n";
+        let scene = Scene::parse(folder.join("x.toml").to_str().unwrap(), &format!("{text}{study}")).unwrap();
+        let experiment = Experiment::new(scene, None).unwrap();
+        let studies = Studies::new(&experiment, &UNINTERRUPTED).unwrap();
+        assert_eq!(studies.trials(), 5);
+        let study = experiment.scene.study.curvature.as_ref().unwrap();
+        let whole = curvature_map(&experiment, study, &UNINTERRUPTED, &|| ()).unwrap();
+        for of in [1, 2, 7] {
+            assert_eq!(studies.merge(parts(&studies, of)).unwrap().curvature.as_ref(), Some(&whole), "{of}");
+        }
+    }
 
     /// Two studies of which neither has a number of trials that 7 divides.
     fn experiment() -> Experiment {
@@ -276,9 +340,9 @@ mod tests {
                 .collect()
         };
         for of in [1, 3, 7, 20] {
-            let (levels, found) = studies.merge(parts(&studies, of)).unwrap();
-            assert_eq!(bits(&levels), bits(&noise), "{of}");
-            assert_eq!((&levels, &found), (&noise, &maps), "{of}");
+            let found = studies.merge(parts(&studies, of)).unwrap();
+            assert_eq!(bits(&found.noise), bits(&noise), "{of}");
+            assert_eq!((&found.noise, &found.basins, &found.curvature), (&noise, &maps, &None), "{of}");
         }
     }
 

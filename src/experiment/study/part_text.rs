@@ -1,12 +1,13 @@
 //! A part of a scene's studies as JSON that is whole or refused.
 
+use super::curvature::Told;
 use super::noise::Trial;
 use super::part::StudyPart;
 use crate::sweep::{Bits, CONTRADICTS, PartError, seal, unseal};
 use serde::{Deserialize, Serialize};
 
 /// What the text of a part begins with; another number where its fields mean something else.
-const FORMAT: &str = "palmistry observe part 1";
+const FORMAT: &str = "palmistry observe part 2";
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -18,6 +19,8 @@ struct Written {
     last: u64,
     noise: Vec<Option<WrittenEstimate>>,
     arrives: Vec<bool>,
+    /// Bounds in m; infinite where blind, none where the body is not held.
+    told: Vec<Option<Bits>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -45,6 +48,7 @@ impl StudyPart {
             last: self.last,
             noise: self.noise.iter().map(trial).collect(),
             arrives: self.arrives.clone(),
+            told: self.told.iter().map(|told| told.bound().map(|bound| Bits(bound.to_bits()))).collect(),
         };
         seal(FORMAT, written)
     }
@@ -62,12 +66,20 @@ impl StudyPart {
                 fits,
             },
         };
-        let Written { question, readings, trials, first, last, noise, arrives } = written;
-        let made = (noise.len() + arrives.len()) as u64;
+        let Written { question, readings, trials, first, last, noise, arrives, told } = written;
+        let made = (noise.len() + arrives.len() + told.len()) as u64;
         if last.checked_sub(first) != Some(made) || last > trials {
             return Err(CONTRADICTS);
         }
         let noise = noise.into_iter().map(trial).collect();
-        Ok(StudyPart { asked: question.0, readings: readings.0, trials, first, last, noise, arrives })
+        let bound = |bits: Option<Bits>| match bits.map(|Bits(bits)| f64::from_bits(bits)) {
+            None => Ok(Told::NotHeld),
+            Some(f64::INFINITY) => Ok(Told::Blind),
+            Some(bound) if bound >= 0.0 => Ok(Told::Bound(bound)),
+            Some(_) => Err(CONTRADICTS),
+        };
+        let told = told.into_iter().map(bound).collect::<Result<_, _>>()?;
+        let (asked, readings) = (question.0, readings.0);
+        Ok(StudyPart { asked, readings, trials, first, last, noise, arrives, told })
     }
 }

@@ -1,11 +1,12 @@
 //! What observers made of an experiment, as JSON and as text.
 
-use crate::experiment::{Answer, Basin, Experiment, NoiseLevel, error};
+use crate::experiment::{Answer, Experiment, NOT_STUDIED, Studied, error};
 use crate::mechanics::moving::Ended;
 use crate::observer::{Fault, Update, UpdateEnd};
 use crate::report::axis::unit_of;
 use crate::report::motion::fit::{finite, fit_in_words, noise_from, suspect_json, suspects_in_words};
 use crate::report::motion::reconstruction::{shape_json, shape_text};
+use crate::report::motion::studies::{studies_json, studies_text};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -16,10 +17,8 @@ pub struct Observed<'a> {
     pub experiment: &'a Experiment,
     /// What the observers made of it.
     pub answers: &'a [Answer],
-    /// The error over noise, where it was studied.
-    pub noise: &'a [NoiseLevel],
-    /// From where each method arrives, where it was studied.
-    pub basins: &'a [Basin],
+    /// What its studies came to.
+    pub studied: &'a Studied,
     /// Whether it was stopped before the end.
     pub interrupted: bool,
 }
@@ -27,7 +26,7 @@ pub struct Observed<'a> {
 impl<'a> Observed<'a> {
     /// An experiment without studies.
     pub fn of(experiment: &'a Experiment, answers: &'a [Answer]) -> Self {
-        Observed { experiment, answers, noise: &[], basins: &[], interrupted: false }
+        Observed { experiment, answers, studied: &NOT_STUDIED, interrupted: false }
     }
 }
 
@@ -213,35 +212,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
     if let Some(shape) = shape_json(experiment, observed.answers) {
         found["shape"] = shape;
     }
-    if !observed.noise.is_empty() {
-        let names = experiment.names();
-        let level = |level: &NoiseLevel| {
-            let by_name = |values: &[f64]| -> Map<String, Value> {
-                names.iter().zip(values).map(|(name, value)| ((*name).to_owned(), finite(*value))).collect()
-            };
-            json!({
-                "noise": level.noise,
-                "seeds": level.seeds,
-                "converged": level.converged,
-                "said_not_to_fit": level.unfit,
-                "root_mean_square_error": by_name(&level.errors),
-                "bound": by_name(&level.bounds),
-            })
-        };
-        found["noise"] = json!(observed.noise.iter().map(level).collect::<Vec<_>>());
-    }
-    if !observed.basins.is_empty() {
-        let basin = |basin: &Basin| {
-            json!({
-                "method": basin.method.name(),
-                "states": basin.names,
-                "values": basin.values,
-                "arrives": basin.arrives,
-                "fraction": basin.fraction(),
-            })
-        };
-        found["basins"] = json!(observed.basins.iter().map(basin).collect::<Vec<_>>());
-    }
+    studies_json(observed, &mut found);
     found
 }
 
@@ -317,32 +288,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             let _ = writeln!(text, "  {remark}");
         }
     }
-    for level in observed.noise {
-        let _ = writeln!(
-            text,
-            "\nnoise {:.1e}{}: {} of {} seeds converged, of {} it was said that they do not fit",
-            level.noise,
-            noise_unit(observed),
-            level.converged,
-            level.seeds,
-            level.unfit
-        );
-        for ((name, error), bound) in names.iter().zip(&level.errors).zip(&level.bounds) {
-            let ratio = error / bound;
-            let _ = writeln!(text, "  {name:<8} rms error {error:.3e}, bound {bound:.3e}, ratio {ratio:.3}");
-        }
-    }
-    for basin in observed.basins {
-        let _ = writeln!(
-            text,
-            "\n{} arrives from {:.1}% of {} first guesses of {} and {}",
-            basin.method.name(),
-            100.0 * basin.fraction(),
-            basin.arrives.iter().flatten().count(),
-            basin.names[0],
-            basin.names[1]
-        );
-    }
+    studies_text(observed, &mut text);
     text.push_str(&shape_text(experiment, observed.answers));
     if observed.interrupted {
         text.push_str("\ninterrupted; this is what was done until then\n");

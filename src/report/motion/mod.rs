@@ -12,6 +12,7 @@ pub(super) mod reconstruction;
 pub(super) mod section;
 pub(super) mod shape;
 pub(super) mod stream;
+pub(super) mod studies;
 pub(super) mod study_plot;
 pub(super) mod table;
 

@@ -5,15 +5,16 @@ use crate::report::motion::answers::Observed;
 use crate::report::motion::outline_section::shape_section;
 use crate::report::motion::reconstruction::reconstruction;
 use crate::report::motion::section::{
-    FRAMES, body_pictures, faults, sensor_pictures, state_pictures, studies, summary,
+    FRAMES, body_pictures, faults, sensor_pictures, state_pictures, summary,
 };
+use crate::report::motion::studies::studies;
 use crate::report::motion::table::{ends, notes, updates};
 use maud::html;
 
 /// The page as HTML.
 pub fn observe_page(observed: &Observed<'_>) -> String {
     let has_palms = observed.experiment.is_about_palms();
-    let studied = !observed.noise.is_empty() || !observed.basins.is_empty();
+    let studied = !observed.studied.is_empty();
     let shape = reconstruction(observed.answers).is_some();
     let content = html! {
         header {
@@ -46,7 +47,7 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::{BasinStudy, Experiment, NoiseStudy, Scene, basins, noise_study};
+    use crate::experiment::{BasinStudy, Experiment, NoiseStudy, Scene, Studied, basins, noise_study};
     use crate::report::motion::section::observed_section;
     use crate::report::motion::shape::{departure, outline};
     use std::sync::atomic::AtomicBool;
@@ -87,7 +88,8 @@ steps = 20
         let ranges = ["r1", "r2"].map(|name| (name.to_owned(), [0.9, 1.1])).into();
         let basins = basins(&experiment, &BasinStudy { ranges, points: 2 }, &never, &|| {}).unwrap();
         let (experiment, answers) = (&experiment, &answers[..]);
-        test(&Observed { experiment, answers, noise: &noise, basins: &basins, interrupted: false });
+        let studied = &Studied { noise, basins, curvature: None };
+        test(&Observed { experiment, answers, studied, interrupted: false });
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
-use crate::experiment::{ARRIVED, Channel, NOMINAL, SceneOutline, error, shown};
+use crate::experiment::{Channel, NOMINAL, SceneOutline, error, shown};
 use crate::mechanics::Palm;
 use crate::report::motion::answers::{Observed, ended_in_words, fault_lines, noise_unit};
 use crate::report::motion::frames::{frames, recovered_outline};
@@ -8,8 +8,8 @@ use crate::report::motion::outline_section::shape_section;
 use crate::report::motion::plot::{errors, sensor_errors, state};
 use crate::report::motion::reconstruction::length;
 use crate::report::motion::shape::{departure, outline};
-use crate::report::motion::study_plot;
-use crate::report::motion::table::{ends, noise_table, notes, pace, updates};
+use crate::report::motion::studies::studies;
+use crate::report::motion::table::{ends, notes, pace, updates};
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeMap;
 
@@ -299,41 +299,6 @@ pub(super) fn sensor_pictures(observed: &Observed<'_>) -> Markup {
                     (if observed.experiment.is_about_palms() { "The contact" } else { "The output" }) " that the model expects minus the one that was read. What an observer that is right has "
                     "left is the error of the sensor, without a trend; a curve that bends within a window tells of a wrong state or "
                     "model. A method that compares nothing has no curve."
-                }
-            }
-        }
-    }
-}
-
-/// The error over noise, and the basins of attraction.
-pub(super) fn studies(observed: &Observed<'_>) -> Markup {
-    let places = 0..observed.experiment.names().len();
-    html! {
-        @if !observed.noise.is_empty() {
-            h3 { "The error over noise" }
-            figure {
-                div.grid { @for place in places { (PreEscaped(study_plot::noise(observed, place))) } }
-                figcaption {
-                    "The first window by least squares, over many seeds: the root of the mean square error of those that converged, and "
-                    "the bound at the truth, both in decades. Dots on the line: nothing more is to be had from these readings. Dots "
-                    "above it: the search did not find the best state. By chance they are off by a part of about one in the root of twice "
-                    "the number of seeds. "
-                    @for level in observed.noise {
-                        (format!("{:.0e}{}: {} of {} converged. ", level.noise, noise_unit(observed), level.converged, level.seeds))
-                    }
-                }
-            }
-            (noise_table(observed))
-        }
-        @if !observed.basins.is_empty() {
-            h3 { "From where they arrive" }
-            figure {
-                div.basins { @for basin in observed.basins { (PreEscaped(study_plot::basin(observed, basin))) } }
-                figcaption {
-                    "First guesses of two states, the others as in the scene, from which each method comes within "
-                    (format!("{:.0}%", 100.0 * ARRIVED)) " of all that is sought: after the first window for methods that work by "
-                    "windows, at the last sample for the others. The cross is the truth. Where the readings have errors, and the bound "
-                    "of a state is near that part of it, they decide as well."
                 }
             }
         }

@@ -1,10 +1,12 @@
-//! Studies of observers as pictures: the error over noise beside its bound, and the first guesses from which a method arrives.
+//! Studies of observers as pictures: the error over noise beside its bound, the first guesses from which a method arrives, and what palms of
+//! other curvatures tell.
 
-use crate::experiment::Basin;
+use crate::experiment::{Basin, CurvatureMap};
 use crate::report::axis::number;
 use crate::report::drawing::{Canvas, INK, MESH, svg};
 use crate::report::motion::answers::{Observed, noise_unit};
 use crate::report::motion::plot::with_unit;
+use crate::report::motion::studies::ratio_words;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -20,7 +22,7 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
     let unit = noise_unit(observed);
     let drawn = |value: &f64| value.is_finite() && *value > 0.0;
     let points = |of: fn(&crate::experiment::NoiseLevel) -> &Vec<f64>| -> Vec<(f64, f64)> {
-        let levels = observed.noise.iter().map(|level| (level.noise, of(level)[place]));
+        let levels = observed.studied.noise.iter().map(|level| (level.noise, of(level)[place]));
         let mut points: Vec<(f64, f64)> =
             levels.filter(|(noise, value)| drawn(noise) && drawn(value)).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -141,3 +143,68 @@ pub(super) fn basin(observed: &Observed<'_>, basin: &Basin) -> String {
         Ok(())
     })
 }
+
+/// The bound over that of flat palms, over the curvatures of both palms: blue where it is less, ochre where it is more.
+pub(super) fn curvature(map: &CurvatureMap) -> String {
+    const LESS: RGBColor = ARRIVES;
+    const MORE: RGBColor = RGBColor(213, 150, 60);
+    let side = map.curvatures.len();
+    // four times as much, or a fourth, has the full colour
+    let colour = |cell: usize| {
+        let ratio = map.ratio(cell)?.median;
+        let strength = (ratio.ln() / 4f64.ln()).clamp(-1.0, 1.0);
+        let end = if strength < 0.0 { LESS } else { MORE };
+        let part = |end: u8| (255.0 + (f64::from(end) - 255.0) * strength.abs()).round() as u8;
+        Some(RGBColor(part(end.0), part(end.1), part(end.2)))
+    };
+    let (low, high) = (map.curvatures[0], map.curvatures[side - 1]);
+    let step = (high - low) / (side - 1) as f64;
+    let ends = low - step / 2.0..high + step / 2.0;
+    let title = "the bound over that between flat palms";
+    Canvas { size: (430, 440), title, by_colour: &[], is_crisp: true }.draw(|area, _| {
+        let (head, plot) = area.split_vertically(48);
+        let words = |size: i32| ("sans-serif", size).into_font().color(&INK);
+        let anchored = words(12).pos(Pos::new(HPos::Left, VPos::Center));
+        head.draw(&Text::new(title, (10, 6), words(15)))?;
+        for (at, colour, text) in
+            [(14, LESS, "a fourth"), (104, WHITE, "as flat ones"), (214, MORE, "four times, blind")]
+        {
+            head.draw(&Rectangle::new([(at, 30), (at + 14, 42)], colour.filled()))?;
+            head.draw(&Rectangle::new([(at, 30), (at + 14, 42)], INK))?;
+            head.draw(&Text::new(text, (at + 20, 36), anchored.clone()))?;
+        }
+        let mut chart = ChartBuilder::on(&plot)
+            .margin(8)
+            .x_label_area_size(36)
+            .y_label_area_size(54)
+            .build_cartesian_2d(ends.clone(), ends.clone())?;
+        let corner = |i: usize, j: usize| (ends.start + step * i as f64, ends.start + step * j as f64);
+        let middle = words(12).pos(Pos::new(HPos::Center, VPos::Center));
+        for cell in 0..map.told.len() {
+            let (i, j) = (cell % side, cell / side);
+            if let Some(colour) = colour(cell) {
+                chart.draw_series([Rectangle::new([corner(i, j), corner(i + 1, j + 1)], colour.filled())])?;
+            }
+            if side <= MOST_WORDS {
+                let at = (map.curvatures[i], map.curvatures[j]);
+                chart.draw_series([Text::new(ratio_words(map, cell), at, middle.clone())])?;
+            }
+        }
+        chart
+            .configure_mesh()
+            .disable_mesh()
+            .x_labels(6)
+            .y_labels(6)
+            .label_style(("sans-serif", 12).into_font().color(&INK))
+            .x_label_formatter(&|v| number(*v, high - low))
+            .y_label_formatter(&|v| number(*v, high - low))
+            .x_desc("curvature of palm 1, 1/m (1/b1)")
+            .y_desc("curvature of palm 2, 1/m (1/b2)")
+            .axis_desc_style(("sans-serif", 12))
+            .draw()?;
+        Ok(())
+    })
+}
+
+/// More fields along a side have no words in them.
+const MOST_WORDS: usize = 9;

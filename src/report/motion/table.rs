@@ -2,8 +2,7 @@
 
 use crate::experiment::{Answer, error};
 use crate::observer::{Update, UpdateEnd};
-use crate::report::axis::unit_of;
-use crate::report::motion::answers::{Observed, end_name, noise_unit};
+use crate::report::motion::answers::{Observed, end_name};
 use crate::report::motion::fit::{suspects_in_words, unexplained};
 use maud::{Markup, html};
 
@@ -239,28 +238,5 @@ fn blind(observed: &Observed<'_>, update: &Update, weakest: &[f64]) -> String {
     match &parts[..] {
         [] => "the readings of this window do not tell what is sought".to_owned(),
         parts => format!("the readings of this window tell least of {}, each in its size", parts.join(" ")),
-    }
-}
-
-/// The error over noise beside its bound.
-pub(super) fn noise_table(observed: &Observed<'_>) -> Markup {
-    let unit = noise_unit(observed);
-    let names = observed.experiment.names();
-    html! {
-        div.scroll { table {
-            thead { tr {
-                th { "noise" @if !unit.is_empty() { "," (unit) } } th { "converged" }
-                @for name in &names { th { (name) ", rms error" } th { "bound" @if let Some(unit) = unit_of(&observed.experiment.system, name) { ", " (unit) } } th { "ratio" } }
-            } }
-            tbody { @for level in observed.noise { tr {
-                td.number { (format!("{:.1e}", level.noise)) }
-                td.number { (level.converged) " of " (level.seeds) }
-                @for (error, bound) in level.errors.iter().zip(&level.bounds) {
-                    td.number { (format!("{error:.2e}")) }
-                    td.number { @if bound.is_finite() { (format!("{bound:.2e}")) } @else { "not seen" } }
-                    td.number { @if bound.is_finite() && *bound > 0.0 { (format!("{:.2}", error / bound)) } @else { "-" } }
-                }
-            } } }
-        } }
     }
 }

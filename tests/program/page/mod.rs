@@ -5,7 +5,7 @@ mod size;
 
 use crate::common::{folder, write};
 use browser::{Look, browser, look};
-use palmistry::experiment::{BasinStudy, Experiment, Scene, basins};
+use palmistry::experiment::{BasinStudy, Experiment, Scene, Studied, basins};
 use palmistry::paper::{Findings, Paper, VerifyOptions, verify};
 use palmistry::report::{Observed, observe_page, page};
 use serde_json::{Value, json};
@@ -190,8 +190,8 @@ fn the_page_of_a_scene_fits_too() {
     let ranges = ["r1", "r2"].map(|name| (name.to_owned(), [0.9, 1.1])).into();
     let basins = basins(&experiment, &BasinStudy { ranges, points: 2 }, &never, &|| {}).unwrap();
     let (experiment, answers) = (&experiment, &answers[..]);
-    let page =
-        observe_page(&Observed { experiment, answers, noise: &[], basins: &basins, interrupted: false });
+    let studied = &Studied { basins, ..Studied::default() };
+    let page = observe_page(&Observed { experiment, answers, studied, interrupted: false });
     for (width, dark) in [(400, true), (1400, false)] {
         let seen = look(&browser, &page, &[], &Look { width, dark });
         let place = format!("{width} pixels, dark: {dark}: {seen:#}");

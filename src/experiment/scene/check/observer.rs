@@ -1,9 +1,12 @@
 //! What is to be found out, and the studies.
 
 use super::super::keys::{GuessKeys, ObserverKeys};
-use super::super::{Guess, ObserverSettings, Study};
+use super::super::{CurvatureStudy, Guess, ObserverSettings, Study};
 use super::{Checks, MOST_SAMPLES, Problem, Source};
 use crate::observer::{CalibrationKind, Loss};
+
+/// The most bounds that a map over curvatures may hold.
+const MOST_BOUNDS: usize = 1_000_000;
 
 /// The most first guesses that a study may try.
 const MOST_GUESSES: usize = 10_000_000;
@@ -176,8 +179,12 @@ impl Checks<'_> {
         observer: &ObserverSettings,
         simulated: bool,
     ) -> Result<(), Problem> {
-        for (place, asked) in [("study.noise", study.noise.is_some()), ("study.basin", study.basin.is_some())]
-        {
+        let asked = [
+            ("study.noise", study.noise.is_some()),
+            ("study.basin", study.basin.is_some()),
+            ("study.curvature", study.curvature.is_some()),
+        ];
+        for (place, asked) in asked {
             if asked && !simulated {
                 let message = "a study needs the truth, and recorded data has none";
                 return Err(self.wrong_key(place, message, "leave it out, or simulate"));
@@ -193,6 +200,7 @@ impl Checks<'_> {
             }
             self.count("study.noise.seeds", noise.seeds, 1..=1_000_000)?;
         }
+        study.curvature.as_ref().map_or(Ok(()), |curvature| self.curvature(curvature))?;
         let Some(basin) = &study.basin else { return Ok(()) };
         if basin.ranges.is_empty() {
             let help = "add, for instance: r1 = [0.5, 3.0]";
@@ -214,6 +222,38 @@ impl Checks<'_> {
             let message = format!("{} points along {} axes are too many", basin.points, basin.ranges.len());
             let help = format!("let the grid have at most {MOST_GUESSES} points");
             return Err(self.wrong("study.basin.points", message, help));
+        }
+        Ok(())
+    }
+
+    /// The values of `[study.curvature]`.
+    fn curvature(&self, study: &CurvatureStudy) -> Result<(), Problem> {
+        let place = |key: &str| format!("study.curvature.{key}");
+        let [low, high] = study.range;
+        self.finite(&place("range"), low)?;
+        self.finite(&place("range"), high)?;
+        if low >= high {
+            let message = format!("the range of curvatures is empty: {low} to {high}");
+            return Err(self.wrong(&place("range"), message, "give the least value first, in 1/m"));
+        }
+        for (key, values, help) in [
+            ("orientations", &study.orientations, "give one or more angles of the body at the start, in rad"),
+            ("rates", &study.rates, "give one or more rates of the body at the start, in rad/s"),
+        ] {
+            if values.is_empty() {
+                return Err(self.wrong(&place(key), format!("there are no {key}"), help));
+            }
+            for (index, value) in values.iter().enumerate() {
+                self.finite(&format!("{}[{index}]", place(key)), *value)?;
+            }
+        }
+        self.positive(&place("noise"), study.noise, "m")?;
+        self.count(&place("points"), study.points, 2..=1001)?;
+        let motions = study.orientations.len() * study.rates.len();
+        if motions * study.points * study.points > MOST_BOUNDS {
+            let message = format!("{} by {0} palms in {motions} motions are too many", study.points);
+            let help = format!("let there be at most {MOST_BOUNDS} bounds");
+            return Err(self.wrong(&place("points"), message, help));
         }
         Ok(())
     }
