@@ -179,7 +179,9 @@ pub(super) fn curvature(map: &CurvatureMap) -> String {
             .y_label_area_size(54)
             .build_cartesian_2d(ends.clone(), ends.clone())?;
         let corner = |i: usize, j: usize| (ends.start + step * i as f64, ends.start + step * j as f64);
-        let middle = words(12).pos(Pos::new(HPos::Center, VPos::Center));
+        // on the pale fields in a dark page, too, where ink is light
+        let dark = ("sans-serif", 12).into_font().color(&RGBColor(30, 32, 38));
+        let middle = dark.pos(Pos::new(HPos::Center, VPos::Center));
         for cell in 0..map.told.len() {
             let (i, j) = (cell % side, cell / side);
             if let Some(colour) = colour(cell) {
