@@ -277,7 +277,8 @@ mod tests {
     fn a_map_over_curvatures_is_one_run_to_the_last_bit() {
         let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/proofs/moll2002/scenes"));
         let text = std::fs::read_to_string(folder.join("circular_palms.toml")).unwrap();
-        let text = text.split("[study").next().unwrap().replace("window = 80", "window = 10");
+        let text =
+            text.split("[study").next().unwrap().replace("window = 80", "guess_off = 0.1\nwindow = 10");
         let study = "\n[study.curvature]\nrange = [-0.2, 0.25]\npoints = 2\norientations = [3.4]\nrates = [-0.8]\nnoise = 1e-4\n";
         let scene = Scene::parse(folder.join("x.toml").to_str().unwrap(), &format!("{text}{study}")).unwrap();
         let experiment = Experiment::new(scene, None).unwrap();
