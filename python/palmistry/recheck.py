@@ -184,21 +184,23 @@ def ranks(matrix, states):
 
 def nowhere_zero(of, sides):
     """Whether an expression has one sign in a box, by intervals and the mean value theorem on pieces of the box."""
-    waiting = [sides]
+    waiting, names = [sides], [name.args[0] for name in sides]
     for _ in range(PIECES):
         sides = waiting.pop()
         middle = {name: (side.low + side.high) / 2 for name, side in sides.items()}
+        parts = {name: side.high - side.low for name, side in sides.items()}
         try:
-            near, names = Point(Intervals(), {name: Interval(x, x) for name, x in middle.items()}).value(of), [name.args[0] for name in sides]
+            near = Point(Intervals(), {name: Interval(x, x) for name, x in middle.items()}).value(of)
             for (name, side), slope in zip(sides.items(), Point(Intervals(), sides).slopes(of, names)):
-                near += slope * Interval(side.low - middle[name], side.high - middle[name])
+                part = slope * Interval(side.low - middle[name], side.high - middle[name])
+                near, parts[name] = near + part, part.high - part.low
             is_told = near.sign() != 0
         except (NotRead, ZeroDivisionError):
             is_told = False
         if not is_told:
-            widest = max(sides, key=lambda name: sides[name].high - sides[name].low)
-            ends = sides[widest].low, middle[widest], sides[widest].high
-            waiting += [{**sides, widest: Interval(*half)} for half in (ends[:2], ends[1:])]
+            most = max(sides, key=lambda name: parts[name])
+            ends = sides[most].low, middle[most], sides[most].high
+            waiting += [{**sides, most: Interval(*half)} for half in (ends[:2], ends[1:])]
         if not waiting:
             return True
     return False
