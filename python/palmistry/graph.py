@@ -4,7 +4,8 @@ import random
 from fractions import Fraction
 from math import isqrt
 
-MOST, LONGEST, ONE = 400_000, 100_000, 1 << 300  # nodes of a graph; bits of a fraction; an interval's ends are parts of this
+MOST, WORK = 400_000, 1_000_000  # nodes of a graph; nodes that may be gone through for a verdict
+LONGEST, ONE = 100_000, 1 << 300  # bits of a fraction; an interval's ends are parts of this
 
 
 class NotRead(Exception):
@@ -17,7 +18,7 @@ def refuse(why):
 
 class Node:
     """A `number`, a `symbol`, `+` or `*` of two nodes, `^` with a whole exponent, or a function such as `sin` of a node."""
-    known = {}
+    known, work = {}, 0
 
     def __new__(cls, *key):
         if key not in cls.known:
@@ -100,7 +101,8 @@ def below(root, known=()):
         if node not in seen and node not in known:
             seen.add(node)
             waiting += node.parts
-    return sorted(seen, key=lambda node: node.place)
+    Node.work += len(seen)
+    return refuse("it takes too long here") if Node.work > WORK else sorted(seen, key=lambda node: node.place)
 
 
 class Field:
@@ -228,11 +230,11 @@ def image(kind, x):
         return Interval(exact, exact) if exact * exact == x else Interval(root, root + Fraction(1, ONE))
     if kind not in ("exp", "sin", "cos") or abs(x) > 64:
         return refuse(f"a value of {kind}") if kind != "sqrt" else Interval(Fraction(0), Fraction(0)) ** -1
-    k, step = int(kind == "sin"), 1 if kind == "exp" else 2
-    part, total, fine = x**k, Fraction(0), ONE**2 << 128  # what is rounded on the way grows by no more than exp(64)
-    while k < 2 * abs(x) or abs(part) * ONE > 1:
+    k, step, fine = int(kind == "sin"), 1 if kind == "exp" else 2, ONE**2 << 128  # what is rounded on the way grows by no more than exp(64)
+    part, total = (x**k * fine).__floor__(), 0
+    while k < 2 * abs(x) or abs(part) * ONE > fine:
         total, k = total + part, k + step
-        part = part * x / k if step == 1 else -part * x * x / (k * (k - 1))
-        part = Fraction((part * fine).__floor__(), fine)
-    slack = 2 * abs(part) + Fraction(k, ONE)  # the parts fall by half at least from here on
-    return Interval(total - slack, total + slack)
+        ratio = x / k if step == 1 else -x * x / (k * (k - 1))
+        part = part * ratio.numerator // ratio.denominator
+    slack = Fraction(2 * abs(part), fine) + Fraction(k, ONE)  # the parts fall by half at least from here on
+    return Interval(Fraction(total, fine) - slack, Fraction(total, fine) + slack)

@@ -74,17 +74,10 @@ def power(base, exponent):
     return call("exp", exponent * call("log", base))
 
 
-def root(x): return call("sqrt", x * x)
-
-
-FUNCTIONS = {
+OF_MATRICES = {
     "transpose": lambda a: [list(column) for column in zip(*a)], "det": lambda a: [[determinant(a)]], "inverse": inverse,
     "dot": lambda a, b: [[dot(entries(a), entries(b))]], "cross": lambda a, b: cross(entries(a), entries(b))}
-OF_NUMBERS = {
-    "tan": lambda x: call("sin", x) / call("cos", x), "cot": lambda x: call("cos", x) / call("sin", x),
-    "sec": lambda x: call("cos", x) ** -1, "csc": lambda x: call("sin", x) ** -1, "abs": root, "sign": lambda x: x / root(x),
-    "tanh": lambda x: number(1) - number(2) / (call("exp", x + x) + number(1)),
-    "min": lambda x, y: number("1/2") * (x + y - root(x - y)), "max": lambda x, y: number("1/2") * (x + y + root(x - y))}
+OF_NUMBERS = {"tan": lambda x: call("sin", x) / call("cos", x), "cot": lambda x: call("cos", x) / call("sin", x)}
 OF_NUMBERS.update({name: lambda x, name=name: call(name, x) for name in ("sqrt", "exp", "log", "sin", "cos", "atan")})
 BINDING = {"+": 1, "-": 1, "*": 2, "/": 2, "at": 3, "^": 4}
 OPERATIONS = {"+": lambda a, b: each(Node.__add__, a, b), "-": lambda a, b: each(Node.__sub__, a, b), "*": times,
@@ -186,7 +179,12 @@ class Reader:
         name = self.name()
         if name != "bracket" or not self.take("("):
             return self.system.field(name)
-        f, g = self.commas(self.field, ")")
+        field = self.bracket()
+        self.need(")")
+        return field
+
+    def bracket(self):
+        f, _, g = self.field(), self.need(","), self.field()
         return Field(lambda name: f.along(g.rate(name)) - g.along(f.rate(name)))
 
     def lie(self):
@@ -204,15 +202,15 @@ class Reader:
         if name == "L":
             return self.lie()
         if name == "bracket":
-            f, _, g = self.field(), self.need(","), self.field()
-            return [[f.along(g.rate(column)) - g.along(f.rate(column))] for column in self.by()]
+            field = self.bracket()
+            return [[field.rate(column)] for column in self.by()]
         if name == "d":
             of, columns = entries(self.sum()), self.by()
             return [[self.system.unit(column).along(x) for column in columns] for x in of]
         arguments = self.commas(self.sum, ")")
         if name in OF_NUMBERS:
             return [[OF_NUMBERS[name](*map(single, arguments))]]
-        return FUNCTIONS[name](*arguments) if name in FUNCTIONS else refuse(f"'{name}('")
+        return OF_MATRICES[name](*arguments) if name in OF_MATRICES else refuse(f"'{name}('")
 
     def by(self):
         return self.commas(self.symbol, ")") if self.need(",", ")") == "," else self.system.columns()

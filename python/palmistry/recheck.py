@@ -14,11 +14,11 @@ import os
 import sys
 from fractions import Fraction
 
-from .graph import Expressions, Interval, Intervals, Modulo, Node, NotRead, Point, below, call, number, refuse, symbol
+from .graph import MOST, Expressions, Interval, Intervals, Modulo, Node, NotRead, Point, below, call, number, refuse, symbol
 from .proof_file import ProofFile, determinant, each, entries
 
 PRIMES = [(1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1]
-POINTS, TRIES, WORDS, PIECES = 4, 40, 400, 500  # points that are compared; draws; words of a length; pieces of a box
+POINTS, TRIES, WORDS, PIECES = 4, 40, 200, 500  # points that are compared; draws; words of a rank; pieces of a box
 HOLDS = {"=": lambda s: s == 0, "!=": lambda s: s != 0, "<": lambda s: s < 0, "<=": lambda s: s <= 0, ">": lambda s: s > 0, ">=": lambda s: s >= 0}
 
 
@@ -110,8 +110,8 @@ def codistribution(system, point, conditions):
                 rows.append([x for x, name in zip(row, columns) if name not in system.known])
         idle = 0 if len(basis) > before else idle + 1
         words = [system.fields[field].along(word) for word in followed for field in system.moving]
-        if len(words) > WORDS:
-            refuse(f"more than {WORDS} words of a length")
+        if len(rows) + len(words) > WORDS:
+            refuse(f"more than {WORDS} words")
     return rows
 
 
@@ -230,6 +230,7 @@ def check(record, folder, systems, seed):
     """What comes of one verdict: a word, and why."""
     try:
         (kind, evidence), = record["evidence"].items()
+        Node.work = 0
         if kind == "unchecked":
             return "not checked", str(evidence)
         path = os.path.join(folder, record["file"])
@@ -246,7 +247,7 @@ def check(record, folder, systems, seed):
             return refuted(statement[1], statement[3], evidence["state"]) if not statement[0] else refuse("a rank without a minor")
         return at_random(system, statement, evidence.get("word", "proved") == "proved", seed)
     except (NotRead, RecursionError, OSError) as why:
-        if len(Node.known) > 100_000:
+        if len(Node.known) > MOST // 4:
             systems.clear()
         return "not checked", str(why) or "it is nested too deeply"
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as why:
