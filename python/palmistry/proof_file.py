@@ -1,490 +1,332 @@
-"""Proof files, read into functions of an environment: symbols with their values. What is not read is refused by name."""
+"""Proof files, read into graphs of expressions. Everything is a matrix, a number one of one entry. What is not read is refused by name."""
 
 import os
 import re
-from fractions import Fraction
 
-from .values import (Dual, NotRead, Row, Turn, apply, determinant, each, inverse, invert, matrix, number, raised, refuse, times,
-                     total)
+from .graph import Expressions, Field, Node, NotRead, Point, call, number, refuse, symbol
 
-NAME = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*'*")
-SPACE = re.compile(r"(?:\s+|#[^\n]*)*")
-RELATION = r"!=|<=|>=|=|<|>"
-ENTRIES = set("system use state param angle known unknown initial experiments let drift input field output sample claim erratum damaged"
-              " scan convention loose definition undecided set pole map line reduction".split())
-SIGNALS = 6  # derivatives of a known signal that are told apart
+TOKEN = re.compile(r'#[^\n]*|"[^"]*"|[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\'*|(?:\d+\.?\d*|\.\d+)(?:e-?\d{1,3}\b)?|!=|<=|>=|\S')
+ENTRIES = ("system use state param angle known unknown initial experiments let drift input field output sample claim erratum damaged scan"
+           " convention loose definition undecided set pole map line reduction").split()
+SEEN = "observable", "unobservable", "identifiable", "unidentifiable"
 
 
-class Environment:
-    """Values of symbols, each found when it is asked for; definitions are evaluated once."""
+def tokens_of(text): return tuple(token for token in TOKEN.findall(text) if token[0] != "#")
+def squeezed(text): return re.sub(r"#[^\n]*|\s+", "", text)
 
-    def __init__(self, values, level=0): self.values, self.level, self.kept = values, level, {}
 
-    def value(self, name):
-        if name not in self.values:
-            refuse(f"{name} has no value")
-        found = self.values[name]
-        if callable(found):
-            found = self.values[name] = found()
+def split(tokens, mark):
+    """The parts between those marks that stand in no brackets."""
+    depth, found = 0, [[]]
+    for token in tokens:
+        depth += (token in ("(", "[", "{")) - (token in (")", "]", "}"))
+        found.append([]) if token == mark and depth == 0 else found[-1].append(token)
+    return found
+
+
+def each(operation, a, *more):
+    shapes = {tuple(len(row) for row in b) for b in (a, *more)}
+    return [[operation(*entries) for entries in zip(*rows)] for rows in zip(a, *more)] if len(shapes) == 1 else refuse("matrices of two shapes")
+
+
+def single(x):
+    return x[0][0] if len(x) == len(x[0]) == 1 else refuse("a matrix where a number is meant")
+
+
+def entries(x): return [entry for row in x for entry in row]
+def dot(a, b): return sum((x * y for x, y in zip(a, b)), number(0))
+
+
+def times(a, b):
+    if len(a[0]) == len(b):
+        return [[dot(row, column) for column in zip(*b)] for row in a]
+    factor, of = (single(a), b) if len(a) == len(a[0]) == 1 else (single(b), a)
+    return each(lambda x: factor * x, of)
+
+
+def determinant(rows):
+    minors = {(): number(1)}  # by their columns, of the rows that were gone through
+    for row in rows:
+        grown = {}
+        for columns, minor in minors.items():
+            for column in (c for c in range(len(rows)) if c not in columns and row[c] is not number(0)):
+                key, sign = tuple(sorted((*columns, column))), (-1) ** sum(c > column for c in columns)
+                grown[key] = grown.get(key, number(0)) + number(sign) * row[column] * minor
+        minors = grown
+    return minors.get(tuple(range(len(rows))), number(0))
+
+
+def inverse(rows):
+    size, whole = range(len(rows)), determinant(rows)
+    minor = lambda i, j: determinant([[rows[k][m] for m in size if m != i] for k in size if k != j])
+    return [[number((-1) ** (i + j)) * minor(i, j) / whole for j in size] for i in size]
+
+
+def cross(a, b):
+    turned = [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(len(a))]
+    return [[x] for x in turned] if len(a) == 3 else [[a[0] * b[1] - a[1] * b[0]]]
+
+
+def power(base, exponent):
+    half = exponent.args[0] if exponent.kind == "number" else None
+    if half is not None and half.denominator <= 2 and abs(half) < 10_000:
+        return base ** int(half) if half.denominator == 1 else call("sqrt", base) ** int(2 * half)
+    return call("exp", exponent * call("log", base))
+
+
+OF_MATRICES = {
+    "transpose": lambda a: [list(column) for column in zip(*a)], "det": lambda a: [[determinant(a)]], "inverse": inverse,
+    "dot": lambda a, b: [[dot(entries(a), entries(b))]], "cross": lambda a, b: cross(entries(a), entries(b))}
+OF_NUMBERS = {"tan": lambda x: call("sin", x) / call("cos", x), "cot": lambda x: call("cos", x) / call("sin", x)}
+OF_NUMBERS.update({name: lambda x, name=name: call(name, x) for name in ("sqrt", "exp", "log", "sin", "cos", "atan")})
+BINDING = {"+": 1, "-": 1, "*": 2, "/": 2, "at": 3, "^": 4}
+OPERATIONS = {"+": lambda a, b: each(Node.__add__, a, b), "-": lambda a, b: each(Node.__sub__, a, b), "*": times,
+              "/": lambda a, b: times(a, [[single(b) ** -1]]), "^": lambda a, b: [[power(single(a), single(b))]]}
+
+
+class Reader:
+    """Reads expressions and statements with the names of a system."""
+
+    def __init__(self, system, tokens): self.system, self.tokens, self.at = system, [*tokens, ""], 0
+
+    def take(self, *wanted):
+        """What comes next, if it is one of these."""
+        found = self.tokens[self.at] if self.tokens[self.at] in wanted else ""
+        self.at += bool(found)
         return found
 
-    def along(self, rates):
-        """The point moved along a field: symbols as dual numbers of a level of their own."""
-        def moved(name, rate):
-            slope = number(rate(self))
-            return self.value(name) if isinstance(slope, Fraction) and slope == 0 else Dual(self.level + 1, self.value(name), slope)
-        values = {name: lambda name=name: self.value(name) for name in self.values}
-        for name, rate in rates.items():
-            values[name] = lambda name=name, rate=rate: moved(name, rate)
-        return Environment(values, self.level + 1)
+    def need(self, *wanted):
+        return self.take(*wanted) or refuse(f"'{' '.join(self.tokens[self.at:self.at + 4])}' where '{wanted[0]}' is awaited")
 
-    def slope(self, value):
-        """The derivative in what was evaluated where `along` has led."""
-        if isinstance(value, list):
-            return [[self.slope(x) for x in row] for row in value]
-        return value.slope if isinstance(value, Dual) and value.level == self.level else Fraction(0)
+    def name(self):
+        found = self.need(self.tokens[self.at] if re.match(r"[A-Za-z_]", self.tokens[self.at]) else "a name")
+        return found if self.tokens[self.at] not in ("[", "@") else refuse("a vector, or an experiment")
 
+    def commas(self, read, end=""):
+        found = [read()]
+        while self.take(","):
+            found.append(read())
+        if end:
+            self.need(end)
+        return found
 
-def lie(rates, of):
-    def derivative(at):
-        there = at.along(rates)
-        return there.slope(of(there))
-    return derivative
+    def whole(self, read):
+        found = read()
+        return found if self.at == len(self.tokens) - 1 else refuse(f"'{' '.join(self.tokens[self.at:self.at + 4])}'")
 
+    def relation(self):
+        left, relation, right = self.sum(), self.need("=", "!=", "<", "<=", ">", ">="), self.sum()
+        return left, relation, right
 
-def slopes(of, columns):
-    """The rows of derivatives by some symbols, of a number or of each entry of a column."""
-    units = [[Fraction(i == j) for j in range(len(columns))] for i in range(len(columns))]
-    rates = {column: lambda at, unit=unit: Row(unit) for column, unit in zip(columns, units)}
+    def statement(self):
+        """What is asked, of what, the answer, and the conditions."""
+        asked, of, rank = self.take("rank", *SEEN), None, None
+        if asked in SEEN:
+            self.need("(")
+            of = entries(sum(self.commas(self.sum, ")"), []))
+        elif asked:
+            of = self.commas(self.sum, ")")[0] if self.take("(") else None
+            self.need("=")
+            rank = int(self.need(self.tokens[self.at]))
+        else:
+            of = self.relation()
+        conditions = self.commas(self.relation) if self.take("where") else []
+        if self.take("everywhere", "except"):
+            self.at = len(self.tokens) - 1
+        return asked, of, rank, conditions
 
-    def derivatives(at):
-        found = [row[0] for row in matrix(lie(rates, of)(at))]
-        return [row.entries if isinstance(row, Row) else [Fraction(0)] * len(columns) for row in found]
-    return derivatives
+    def sum(self, binding=1):
+        sign = self.take("+", "-")
+        found = self.sum(3) if sign else self.primary()
+        found = each(Node.__neg__, found) if sign == "-" else found
+        while BINDING.get(self.tokens[self.at], 0) >= binding:
+            operation = self.need(self.tokens[self.at])
+            if operation == "at":
+                self.need("{")
+                found = each(Point(Expressions, self.commas(self.given, "}")).value, found)
+            else:
+                found = OPERATIONS[operation](found, self.sum(BINDING[operation] + 1))
+        return found
+
+    def given(self):
+        name = self.symbol()
+        self.need("=")
+        return symbol(name), single(self.sum())
+
+    def symbol(self): return self.system.home(self.name())[1]
+
+    def primary(self):
+        if self.take("("):
+            return self.commas(self.sum, ")")[0]
+        if self.take("["):
+            return self.blocks()
+        if re.match(r"\.?\d", self.tokens[self.at]):
+            return [[number(self.need(self.tokens[self.at]))]]
+        name = self.name()
+        return self.called(name) if self.take("(") else self.system.named(name)
+
+    def blocks(self):
+        found = []
+        while True:
+            blocks = self.commas(self.sum)
+            found += [sum(parts, []) for parts in zip(*blocks)]
+            if len({len(block) for block in blocks}) > 1 or len({len(row) for row in found}) > 1:
+                refuse("blocks that do not fit")
+            if self.need("]", ";") == "]":
+                return found
+
+    def field(self):
+        name = self.name()
+        if name != "bracket" or not self.take("("):
+            return self.system.field(name)
+        field = self.bracket()
+        self.need(")")
+        return field
+
+    def bracket(self):
+        f, _, g = self.field(), self.need(","), self.field()
+        return Field(lambda name: f.along(g.rate(name)) - g.along(f.rate(name)))
+
+    def lie(self):
+        """What stands last, differentiated along the fields before it."""
+        mark = self.at
+        try:
+            field = self.field()
+            self.need(",")
+        except NotRead:
+            self.at = mark
+            return self.commas(self.sum, ")")[0]
+        return each(field.along, self.lie())
+
+    def called(self, name):
+        if name == "L":
+            return self.lie()
+        if name == "bracket":
+            field = self.bracket()
+            return [[field.rate(column)] for column in self.by()]
+        if name == "d":
+            of, columns = entries(self.sum()), self.by()
+            return [[self.system.unit(column).along(x) for column in columns] for x in of]
+        arguments = self.commas(self.sum, ")")
+        if name in OF_NUMBERS:
+            return [[OF_NUMBERS[name](*map(single, arguments))]]
+        return OF_MATRICES[name](*arguments) if name in OF_MATRICES else refuse(f"'{name}('")
+
+    def by(self):
+        return self.commas(self.symbol, ")") if self.need(",", ")") == "," else self.system.columns()
 
 
 class ProofFile:
-    """A system: its states, fields, outputs and definitions."""
+    """A system: its states, fields, outputs and definitions, which are read when they are asked for."""
 
     def __init__(self, path, depth=0):
-        if depth > 8:
-            refuse("files that use one another")
         with open(path, encoding="utf-8") as file:
-            self.text, self.at = file.read(), 0
-        self.path, self.depth, self.source = path, depth, re.sub(r"#[^\n]*|\s+", "", self.text)
-        self.states, self.unknown, self.known, self.symbols, self.angles = [], [], set(), set(), set()
-        self.lets, self.fields, self.moving, self.imports, self.outputs, self.signals = {}, {}, [], {}, [], []
-        self.skip()
-        while self.at < len(self.text):
-            word = self.match(NAME.pattern)
-            if word not in ENTRIES or word == "experiments":
-                refuse(f"'{word or self.text[self.at:self.at + 20]}'")
-            getattr(self, "read_" + word, lambda: None)()
-            self.to_next_entry()
-        for name, order in self.signals:
-            rates = {name + "'" * k: (lambda at, next_=name + "'" * (k + 1): at.value(next_)) for k in range(order)}
-            for field in ([f for f, kind in self.moving if kind == "drift"] or [None]):
-                if field is None:
-                    field = "signals"
-                    self.moving.append((field, "drift"))
-                    self.fields[field] = {}
-                self.fields[field].update(rates)
+            text = file.read()
+        self.path, self.depth, self.source, self.tokens = path, depth, squeezed(text), tokens_of(text)
+        self.states, self.unknown, self.known, self.symbols, self.outputs, self.moving = [], [], set(), {"pi"}, [], []
+        self.lets, self.fields, self.imports, self.signals, self.units, self.drifts = {}, {}, {}, {}, {}, False
+        entry, nesting, before = [], 0, ""
+        for token, *ahead in zip(self.tokens, (*self.tokens[1:], ""), (*self.tokens[2:], "", "")):
+            is_entry = ahead[0].startswith('"') if token in ("set", "pole", "map", "line") else token not in ("known", "unknown") or ahead[1] == "("
+            if token in ENTRIES and nesting == 0 and len(entry) != 1 and before != ":" and is_entry:
+                self.read(*(entry or ["system"]))
+                entry = []
+            nesting += (token in ("(", "[", "{")) - (token in (")", "]", "}"))
+            entry, before = [*entry, token], token
+        self.read(*entry)
+        if self.signals and not self.drifts:
+            self.read("drift", "signals")
 
-    # reading
-
-    def skip(self):
-        self.at = SPACE.match(self.text, self.at).end()
-
-    def match(self, pattern):
-        found = re.compile(pattern).match(self.text, self.at)
-        if found is None:
-            return None
-        self.at = found.end()
-        self.skip()
-        return found.group()
-
-    def take(self, wanted):
-        return self.match(re.escape(wanted) + (r"\b" if wanted.isalpha() else "")) is not None
-
-    def need(self, wanted):
-        if not self.take(wanted):
-            refuse(f"'{self.text[self.at:self.at + 20]}' where '{wanted}' was awaited")
-
-    def name(self):
-        name = self.match(NAME.pattern)
-        if name is None or self.text[self.at:self.at + 1] in ("[", "@"):
-            refuse("a vector, or an experiment" if name else f"'{self.text[self.at:self.at + 20]}'")
-        return name
-
-    def to_next_entry(self):
-        depth = 0
-        while self.at < len(self.text):
-            mark = self.at
-            found = self.match(r'"[^"]*"') or self.match(NAME.pattern) or self.match(r"(?s).")
-            if depth == 0 and found in ENTRIES:
-                self.at = mark
-                return
-            depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(found, 0)
-
-    def dimension(self):
-        if self.take(":"):
-            self.match(r"[^,=#\n]*?(?=\s*(?:[,=#\n]|\bunknown\b|\bknown\b|\border\b|$))")
-
-    def commas(self, read):
-        while True:
-            read()
-            if not self.take(","):
-                return
-
-    def read_use(self):
-        name = self.name()
-        self.need("=")
-        other = ProofFile(os.path.join(os.path.dirname(self.path), self.match(r'"[^"]*"')[1:-1]), self.depth + 1)
-        self.imports[name] = other
-        self.angles |= other.angles
-        self.symbols |= other.symbols
-
-    def read_state(self):
-        def one():
-            self.states.append(self.name())
-            self.symbols.add(self.states[-1])
-            self.dimension()
-        self.commas(one)
-
-    def read_param(self):
-        waiting = []
-
-        def one():
-            waiting.append(self.name())
-            self.symbols.add(waiting[-1])
-            self.dimension()
-            valued = self.take("=") and bool(self.sum())
-            self.dimension()
-            if self.take("unknown"):
-                self.unknown.extend(waiting)
-                waiting.clear()
-            elif self.take("known") or valued:
-                waiting.clear()
-        self.commas(one)
-
-    def read_angle(self):
-        self.commas(lambda: self.angles.add(self.name()))
-
-    def signal(self, is_known):
-        name = self.name()
-        if not self.match(r"\(\s*t\s*\)"):
-            refuse("a signal that is no function of t")
-        self.dimension()
-        order = int(self.match(r"\d+")) if self.take("order") else None
-        if order is None and not is_known:
-            order = max([1] + [len(d) for d in re.findall(rf"\b{name}('+)", self.text)])
-        jet = [name + "'" * k for k in range((SIGNALS if is_known else order) + 1)]
-        self.symbols.update(jet)
-        self.signals.append((name, len(jet) - 1))
-        (self.known.update if is_known else self.unknown.extend)(jet)
-
-    def read_known(self):
-        self.commas(lambda: self.signal(True))
-
-    def read_unknown(self):
-        self.commas(lambda: self.signal(False))
-
-    def read_initial(self):
-        def one():
-            name = self.name()
-            if self.take("="):
-                refuse("a value at the beginning")
-            if self.take("known"):
+    def read(self, kind, *words):
+        """One entry."""
+        parts = split(words, ",") if kind in ENTRIES and kind != "experiments" else refuse(f"'{kind}' where an entry is awaited")
+        if kind in ("state", "param", "known", "unknown", "initial") and ("[" in words or "@" in words):
+            refuse("a vector, or an experiment")
+        if kind == "use":
+            other = ProofFile(os.path.join(os.path.dirname(self.path), words[2][1:-1]), self.depth + 1) if self.depth < 8 else refuse("deep imports")
+            self.imports[words[0]], self.symbols = other, self.symbols | other.symbols
+        elif kind == "let" and words[1] not in ("[", "@"):
+            self.lets[words[0]] = words[words.index("=") + 1:]
+        elif kind in ("drift", "input", "field"):
+            self.read_field(kind, words[0], split(words[1:], "="))
+        elif kind == "output":
+            self.outputs += parts
+        elif kind in ("state", "param"):
+            waiting = []
+            for name, *rest in parts:
                 waiting.append(name)
-                self.known.update(waiting)
-            else:
-                waiting.append(name)
-        waiting = []
-        self.commas(one)
+                if kind == "state" or rest[-1:] == ["unknown"]:
+                    (self.states if kind == "state" else self.unknown).extend(waiting)
+                waiting = [] if kind == "state" or "=" in rest or rest[-1:] in (["known"], ["unknown"]) else waiting
+                self.symbols.add(name)
+        elif kind == "initial":
+            self.known |= {part[0] for part in parts} if words[-1] == "known" and "=" not in words else refuse("a value at the beginning")
+        elif kind in ("known", "unknown"):
+            for name, *rest in parts:
+                told = [len(token) - len(name) for token in self.tokens if token.rstrip("'") == name]
+                self.signals[name] = int(rest[rest.index("order") + 1]) if "order" in rest else max(1, *told) if kind == "unknown" else 1 << 20
+                self.unknown += [name + "'" * k for k in range(self.signals[name] + 1)] if kind == "unknown" else []
 
-    def read_let(self):
-        name = self.name()
-        if self.take(":"):
-            self.match(r"[^=]*")
-        self.need("=")
-        value = self.sum()
-        self.lets[name] = lambda at: at.kept[name] if name in at.kept else at.kept.setdefault(name, value(at))
+    def read_field(self, kind, field, parts):
+        names = [part[-1] for part in parts[:-1]]
+        bodies = dict(zip(names, [part[:-1] for part in parts[1:-1]] + parts[-1:]))
 
-    def read_field(self, kind="field"):
-        field, rates = self.name(), {}
-        while (found := re.compile(r"([A-Za-z_]\w*)\s*('|\+)\s*=").match(self.text, self.at)):
-            if found.group(2) == "+":
-                refuse("discrete time")
-            self.at = found.end()
-            self.skip()
-            rates[found.group(1)] = self.sum()
-        rates.pop("others", None)
-        if not set(rates) <= set(self.states):
-            refuse("a field of something that is no state")
-        self.fields[field] = rates
-        if kind != "field":
-            self.moving.append((field, kind))
-
-    def read_drift(self):
-        self.read_field("drift")
-
-    def read_input(self):
-        self.read_field("input")
-
-    def read_output(self):
-        def one():
-            self.outputs.append(self.sum())
-            if self.text[self.at:self.at + 1] == "=":
-                refuse("an output that is zero")
-            self.dimension()
-        self.commas(one)
+        def rate(name):
+            order = self.signals.get(name.rstrip("'"))
+            if kind == "drift" and order is not None:
+                return symbol(name + "'") if name.count("'") < order else number(0)
+            reader = Reader(self, bodies.get(name + "'", ["0"]))
+            return single(reader.whole(reader.sum))
+        self.fields[field] = Field(rate) if all(re.fullmatch(r"\w.*'", name) for name in names) else refuse("discrete time, or a vector")
+        self.moving, self.drifts = self.moving + [field] * (kind != "field"), self.drifts or kind == "drift"
 
     # what is asked of a system
+
+    def home(self, name):
+        """The system in which a name is declared, and its name there."""
+        first, _, rest = name.partition(".")
+        return self.imports[first].home(rest) if first in self.imports and rest else (self, name)
+
+    def named(self, name):
+        home, plain = self.home(name)
+        if plain in home.lets:
+            if isinstance(home.lets[plain], tuple):
+                reader = Reader(home, home.lets[plain])
+                home.lets[plain] = reader.whole(reader.sum)
+            return home.lets[plain]
+        if plain == "output" and home is not self:
+            return [[x] for x in home.seen()]
+        return [[symbol(plain)]] if plain in home.symbols or plain.rstrip("'") in home.signals else refuse(f"'{name}'")
+
+    def field(self, name):
+        home, plain = self.home(name)
+        if plain.endswith("'") and plain.rstrip("'") in home.signals:
+            return self.unit(plain[:-1])
+        return home.fields.get(plain) or refuse(f"'{name}' where a field is awaited")
+
+    def unit(self, column):
+        """The field that moves one symbol."""
+        return self.units.setdefault(column, Field(lambda name: number(name == column)))
 
     def columns(self):
         return [name for name in self.states + self.unknown if name not in self.known]
 
-    def word(self, text):
-        """A word of Lie derivatives by its name: `Lf Lg y`."""
-        first, _, rest = text.partition(" ")
-        if rest and first[1:] in self.fields and first[0] == "L":
-            return lie(self.fields[first[1:]], self.word(rest))
-        return self.whole(text, self.sum)
+    def seen(self):
+        """The outputs."""
+        readers = [Reader(self, output) for output in self.outputs]
+        found = [(reader.sum(), reader.tokens[reader.at] in ("", ":") or refuse("an output that is zero")) for reader in readers]
+        return [x for of, _ in found for x in entries(of)]
 
-    def whole(self, text, read):
-        self.text, self.at = text, 0
-        self.skip()
-        found = read()
-        return found if self.at == len(text) else refuse(f"'{text[self.at:self.at + 20]}'")
+    def word(self, text):
+        """A word by its name, as `Lf Lg y`: an output, differentiated along what moves the system."""
+        first, _, rest = text.partition(" ")
+        if rest and first[1:] in self.moving:
+            return self.fields[first[1:]].along(self.word(rest))
+        reader = Reader(self, tokens_of(text))
+        found = single(reader.whole(reader.sum))
+        return found if found in self.seen() else refuse(f"'{text}' is no output")
 
     def statement(self, text):
-        """A statement that stands in the file: what is asked, its sides and its conditions."""
-        if re.sub(r"#[^\n]*|\s+", "", text) not in self.source:
-            refuse("the statement does not stand in the file")
-        return self.whole(text, self.read_statement)
-
-    def read_statement(self):
-        if re.match(r"rank\b", self.text[self.at:]):
-            self.take("rank")
-            of = self.bracketed() if self.text[self.at:self.at + 1] == "(" else None
-            self.need("=")
-            found = "rank", of, int(self.match(r"\d+") or refuse("a rank that is no number"))
-        else:
-            left = self.sum()
-            relation = self.match(RELATION) or refuse(f"'{self.text[self.at:self.at + 20]}'")
-            found = relation, left, self.sum()
-        conditions = []
-
-        def one():
-            start, left, middle = self.at, self.sum(), self.at
-            relation = self.match(RELATION) or refuse("a condition that is no relation")
-            conditions.append((self.text[start:middle].strip(), left, relation, self.sum()))
-        if self.take("where"):
-            self.commas(one)
-        return (*found, conditions)
-
-    # expressions
-
-    def bracketed(self):
-        self.need("(")
-        found = self.sum()
-        self.need(")")
-        return found
-
-    def sum(self):
-        parts = [("+", self.product())]
-        while (sign := self.match(r"[+-]")):
-            parts.append((sign, self.product()))
-        if len(parts) == 1:
-            return parts[0][1]
-
-        def value(at):
-            found = parts[0][1](at)
-            for sign, part in parts[1:]:
-                found = each((lambda x, y: x + y) if sign == "+" else (lambda x, y: x - y), found, part(at))
-            return found
-        return value
-
-    def product(self):
-        signs, factors = self.match(r"[+-](?:\s*[+-])*") or "", [("*", self.factor())]
-        while (sign := self.match(r"[*/]")):
-            signs += self.match(r"[+-](?:\s*[+-])*") or ""
-            factors.append((sign, self.factor()))
-        negative = signs.count("-") % 2
-        if len(factors) == 1 and not negative:
-            return factors[0][1]
-
-        def value(at):
-            found = factors[0][1](at)
-            for sign, factor in factors[1:]:
-                other = factor(at)
-                found = times(found, other if sign == "*" else invert(number(other)))
-            return times(Fraction(-1), found) if negative else found
-        return value
-
-    def factor(self):
-        base = self.primary()
-        if self.take("^"):
-            negative, one, power = self.take("-"), base, self.primary()
-            base = lambda at: exponential(number(one(at)), -power(at) if negative else power(at))
-        while self.take("at"):
-            self.need("{")
-            given, of = {}, base
-
-            def one_value():
-                name = self.name()
-                self.need("=")
-                given[name] = self.sum()
-            self.commas(one_value)
-            self.need("}")
-            base = lambda at, of=of, given=given: of(
-                Environment({**at.values, **{name: lambda value=value: number(value(at)) for name, value in given.items()}}, at.level))
-        return base
-
-    def primary(self):
-        if (found := self.match(r"\d+(?:\.\d+)?")):
-            value = Fraction(found)
-            return lambda at: value
-        if self.text[self.at:self.at + 1] == "(":
-            return self.bracketed()
-        if self.take("["):
-            return self.blocks()
-        name = self.name()
-        if self.text[self.at:self.at + 1] == "(":
-            return self.called(name)
-        first, _, rest = name.partition(".")
-        other = self.imports[first] if first in self.imports else self
-        plain = rest if first in self.imports else name
-        if other is not self and plain == "output":
-            return lambda at: [[number(output(at))] for output in other.outputs]
-        if name == "pi":
-            return lambda at: Turn(Fraction(1))
-        if plain in other.lets:
-            return other.lets[plain] if other is self else self.kept_apart(name, other.lets[plain])
-        if plain not in other.symbols:
-            refuse(f"'{name}'")
-        return lambda at: at.value(plain)
-
-    @staticmethod
-    def kept_apart(name, value):
-        """Definitions of another file have names of their own there."""
-        def evaluate(at):
-            inner = at.kept.setdefault((name.partition(".")[0],), Environment(at.values, at.level))
-            return value(inner)
-        return evaluate
-
-    def blocks(self):
-        rows, row = [], []
-        while True:
-            row.append(self.sum())
-            if self.take(","):
-                continue
-            rows.append(row)
-            row = []
-            if self.take("]"):
-                break
-            self.need(";")
-
-        def value(at):
-            found = []
-            for row in rows:
-                blocks = [matrix(part(at)) for part in row]
-                if len({len(block) for block in blocks}) != 1:
-                    refuse("blocks of two heights")
-                found.extend([x for part in parts for x in part] for parts in zip(*blocks))
-            return found if len({len(row) for row in found}) == 1 else refuse("rows of two lengths")
-        return value
-
-    def field(self):
-        """A field, or a bracket of two: its rates."""
-        name = self.name()
-        if name == "bracket":
-            self.need("(")
-            rates = self.pair()
-            self.need(")")
-            return rates
-        first, _, rest = name.partition(".")
-        fields = self.imports[first].fields if first in self.imports else self.fields
-        return fields.get(rest if first in self.imports else name) or refuse(f"'{name}' where a field was awaited")
-
-    def pair(self):
-        f = self.field()
-        self.need(",")
-        g, zero = self.field(), lambda at: Fraction(0)
-        minus = lambda a, b: lambda at: number(a(at)) - number(b(at))
-        return {name: minus(lie(f, g.get(name, zero)), lie(g, f.get(name, zero))) for name in {**f, **g}}
-
-    def called(self, name):
-        self.need("(")
-        if name == "L":
-            fields = []
-            while True:
-                mark = self.at
-                try:
-                    fields.append(self.field())
-                    self.need(",")
-                except NotRead:
-                    self.at = mark
-                    break
-            found = self.sum()
-            for rates in reversed(fields):
-                found = lie(rates, found)
-            self.need(")")
-            return found
-        if name == "bracket":
-            rates = self.pair()
-            columns = self.by() or self.columns()
-            return lambda at: [[number(rates[column](at)) if column in rates else Fraction(0)] for column in columns]
-        arguments = [self.sum()]
-        if name == "d":
-            return slopes(arguments[0], self.by() or self.columns())
-        while self.take(","):
-            arguments.append(self.sum())
-        self.need(")")
-        return lambda at: function(name, [argument(at) for argument in arguments])
-
-    def by(self):
-        columns = []
-        while self.take(","):
-            columns.append(self.name())
-        self.need(")")
-        return columns
-
-
-def exponential(base, power):
-    power = number(power)
-    if isinstance(power, Fraction) and power.denominator == 1:
-        return raised(base, int(power))
-    if isinstance(power, Fraction) and power.denominator == 2:
-        return raised(apply("sqrt", base), int(2 * power))
-    return apply("exp", power * apply("log", base))
-
-
-def function(name, arguments):
-    a, b = arguments[0], arguments[-1]
-    if name in ("transpose", "det", "inverse", "dot", "cross"):
-        a, b = matrix(a), matrix(b)
-        if name == "transpose":
-            return [list(column) for column in zip(*a)]
-        if name in ("det", "inverse"):
-            return determinant(a) if name == "det" else inverse(a)
-        a, b = sum(a, []), sum(b, [])
-        if name == "dot":
-            return total(x * y for x, y in zip(a, b))
-        if len(a) == 2:
-            return a[0] * b[1] - a[1] * b[0]
-        return [[a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]] for i in range(3)]
-    a, b = number(a), number(b)
-    one, half = Fraction(1), Fraction(1, 2)
-    exp, root = lambda x: apply("exp", x), lambda x: apply("sqrt", x * x)
-    made = {
-        "tan": lambda: apply("sin", a) * invert(apply("cos", a)), "cot": lambda: apply("cos", a) * invert(apply("sin", a)),
-        "sec": lambda: invert(apply("cos", a)), "csc": lambda: invert(apply("sin", a)),
-        "sinh": lambda: half * (exp(a) - exp(-a)), "cosh": lambda: half * (exp(a) + exp(-a)),
-        "tanh": lambda: one - Fraction(2) * invert(exp(a + a) + one), "abs": lambda: root(a), "sign": lambda: a * invert(root(a)),
-        "min": lambda: half * (a + b - root(a - b)), "max": lambda: half * (a + b + root(a - b)),
-        "atan2": lambda: Fraction(2) * apply("atan", a * invert(apply("sqrt", a * a + b * b) + b)),
-    }
-    if name in ("sqrt", "exp", "log", "sin", "cos", "asin", "acos", "atan"):
-        return apply(name, a)
-    return made[name]() if name in made and len(arguments) <= 2 else refuse(f"'{name}'")
+        """A statement that stands in the file."""
+        reader = Reader(self, tokens_of(text) if squeezed(text) in self.source else refuse("the statement does not stand in the file"))
+        return reader.whole(reader.statement)

@@ -1,16 +1,22 @@
-"""The second checker: what is so is not doubted, and what is not so is."""
+"""The second checker: what is so is not doubted, what is not so is, and what is damaged is named."""
 
+import contextlib
+import io
+import json
 import os
+import random
 import tempfile
 import unittest
 from fractions import Fraction
 
+from palmistry import graph, recheck
+from palmistry.graph import Interval, Intervals, Node, Point, call, image, number, symbol
+from palmistry.proof_file import ProofFile
 from palmistry.recheck import check
-from palmistry.values import Arc, Interval, Turn, apply
 
 PENDULUM = """
 system "A pendulum, its angle and a clock seen"
-state phi, omega, x
+state phi : angle, omega, x
 param k = 2, m unknown
 angle phi
 let energy = m*omega^2/2 - m*k*cos(phi)
@@ -28,33 +34,75 @@ claim 9: det([d(phi, phi, omega); d(L(f, phi), phi, omega)]) = 1
 claim 10: sin(phi + pi/2) = cos(phi)
 claim 11: x <= 1
 claim 12: exp(x) >= 1
+claim 13: L(f, energy) = 1
+claim 14: observable(omega, omega^2 + 3)
+claim 15: observable(omega, m)
+claim 16: unobservable(x, m)
+claim 17: rank([x, m; 2*x, 2*m]) = 1
+claim 18: rank = 2 everywhere
+claim 19: omega*(x + m) = k where x = k/omega - m
 """
 
 STATE = {"phi": {"angle": {"sin": "3/5", "cos": "4/5"}}, "omega": {"number": "2"}, "x": {"number": "2"}, "k": {"number": "7"}}
+RANKED = {"columns": ["phi", "omega", "x", "m"], "words": ["phi", "Lf phi", "Lf Lf phi"],
+          "states": [{"state": STATE, "rank": 2, "minor": {"rows": [0, 1], "columns": [0, 1]}, "kernel": []}]}
+BOXED = {"columns": ["phi", "omega"], "words": ["phi", "Lf phi", "Lf Lf phi"], "volume": "1",
+         "ranges": [{"symbol": "phi", "low": "1/10", "high": "3"}, {"symbol": "omega", "low": "-1", "high": "1"},
+                    {"symbol": "k", "low": "2", "high": "2"}],
+         "boxes": [{"sides": [["1/10", "1"], ["-1", "1"]], "rows": [0, 1]}, {"sides": [["1", "3"], ["-1", "1"]], "rows": [1, 0]}]}
+SO, NOT_SO = ("confirmed", "consistent"), ("not confirmed", "not checked")
 
 
-class Recheck(unittest.TestCase):
+def record(statement, kind, evidence):
+    return {"file": "pendulum.proof", "id": "1", "statement": statement, "evidence": {kind: evidence}}
+
+
+GOOD = [
+    *(record(statement, "proved", {}) for statement in (
+        "L(f, energy) = 0", "L(f, f, phi) = -k*sin(phi)", "L(f, omega) = 0 where sin(phi) = 0", "sin(phi + pi/2) = cos(phi)",
+        "d(energy, phi, omega) = [m*k*sin(phi), m*omega]", "det([d(phi, phi, omega); d(L(f, phi), phi, omega)]) = 1",
+        "omega*(x + m) = k where x = k/omega - m", "rank = 2 everywhere")),
+    *(record(statement, "claimed_rank", {"word": "proved"}) for statement in (
+        "rank = 2", "rank([x, m; 2*x, 2*m]) = 1", "observable(omega, omega^2 + 3)", "unobservable(x, m)")),
+    record("rank = 3", "claimed_rank", {"word": "refuted"}),
+    record("L(f, f, phi) = k*sin(phi)", "refuted", {"state": STATE}), record("x <= 1", "refuted", {"state": STATE}),
+    record("exp(x) >= 1", "refuted", {"state": {**STATE, "x": {"number": "-1/10"}}}),
+    record("rank", "rank", RANKED), record("full rank", "boxes", BOXED)]
+
+
+class Folder(unittest.TestCase):
+    """A folder with a proof file, and what the checker says of records about it."""
+
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
-        with open(os.path.join(self.folder.name, "pendulum.proof"), "w", encoding="utf-8") as file:
-            file.write(PENDULUM)
+        self.addCleanup(self.folder.cleanup)
+        self.write(PENDULUM)
 
-    def tearDown(self):
-        self.folder.cleanup()
+    def write(self, text, name="pendulum.proof"):
+        path = os.path.join(self.folder.name, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def answer(self, entry):
+        found = check(entry, self.folder.name, {}, 1)
+        self.assertIn(found[0], SO + NOT_SO)
+        return found[0]
 
     def word(self, statement, kind, **evidence):
-        record = {"file": "pendulum.proof", "id": "1", "statement": statement, "evidence": {kind: evidence}}
-        return check(record, self.folder.name, {}, 1)[0]
+        return self.answer(record(statement, kind, evidence))
 
+
+class Recheck(Folder):
     def test_identities(self):
-        for statement in ("L(f, energy) = 0", "L(f, f, phi) = -k*sin(phi)", "L(f, omega) = 0 where sin(phi) = 0",
-                          "d(energy, phi, omega) = [m*k*sin(phi), m*omega]", "sin(phi + pi/2) = cos(phi)",
-                          "det([d(phi, phi, omega); d(L(f, phi), phi, omega)]) = 1"):
-            self.assertEqual(self.word(statement, "proved"), "consistent", statement)
+        for entry in GOOD[:8]:
+            self.assertEqual(self.answer(entry), "consistent", entry["statement"])
         self.assertEqual(self.word("L(f, f, phi) = k*sin(phi)", "proved"), "not confirmed")
+        self.assertEqual(self.word("L(f, energy) = 1", "proved"), "not confirmed")
         # equal exponentials of two arguments are not told apart here, and that is no doubt
         self.assertEqual(self.word("L(f, f, x) = exp(2*x)", "proved"), "not checked")
-        self.assertEqual(self.word("L(f, energy) = 1", "proved"), "not checked")
+        # a statement that stands in no file
+        self.assertEqual(self.word("L(f, phi) = omega", "proved"), "not checked")
 
     def test_refutations(self):
         self.assertEqual(self.word("L(f, f, phi) = k*sin(phi)", "refuted", state=STATE), "confirmed")
@@ -72,28 +120,174 @@ class Recheck(unittest.TestCase):
         self.assertEqual(self.word("rank = 2", "claimed_rank", word="proved"), "consistent")
         self.assertEqual(self.word("rank = 3", "claimed_rank", word="proved"), "not confirmed")
         self.assertEqual(self.word("rank = 3", "claimed_rank", word="refuted"), "consistent")
-        minor = {"rows": [0, 1], "columns": [0, 1]}
-        ranked = {"columns": ["phi", "omega", "x", "m"], "words": ["phi", "Lf phi", "Lf Lf phi"]}
-        states = [{"state": STATE, "rank": 2, "minor": minor, "kernel": []}]
-        self.assertEqual(self.word("rank", "rank", states=states, **ranked), "confirmed")
-        states[0]["minor"] = {"rows": [0, 2], "columns": [0, 1]}
-        self.assertEqual(self.word("rank", "rank", states=states, **ranked), "not confirmed")
+        self.assertEqual(self.word("observable(omega, omega^2 + 3)", "claimed_rank", word="proved"), "consistent")
+        self.assertEqual(self.word("observable(omega, m)", "claimed_rank", word="proved"), "not confirmed")
+        self.assertEqual(self.word("unobservable(x, m)", "claimed_rank", word="proved"), "consistent")
+        self.assertEqual(self.word("rank", "rank", **RANKED), "confirmed")
+        states = [{**RANKED["states"][0], "minor": {"rows": [0, 2], "columns": [0, 1]}}]
+        self.assertEqual(self.word("rank", "rank", **{**RANKED, "states": states}), "not confirmed")
+
+    def test_boxes(self):
+        self.assertEqual(self.word("full rank", "boxes", **BOXED), "confirmed")
+        # the minor of phi and Lf Lf phi is zero everywhere; boxes that overlap; one that lies outside; another volume
+        first, second = BOXED["boxes"]
+        for wrong, word in (({"boxes": [first, {**second, "rows": [0, 2]}]}, "not checked"),
+                            ({"boxes": [first, {**second, "sides": [["9/10", "3"], ["-1", "1"]]}]}, "not confirmed"),
+                            ({"boxes": [first, {**second, "sides": [["1", "3"], ["-1", "2"]]}]}, "not confirmed"),
+                            ({"boxes": [first]}, "not confirmed"), ({"volume": "1/2"}, "not confirmed")):
+            self.assertEqual(self.word("full rank", "boxes", **{**BOXED, **wrong}), word)
+
+    def test_a_box_around_a_zero_is_not_shown(self):
+        self.write('system "A square" state x, y drift f x\' = 0 y\' = 0 output x^3/3 + x*y, y claim 1: x = x')
+        box = {"columns": ["x", "y"], "words": ["x^3/3 + x*y", "y"], "volume": "1",
+               "ranges": [{"symbol": "x", "low": "-1", "high": "2"}, {"symbol": "y", "low": "1/100", "high": "1"}],
+               "boxes": [{"sides": [["-1", "2"], ["1/100", "1"]], "rows": [0, 1]}]}
+        self.assertEqual(self.word("full rank", "boxes", **box), "confirmed")
+        box["ranges"][1]["low"] = box["boxes"][0]["sides"][1][0] = "-1/100"
+        self.assertEqual(self.word("full rank", "boxes", **box), "not checked")
 
     def test_intervals_hold_what_they_enclose(self):
-        pi = Turn(Fraction(1)).value(Interval(0, 0))
-        self.assertLess(pi.high - pi.low, Fraction(1, 10**100))
+        domain = Intervals()
+        pi = domain.symbol("pi")
+        machin = [[sum(Fraction((-1) ** k, (2 * k + 1) * x ** (2 * k + 1)) for k in range(n)) for n in (70, 71)] for x in (5, 239)]
+        self.assertTrue(pi.low <= 16 * machin[0][0] - 4 * machin[1][1] + Fraction(1, 10**90))
+        self.assertTrue(pi.high >= 16 * machin[0][1] - 4 * machin[1][0] - Fraction(1, 10**90))
+        self.assertLess(pi.high - pi.low, Fraction(1, 10**70))
         for x in (Fraction(1, 3), Fraction(-7, 2), Fraction(9, 10), Fraction(40)):
-            one = apply("sin", Interval(x, x)), apply("cos", Interval(x, x))
-            square = one[0] * one[0] + one[1] * one[1]
+            sine, cosine = image("sin", x), image("cos", x)
+            square = sine * sine + cosine * cosine
             self.assertTrue(square.low <= 1 <= square.high and square.high - square.low < Fraction(1, 10**60))
-            back = apply("log", apply("exp", Interval(x, x)))
-            self.assertTrue(back.low <= x <= back.high)
-            tangent = apply("atan", Interval(x, x))
-            again = apply("sin", tangent) / apply("cos", tangent)
-            self.assertTrue(again.low <= x <= again.high)
-            root = apply("sqrt", Interval(abs(x), abs(x)))
+            one = image("exp", x) * image("exp", -x)
+            self.assertTrue(one.low <= 1 <= one.high and one.high - one.low < Fraction(1, 10**60))
+            root = image("sqrt", abs(x))
             self.assertTrue((root * root).low <= abs(x) <= (root * root).high)
-        self.assertEqual(apply("sin", Arc(Fraction(3, 5), Fraction(4, 5)) + Turn(Fraction(1, 2))), Fraction(4, 5))
+        wide = domain.function(Node("sin", symbol("x")), Interval(Fraction(1), Fraction(2)))
+        self.assertTrue(wide.low <= image("sin", Fraction(1)).low and wide.high >= 1)
+        sums = Point(domain, {Node("sin", symbol("a")): Interval(Fraction(3, 5), Fraction(3, 5)),
+                              Node("cos", symbol("a")): Interval(Fraction(4, 5), Fraction(4, 5))})
+        turned = sums.value(call("sin", number(2) * (symbol("a") + symbol("pi") / number(4))))
+        self.assertEqual((turned.low, turned.high), (Fraction(7, 25), Fraction(7, 25)))
+
+    def test_derivatives_are_those_by_hand(self):
+        x = symbol("x")
+        along = graph.Field(lambda name: number(name == "x")).along
+        for of, slope in ((x**3, number(3) * x**2), (call("sin", number(2) * x), number(2) * call("cos", number(2) * x)),
+                          (call("sqrt", x), number("1/2") / call("sqrt", x)), (call("log", x * x), number(2) / x),
+                          (call("atan", x), number(1) / (number(1) + x**2)), (number(1) / x, -(x**-2))):
+            point = Point(graph.Modulo(recheck.PRIMES[0], 4), {x: graph.Residue(25, recheck.PRIMES[0])})
+            self.assertEqual(point.value(along(of) - slope).value, 0)
+            self.assertEqual((point.slopes(of, ["x"])[0] + point.value(-slope)).value, 0)
+
+
+class Mutants(Folder):
+    """Each verdict is so; changed in one place, none is confirmed or consistent any more."""
+
+    def test_what_is_right(self):
+        for entry in GOOD:
+            self.assertIn(self.answer(entry), SO, entry["statement"])
+
+    def test_what_is_changed(self):
+        def changed(entry, *path, to):
+            """The record with one entry of its evidence replaced."""
+            entry = json.loads(json.dumps(entry))
+            inner = next(iter(entry["evidence"].values()))
+            for key in path[:-1]:
+                inner = inner[key]
+            inner[path[-1]] = to
+            return entry
+        claims = [("L(f, energy) = 0", "L(f, energy) = 1"), ("L(f, f, phi) = -k*sin(phi)", "L(f, f, phi) = -2*k*sin(phi)"),
+                  ("L(f, f, phi) = -k*sin(phi)", "L(f, f, phi) = -k*cos(phi)"), ("L(f, omega) = 0 where sin(phi) = 0", "L(f, omega) = 0 where cos(phi) = 0"),
+                  ("sin(phi + pi/2) = cos(phi)", "sin(phi - pi/2) = cos(phi)"), ("sin(phi + pi/2) = cos(phi)", "sin(phi + pi/2) = sin(phi)"),
+                  ("[m*k*sin(phi), m*omega]", "[m*k*sin(phi), -m*omega]"), ("[m*k*sin(phi), m*omega]", "[m*omega, m*k*sin(phi)]"),
+                  ("d(L(f, phi), phi, omega)]) = 1", "d(L(f, phi), phi, omega)]) = -1"), ("x = k/omega - m", "x = k/omega + m"),
+                  ("omega*(x + m) = k", "omega*(x + m) = k + 1"), ("rank = 2 everywhere", "rank = 3 everywhere"), ("rank = 2", "rank = 1"),
+                  ("2*x, 2*m]) = 1", "2*x, 3*m]) = 1"), ("2*x, 2*m]) = 1", "2*x, 2*m]) = 2"), ("observable(omega, omega^2 + 3)", "observable(omega, x)"),
+                  ("unobservable(x, m)", "unobservable(x, omega)"), ("unobservable(x, m)", "observable(x, m)")]
+        mutants = 0
+        for old, new in claims:
+            # the claim is changed in the file and in the verdict alike
+            for entry in (entry for entry in GOOD if old in entry["statement"] and "refuted" not in json.dumps(entry["evidence"])):
+                self.write(PENDULUM.replace(": " + entry["statement"], ": " + entry["statement"].replace(old, new)))
+                mutant = {**entry, "statement": entry["statement"].replace(old, new)}
+                self.assertIn(self.answer(mutant), NOT_SO, mutant["statement"])
+                mutants += 1
+        self.write(PENDULUM)
+        witness, low = GOOD[13], GOOD[15]
+        ranked, boxed = GOOD[-2], GOOD[-1]
+        for entry in (changed(GOOD[12], "word", to="proved"), changed(GOOD[8], "word", to="refuted"),
+                      {**witness, "statement": "L(f, f, phi) = -k*sin(phi)"}, {**witness, "statement": "L(f, f, phi) = -k*cos(phi)"},
+                      changed(witness, "state", "phi", to={"angle": {"sin": "0", "cos": "1"}}), changed(witness, "state", "k", to={"number": "0"}),
+                      changed(witness, "state", "phi", to={"angle": {"sin": "3/5", "cos": "2/5"}}), changed(GOOD[14], "state", "x", to={"number": "1"}),
+                      changed(low, "state", "x", to={"number": "0"}), changed(low, "state", "x", to={"number": "1/1000000"}),
+                      changed(ranked, "states", 0, "rank", to=3), changed(ranked, "states", 0, "minor", "rows", to=[0, 2]),
+                      changed(ranked, "states", 0, "minor", "rows", to=[0, 0]), changed(ranked, "states", 0, "minor", "columns", to=[0, 2]),
+                      changed(ranked, "states", 0, "minor", "columns", to=[0, -3]), changed(ranked, "words", 1, to="Lf Lf phi"),
+                      changed(ranked, "words", 1, to="omega"), changed(ranked, "columns", 1, to="x"),
+                      changed(boxed, "boxes", 0, "rows", to=[0, 2]), changed(boxed, "boxes", 0, "rows", to=[1, 1]),
+                      changed(boxed, "boxes", 0, "sides", 0, 1, to="3/2"), changed(boxed, "boxes", 0, "sides", 0, 0, to="0"),
+                      changed(boxed, "boxes", 1, "sides", 0, 1, to="2"), changed(boxed, "volume", to="9/10"), changed(boxed, "words", 1, to="Lf Lf phi")):
+            self.assertIn(self.answer(entry), NOT_SO, json.dumps(entry))
+            mutants += 1
+        self.assertGreaterEqual(mutants, 43)
+
+
+class Damage(Folder):
+    """Whatever a file holds, there is an answer and an exit status, and no traceback."""
+
+    def run_on(self, text):
+        path, told = self.write(text, "verdicts.json"), io.StringIO()
+        with contextlib.redirect_stdout(told), contextlib.redirect_stderr(told):
+            status = recheck.main([path, "--proofs", self.folder.name])
+        return status, told.getvalue()
+
+    def test_verdict_files(self):
+        whole = json.dumps({"schema": "palmistry-verdicts", "version": 2, "verdicts": GOOD})
+        status, told = self.run_on(whole)
+        self.assertEqual(status, 0, told)
+        self.assertIn("5 confirmed, 13 consistent", told)
+        for text in ("", "[]", "{}", "nul", whole[:200], "[" * 100_000, whole.replace("palmistry-verdicts", "x"), '{"schema": 1}'):
+            self.assertEqual(self.run_on(text)[0], 2)
+        rng = random.Random(7)
+        values = [None, 0, -1, 10**9, "", "1/0", "9" * 5000, [], {}, [[]], True, 1.5, "x'" * 50]
+        for _ in range(150):
+            entry = json.loads(json.dumps(rng.choice(GOOD)))
+            inner = entry
+            while isinstance(inner, (dict, list)) and len(inner):
+                key = rng.choice(list(inner)) if isinstance(inner, dict) else rng.randrange(len(inner))
+                if rng.random() < 0.3 or not isinstance(inner[key], (dict, list)):
+                    inner[key] = rng.choice(values)
+                    break
+                inner = inner[key]
+            self.assertIn(self.run_on(json.dumps({"schema": "palmistry-verdicts", "version": 2, "verdicts": [entry]}))[0], (0, 1, 2))
+
+    def test_proof_files(self):
+        rng = random.Random(8)
+        texts = [PENDULUM.replace("k*sin(phi)", text) for text in (
+            "(" * 5000 + "x" + ")" * 5000, "2^" * 300 + "2", "x^1e99", "x^999999999999", "((((x^9999)^9999)^9999)^9999)", "exp(exp(exp(99)))", "1e999*x",
+            "9" * 6000, "[1, 2; 3]", "det([x])", "inverse([0, 0; 0, 0])", "-" * 4000 + "x", "min(x)", "L(f)", "d()", "energy.energy", "sqrt(-1)", "1/0")]
+        texts += [PENDULUM.replace("cos(phi)\n", "energy\n"), 'use p = "pendulum.proof"\n' + PENDULUM, "\0" + PENDULUM, ""]
+        texts += [PENDULUM[:rng.randrange(len(PENDULUM))] for _ in range(20)]
+        for _ in range(30):
+            letters = list(PENDULUM)
+            for _ in range(3):
+                letters[rng.randrange(len(letters))] = rng.choice("()[]{}^*/=;,'\"#.1x\0")
+            texts.append("".join(letters))
+        for text in texts:
+            self.write(text)
+            for entry in (GOOD[1], GOOD[8], GOOD[13]):
+                self.answer(entry)
+        with open(os.path.join(self.folder.name, "pendulum.proof"), "wb") as file:
+            file.write(bytes(rng.randrange(256) for _ in range(500)))
+        self.assertEqual(self.answer(GOOD[0]), "not checked")
+        self.assertEqual(self.answer({**GOOD[0], "file": "nowhere.proof"}), "not checked")
+
+    def test_size(self):
+        """It is meant to be read in one sitting."""
+        lines = 0
+        for module in ("recheck", "proof_file", "graph"):
+            with open(os.path.join(os.path.dirname(recheck.__file__), module + ".py"), encoding="utf-8") as file:
+                lines += sum(1 for _ in file)
+        self.assertLessEqual(lines, 870)
 
 
 if __name__ == "__main__":
