@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
 from .answers import Certificate, Claims, Observation, Page, Rank, Value, Verdicts
@@ -62,6 +62,17 @@ def _several(texts: str | Iterable[str]) -> list[str]:
     return [texts] if isinstance(texts, str) else list(texts)
 
 
+def _asked(kind: Any, ask: Callable[[], Any]) -> Any:
+    """What was asked for, as its kind. Where Ctrl-C ends it, what was found until then is the exception's `found`, where there is something."""
+    try:
+        return kind(ask())
+    except BaseException as raised:
+        found = getattr(raised, "found", None)
+        if found is not None and not isinstance(found, kind):
+            raised.found = kind(found)  # type: ignore[attr-defined]
+        raise
+
+
 def _wanted(verdict: str) -> bool:
     if verdict not in ("certified", "computed"):
         raise Error(f"'{verdict}' is no kind of verdict", "it is 'certified' or 'computed'")
@@ -71,7 +82,8 @@ def _wanted(verdict: str) -> bool:
 class System:
     """A system `x' = f(x) + u g(x)`, `y = h(x)`, as a proof file declares it, with what the file claims of it.
 
-    A system does not change. While something is asked other Python threads run, and Ctrl-C ends the question within 0.2 s. The answers are those of
+    A system does not change. While something is asked other Python threads run, and Ctrl-C ends the question within 0.2 s: what `prove`, `rank` and
+    `certify` had found until then is the attribute `found` of the KeyboardInterrupt, where there is something. The answers are those of
     the program, to the last bit: they depend neither on the number of threads (RAYON_NUM_THREADS) nor on the machine.
     """
 
@@ -137,7 +149,7 @@ class System:
 
         only: ids, parts of ids before a dot, or patterns with '*'. seed: of the random points.
         """
-        return Claims(self._native.prove(_several(only), seed))
+        return _asked(Claims, lambda: self._native.prove(_several(only), seed))
 
     def rank(
         self,
@@ -160,10 +172,8 @@ class System:
         order: words of exactly up to so many fields. verdict: 'certified' or 'computed'. digits: of the worst state's singular values.
         table: a row a state in `.states`; coordinates: these too. times: whether `seconds` are told, which no two runs have alike.
         """
-        found = self._native.rank(
-            samples, seed, _pairs(at), _several(where), order, _wanted(verdict), digits, times, table or coordinates, coordinates
-        )
-        return Rank(found)
+        asked = (samples, seed, _pairs(at), _several(where), order, _wanted(verdict), digits, times, table or coordinates, coordinates)
+        return _asked(Rank, lambda: self._native.rank(*asked))
 
     def eval(self, expression: str, at: At = None, digits: int = 20, verdict: str = "certified") -> Value:
         """The value of an expression of the language at a point, to `digits` significant decimal digits, all of them certain.
@@ -236,7 +246,8 @@ class System:
             raise Error("the file's own rows have no order", "leave out order, or rows='own'")
         if not 0 < budget < float("inf"):
             raise Error("the budget is a positive number of seconds")
-        return Certificate(self._native.certify(_ranges(box), boxes, float(budget), rows == "own", order, map))
+        asked = (_ranges(box), boxes, float(budget), rows == "own", order, map)
+        return _asked(Certificate, lambda: self._native.certify(*asked))
 
     def __repr__(self) -> str:
         return f"<system '{self.title}': {len(self.states)} states, {len(self.outputs)} outputs, {len(self.claims)} claims>"
@@ -281,7 +292,7 @@ def observe(
     scene: a TOML file. data: readings as CSV or Parquet. seed: another one than the scene's. studies: run these too. times: whether `seconds` are told.
     """
     data = None if data is None else os.fspath(data)
-    return Observation(_native.observe(os.fspath(scene), data, seed, studies, times))
+    return _asked(Observation, lambda: _native.observe(os.fspath(scene), data, seed, studies, times))
 
 
 def verify(folder: str | os.PathLike[str], *, seed: int = 1, times: bool = True) -> Page:

@@ -24,18 +24,26 @@ pub fn printed(object: Value) -> String {
 #[pyclass(frozen, module = "palmistry._native")]
 pub struct ClaimsFound {
     pub outcomes: Vec<Outcome>,
+    /// How many were asked for.
+    pub asked: usize,
     pub seed: u64,
     pub seconds: f64,
+}
+
+impl ClaimsFound {
+    fn is_cut(&self) -> bool {
+        self.outcomes.len() < self.asked
+    }
 }
 
 #[pymethods]
 impl ClaimsFound {
     fn json(&self) -> String {
-        printed(claims_json(&self.outcomes, claim_json, self.seed, self.seconds, false))
+        printed(claims_json(&self.outcomes, claim_json, self.seed, self.seconds, self.is_cut()))
     }
 
     fn text(&self) -> String {
-        let summary = ClaimsSummary { claims: Some(self.outcomes.len()), seconds: self.seconds };
+        let summary = ClaimsSummary { claims: Some(self.asked), seconds: self.seconds };
         let form = ClaimsForm { shown: Shown::All, latex: false };
         claims_text(&self.outcomes, summary, form, &Layout::default())
     }
@@ -97,13 +105,14 @@ impl RankFound {
 pub struct CertificateFound {
     pub answer: RegionAnswer,
     pub units: [Option<String>; 2],
+    pub interrupted: bool,
 }
 
 #[pymethods]
 impl CertificateFound {
     fn json(&self) -> String {
         let mut object = region_json(&self.answer);
-        object["interrupted"] = json!(false);
+        object["interrupted"] = json!(self.interrupted);
         printed(object)
     }
 
@@ -130,6 +139,7 @@ pub struct ObservationFound {
     pub answers: Vec<Answer>,
     pub studied: Studied,
     pub times: bool,
+    pub interrupted: bool,
 }
 
 impl ObservationFound {
@@ -138,7 +148,7 @@ impl ObservationFound {
             experiment: &self.experiment,
             answers: &self.answers,
             studied: &self.studied,
-            interrupted: false,
+            interrupted: self.interrupted,
         }
     }
 }

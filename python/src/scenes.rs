@@ -2,7 +2,7 @@
 
 use crate::answers::{ObservationFound, printed};
 use crate::errors::{unreadable, unusable};
-use crate::work::interruptible;
+use crate::work::{interruptible, keeping};
 use palmistry::ReadError;
 use palmistry::experiment::{Answer, Experiment, Scene, Studied, basins, curvature_map, noise_study};
 use palmistry::paper::{Paper, VerifyOptions, verify as verify_paper};
@@ -11,6 +11,7 @@ use palmistry::report::{
 };
 use pyo3::prelude::*;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 /// An expression or a statement of the language in LaTeX; none where the text is neither.
 #[pyfunction]
@@ -34,7 +35,7 @@ pub fn observe(
     studies: bool,
     times: bool,
 ) -> PyResult<ObservationFound> {
-    let found = interruptible(py, move |interrupt| {
+    let found = keeping(py, move |interrupt| {
         let mut scene = Scene::read(&scene)?;
         scene.seed = seed.unwrap_or(scene.seed);
         let experiment = Experiment::new(scene, data.as_deref())?;
@@ -57,13 +58,15 @@ pub fn observe(
                 studied.curvature = Some(curvature_map(&experiment, settings, interrupt, &|| ())?);
             }
         }
-        Ok(ObservationFound { experiment, answers, studied, times })
-    })?;
+        let interrupted = interrupt.load(Ordering::Relaxed);
+        Ok(ObservationFound { experiment, answers, studied, times, interrupted })
+    });
+    let found = found.map_err(|cut| cut.map(Result::ok).with_found(py))?;
     found.map_err(|trouble| match trouble {
         Trouble::Read(error) => unreadable(py, &error),
         Trouble::NoStudies => {
             let message = "the scene has no studies, or its readings come from a file, which knows no truth";
-            let help = "leave out studies=True, or add [study.noise] or [study.basin]";
+            let help = "leave out studies=True, or add [study.noise], [study.basin] or [study.curvature]";
             unusable(py, message, Some(help))
         }
     })

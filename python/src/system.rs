@@ -3,17 +3,17 @@
 use crate::answers::{CertificateFound, ClaimsFound, RankFound, printed};
 use crate::errors::{given, no_value, unreadable, unusable};
 use crate::states::StatesDecider;
-use crate::work::interruptible;
+use crate::work::{Cut, interruptible, keeping};
 use palmistry::certificate::{Limits, Region, RegionRows};
 use palmistry::claim::{Selection, decide_all, evaluate};
 use palmistry::report::{ValueAsked, unit_of, value_json};
 use palmistry::sweep::{Certainty, RankError, RankPreparation, StateRow, StateTable};
 use palmistry::system::Role;
-use palmistry::{RankQuestion, System as Read};
+use palmistry::{Outcome, RankAnswer, RankQuestion, System as Read};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 /// A system that was read from a proof file.
@@ -107,11 +107,26 @@ impl System {
             return Err(unusable(py, &unmet.to_string(), help.as_deref()));
         }
         system.claims.retain(|claim| selection.keeps(&claim.id));
-        let (outcomes, seconds) = interruptible(py, move |interrupt| {
-            let begin = Instant::now();
-            (decide_all(&system, seed, interrupt, &|_| ()), begin.elapsed().as_secs_f64())
-        })?;
-        Ok(ClaimsFound { outcomes, seed, seconds })
+        let asked = system.claims.len();
+        let order: Vec<String> = system.claims.iter().map(|claim| claim.id.clone()).collect();
+        // a claim that was begun is not cut short: those that were decided before are kept beside it
+        let (begin, decided) = (Instant::now(), Arc::new(Mutex::new(Vec::new())));
+        let keep = decided.clone();
+        let found = keeping(py, move |interrupt| {
+            let done =
+                |outcome: &Outcome| keep.lock().unwrap_or_else(PoisonError::into_inner).push(outcome.clone());
+            decide_all(&system, seed, interrupt, &done)
+        });
+        let made = |outcomes| ClaimsFound { outcomes, asked, seed, seconds: begin.elapsed().as_secs_f64() };
+        found.map(made).map_err(|cut| {
+            let before = || {
+                let mut decided = decided.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                decided.sort_by_key(|outcome| order.iter().position(|id| *id == outcome.id));
+                decided
+            };
+            let found = cut.found.unwrap_or_else(before);
+            Cut { raised: cut.raised, found: Some(made(found)) }.with_found(py)
+        })
     }
 
     /// The rank of the observability codistribution at sampled states.
@@ -137,7 +152,7 @@ impl System {
         let nothing_asked = samples.is_none() && order.is_none();
         let samples = samples.unwrap_or(RankQuestion::default().samples);
         let asked = Asked { samples, seed, wanted: wanted(certified), digits, order, conditions };
-        let found = interruptible(py, move |interrupt| {
+        let found = keeping(py, move |interrupt| {
             let question = RankQuestion {
                 samples: asked.samples,
                 seed: asked.seed,
@@ -164,12 +179,15 @@ impl System {
             let part = prepared.sweep_with(&system, 0..question.samples, table.then_some(&mut sink))?;
             let answer = prepared.answer(&mut system, [(String::new(), part)])?;
             Ok::<_, RankError>((answer, rows, names))
-        })?;
-        let (mut answer, rows, coordinates) = found.map_err(|why| unusable(py, &why.to_string(), None))?;
-        if !times {
-            answer.forget_times();
-        }
-        Ok(RankFound { answer, rows: table.then_some(rows), coordinates })
+        });
+        let made = |(mut answer, rows, coordinates): (RankAnswer, Vec<_>, Vec<String>)| {
+            if !times {
+                answer.forget_times();
+            }
+            RankFound { answer, rows: table.then_some(rows), coordinates }
+        };
+        let found = found.map_err(|cut| cut.map(|found| found.ok().map(made)).with_found(py))?;
+        found.map(made).map_err(|why| unusable(py, &why.to_string(), None))
     }
 
     /// The value of an expression at a point, as the program prints it.
@@ -245,13 +263,15 @@ impl System {
             Some(boxes) => Limits { seconds: None, boxes: Some(boxes) },
             None => Limits { seconds: Some(budget), boxes: None },
         };
-        let found = interruptible(py, move |interrupt| {
+        let found = keeping(py, move |interrupt| {
             let mut region = Region::new(&mut system, rows, &ranges, map)?;
             region.run(limits, interrupt, &|_| ());
             Ok::<_, String>(region.answer())
-        })?;
-        let answer = found.map_err(|why| unusable(py, &why, None))?;
-        Ok(CertificateFound { answer, units })
+        });
+        let made = |answer, interrupted| CertificateFound { answer, units: units.clone(), interrupted };
+        let kept = |found: Result<_, String>| found.ok().map(|answer| made(answer, true));
+        let found = found.map_err(|cut| cut.map(kept).with_found(py))?;
+        found.map(|answer| made(answer, false)).map_err(|why| unusable(py, &why, None))
     }
 }
 

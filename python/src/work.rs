@@ -2,6 +2,7 @@
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use pyo3::{PyClass, PyClassInitializer};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -54,12 +55,52 @@ fn leave(pool: Arc<ThreadPool>) {
     drop(pool);
 }
 
+/// How long work that was told to end is waited for: what it had is worth that, and Ctrl-C is heeded within 0.2 s.
+const GRACE: Duration = Duration::from_millis(120);
+
+/// What a signal's handler raised (or what else went wrong), and what the work had found until then, where it ended in time.
+pub struct Cut<T> {
+    pub raised: PyErr,
+    pub found: Option<T>,
+}
+
+impl<T> From<PyErr> for Cut<T> {
+    fn from(raised: PyErr) -> Cut<T> {
+        Cut { raised, found: None }
+    }
+}
+
+impl<T: PyClass + Into<PyClassInitializer<T>>> Cut<T> {
+    /// The exception, with what was found as its attribute `found`.
+    pub fn with_found(self, py: Python<'_>) -> PyErr {
+        if let Some(object) = self.found.and_then(|found| Py::new(py, found).ok()) {
+            let _ = self.raised.value(py).setattr("found", object);
+        }
+        self.raised
+    }
+}
+
+impl<T> Cut<T> {
+    /// The same with something else made of what was found.
+    pub fn map<U>(self, make: impl FnOnce(T) -> Option<U>) -> Cut<U> {
+        Cut { raised: self.raised, found: self.found.and_then(make) }
+    }
+}
+
 /// Does work without the lock of the interpreter. Where Ctrl-C (or another signal whose handler raises) comes meanwhile, its exception is
 /// raised at once; the work is told so by the flag that it gets, and is left to find its end.
 pub fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
 ) -> PyResult<T> {
+    keeping(py, work).map_err(|cut| cut.raised)
+}
+
+/// The same, and what the work has found when it is told to end is kept.
+pub fn keeping<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
+) -> Result<T, Cut<T>> {
     let pool = pool()?;
     let flag = Arc::new(AtomicBool::new(false));
     let (done, result) = channel();
@@ -72,23 +113,30 @@ pub fn interruptible<T: Send + 'static>(
     };
     let thread = thread
         .map_err(|why| PyRuntimeError::new_err(format!("the system gives no thread to work on: {why}")))?;
+    let told = flag.clone();
     let found = py.detach(move || {
         loop {
             match result.recv_timeout(PAUSE) {
                 Ok(found) => return Ok(found),
-                Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Err(raised) = Python::attach(|py| py.check_signals()) {
+                        told.store(true, Ordering::Relaxed);
+                        return Err(Cut { raised, found: result.recv_timeout(GRACE).ok() });
+                    }
+                }
                 Err(RecvTimeoutError::Disconnected) => {
                     let why = thread.join().err().map_or("it ended without a result".to_owned(), |panic| {
                         let text = panic.downcast_ref::<String>().cloned();
                         text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()))
                             .unwrap_or_default()
                     });
-                    return Err(PyRuntimeError::new_err(format!("a mistake in palmistry itself: {why}")));
+                    let message = format!("a mistake in palmistry itself: {why}");
+                    return Err(PyRuntimeError::new_err(message).into());
                 }
             }
         }
     });
-    if found.is_err() {
+    if matches!(&found, Err(Cut { found: None, .. })) {
         flag.store(true, Ordering::Relaxed);
         leave(pool);
     }

@@ -418,9 +418,11 @@ class Beside(unittest.TestCase):
 
         timer = threading.Timer(after, send)
         timer.start()
+        self.found = None
         try:
             work()
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as raised:
+            self.found = getattr(raised, "found", None)
             return time.perf_counter() - sent[0]
         finally:
             timer.cancel()
@@ -449,6 +451,25 @@ class Beside(unittest.TestCase):
             self.assertLess(late, HEEDED, name)
         # and what is asked next is answered
         self.assertEqual(beacons.rank(samples=100).certified, 100)
+
+    def test_what_was_found_is_kept(self):
+        """Oracle: what the states and boxes that were looked at say in a run of just as many, and the claims that need no time."""
+        beacons, surface = palmistry.System.parse(BEACONS), palmistry.System.parse(SURFACE)
+        self.assertIsNotNone(self.interrupted(lambda: beacons.rank(samples=10**12)))
+        seen = self.found.json["samples"]
+        self.assertTrue(self.found.json["interrupted"])
+        self.assertGreater(seen, 0)
+        self.assertEqual(self.found.json["rank_histogram"], beacons.rank(samples=seen).json["rank_histogram"])
+        self.assertIsNotNone(self.interrupted(lambda: surface.certify(budget=60)))
+        self.assertTrue(self.found.json["interrupted"])
+        self.assertGreater(self.found.proved_fraction, 0)
+        quick = "claim 0: L(f, x) = y*z\n"
+        both = palmistry.System.parse(SURFACE + quick + "".join(f"claim {i}: rank = 3 everywhere\n" for i in range(1, 4000)))
+        self.assertIsNotNone(self.interrupted(lambda: both.prove()))
+        self.assertTrue(self.found.json["interrupted"])
+        told = {claim["id"]: claim["verdict"] for claim in self.found.json["claims"]}
+        self.assertEqual(told["0"], "proved")
+        self.assertLess(len(told), 4000)
 
     def test_others_run_meanwhile(self):
         surface = palmistry.System.parse(SURFACE)
