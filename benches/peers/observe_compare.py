@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 import observed_palms
-from observed import FILTERS, ROOT, Observers, recording_of
+from observed import FILTERS, ROOT, Observers, recording_of, scene
 from observed_systems import SYSTEMS
 from observer_peers import FILTERPY, PEERS, alone
 
@@ -102,7 +102,7 @@ def tried(options, observers, system, noisy, seed, draws):
     else:
         data = recording_of(observers, system, noisy, seed)
         guess = {name: draws.uniform(low, high) if options.random else (low + high) / 2 for name, (low, high) in system.box.items()}
-        runs = [(method, *observers.recover(system, noisy, guess, method, seed)) for method in OURS]
+        runs = [(method, *observers.recover(system, method, scene(system, noisy, guess, method, seed))) for method in OURS]
         runs += [(method, *alone(method, system, data, np.array(list(guess.values())), options.limit)) for method in PEERS]
     for method, state, seconds, memory in runs:
         arrived, ratio = judge(system, data, method in FILTERS or method == FILTERPY, state)

@@ -35,34 +35,42 @@ class Observers:
     def __init__(self, binary, most, folder):
         self.binary, self.most, self.folder = binary, most, folder
 
-    def observe(self, text, *words):
-        """What `palmistry observe` says of a scene, its seconds of the processor, and its most memory in bytes; TimeoutError has these."""
+    def observe(self, text, *words, readings=None):
+        """What `palmistry observe` says of a scene, its seconds of the processor, and its most memory in bytes; TimeoutError has these. Readings
+        that come as a stream are answered by a line for each window."""
         path = self.folder / "scene.toml"
         path.write_text(text)
         launched = [sys.executable, "-I", "-S", "-c", LAUNCHER, str(self.most)]
-        run = subprocess.run([*launched, self.binary, "observe", str(path), "--json", *words], capture_output=True, text=True)
+        run = subprocess.run([*launched, self.binary, "observe", str(path), "--json", *words], input=readings, capture_output=True, text=True)
         complaint, _, last = run.stderr.strip().rpartition("\n")
         status, seconds, memory = (float(word) for word in last.split())
         if status in (-signal.SIGXCPU, -signal.SIGKILL):
             raise TimeoutError(seconds, int(memory))
         if status not in (0, 1):
             raise RuntimeError(f"{run.stdout}{complaint}\n{text}")
-        return json.loads(run.stdout), seconds, int(memory)
+        told = run.stdout if readings is None else f"[{','.join(run.stdout.splitlines())}]"
+        return json.loads(told), seconds, int(memory)
 
-    def recovered(self, names, method, text, *words):
+    def record(self, text, motion):
+        """The readings of a scene as text; its motion goes into a file."""
+        path = self.folder / "scene.toml"
+        path.write_text(text)
+        words = [self.binary, "observe", str(path), "--record", "-", "--motion", motion]
+        return subprocess.run(words, capture_output=True, text=True, check=True).stdout
+
+    def recover(self, system, method, text, *words, readings=None):
         """The states by name, nothing where the method took too long; seconds, and memory."""
         try:
-            told, seconds, memory = self.observe(text, *words)
+            told, seconds, memory = self.observe(text, *words, readings=readings)
         except TimeoutError as late:
             return None, *late.args
-        observer = told["observers"][0]
-        update = observer["end"] if method in FILTERS else next(iter(observer["updates"]), None)
-        states = update["states"] if update else {}
-        values = [states.get(name, {}).get("recovered") for name in names]
+        # of a stream the last line is about all windows
+        windows = told[:-1] if readings else [told]
+        observers = [window["observers"][0] for window in windows]
+        found = [observer["end"] for observer in observers[-1:]] if method in FILTERS else [update for observer in observers for update in observer["updates"]]
+        states = found[0]["states"] if found and found[0] else {}
+        values = [states.get(name, {}).get("recovered") for name in system.box]
         return np.array([math.nan if value is None else value for value in values], dtype=float), seconds, memory
-
-    def recover(self, system, noisy, guess, method, seed):
-        return self.recovered(system.box, method, scene(system, noisy, guess, method, seed))
 
 
 def scene(system, noisy, guess, method, seed):
@@ -81,20 +89,20 @@ def recording_of(observers, system, noisy, seed):
     """Times, readings a row a sample, the truth at the first and the last sample, noise, and the bound at the first."""
     text = (FOLDER / f"{system.name}.toml").read_text()
     start = {name: float(value) for name, value in re.findall(r"^(\w+) = (-?[\d.e-]+)$", text.split("[start]")[1].split("[")[0], re.M)}
-    return recorded(observers, list(system.box), len(system.read), scene(system, noisy, start, "trust-region", seed))
-
-
-def recorded(observers, names, outputs, text):
-    """The same of any scene whose guess is the truth."""
+    text = scene(system, noisy, start, "trust-region", seed)
     record, motion = (observers.folder / name for name in ("record.csv", "motion.csv"))
     told, _, _ = observers.observe(text, "--record", str(record), "--motion", str(motion))
+    return recorded(list(system.box), len(system.read), record, motion, told["observers"][0]["updates"][0], told["sensor"]["noise"])
+
+
+def recorded(names, outputs, record, motion, update, noise):
+    """A recording for the peers, from the files and an update that began at the truth."""
     rows = list(csv.reader(record.open()))
     values = np.array([[float(value) for value in row] for row in rows[1:]])
     table = list(csv.DictReader(motion.open()))
     truth = [np.array([float(row.get(name, "nan")) for name in names]) for row in (table[0], table[-1])]
-    states = told["observers"][0]["updates"][0]["states"]
-    bound = np.array([states.get(name, {}).get("bound") or math.nan for name in names])
+    bound = np.array([update["states"].get(name, {}).get("bound") or math.nan for name in names])
     read = values[:, 1 : 1 + outputs]
     spread = np.maximum((read.max(0) - read.min(0)) / 2, 1e-9)
     columns = dict(zip(rows[0], values.T))
-    return {"times": values[:, 0], "read": read, "truth": truth, "bound": bound, "sigma": told["sensor"]["noise"] or 1e-9, "spread": spread, "columns": columns}
+    return {"times": values[:, 0], "read": read, "truth": truth, "bound": bound, "sigma": noise or 1e-9, "spread": spread, "columns": columns}

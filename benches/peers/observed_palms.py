@@ -9,6 +9,7 @@ contacts (sections 4.2 and 4.7 of the thesis). To them the contacts s1, s2 are s
 palms and torques are known, by cubics through the four nearest samples.
 """
 
+import functools
 import re
 from dataclasses import replace
 
@@ -78,7 +79,7 @@ def signals(times, columns):
         first = min(max(int(place) - 1, 0), len(times) - 4)
         x = place - first
         weights = np.array([-(x - 1) * (x - 2) * (x - 3) / 6, x * (x - 2) * (x - 3) / 2, -x * (x - 1) * (x - 3) / 2, x * (x - 1) * (x - 2) / 6])
-        return tuple(weights @ values[first : first + 4])
+        return tuple((weights @ values[first : first + 4]).tolist())
 
     return at
 
@@ -108,18 +109,25 @@ def scene(system, noisy, method, guess, seed):
     return text.replace("[observer]\n", f"[sensor]\nnoise = {NOISE if noisy else 0}\n[observer]\n{settings}")
 
 
+@functools.cache
+def gyration(observers):
+    """The radius of gyration: all scenes hold the same body."""
+    told, _, _ = observers.observe(scene(REGIMES[0], False, "trust-region", "guess_off = 0.0", 1))
+    return told["observers"][0]["updates"][0]["states"]["rho"]["true"]
+
+
 def recording_of(observers, system, noisy, seed, draws):
     """The system with its signals, a recording with the truth and the bound at it, and a guess."""
     from_truth = scene(system, noisy, "trust-region", "guess_off = 0.0", seed)
-    every = re.sub(r"^estimate = .*$", 'estimate = ["r1", "r2", "omega0", "rho"]', from_truth, flags=re.M)
-    told, _, _ = observers.observe(every)
-    rho = told["observers"][0]["updates"][0]["states"]["rho"]["true"]
+    record, motion = (observers.folder / name for name in ("record.csv", "motion.csv"))
+    record.write_text(observers.record(from_truth, str(motion)))
+    lines = record.read_text().splitlines(keepends=True)
+    whole, window = "".join(lines), "".join(lines[: WINDOW + 1])
+    answered, _, _ = observers.observe(from_truth, "--data", "-", readings=window)
     names = ["r1", "r2", "omega0", "s1", "s2", *system.constants]
-    data = recorded(observers, names, 2, from_truth)
-    lines = (observers.folder / "record.csv").read_text().splitlines(keepends=True)
-    for name, count in (("whole", None), ("window", WINDOW + 1)):
-        data[name] = observers.folder / f"{name}.csv"
-        data[name].write_text("".join(lines[:count]))
+    data = recorded(names, 2, record, motion, answered[0]["observers"][0]["updates"][0], NOISE if noisy else 0)
+    data |= {"whole": whole, "window": window}
+    rho = gyration(observers)
     if system.constants:
         # no column of a motion; it does not move
         for state in data["truth"]:
@@ -139,8 +147,9 @@ def runs(observers, system, data, guess, options):
     noisy = data["sigma"] == NOISE
     for method in [UNGUIDED, *OURS]:
         start = 'guess = "none"' if method == UNGUIDED else told
-        record = data["whole" if method in FILTERS else "window"]
-        yield method, *observers.recovered(system.box, method, scene(system, noisy, method, start, 1), "--data", str(record))
+        # as a stream, which takes no time for the shape
+        readings = data["whole" if method in FILTERS else "window"]
+        yield method, *observers.recover(system, method, scene(system, noisy, method, start, 1), "--data", "-", readings=readings)
     from_read = guess | dict(zip(("s1", "s2"), data["read"][0]))
     begin = np.array([from_read[name] for name in system.box])
     for method in PEERS:

@@ -6,6 +6,7 @@ Each run is a process of its own, forked before any of these libraries is loaded
 once they are loaded. This file imports none of them at its top for that reason.
 """
 
+import math
 import os
 import pickle
 import resource
@@ -14,6 +15,14 @@ import traceback
 import warnings
 
 SCIPY, CASADI, FILTERPY = "scipy, least squares by shooting", "CasADi, IPOPT, multiple shooting", "filterpy, unscented"
+
+
+def rated(system, state, t):
+    """Rates at a state by the functions of `math`, on single numbers some times as fast as numpy's; no numbers where there are none."""
+    try:
+        return system.rates(math, state.tolist(), system.inputs(t))
+    except (ValueError, ArithmeticError):
+        return [math.nan] * len(state)
 
 
 def by_scipy(system, data, guess, limit):
@@ -28,8 +37,8 @@ def by_scipy(system, data, guess, limit):
     def rates(t, state):
         if time.process_time() > end:
             raise TimeoutError
-        found = np.array(system.rates(np, state, system.inputs(t)), dtype=float)
-        if not np.isfinite(found).all():
+        found = rated(system, state, t)
+        if not all(map(math.isfinite, found)):
             # scipy shortens a step that is no number for ever
             raise FloatingPointError
         return found
@@ -69,7 +78,8 @@ def by_casadi(system, data, guess, limit):
         return state
 
     # from one node to the next, and what is seen at a node: compiled once each, as CasADi is meant to be used
-    known = np.array([[system.inputs(t + (end - t) * part / (2 * system.parts)) for part in range(2 * system.parts + 1)] for t, end in zip(times, times[1:])])
+    halves = range(2 * system.parts + 1)
+    known = np.array([[system.inputs(t + (end - t) * half / (2 * system.parts)) for half in halves] for t, end in zip(times, times[1:])])
     node, shared = casadi.SX.sym("node", len(moving)), casadi.SX.sym("shared", max(len(constants), 1))
     given, h = casadi.SX.sym("given", known.shape[2], known.shape[1]), casadi.SX.sym("h")
     state = whole(node, shared)
@@ -88,7 +98,7 @@ def by_casadi(system, data, guess, limit):
     nodes = problem.variable(len(moving), len(times))
     values = problem.variable(max(len(constants), 1))
     count = len(times) - 1
-    signals = known.reshape(-1, known.shape[2]).T
+    signals = known.reshape(count * known.shape[1], known.shape[2]).T
     lengths = (np.diff(times) / system.parts).reshape(1, -1)
     after = onward.map(count)(nodes[:, :-1], casadi.repmat(values, 1, count), signals, lengths)
     problem.subject_to(nodes[:, 1:] == after)
@@ -136,7 +146,7 @@ def by_filterpy(system, data, guess, limit):
         h = dt / 8
         for part in range(8):
             now = t + part * h
-            rate = lambda s, at: np.array(system.rates(np, s, system.inputs(at)), dtype=float)
+            rate = lambda s, at: np.array(rated(system, s, at))
             k1 = rate(state, now)
             k2 = rate(state + h / 2 * k1, now + h / 2)
             k3 = rate(state + h / 2 * k2, now + h / 2)
@@ -153,8 +163,12 @@ def by_filterpy(system, data, guess, limit):
     for k in range(1, len(times)):
         dt = times[k] - times[k - 1]
         estimate.Q = np.diag((0.01 * size) ** 2 * dt)
-        estimate.predict(dt=dt, t=times[k - 1])
-        estimate.update(read[k])
+        try:
+            estimate.predict(dt=dt, t=times[k - 1])
+            estimate.update(read[k])
+        except (np.linalg.LinAlgError, ValueError) as why:
+            # a covariance that has no root any more, or no numbers in it
+            raise ArithmeticError from why
     yield estimate.x
 
 
@@ -179,8 +193,7 @@ def alone(method, system, data, guess, limit):
             begin = time.process_time()
             try:
                 found = [float(value) for value in next(search)]
-            # of numpy: LinAlgError is a ValueError
-            except (TimeoutError, ArithmeticError, ValueError):
+            except (TimeoutError, ArithmeticError):
                 pass
             with os.fdopen(theirs, "wb") as pipe:
                 pickle.dump((found, time.process_time() - begin), pipe)
