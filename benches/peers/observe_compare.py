@@ -75,7 +75,8 @@ def judge(system, data, is_filter, found):
 
 
 def measured(options, folder):
-    """A line for each system, noise, recording or guess, and method: the first trial of all, then the second, so that an interrupt leaves even counts."""
+    """A line for each system, noise, recording or guess, and method, and what there is to say of their number: the first trial of all, then the second,
+    so that an interrupt leaves even counts."""
     observers = Observers(options.binary, math.ceil(options.limit), Path(folder))
     systems = [system for system in (observed_palms.REGIMES if options.palms else SYSTEMS) if not options.only or system.name in options.only]
     draws = {(system.name, noisy): random.Random(options.seed) for system in systems for noisy in (False, True)}
@@ -91,7 +92,8 @@ def measured(options, folder):
             print(f"{trial + 1} of each", file=sys.stderr, flush=True)
     except KeyboardInterrupt:
         print("interrupted: the table of what was measured", file=sys.stderr)
-    return found
+        return found, " (interrupted: so many as each cell says)"
+    return found, ""
 
 
 def tried(options, observers, system, noisy, seed, draws):
@@ -185,7 +187,8 @@ def main():
     head = {"machine": machine(options.binary), "how": how(options), "remark": options.remark}
     head["block"] = "palms" if options.palms else "random" if options.random else "middle"
     with tempfile.TemporaryDirectory() as folder:
-        tell(options, head | {"runs": measured(options, folder)})
+        runs, remark = measured(options, folder)
+        tell(options, head | {"runs": runs, "how": head["how"] + remark})
 
 
 def tell(options, told):
