@@ -19,6 +19,12 @@ class Observed:
     angles: tuple[str, ...] = ()
     # the place of the state that each output is, where it is one
     read: tuple[int | None, ...] = (0,)
+    # which of the states do not move
+    constants: tuple[str, ...] = ()
+    # steps of Runge and Kutta between two samples, for CasADi
+    parts: int = 4
+    # what a method has to find to have arrived: all, where nothing is said
+    sought: tuple[str, ...] = ()
 
 
 def van_der_pol(f, s, u):
@@ -63,13 +69,15 @@ BEACONS = ((-4, -3), (5, -2), (1, 6))
 
 SYSTEMS = [
     Observed(
-        "van_der_pol", {"x": (-3, 3), "y": (-4, 4), "mu": (0.2, 4)}, van_der_pol, lambda f, s: [s[0]]
+        "van_der_pol", {"x": (-3, 3), "y": (-4, 4), "mu": (0.2, 4)}, van_der_pol, lambda f, s: [s[0]],
+        constants=("mu",),
     ),
     Observed(
         "lorenz",
         {"x": (-20, 20), "y": (-25, 25), "z": (1, 50), "sigma": (5, 15), "r": (15, 45), "b": (1, 5)},
         lorenz,
         lambda f, s: [s[0]],
+        constants=("sigma", "r", "b"),
     ),
     Observed(
         "two_tanks",
@@ -78,6 +86,7 @@ SYSTEMS = [
         lambda f, s: [s[1]],
         lambda t: (0.2 + 0.1 * math.sin(0.5 * t),),
         read=(1,),
+        constants=("a1", "a2"),
     ),
     Observed(
         "beacons",
@@ -96,6 +105,7 @@ SYSTEMS = [
         lambda t: (-3 * math.sin(20 * t), 3 * math.cos(20 * t)),
         angles=("th",),
         read=(0, 1),
+        constants=("load",),
     ),
     Observed(
         "epidemic",
@@ -103,5 +113,6 @@ SYSTEMS = [
         epidemic,
         lambda f, s: [s[3]],
         read=(3,),
+        constants=("beta", "gamma"),
     ),
 ]

@@ -195,6 +195,12 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         "observers": answers.collect::<Vec<_>>(),
         "interrupted": observed.interrupted,
     });
+    let units = experiment.names().into_iter();
+    let units: Map<String, Value> =
+        units.filter_map(|name| Some((name.to_owned(), json!(state_unit(observed, name)?)))).collect();
+    if !units.is_empty() {
+        found["units"] = Value::Object(units);
+    }
     if experiment.origin != 0.0 {
         found["time_origin"] = json!(experiment.origin);
     }
@@ -296,6 +302,17 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
     text
 }
 
+/// The unit that a state's values are in; of palms, where all is in SI units, none is said.
+fn state_unit(observed: &Observed<'_>, name: &str) -> Option<String> {
+    let experiment = observed.experiment;
+    if experiment.is_about_palms() { None } else { unit_of(&experiment.system, name) }
+}
+
+/// A state that is sought, with its unit.
+pub(super) fn state_name(observed: &Observed<'_>, name: &str) -> String {
+    state_unit(observed, name).map_or_else(|| name.to_owned(), |unit| format!("{name}, {unit}"))
+}
+
 pub(super) fn state_lines(
     text: &mut String,
     observed: &Observed<'_>,
@@ -305,11 +322,8 @@ pub(super) fn state_lines(
     bounds: Option<&[f64]>,
 ) {
     let truth = observed.experiment.truth_at(time);
-    // of palms all is in SI units; other systems say what theirs are
-    let is_named = !observed.experiment.is_about_palms();
     for (i, name) in names.iter().enumerate() {
-        let unit = unit_of(&observed.experiment.system, name).filter(|_| is_named);
-        let name = unit.map_or_else(|| (*name).to_owned(), |unit| format!("{name}, {unit}"));
+        let name = state_name(observed, name);
         let _ = write!(text, "    {name:<8} {:>15.9}", recovered[i]);
         if let Some(truth) = &truth {
             let _ = write!(text, "  true {:>15.9}  error {:.1e}", truth[i], error(recovered[i], truth[i]));

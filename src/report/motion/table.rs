@@ -2,7 +2,7 @@
 
 use crate::experiment::{Answer, error};
 use crate::observer::{Update, UpdateEnd};
-use crate::report::motion::answers::{Observed, end_name};
+use crate::report::motion::answers::{Observed, end_name, state_name};
 use crate::report::motion::fit::{suspects_in_words, unexplained};
 use maud::{Markup, html};
 
@@ -60,7 +60,7 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
         div.scroll { table {
             thead { tr {
                 th { "method" } th { "at" }
-                @for name in &names { th { (name) } @if known { th { "error" } } }
+                @for name in &names { th { (state_name(observed, name)) } @if known { th { "error" } } }
                 th { "updates that converged and fit" } @if timed { th { "time" } }
             } }
             tbody {
@@ -147,7 +147,7 @@ fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
                             }
                             @if timed { td.number rowspan=(names.len()) { (duration(update.seconds)) } }
                         }
-                        td { (name) }
+                        td { (state_name(observed, name)) }
                         td.number { (format!("{value:.9}")) }
                         @if known { @match &truth {
                             Some(truth) => {

@@ -147,8 +147,12 @@ fn the_unscented_filter_finds_a_decay() {
     let bound = found["observers"][1]["updates"][0]["states"]["k"]["bound"].as_f64().unwrap();
     assert!(off.abs() < 5.0 * bound && bound < 1e-3, "{off} and {bound}");
     // states carry their units, where the file says them
-    let words = palmistry(&["observe", scene.to_str().unwrap()]);
+    let out = folder.path().join("out");
+    let words = palmistry(&["observe", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert!(String::from_utf8_lossy(&words.stdout).contains("x, m"));
+    assert_eq!(found["units"]["x"], "m");
+    let page = std::fs::read_to_string(out.join("index.html")).unwrap();
+    assert!(page.contains("<th>x, m<") && page.contains("<td>x, m<"));
 }
 
 /// What is wrong with [start] and [inputs], with the line that is named.
