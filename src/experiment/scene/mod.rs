@@ -12,7 +12,9 @@ mod simulated;
 
 pub use crate::system::ReadError as SceneError;
 pub use columns::SceneColumn;
-pub use observing::{BasinStudy, Channel, Data, Guess, Method, NoiseStudy, ObserverSettings, Sensor, Study};
+pub use observing::{
+    BasinStudy, Channel, Data, Guess, Method, ModeSettings, NoiseStudy, ObserverSettings, Sensor, Study,
+};
 pub(in crate::experiment) use simulated::sample_times;
 pub use simulated::{Body, Palms, SceneOutline, Simulated, SimulatedSystem};
 

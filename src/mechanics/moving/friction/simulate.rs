@@ -22,8 +22,13 @@ pub(crate) struct RubbedMotion {
     pub trajectory: Trajectory,
     /// From when on which modes held; the first from the beginning.
     pub modes: Vec<(f64, ModePair)>,
-    /// How often more than one pair of modes was consistent, and the one taken in which most contacts stick.
-    pub ambiguous: usize,
+}
+
+impl RubbedMotion {
+    /// A motion without friction, which has no modes.
+    pub fn smooth(trajectory: Trajectory) -> RubbedMotion {
+        RubbedMotion { trajectory, modes: Vec::new() }
+    }
 }
 
 /// What is integrated: the state, what friction has taken, and the time since the beginning of the integration.
@@ -175,11 +180,10 @@ pub(crate) fn simulate_with_friction(
     if let Some(breach) = motion.at(&now).situation.breach(scene).filter(|_| coefficient == 0.0) {
         return Err(SceneError::Start(breach));
     }
-    let (mut modes, mut ambiguous) = (Vec::new(), 0);
+    let mut modes = Vec::new();
     // the pair of modes with which a state goes on
     let mut next = |motion: &mut Motion<'_>, at: &Rubbed, left: Option<ModePair>| {
         let others = consistent(scene, coefficient, at.time, &at.state, left);
-        ambiguous += usize::from(others.len() > 1);
         motion.pair = *others.first()?;
         modes.push((at.time, motion.pair));
         Some(())
@@ -216,5 +220,5 @@ pub(crate) fn simulate_with_friction(
         moments.push(motion.moment(&now));
     }
     let trajectory = Trajectory { moments, ended, start_energy, jumps: Vec::new() };
-    Ok(RubbedMotion { trajectory, modes, ambiguous })
+    Ok(RubbedMotion { trajectory, modes })
 }
