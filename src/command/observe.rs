@@ -15,10 +15,7 @@ use palmistry::experiment::{
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
 use palmistry::observer::RecordError;
-use palmistry::report::{
-    Observed, ended_in_words, forget_seconds, modes_json, modes_text, observe_json, observe_page,
-    observe_text,
-};
+use palmistry::report::{Observed, ended_in_words, forget_seconds, observe_json, observe_page, observe_text};
 use palmistry::sweep::shard_of;
 use std::path::{Path, PathBuf};
 
@@ -146,13 +143,7 @@ impl Observe {
         }
         bar.set_message("observing");
         if !experiment.scene.observer.modes.is_empty() {
-            let windows = experiment.run_modes(&INTERRUPTED, &|| bar.inc(0))?;
-            bar.finish_and_clear();
-            begin_to_tell();
-            // a window with a change of modes fits none: that is part of the answer
-            let status = Status::of(windows.iter().any(|window| window.chosen.is_some()));
-            let json = modes_json(&experiment, &windows);
-            return files.print(Form::of(self.json), json, || modes_text(&experiment, &windows), status);
+            return self.run_modes(&experiment, &bar, files);
         }
         let mut answers = experiment.run_with_shape(&INTERRUPTED, &|method| {
             bar.set_message(method.name());
@@ -277,21 +268,7 @@ impl Observe {
     /// Whether what is asked for can be had at once.
     fn goes_together(&self, scene: &Scene, is_stream: bool) -> miette::Result<()> {
         self.records_alone()?;
-        if !scene.observer.modes.is_empty() {
-            let asked = [
-                ("--data -", is_stream),
-                ("--studies", self.studies || self.shards.are_asked()),
-                ("--out", self.out.is_some()),
-                ("--outline", self.outline.is_some()),
-                ("--track", self.track.is_some()),
-            ];
-            if let Some((name, _)) = asked.iter().find(|(_, is_asked)| *is_asked) {
-                let message = format!(
-                    "modes are told as text or JSON, of readings in a file or simulated: not with {name}"
-                );
-                return Err(Unusable::report(message, "leave it out, or [[observer.modes]]"));
-            }
-        }
+        self.goes_with_modes(scene, is_stream)?;
         if is_stream {
             let asked = [
                 ("--studies", self.studies || self.shards.are_asked()),

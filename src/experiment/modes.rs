@@ -205,7 +205,7 @@ impl Experiment {
             if update.is_borne_out() {
                 return Ok((Some(update.clone()), track.last().map(|last| last.state.clone())));
             }
-            if best.as_ref().is_none_or(|best| !(best.misfit <= update.misfit)) {
+            if best.as_ref().is_none_or(|best| best.misfit.is_nan() || best.misfit > update.misfit) {
                 best = Some(update.clone());
             }
             if interrupt.load(Ordering::Relaxed) {

@@ -81,9 +81,15 @@ fn friction_is_found_between_changes_of_modes() {
         };
         let (name, sign) = match truth.as_str() {
             "slides along the tangent of palm 1, along that of palm 2" => ("both slide, the same way", 1.0),
-            "slides against the tangent of palm 1, against that of palm 2" => ("both slide, the same way", -1.0),
-            "slides along the tangent of palm 1, against that of palm 2" => ("both slide, opposite ways", 1.0),
-            "slides against the tangent of palm 1, along that of palm 2" => ("both slide, opposite ways", -1.0),
+            "slides against the tangent of palm 1, against that of palm 2" => {
+                ("both slide, the same way", -1.0)
+            }
+            "slides along the tangent of palm 1, against that of palm 2" => {
+                ("both slide, opposite ways", 1.0)
+            }
+            "slides against the tangent of palm 1, along that of palm 2" => {
+                ("both slide, opposite ways", -1.0)
+            }
             "rolls on palm 1, slides along the tangent of palm 2" => ("rolls on palm 1", 1.0),
             "rolls on palm 1, slides against the tangent of palm 2" => ("rolls on palm 1", -1.0),
             "slides along the tangent of palm 1, rolls on palm 2" => ("rolls on palm 2", 1.0),

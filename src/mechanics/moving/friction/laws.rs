@@ -72,9 +72,7 @@ impl Rubbing {
         let (mass, inertia) = (scene.mass, scene.mass * scene.gyration * scene.gyration);
         let mut rows = [[0.0; UNKNOWNS]; UNKNOWNS];
         let mut right = [0.0; UNKNOWNS];
-        for k in 0..2 {
-            rows[k][k] = mass;
-        }
+        (rows[0][0], rows[1][1]) = (mass, mass);
         rows[ALPHA][ALPHA] = inertia;
         right[1] = mass * scene.gravity;
         // what a unit of each unknown adds to the acceleration of the body's point at the contact, along a direction

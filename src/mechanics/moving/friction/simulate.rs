@@ -100,7 +100,7 @@ impl Motion<'_> {
         let here = self.at(at);
         let breach = here.situation.breach(self.scene);
         let reversed = |i: usize| self.pair.0[i].sense() * here.slips[i] < -SEEN;
-        let slipped = here.slack.is_some_and(|slack| !(slack >= -SEEN * here.largest));
+        let slipped = here.slack.is_some_and(|slack| slack.is_nan() || slack < -SEEN * here.largest);
         // without friction no mode is another than the rest
         let changed = self.coefficient > 0.0 && (reversed(0) || reversed(1) || slipped);
         match breach {
