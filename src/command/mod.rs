@@ -18,6 +18,7 @@ mod lsp;
 mod man;
 mod new;
 mod observe;
+mod observe_modes;
 mod observe_slow;
 mod observe_stream;
 mod output;

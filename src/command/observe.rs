@@ -141,6 +141,9 @@ impl Observe {
             return Ok(files.status(Status::of(true)));
         }
         bar.set_message("observing");
+        if !experiment.scene.observer.modes.is_empty() {
+            return self.run_modes(&experiment, &bar, files);
+        }
         let mut answers = experiment.run_with_shape(&INTERRUPTED, &|method| {
             bar.set_message(method.name());
             bar.inc(1);
@@ -259,6 +262,7 @@ impl Observe {
     /// Whether what is asked for can be had at once.
     fn goes_together(&self, scene: &Scene, is_stream: bool) -> miette::Result<()> {
         self.records_alone()?;
+        self.goes_with_modes(scene, is_stream)?;
         if is_stream {
             let asked = [
                 ("--studies", self.studies || self.shards.are_asked()),

@@ -12,6 +12,7 @@ mod channels;
 mod columns;
 mod groundwork;
 mod known_motion;
+mod modes;
 mod reconstruction;
 mod recovered;
 mod run;
@@ -31,6 +32,7 @@ pub mod unguided;
 #[doc(hidden)]
 pub use advice::{Advice, AdviceLimits, AdviceQuestion, ExpectedBounds, TriedMotion, advise};
 pub use known_motion::KnownMotion;
+pub use modes::{ModeEstimate, ModeWindow};
 #[doc(hidden)]
 pub use reconstruction::{on_palm, shown, turned};
 pub use recovered::{Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
@@ -41,7 +43,9 @@ pub use run::{Answer, Experiment};
 pub use scene::SceneOutline;
 #[doc(hidden)]
 pub use scene::{BasinStudy, CurvatureStudy, NoiseStudy};
-pub use scene::{Channel, Data, Guess, Method, ObserverSettings, Scene, SceneColumn, SceneError, Sensor};
+pub use scene::{
+    Channel, Data, Guess, Method, ModeSettings, ObserverSettings, Scene, SceneColumn, SceneError, Sensor,
+};
 #[doc(hidden)]
 pub use simulation::NOMINAL;
 pub use simulation::Simulation;

@@ -4,8 +4,9 @@ use super::columns::{COLUMNS, Column, SeenAs};
 use super::scene::{self, Channel, Scene, SceneError, Sensor, Simulated};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::{
-    BodyForm, CentreOfMass, DEFAULT_TOLERANCE, DrawnSpline, Ended, FormError, MovingScene as Bodies,
-    SceneError as Refused, Shape, SplineDraws, Trajectory, simulate as follow,
+    BodyForm, CentreOfMass, DEFAULT_TOLERANCE, DrawnSpline, Ended, FormError, ModePair,
+    MovingScene as Bodies, RubbedMotion, SceneError as Refused, Shape, SplineDraws, Trajectory,
+    simulate as follow, simulate_with_friction,
 };
 use crate::observer::{Record, RecordError, Signals};
 use crate::pose_surface::PoseBody;
@@ -29,6 +30,8 @@ pub struct Simulation {
     pub shape: Shape,
     /// How it moved.
     pub trajectory: Trajectory,
+    /// With friction, how the contacts slid, rolled or stuck, and from when on; empty without.
+    pub modes: Vec<(f64, ModePair)>,
     /// Constants of the bodies by the names that the thesis gives them: `m`, `rho`, `I1`, `I2`, `g`.
     pub constants: BTreeMap<String, f64>,
     /// How many splines were drawn until one was convex, where the body is random.
@@ -70,9 +73,14 @@ impl Simulation {
         };
         let mut times = simulated.times(scene.sensor.jitter, scene.seed);
         times.truncate(most);
-        let mut trajectory = follow(&bodies, &times).map_err(|error| {
+        let friction = simulated.palms.friction;
+        let moved = match friction > 0.0 {
+            true => simulate_with_friction(&bodies, friction, &times),
+            false => follow(&bodies, &times).map(RubbedMotion::smooth),
+        };
+        let RubbedMotion { mut trajectory, modes } = moved.map_err(|error| {
             let place = match error {
-                Refused::NotHeld { .. } | Refused::Start(_) => "palms",
+                Refused::NotHeld { .. } | Refused::Start(_) | Refused::NoModes => "palms",
                 _ => "body",
             };
             scene.error_at(
@@ -86,7 +94,7 @@ impl Simulation {
         // that no polynomial can run through both
         let sampled = |time: f64| times.binary_search_by(|other| other.total_cmp(&time)).is_ok();
         trajectory.moments.retain(|moment| sampled(moment.time));
-        Ok(Simulation { shape: bodies.shape, trajectory, constants, draws })
+        Ok(Simulation { shape: bodies.shape, trajectory, modes, constants, draws })
     }
 
     /// How far the motion went.
@@ -238,11 +246,15 @@ pub(super) fn constants(scene: &Scene, simulated: &Simulated, shape: &Shape) -> 
         ("I2", inertia[1]),
         ("g", body.gravity),
     ];
+    let gyration = constants[1].1;
+    // what friction_sliding.proof and its like have for unknowns
+    let inverse =
+        [("one_over_m", 1.0 / body.mass), ("rho2", gyration * gyration), ("mu", simulated.palms.friction)];
     let radii = ["b1", "b2"].into_iter().zip(scene.palm_forms).map(|(name, form)| match form {
         Palm::Circular { radius } => (name, radius),
         Palm::Flat => (name, FLAT),
     });
-    constants.into_iter().chain(radii).map(|(name, value)| (name.to_owned(), value)).collect()
+    constants.into_iter().chain(inverse).chain(radii).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 /// The outline, where the centre of mass is, and the random body where it is one.

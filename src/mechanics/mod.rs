@@ -17,7 +17,7 @@
 //! A [`Palm`] says what a sensor's value means: the contact, tangent, normal and curvature there. Flat ones and circular
 //! ones there are in the plane, flat ones in space.
 //!
-//! Left out here: friction, contact that breaks (the sign of a contact force is reported, not enforced), and time: a motion is known at one moment, with its first two derivatives there. Through time
+//! Left out here: friction (`moving` has it), contact that breaks (the sign of a contact force is reported, not enforced), and time: a motion is known at one moment, with its first two derivatives there. Through time
 //! and in double precision bodies are moved by [`moving`] in the plane and by [`spatial`] in space, for which this is the witness.
 
 mod body;

@@ -48,7 +48,7 @@ pub use layout::Colour;
 pub use layout::Layout;
 #[doc(hidden)]
 pub use motion::ended_in_words;
-pub use motion::{Observed, observe_json, observe_page, observe_text};
+pub use motion::{Observed, modes_json, modes_text, observe_json, observe_page, observe_text};
 #[doc(hidden)]
 pub use motion::{stream_end_json, stream_end_text, stream_json, stream_text};
 pub use notebook::{claims_html, rank_html};

@@ -160,6 +160,8 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
     let observer = checks.observer(keys.observer, source)?;
     checks.study(&keys.study, &observer, span.is_some())?;
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
+    let mut observer = observer;
+    observer.modes.iter_mut().for_each(|own| own.model = folder.join(&own.model));
     let mut data = keys.data;
     data.record =
         data.record.map(|record| if record == Path::new(STREAM_NAME) { record } else { folder.join(record) });

@@ -173,6 +173,8 @@ fn one() -> u64 {
 pub(super) struct PalmsKeys {
     pub inertia: [f64; 2],
     pub radii: Option<[f64; 2]>,
+    #[serde(default)]
+    pub friction: f64,
     pub prescribed: Option<[Course; 2]>,
     pub torques: Option<[PushedPalm; 2]>,
 }
@@ -213,6 +215,25 @@ pub(super) struct ObserverKeys {
     pub unscented: Unscented,
     #[serde(default)]
     pub high_gain: HighGain,
+    #[serde(default)]
+    pub mode: String,
+    #[serde(default)]
+    pub modes: Vec<ModeKeys>,
+}
+
+/// `[[observer.modes]]`: another system that the readings may be of, beside the scene's own.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModeKeys {
+    pub name: String,
+    pub model: PathBuf,
+    pub estimate: Vec<String>,
+    #[serde(default)]
+    pub known: BTreeMap<String, f64>,
+    #[serde(default)]
+    pub guess: BTreeMap<String, f64>,
+    #[serde(default)]
+    pub bounds: BTreeMap<String, [f64; 2]>,
 }
 
 /// `guess`: values by name, or a word.

@@ -13,7 +13,8 @@ mod simulated;
 pub use crate::system::ReadError as SceneError;
 pub use columns::SceneColumn;
 pub use observing::{
-    BasinStudy, Channel, CurvatureStudy, Data, Guess, Method, NoiseStudy, ObserverSettings, Sensor, Study,
+    BasinStudy, Channel, CurvatureStudy, Data, Guess, Method, ModeSettings, NoiseStudy, ObserverSettings,
+    Sensor, Study,
 };
 pub(in crate::experiment) use simulated::sample_times;
 pub use simulated::{Body, Palms, SceneOutline, Simulated, SimulatedSystem};

@@ -104,6 +104,27 @@ pub struct ObserverSettings {
     pub unscented: Unscented,
     /// `[observer.high_gain]`.
     pub high_gain: HighGain,
+    /// `mode`: what the scene's own model is called among `modes`.
+    pub mode: String,
+    /// `[[observer.modes]]`: other systems that the readings may be of, window by window, beside the scene's own; none unless given.
+    pub modes: Vec<ModeSettings>,
+}
+
+/// A system that the readings may be of in some windows, and what is sought of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModeSettings {
+    /// `name`.
+    pub name: String,
+    /// `model`: as of the scene.
+    pub model: PathBuf,
+    /// `estimate`, `known`, `bounds`: as of `[observer]`, and instead of those.
+    pub estimate: Vec<String>,
+    /// What no column gives and is not sought.
+    pub known: BTreeMap<String, f64>,
+    /// Between what some of what is sought lies.
+    pub bounds: BTreeMap<String, [f64; 2]>,
+    /// `guess`: where the search begins in any window; what is not given begins in the middle of its sample box.
+    pub guess: BTreeMap<String, f64>,
 }
 
 /// A first guess.

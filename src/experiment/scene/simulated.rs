@@ -158,4 +158,6 @@ pub struct Palms {
     pub inertia: [f64; 2],
     /// `prescribed` or `torques`: what moves them.
     pub drive: Drive,
+    /// `friction`: the coefficient of Coulomb friction at both contacts, which are on flat palms then; 0 unless given.
+    pub friction: f64,
 }

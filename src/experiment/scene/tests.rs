@@ -153,7 +153,7 @@ fn every_key_arrives_where_it_belongs() {
     let swings = vec![Oscillation { amplitude: 0.1, frequency: 1.0, phase: 0.2 }];
     let prescribed =
         [Course { start: 0.8, rate: 0.5, swings }, Course { start: 1.6, rate: 0.0, swings: Vec::new() }];
-    assert_eq!(*palms, Palms { inertia: [0.5, 0.4], drive: Drive::Prescribed(prescribed) });
+    assert_eq!(*palms, Palms { inertia: [0.5, 0.4], drive: Drive::Prescribed(prescribed), friction: 0.0 });
     assert_eq!(scene.sensor, Sensor { noise: 1e-5, resolution: 1e-4, jitter: 1e-3 });
     assert_eq!(scene.data, Data { record: None, on_fault: OnFault::Skip, spike: 6.0 });
     let value = |pairs: &[(&str, f64)]| pairs.iter().map(|(name, v)| ((*name).to_owned(), *v)).collect();
@@ -182,6 +182,8 @@ fn every_key_arrives_where_it_belongs() {
         kalman: Kalman { prior: 0.2, ..Kalman::default() },
         unscented: Unscented { kappa: 0.0, ..Unscented::default() },
         high_gain: HighGain { gain: 30.0 },
+        mode: "the scene's own model".to_owned(),
+        modes: Vec::new(),
     };
     assert_eq!(scene.observer, observer);
     assert_eq!(scene.study.noise, Some(NoiseStudy { levels: vec![1e-5, 1e-4], seeds: 500 }));

@@ -15,6 +15,19 @@ const RADII: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 impl MovingScene {
     /// Whether all values can be used and both palms hold the body at the start.
     pub(super) fn check(&self) -> Result<(), SceneError> {
+        self.check_values()?;
+        let start = Situation::at(self, 0.0, &self.start());
+        match start.breach(self) {
+            None => Ok(()),
+            Some(Breach::Contact { palm }) => {
+                Err(SceneError::NotHeld { palm, force: start.forces[palm - 1] })
+            }
+            Some(breach) => Err(SceneError::Start(breach)),
+        }
+    }
+
+    /// Whether all values can be used.
+    pub(super) fn check_values(&self) -> Result<(), SceneError> {
         let is = |holds: bool, what: &str, value: f64, wanted| match holds {
             true => Ok(()),
             false => Err(SceneError::Value { what: what.to_owned(), value, wanted }),
@@ -69,13 +82,6 @@ impl MovingScene {
                 finite(&of("swing's phase"), swing.phase)?;
             }
         }
-        let start = Situation::at(self, 0.0, &self.start());
-        match start.breach(self) {
-            None => Ok(()),
-            Some(Breach::Contact { palm }) => {
-                Err(SceneError::NotHeld { palm, force: start.forces[palm - 1] })
-            }
-            Some(breach) => Err(SceneError::Start(breach)),
-        }
+        Ok(())
     }
 }

@@ -9,30 +9,15 @@ use super::laws::{Situation, State, TimedState};
 use super::scene::MovingScene;
 use ode_solvers::{Dop853, OutputType, SVector, System};
 
-/// The state, and the time since the beginning.
-type Vector = SVector<f64, 8>;
-
 /// Steps between two samples, refused ones included, after which an integration is given up.
 const MOST_STEPS: u32 = 20_000;
 
-struct Laws<'a> {
-    scene: &'a MovingScene,
-    begin: f64,
-}
+/// Rates of `M` numbers, of which the last is the time since the beginning.
+struct Laws<F>(F);
 
-fn state(y: &Vector) -> State {
-    std::array::from_fn(|i| y[i])
-}
-
-fn vector(state: State, last: f64) -> Vector {
-    Vector::from_fn(|i, _| state.get(i).copied().unwrap_or(last))
-}
-
-impl System<f64, Vector> for Laws<'_> {
-    fn system(&self, _: f64, y: &Vector, rates: &mut Vector) {
-        let state = state(y);
-        let situation = Situation::at(self.scene, self.begin + y[7], &state);
-        *rates = vector(situation.rates(&state, &self.scene.drive), 1.0);
+impl<const M: usize, F: Fn(&[f64; M]) -> [f64; M]> System<f64, SVector<f64, M>> for Laws<F> {
+    fn system(&self, _: f64, y: &SVector<f64, M>, rates: &mut SVector<f64, M>) {
+        *rates = SVector::from((self.0)(&std::array::from_fn(|i| y[i])));
     }
 }
 
@@ -44,17 +29,37 @@ pub(super) fn steps(
     end: f64,
     longest: f64,
 ) -> (Vec<TimedState>, Option<String>) {
-    let TimedState { time: begin, state: from } = from;
-    let (span, tolerance) = (end - begin, scene.tolerance);
+    let TimedState { time: begin, state } = from;
+    let held = |y: &[f64; 8]| -> State { std::array::from_fn(|i| y[i]) };
+    let laws = |y: &[f64; 8]| {
+        let state = held(y);
+        let rates = Situation::at(scene, begin + y[7], &state).rates(&state, &scene.drive);
+        std::array::from_fn(|i| rates.get(i).copied().unwrap_or(1.0))
+    };
+    let start = std::array::from_fn(|i| state.get(i).copied().unwrap_or(0.0));
+    let (all, failure) = own_steps(laws, start, [begin, end], longest, scene.tolerance);
+    (all.iter().map(|(time, y)| TimedState { time: *time, state: held(y) }).collect(), failure)
+}
+
+/// The integrator's steps over the times from `begin` to `end`, with their times: `rates` of numbers of which the last is the time since
+/// `begin`. None is longer than `longest` seconds; and why it stopped before the end, if it did.
+pub(super) fn own_steps<const M: usize>(
+    rates: impl Fn(&[f64; M]) -> [f64; M],
+    start: [f64; M],
+    [begin, end]: [f64; 2],
+    longest: f64,
+    tolerance: f64,
+) -> (Vec<(f64, [f64; M])>, Option<String>) {
+    let span = end - begin;
     let first = span.min(longest);
     // times count from `begin`: the solver compares its step with the time to see whether it became too short. The
     // four numbers before the step sizes are its usual safety factor, damping, and bounds on a change of step.
     let mut solver = Dop853::from_param(
-        Laws { scene, begin },
+        Laws(rates),
         0.0,
         span,
         span,
-        vector(from, 0.0),
+        SVector::from(start),
         tolerance,
         tolerance,
         0.9,
@@ -69,12 +74,11 @@ pub(super) fn steps(
     );
     let failure = solver.integrate().err().map(|error| error.to_string());
     let times = solver.x_out().iter().map(|since| begin + since);
-    let states = solver.y_out().iter().map(state);
-    let mut all: Vec<TimedState> =
-        times.zip(states).map(|(time, state)| TimedState { time, state }).collect();
+    let mut all: Vec<(f64, [f64; M])> =
+        times.zip(solver.y_out()).map(|(time, y)| (time, std::array::from_fn(|i| y[i]))).collect();
     // begin + (end - begin) may be off by a rounding
     if let (None, Some(last)) = (&failure, all.last_mut()) {
-        last.time = end;
+        last.0 = end;
     }
     (all, failure)
 }

@@ -57,6 +57,44 @@ pub(super) struct Situation {
     pub opening: f64,
 }
 
+/// How a body lies between flat palms, and how it moves: what follows from its orientation and rate and those of the palms.
+pub(super) struct Touching {
+    /// Of the palms, against the X axis.
+    pub angles: [f64; 2],
+    pub rates: [f64; 2],
+    /// Towards the body.
+    pub normals: [Plane; 2],
+    /// The support function and its derivatives at the contacts.
+    pub support: [[f64; 3]; 2],
+    /// How fast the contacts' normals turn in the body's frame.
+    pub swept: [f64; 2],
+    pub centre: Plane,
+    pub velocity: Plane,
+    /// The contacts, from the centre of mass and from the origin.
+    pub arms: [Plane; 2],
+    pub contacts: [Plane; 2],
+}
+
+impl Touching {
+    /// Not finite where the palms are parallel.
+    pub(super) fn of(scene: &MovingScene, world: &[[f64; 3]; 2], [phi0, omega0]: [f64; 2]) -> Touching {
+        let [angles, rates] = [0, 1].map(|k: usize| [world[0][k], world[1][k]]);
+        let normals = [left_of(unit(angles[0])), scaled(-1.0, left_of(unit(angles[1])))];
+        let outward = [angles[0] - FRAC_PI_2 - phi0, angles[1] + FRAC_PI_2 - phi0];
+        let support = outward.map(|angle| scene.shape.support(angle));
+        let swept = rates.map(|rate| rate - omega0);
+        let turned = normals.map(left_of);
+        let centre = meet(normals[0], support[0][0], normals[1], support[1][0]);
+        let closing = |i: usize| support[i][1] * swept[i] - rates[i] * dot(turned[i], centre);
+        let velocity = meet(normals[0], closing(0), normals[1], closing(1));
+        // the outward normal is -n
+        let arms =
+            [0, 1].map(|i: usize| along(scaled(-support[i][0], normals[i]), -support[i][1], turned[i]));
+        let contacts = arms.map(|arm| along(centre, 1.0, arm));
+        Touching { angles, rates, normals, support, swept, centre, velocity, arms, contacts }
+    }
+}
+
 impl MovingScene {
     /// The state at time zero.
     pub(super) fn start(&self) -> State {
@@ -107,23 +145,10 @@ impl Situation {
         if scene.palms.iter().any(|palm| *palm != Palm::Flat) {
             return Situation::between_curved(scene, time, state);
         }
-        let [phi0, omega0, ..] = *state;
         let world = scene.palms_at(time, state);
-        let [angles, rates] = [0, 1].map(|k: usize| [world[0][k], world[1][k]]);
-
-        let normals = [left_of(unit(angles[0])), scaled(-1.0, left_of(unit(angles[1])))];
-        let outward = [angles[0] - FRAC_PI_2 - phi0, angles[1] + FRAC_PI_2 - phi0];
-        let support = outward.map(|angle| scene.shape.support(angle));
-        let swept = rates.map(|rate| rate - omega0);
+        let Touching { angles, rates, normals, support, swept, centre, velocity, arms, contacts } =
+            Touching::of(scene, &world, [state[0], state[1]]);
         let turned = normals.map(left_of);
-        let centre = meet(normals[0], support[0][0], normals[1], support[1][0]);
-        let closing = |i: usize| support[i][1] * swept[i] - rates[i] * dot(turned[i], centre);
-        let velocity = meet(normals[0], closing(0), normals[1], closing(1));
-
-        // the contact, from the centre of mass and from the origin; the outward normal is -n there
-        let arms =
-            [0, 1].map(|i: usize| along(scaled(-support[i][0], normals[i]), -support[i][1], turned[i]));
-        let contacts = arms.map(|arm| along(centre, 1.0, arm));
         let moments = [0, 1].map(|i: usize| cross(arms[i], normals[i]));
         let levers = [0, 1].map(|i: usize| cross(contacts[i], normals[i]));
 

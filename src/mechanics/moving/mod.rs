@@ -12,7 +12,9 @@
 //! against them. The bodies in 320 bits beside it obey the same laws by differences, and are
 //! the witness in tests; what a body with harmonics looks like, its support function, both share.
 //!
-//! Left out: friction, impacts (a motion ends where a contact force reaches zero, for after that the body may
+//! `friction` has stick and slip by Coulomb's law, [`simulate_with_friction`].
+//!
+//! Left out: impacts (a motion ends where a contact force reaches zero, for after that the body may
 //! come back and hit), palms that touch each other, the palms' own weight.
 
 mod breach;
@@ -20,6 +22,7 @@ mod check;
 mod curved;
 mod drive;
 mod form;
+mod friction;
 mod integrate;
 mod laws;
 mod plane;
@@ -43,6 +46,8 @@ pub(crate) use drive::Drive;
 #[doc(hidden)]
 pub use drive::{Course, Oscillation, PushedPalm};
 pub(crate) use form::{BodyForm, CentreOfMass, FormError, Knots};
+pub use friction::{ContactMode, ModePair};
+pub(crate) use friction::{RubbedMotion, simulate_with_friction};
 pub(crate) use random::{DrawnSpline, SplineDraws};
 pub(crate) use scene::{DEFAULT_TOLERANCE, MovingScene, SceneError};
 pub(crate) use shape::Shape;

@@ -8,6 +8,11 @@ pub(super) fn along(a: Plane, factor: f64, b: Plane) -> Plane {
     [a[0] + factor * b[0], a[1] + factor * b[1]]
 }
 
+/// `a - b`
+pub(super) fn difference(a: Plane, b: Plane) -> Plane {
+    along(a, -1.0, b)
+}
+
 /// `factor * a`
 pub(super) fn scaled(factor: f64, a: Plane) -> Plane {
     [factor * a[0], factor * a[1]]

@@ -55,6 +55,11 @@ pub enum SceneError {
          or give the body another orientation or rate"
     )]
     NotHeld { palm: usize, force: f64 },
+    #[error(
+        "at the start no way to slide, roll or stick is consistent with friction and contact: a palm would have to pull, or \
+         it is Painleve's paradox; turn the palm, or give the body another orientation or rate, or less friction"
+    )]
+    NoModes,
     #[error("slow motion: {0}")]
     NotSlow(&'static str),
     #[error("{0} at the start; give other palm angles or another orientation")]

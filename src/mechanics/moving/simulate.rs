@@ -8,10 +8,10 @@ use super::trajectory::{Ended, Moment, Trajectory};
 
 /// Contacts are looked at after each step of the integrator, of which there are at least so many: a contact force
 /// that is negative for a shorter time than a step may go unseen.
-const FEWEST_STEPS: f64 = 256.0;
+pub(super) const FEWEST_STEPS: f64 = 256.0;
 
 /// The end of a contact is sought until it is known to so many seconds.
-const LOCATED: f64 = 1e-14;
+pub(super) const LOCATED: f64 = 1e-14;
 
 /// The last of sample times that are finite, not negative and increase.
 ///

@@ -21,6 +21,10 @@ pub struct PalmMoment {
     pub force: f64,
     /// The motor's torque about the origin, counterclockwise.
     pub torque: f64,
+    /// Friction on the body, and how fast the body slides there, both along the palm's tangent as the thesis turns it: away from the
+    /// origin on palm 1, towards it on palm 2. Zero where a motion knows no friction.
+    pub friction: f64,
+    pub slip: f64,
 }
 
 /// Body and palms at one moment. SI units, angles in radians.
@@ -41,12 +45,18 @@ pub struct Moment {
     pub potential: f64,
     /// The work that the motors have done since time zero.
     pub work: f64,
+    /// What friction has taken since time zero.
+    pub dissipated: f64,
 }
 
 impl Moment {
     pub(super) fn of(scene: &MovingScene, time: f64, state: &State) -> Moment {
+        Moment::seen(scene, time, state, &Situation::at(scene, time, state))
+    }
+
+    /// The moment of a state whose forces are known.
+    pub(super) fn seen(scene: &MovingScene, time: f64, state: &State, at: &Situation) -> Moment {
         let [phi0, omega0, .., work] = *state;
-        let at = Situation::at(scene, time, state);
         let relative = |pair: [f64; 2], i: usize| if i == 0 { pair[0] } else { pair[1] - pair[0] };
         let palm = |i: usize| PalmMoment {
             angle: relative(at.angles, i),
@@ -57,6 +67,8 @@ impl Moment {
             d: at.d[i],
             force: at.forces[i],
             torque: at.torques[i],
+            friction: 0.0,
+            slip: 0.0,
         };
         let square = |x: f64| x * x;
         let body = square(at.velocity[0]) + square(at.velocity[1]) + square(scene.gyration * omega0);
@@ -72,6 +84,7 @@ impl Moment {
             kinetic: (scene.mass * body + palms) / 2.0,
             potential: -scene.mass * scene.gravity * at.centre[1],
             work,
+            dissipated: 0.0,
         }
     }
 
@@ -135,9 +148,10 @@ pub struct Trajectory {
 
 impl Trajectory {
     /// The greatest difference, over all moments, between the energy gained since time zero and the work of the
-    /// motors, in joules: zero but for errors of the integration.
+    /// motors less what friction has taken, in joules: zero but for errors of the integration.
     pub fn energy_drift(&self) -> f64 {
-        let drift = |moment: &Moment| (moment.energy() - self.start_energy - moment.work).abs();
+        let drift =
+            |moment: &Moment| (moment.energy() - self.start_energy - moment.work + moment.dissipated).abs();
         self.moments.iter().map(drift).fold(0.0, f64::max)
     }
 }

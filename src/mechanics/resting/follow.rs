@@ -224,6 +224,8 @@ impl Carried<'_> {
             d: here.d[i],
             force: weight * here.forces[i],
             torque: weight * here.forces[i] * if i == 0 { here.s[0] } else { -here.s[1] },
+            friction: 0.0,
+            slip: 0.0,
         };
         let potential = weight * here.centre[1];
         let lost: f64 = self.jumps.iter().map(|jump| weight * jump.drop).sum();
@@ -238,6 +240,7 @@ impl Carried<'_> {
             kinetic: 0.0,
             potential,
             work: potential - start + lost,
+            dissipated: 0.0,
         }
     }
 }

@@ -4,6 +4,7 @@ pub(super) mod answers;
 pub(super) mod curves;
 pub(super) mod fit;
 pub(super) mod frames;
+pub(super) mod modes;
 pub(super) mod outline_plot;
 pub(super) mod outline_section;
 pub(super) mod page;
@@ -17,5 +18,6 @@ pub(super) mod study_plot;
 pub(super) mod table;
 
 pub use answers::{Observed, ended_in_words, observe_json, observe_text};
+pub use modes::{modes_json, modes_text};
 pub use page::observe_page;
 pub use stream::{stream_end_json, stream_end_text, stream_json, stream_text};

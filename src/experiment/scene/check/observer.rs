@@ -1,7 +1,7 @@
 //! What is to be found out, and the studies.
 
-use super::super::keys::{GuessKeys, ObserverKeys};
-use super::super::{CurvatureStudy, Guess, ObserverSettings, Study};
+use super::super::keys::{GuessKeys, ModeKeys, ObserverKeys};
+use super::super::{CurvatureStudy, Guess, ModeSettings, ObserverSettings, Study};
 use super::{Checks, MOST_SAMPLES, Problem, Source};
 use crate::observer::{CalibrationKind, Loss};
 
@@ -56,7 +56,18 @@ impl Checks<'_> {
         self.positive("observer.unscented.least_sigma", keys.unscented.least_sigma, "")?;
         self.not_negative("observer.unscented.kappa", keys.unscented.kappa, "")?;
         self.positive("observer.high_gain.gain", keys.high_gain.gain, "1/s")?;
+        if !keys.modes.is_empty() && !keys.methods.first().is_some_and(|method| method.is_by_windows()) {
+            let help = "let the first method be newton, trust-region or multiple-shooting";
+            return Err(self.wrong("observer.methods", "modes are told apart by windows", help));
+        }
+        let modes = keys.modes.into_iter().enumerate();
+        let modes = modes.map(|(index, own)| self.mode(index, own)).collect::<Result<Vec<_>, _>>()?;
+        let mode = if keys.mode.is_empty() { "the scene's own model".to_owned() } else { keys.mode };
+        let names: Vec<&String> = std::iter::once(&mode).chain(modes.iter().map(|own| &own.name)).collect();
+        self.names("observer.modes", &names, |name| format!("'{name}'"))?;
         Ok(ObserverSettings {
+            mode,
+            modes,
             inherit: keys.inherit,
             whole: keys.whole,
             bounds: keys.bounds,
@@ -76,6 +87,35 @@ impl Checks<'_> {
             unscented: keys.unscented,
             high_gain: keys.high_gain,
         })
+    }
+
+    fn mode(&self, index: usize, keys: ModeKeys) -> Result<ModeSettings, Problem> {
+        let place = |key: &str| format!("observer.modes[{index}].{key}");
+        if keys.estimate.is_empty() {
+            return Err(self.wrong(
+                &place("estimate"),
+                "there is nothing to estimate",
+                "name the states that are sought",
+            ));
+        }
+        self.names(&place("estimate"), &keys.estimate, |name| format!("'{name}'"))?;
+        for (name, value) in &keys.known {
+            self.finite(&place(&format!("known.{name}")), *value)?;
+        }
+        for (name, [low, high]) in &keys.bounds {
+            let own = place(&format!("bounds.{name}"));
+            self.sought(&own, name, &keys.estimate)?;
+            if low.is_nan() || high.is_nan() || low >= high {
+                let message = format!("no number of '{name}' lies from {low} to {high}");
+                return Err(self.wrong(&own, message, "give the least value first; inf is none"));
+            }
+        }
+        for (name, value) in &keys.guess {
+            self.sought(&place(&format!("guess.{name}")), name, &keys.estimate)?;
+            self.finite(&place(&format!("guess.{name}")), *value)?;
+        }
+        let ModeKeys { name, model, estimate, known, bounds, guess } = keys;
+        Ok(ModeSettings { name, model, estimate, known, bounds, guess })
     }
 
     /// What is asked of the estimates of windows.

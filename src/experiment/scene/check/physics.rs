@@ -277,7 +277,14 @@ impl Checks<'_> {
                 Drive::Torques(palms)
             }
         };
-        Ok(Palms { inertia: keys.inertia, drive })
+        self.not_negative("palms.friction", keys.friction, "")?;
+        if keys.friction > 0.0
+            && keys.radii.is_some_and(|radii| radii.iter().any(|radius| radius.is_finite()))
+        {
+            let help = "leave out 'radii', or the friction";
+            return Err(self.wrong("palms.friction", "friction is simulated on flat palms only", help));
+        }
+        Ok(Palms { inertia: keys.inertia, drive, friction: keys.friction })
     }
 
     /// The forms of palms with these radii.
