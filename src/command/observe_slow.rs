@@ -69,7 +69,10 @@ impl Observe {
         bar.finish_and_clear();
         let mut study = Vec::new();
         if let (true, Some(settings)) = (self.studies, &experiment.scene.study) {
-            let rows = settings.families.len() * settings.samples.len() * settings.resolutions.len();
+            let rows = settings.families.len()
+                * settings.samples.len()
+                * settings.resolutions.len()
+                * settings.orders.len().max(1);
             let bar = progress((rows * settings.bodies) as u64, "bodies");
             study = slow_study(&experiment.scene, &interrupted, &|| bar.inc(1)).map_err(|error| {
                 experiment.scene.error_at("study", error.to_string(), "other families may do")

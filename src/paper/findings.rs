@@ -7,6 +7,7 @@ use super::views::{LineFound, MapFound, SetRank};
 use crate::certificate::RegionAnswer;
 use crate::claim::Outcome;
 use crate::drops::DropAnswer;
+use crate::experiment::slow::{SlowAnswers, SlowExperiment};
 use crate::experiment::{Answer, Experiment};
 use crate::system::System;
 use crate::tradeoff::stress::StressStudy;
@@ -91,6 +92,8 @@ pub struct Findings {
     pub files: Vec<FileFindings>,
     /// Bodies in motion, and what observers made of them.
     pub experiments: Vec<(Experiment, Vec<Answer>)>,
+    /// Bodies at rest between slow palms, and what their readings tell.
+    pub slow: Vec<(SlowExperiment, SlowAnswers)>,
     /// The seed of all that is drawn.
     pub seed: u64,
     /// Whether it was stopped before the end.
@@ -106,6 +109,7 @@ impl Findings {
             paper: Paper::default(),
             files: Vec::new(),
             experiments: Vec::new(),
+            slow: Vec::new(),
             seed,
             interrupted: false,
             seconds: 0.0,
@@ -119,6 +123,8 @@ impl Findings {
 
     /// Whether everything is as the files expect.
     pub fn ok(&self) -> bool {
-        !self.interrupted && self.files.iter().all(FileFindings::ok)
+        !self.interrupted
+            && self.files.iter().all(FileFindings::ok)
+            && self.slow.iter().all(|(_, answers)| answers.explained)
     }
 }

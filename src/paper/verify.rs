@@ -8,6 +8,7 @@ use super::views::{draw, has_a_rank, rank_on};
 use crate::certificate::certify_region;
 use crate::claim::decide_all;
 use crate::drops::where_it_drops;
+use crate::experiment::slow::{SlowExperiment, SlowScene};
 use crate::experiment::{Experiment, Scene};
 use crate::expression::syntax::{Expr, ExprKind};
 use crate::sweep::UNINTERRUPTED;
@@ -101,7 +102,17 @@ pub fn verify_into(
         run.examine(place, system, &measured);
     }
     for scene in paper.scenes.iter().take_while(|_| !run.stopped()) {
-        let experiment = Experiment::new(Scene::read(&paper.folder.join(scene))?, None)?;
+        let path = paper.folder.join(scene);
+        if let Some(slow) = SlowScene::read(&path) {
+            let experiment = SlowExperiment::new(slow?, None)?;
+            let answers = experiment.run(&|| run.stopped(), &|_| ());
+            run.step(scene);
+            if !run.stopped() {
+                run.found().slow.push((experiment, answers));
+            }
+            continue;
+        }
+        let experiment = Experiment::new(Scene::read(&path)?, None)?;
         let answers = experiment.run(options.interrupt, &|_| ())?;
         run.step(scene);
         run.found().experiments.push((experiment, answers));

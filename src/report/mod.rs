@@ -23,6 +23,7 @@ mod ranks;
 mod slow;
 mod slow_observed;
 mod slow_plot;
+mod slow_section;
 mod slow_study;
 mod solid_picture;
 mod stress;

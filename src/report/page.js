@@ -17,7 +17,7 @@
     }
     return texts.get(entry);
   };
-  const name = entry => entry.querySelector('i').textContent;
+  const name = entry => entry.querySelector('h4').firstChild.data;
   const filter = () => {
     const [word, file, wanted] = ['word', 'file', 'text'].map(id => by(id).value.toLowerCase());
     const counts = new Map();

@@ -6,9 +6,12 @@ use crate::report::motion::ended_in_words;
 use crate::report::slow_observed::SlowObserved;
 use crate::report::slow_plot::{animation, curves, frames};
 use crate::report::slow_study::{number, study_json, study_section, study_text};
-use maud::{PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 use std::fmt::Write;
+
+/// Samples at which it is shown what was touched.
+const FRAMES: usize = 27;
 
 fn method_name(method: ThesisMethod) -> &'static str {
     match method {
@@ -34,9 +37,13 @@ fn ways<'a>(observed: &SlowObserved<'a>) -> Vec<Way<'a>> {
     let answers = observed.answers;
     let mut all = Vec::new();
     if let Some(found) = &answers.together {
+        let kinks = match found.kinks.len() {
+            0 => String::new(),
+            count => format!(" and {count} kinks of the curvature"),
+        };
         let remark = format!(
-            "order {}, {:.2e} m left of a contact; the readings {} explained",
-            found.shape.support.order(),
+            "order {}{kinks}, {:.2e} m left of a contact; the readings {} explained",
+            found.order,
             found.misfit,
             if answers.explained { "are" } else { "are NOT" }
         );
@@ -156,7 +163,7 @@ pub fn slow_text(observed: &SlowObserved<'_>) -> String {
 }
 
 /// Jumps in one line.
-fn jumps_in_words(answers: &SlowAnswers) -> String {
+pub(super) fn jumps_in_words(answers: &SlowAnswers) -> String {
     let one = |jump: &FoundJump| {
         let word = if jump.predicted { "as descent says" } else { "another pose than descent says" };
         format!("before sample {} by {:.4} rad, {word}", jump.row + 1, jump.turn)
@@ -194,6 +201,8 @@ pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
             "mean": support.mean,
             "harmonics": support.harmonics,
             "deviations": deviations,
+            "order": found.order,
+            "kinks": found.kinks.iter().map(|kink| json!({ "angle": kink.angle, "jumps": kink.jumps })).collect::<Vec<_>>(),
             "misfit": found.misfit,
             "sigma": found.sigma,
             "explained": answers.explained,
@@ -222,10 +231,24 @@ pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
     })
 }
 
+/// How far each way is off, and what is to be said of it.
+pub(super) fn ways_table(observed: &SlowObserved<'_>) -> Markup {
+    let mean = mean_radius(observed);
+    html! {
+        table {
+            thead { tr { th { "way" } th { "greatest error" } th { "remark" } } }
+            tbody {
+                @for way in ways(observed) {
+                    tr { td { (way.name) } td { (error_in_words(observed.experiment.error(way.track), mean)) } td { (way.remark) } }
+                }
+            }
+        }
+    }
+}
+
 /// The page as HTML.
 pub fn slow_page(observed: &SlowObserved<'_>) -> String {
     let (experiment, answers) = (observed.experiment, observed.answers);
-    let mean = mean_radius(observed);
     let content = html! {
         header {
             h1 { (experiment.scene.title) }
@@ -238,7 +261,7 @@ pub fn slow_page(observed: &SlowObserved<'_>) -> String {
             @if observed.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
         }
         main {
-            section #body { h2 { "The body between its palms" } (PreEscaped(animation(observed))) }
+            section #body { h2 { "The body between its palms" } figure.narrow { (PreEscaped(animation(observed))) } }
             @if let Some(truth) = &experiment.truth {
                 @if !truth.trajectory.jumps.is_empty() {
                     section #jumps {
@@ -257,14 +280,7 @@ pub fn slow_page(observed: &SlowObserved<'_>) -> String {
             }
             section #found {
                 h2 { "What each way found" }
-                table {
-                    thead { tr { th { "way" } th { "greatest error" } th { "remark" } } }
-                    tbody {
-                        @for way in ways(observed) {
-                            tr { td { (way.name) } td { (error_in_words(experiment.error(way.track), mean)) } td { (way.remark) } }
-                        }
-                    }
-                }
+                (ways_table(observed))
                 @if answers.together.is_none() { p.bad { "All readings at once: no start could be followed; nothing is recovered." } }
                 @if !answers.jumps.is_empty() { p { "Jumps that the readings tell, and where descent in the recovered potential leads: " (jumps_in_words(answers)) "." } }
                 @if let Some(both) = &answers.arrangements { p { "The errors 3.48 and 3.49 of segments, for comparison: " (arrangements_in_words(both)) "." } }
@@ -273,8 +289,8 @@ pub fn slow_page(observed: &SlowObserved<'_>) -> String {
                     @for vote in answers.votes.iter().take(6) { (format!("{:.5} m ({}) ", vote.height, vote.votes)) }
                 }
             }
-            section #frames { h2 { "As figure 3.6: what was touched so far" } (PreEscaped(frames(observed))) }
-            section #errors { h2 { "As figures 3.7 and 3.8: errors over the samples" } (PreEscaped(curves(observed))) }
+            section #frames { h2 { "As figure 3.6: what was touched so far" } div.frames { (PreEscaped(frames(observed, FRAMES, 200))) } }
+            section #errors { h2 { "As figures 3.7 and 3.8: errors over the samples" } div.two { (PreEscaped(curves(observed))) } }
             @if !observed.study.is_empty() { section #study { h2 { "Many bodies" } (study_section(observed.study)) } }
         }
     };

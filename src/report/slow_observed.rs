@@ -13,3 +13,10 @@ pub struct SlowObserved<'a> {
     /// Whether it was interrupted.
     pub interrupted: bool,
 }
+
+impl<'a> SlowObserved<'a> {
+    /// A whole run without a study.
+    pub fn of(experiment: &'a SlowExperiment, answers: &'a SlowAnswers) -> SlowObserved<'a> {
+        SlowObserved { experiment, answers, study: &[], interrupted: false }
+    }
+}

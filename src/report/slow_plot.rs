@@ -6,9 +6,8 @@ use crate::report::slow_observed::SlowObserved;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write;
 
-/// Frames of the animation and of the figure at most.
+/// Frames of the animation at most.
 const MOVED: usize = 90;
-const FRAMES: usize = 27;
 
 /// Points of an outline.
 const OUTLINE: usize = 96;
@@ -56,8 +55,8 @@ pub(super) fn animation(observed: &SlowObserved<'_>) -> String {
     moved_body(&outline(observed), &poses)
 }
 
-/// Figure 3.6: after every tenth of the samples the points that were touched so far, as they were found.
-pub(super) fn frames(observed: &SlowObserved<'_>) -> String {
+/// Figure 3.6: at so many samples the points that were touched so far, as they were found; those of so many samples at most.
+pub(super) fn frames(observed: &SlowObserved<'_>, most: usize, dots_of: usize) -> String {
     let (Some(found), readings) = (&observed.answers.together, &observed.experiment.readings) else {
         return "<p>Nothing was found.</p>".to_owned();
     };
@@ -67,12 +66,12 @@ pub(super) fn frames(observed: &SlowObserved<'_>) -> String {
         .map(|[x, y]| x.hypot(y))
         .fold(0.0, f64::max);
     let scale = 42.0 / size;
-    let mut out = String::from("<div>");
+    let mut out = String::new();
     let count = readings.rows();
-    for frame in rows(count, FRAMES + 1).into_iter().skip(1) {
+    for frame in rows(count, most + 1).into_iter().skip(1) {
         let phi0 = found.track.phi0[frame];
         let mut dots = String::new();
-        for row in (0..=frame).step_by((count / 200).max(1)) {
+        for row in (0..=frame).step_by((count / dots_of).max(1)) {
             let palms = readings.palms[row];
             let normals = [palms[0] - FRAC_PI_2, palms[0] + palms[1] - 3.0 * FRAC_PI_2];
             for normal in normals {
@@ -98,7 +97,6 @@ pub(super) fn frames(observed: &SlowObserved<'_>) -> String {
             frame + 1
         );
     }
-    out.push_str("</div>");
     out
 }
 
@@ -150,6 +148,17 @@ fn logarithmic(title: &str, unit: &str, series: &[(&str, &str, Vec<f64>)]) -> St
 
 /// Figures 3.7 and 3.8: errors of the radii and the orientation, and the errors that can be seen without the truth.
 pub(super) fn curves(observed: &SlowObserved<'_>) -> String {
+    off_truth(observed, usize::MAX) + &seen_errors(observed)
+}
+
+/// The greatest values of stretches, so many at most.
+fn greatest(values: Vec<f64>, most: usize) -> Vec<f64> {
+    let of = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
+    values.chunks(values.len().div_ceil(most).max(1)).map(of).collect()
+}
+
+/// Errors of the radii and the orientation, a curve of so many points at most; nothing where the truth is not known.
+pub(super) fn off_truth(observed: &SlowObserved<'_>, most: usize) -> String {
     let answers = observed.answers;
     let thesis = answers.thesis.first().map(|(_, found)| found);
     let tracks = [
@@ -168,14 +177,22 @@ pub(super) fn curves(observed: &SlowObserved<'_>) -> String {
             let off = |(r, at): (&[f64; 2], &crate::mechanics::moving::Moment)| {
                 (r[0] - at.palms[0].r).abs().max((r[1] - at.palms[1].r).abs())
             };
-            radii.push((*name, *colour, both.map(off).collect()));
+            radii.push((*name, *colour, greatest(both.map(off).collect(), most)));
             let first = track.phi0.first().zip(moments.first()).map_or(0.0, |(phi0, at)| phi0 - at.phi0);
             let both = track.phi0.iter().zip(moments);
-            turns.push((*name, *colour, both.map(|(phi0, at)| (phi0 - at.phi0 - first).abs()).collect()));
+            let turned = both.map(|(phi0, at)| (phi0 - at.phi0 - first).abs());
+            turns.push((*name, *colour, greatest(turned.collect(), most)));
         }
         out += &logarithmic("greatest error of a support radius", "m", &radii);
         out += &logarithmic("error of the orientation", "rad", &turns);
     }
+    out
+}
+
+/// The errors of the thesis, which see no truth.
+fn seen_errors(observed: &SlowObserved<'_>) -> String {
+    let answers = observed.answers;
+    let thesis = answers.thesis.first().map(|(_, found)| found);
     let seen = |name: &'static str, colour: &'static str, values: Option<&Vec<f64>>| {
         values.map(|values| (name, colour, values.iter().map(|x| x.abs()).collect::<Vec<f64>>()))
     };
@@ -188,9 +205,8 @@ pub(super) fn curves(observed: &SlowObserved<'_>) -> String {
         seen("thesis", "#d55e00", thesis.map(|found| &found.contact_error)),
         seen("height 1 % off", "#cc79a7", misled.map(|found| &found.contact_error)),
     ];
-    out += &logarithmic("e_f of 3.38", "m", &force.into_iter().flatten().collect::<Vec<_>>());
-    out += &logarithmic("e_c of 3.39", "m", &contact.into_iter().flatten().collect::<Vec<_>>());
-    out
+    logarithmic("e_f of 3.38", "m", &force.into_iter().flatten().collect::<Vec<_>>())
+        + &logarithmic("e_c of 3.39", "m", &contact.into_iter().flatten().collect::<Vec<_>>())
 }
 
 /// Speed against accuracy of all ways: a mark a row of the study.

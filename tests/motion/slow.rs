@@ -124,6 +124,43 @@ fn a_run_with_a_jump_is_one_shape() {
     assert!(ours.area < 0.5 * thesis.area && ours.error() < thesis.error(), "{ours:?} {thesis:?}");
 }
 
+/// A closed spline has kinks of its curvature: they are found, and with them the radii are right to a billionth; two hundred harmonics alone leave 5e-7.
+#[test]
+fn the_kinks_of_a_spline_are_found() {
+    let body = "shape = { kind = \"spline\", radii = [0.9, 1.5, 1.2], knots = \"centripetal\" }\nmass = 1.0";
+    let experiment = experiment(&scene(1080, body, PLAN, ""));
+    let truth = experiment.truth.as_ref().unwrap();
+    let mean = truth.shape.perimeter() / std::f64::consts::TAU;
+    let answers = run(&experiment);
+    let found = answers.together.as_ref().unwrap();
+    assert!(answers.explained && found.kinks.len() >= 3, "{:?}", found.kinks);
+    let error = experiment.error(&found.track).unwrap();
+    assert!(error.radius < 1e-9 * mean && error.phi0 < 1e-8, "{error:?}");
+    assert!(answers.jumps.is_empty(), "{:?}", answers.jumps);
+}
+
+/// A paper may name scenes of slow motion: `verify` runs them, and they are on the page.
+#[test]
+fn a_paper_has_slow_scenes() {
+    let folder = folder();
+    write(&folder, "one.proof", "system \"one\" state x drift f x' = 1 output x claim one: 1 + 1 = 2");
+    write(&folder, "slow.toml", &scene(100, BODY, PLAN, ""));
+    write(&folder, "paper.toml", "title = \"A paper\"\nscenes = [\"slow.toml\"]\n");
+    let page = folder.path().join("page").display().to_string();
+    let paper = folder.path().to_str().unwrap();
+    let run = palmistry(&["verify", paper, "--json", "--no-times", "--out", &page]);
+    let found = json(&run);
+    assert_eq!(run.status.code(), Some(0), "{found}");
+    let slow = &found["experiments"][0];
+    assert_eq!((&slow["samples"], &slow["shape"]["explained"]), (&100.into(), &true.into()), "{slow}");
+    assert!((slow["shape"]["mean"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+    assert!(slow["ways"][0]["seconds"].is_null(), "a time");
+    let html = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+    assert!(html.contains("<section id=slow>") && html.contains("Bodies at rest between slow palms"));
+    assert!(html.contains("The readings <b>are explained</b>"), "the verdict");
+    assert_eq!(html.matches("After ").count(), 4);
+}
+
 /// Pads that are too short end the motion.
 #[test]
 fn a_pad_that_is_too_short_ends_the_motion() {

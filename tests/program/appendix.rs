@@ -105,6 +105,8 @@ fn the_main_job_holds() {
     }
     assert_eq!(page.matches("<svg ").count(), page.matches("</svg>").count());
 
+    slow_scenes_are_there(&found, &page);
+
     insta::assert_json_snapshot!("errata", found["errata"]);
     let files = found["files"].as_array().unwrap();
     insta::assert_json_snapshot!("appendix", files[0]["printed"]);
@@ -139,6 +141,27 @@ fn the_main_job_holds() {
         })
         .collect();
     insta::assert_json_snapshot!("ranks", ranks);
+}
+
+/// Two slow scenes: one body that jumps, one under the sensor of section 3.5; what the bodies are stands in their scenes.
+fn slow_scenes_are_there(found: &serde_json::Value, page: &str) {
+    let experiments = found["experiments"].as_array().unwrap();
+    let slow: Vec<_> = experiments.iter().filter(|one| one["motion"] == "quasistatic").collect();
+    assert_eq!((experiments.len(), slow.len()), (4, 2));
+    for (one, samples, mean, off) in [(slow[0], 60, 1.0, 1e-12), (slow[1], 270, 0.02, 2e-5)] {
+        assert_eq!((&one["samples"], &one["shape"]["explained"]), (&json!(samples), &json!(true)), "{one}");
+        assert!((one["shape"]["mean"].as_f64().unwrap() - mean).abs() < off, "{one}");
+        assert!(one["ways"][0]["radius_error"].as_f64().unwrap() < 2.0 * off, "{one}");
+        assert!(page.contains(one["scene"].as_str().unwrap()));
+    }
+    assert_eq!(slow[0]["simulation"]["jumps"].as_array().unwrap().len(), 1);
+    assert_eq!(slow[0]["jumps"][0]["predicted"], true);
+    let section =
+        page.split_once("<section id=slow>").expect("a section").1.split_once("</section>").unwrap().0;
+    // four pictures of what was touched, errors of the radii and of the orientation
+    assert_eq!(section.matches("<h3>").count(), 2);
+    assert_eq!(section.matches("After ").count(), 8);
+    assert_eq!(section.matches("<svg ").count(), 12);
 }
 
 /// The expansion is the determinant: its monomials summed exactly at a rational point give the value of the graph.

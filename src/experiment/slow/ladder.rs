@@ -1,7 +1,8 @@
 //! Which orders of harmonics are tried: raised while G. Schwarz's criterion says that they tell something.
 
+use super::found::SlowShape;
 use super::readings::SlowReadings;
-use super::together::{Point, SlowShape, Together};
+use super::together::{Point, Together};
 use crate::shape::SupportSeries;
 
 /// Orders that are tried, as far as the readings can tell them.
@@ -43,6 +44,10 @@ impl Orders {
 }
 
 impl Together<'_> {
+    pub fn is_noisy(&self) -> bool {
+        self.readings.sigma > IS_NOISY * self.size
+    }
+
     /// From a track that someone else found, up the orders. None where no order can begin there.
     pub fn explain(
         &self,
@@ -63,8 +68,7 @@ impl Together<'_> {
         let mut patience = PATIENCE;
         let mut last: Option<Point> = None;
         for order in orders.all() {
-            let is_noisy = self.readings.sigma > IS_NOISY * self.size;
-            if 2 * (1 + 2 * order) > readings || (is_noisy && order > MOST_NOISY) || interrupt() {
+            if 2 * (1 + 2 * order) > readings || (self.is_noisy() && order > MOST_NOISY) || interrupt() {
                 break;
             }
             let begin = match &last {
@@ -72,7 +76,7 @@ impl Together<'_> {
                 None => self.begin(&padded(&from, order), near),
             };
             let Some(begin) = begin else { continue };
-            let end = self.down(begin, interrupt);
+            let end = self.without_lost(self.down(begin, interrupt), interrupt);
             let misfit = (end.left.rows(0, readings).norm_squared() / readings as f64).sqrt() * self.sigma;
             if HOPELESS.iter().any(|(from, part)| {
                 order >= *from && misfit > (HOPELESS_NOISE * self.readings.sigma).max(part * self.size)

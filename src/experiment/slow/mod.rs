@@ -6,9 +6,13 @@
 //! Nothing here has seen the body: what a simulation knows comes in through readings alone.
 
 mod families;
+mod found;
 mod keys;
+mod kinks;
 mod ladder;
 mod local;
+mod lost;
+mod outline;
 mod patches;
 mod quadrature;
 mod readings;
@@ -21,6 +25,8 @@ mod thesis;
 mod together;
 
 pub use families::Family;
+pub use found::SlowShape;
+pub use outline::Kink;
 pub use patches::Arrangement;
 pub use quadrature::{SlowTrack, by_quadrature};
 pub use readings::SlowReadings;
@@ -30,4 +36,3 @@ pub use segments::{FoundJump, found_jumps, from_segments};
 pub use start::{Vote, from_nothing, votes};
 pub use study::{JumpTally, StudyRow, WayTally, median_and_worst, slow_study};
 pub use thesis::{ThesisMethod, ThesisTrack, by_thesis};
-pub use together::SlowShape;

@@ -1,6 +1,8 @@
 //! A scene of slow motion, simulated or recorded, and what every way makes of its readings.
 
+use super::found::SlowShape;
 use super::keys::COLUMNS;
+use super::kinks::with_kinks;
 use super::local::derivative;
 use super::patches::{Arrangement, arrangements};
 use super::quadrature::{SlowTrack, by_quadrature};
@@ -9,7 +11,6 @@ use super::scene::SlowScene;
 use super::segments::{FoundJump, found_jumps, from_segments};
 use super::start::{EXACT, Vote, from_nothing, from_nothing_briefly, votes};
 use super::thesis::{ThesisMethod, ThesisTrack, by_thesis};
-use super::together::SlowShape;
 use crate::experiment::simulation::{deviation, normal, outline};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::{DEFAULT_TOLERANCE, Drive, MovingScene, Shape, Trajectory};
@@ -139,7 +140,7 @@ impl SlowExperiment {
         let timed = |seconds: &mut f64, begin: Instant| *seconds = begin.elapsed().as_secs_f64();
         let mut seconds = [f64::NAN; 3];
         let begin = Instant::now();
-        let together = from_any(readings, interrupt);
+        let together = from_any(readings, interrupt).map(|found| with_kinks(readings, found, interrupt));
         timed(&mut seconds[0], begin);
         done("all readings at once");
         let explained = together.as_ref().is_some_and(|found| found.explains(EXACT));

@@ -4,10 +4,12 @@
 //! what is left of the readings is what their errors leave. Where it is more, the body lies in another stable pose of the very shape that was found: first the one to which it falls
 //! in the recovered potential, then each other, from each sample on. What remains is no unknown a segment, but a choice among few poses, and all readings are explained at once.
 
+use super::found::SlowShape;
 use super::ladder::Orders;
+use super::outline::Outline;
 use super::readings::SlowReadings;
 use super::start::{EXACT, from_nothing_briefly};
-use super::together::{SlowShape, Together};
+use super::together::Together;
 use crate::mechanics::resting::stable_poses;
 use crate::shape::SupportSeries;
 use std::f64::consts::{PI, TAU};
@@ -29,9 +31,12 @@ const TRIED: usize = 5;
 /// So many samples before a stretch ends are asked, too, where it does not grow: a small jump does not show at once.
 const BACK: usize = 8;
 
-/// Between two samples the palms move in so many steps; a turn by more in one of them is a jump.
+/// Between two samples the palms move in so many steps; a turn by more in one of them may be a jump.
 const STEPS: usize = 24;
 const JUMP: f64 = 0.04;
+
+/// Such a step is halved so often: what remains of the turn is a jump.
+const HALVINGS: usize = 20;
 
 /// A jump that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +89,7 @@ impl Growth<'_> {
         let together = Together::of(&readings);
         let before = if forwards { self.rows.end - 1 } else { self.rows.start };
         let local = |row: usize| row - whole.start;
+        let outline = Outline::of(&self.support.coefficients(), 0);
         // the poses to which the palms lead it, from a sample and its pose on
         let led = |mut near: Vec<f64>, from: usize, pose: f64| -> Option<Vec<f64>> {
             near[local(from)] = pose;
@@ -91,7 +97,7 @@ impl Growth<'_> {
             let rows: Vec<usize> =
                 if forwards { (from + 1..whole.end).collect() } else { (whole.start..from).rev().collect() };
             for row in rows {
-                last = together.pose(local(row), last, &self.support, PI)?.0;
+                last = together.pose(local(row), last, &outline, PI)?.0;
                 near[local(row)] = last;
             }
             Some(near)
@@ -208,21 +214,42 @@ pub fn from_segments(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> O
     best
 }
 
+/// Whether most of a turn between two positions of the palms happens at once, however short the way is made: a quick motion near a fold does not.
+fn remains(
+    [mut low, mut high]: [f64; 2],
+    [mut from, mut to]: [f64; 2],
+    led: &mut dyn FnMut(f64, f64) -> Option<f64>,
+) -> bool {
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(low, high);
+        let Some(there) = led(middle, from) else { return true };
+        if (there - from).abs() > (to - there).abs() {
+            (high, to) = (middle, there);
+        } else {
+            (low, from) = (middle, there);
+        }
+    }
+    (to - from).abs() > JUMP / 2.0
+}
+
 /// Where the body jumps in a track: between two samples the palms are moved on in small steps, and the recovered shape is led along.
 pub fn found_jumps(readings: &SlowReadings, found: &SlowShape) -> Vec<FoundJump> {
-    let support = &found.shape.support;
+    let outline = Outline::of(&found.shape.support.coefficients(), 0);
     let phi0 = &found.track.phi0;
     let mut all = Vec::new();
     for row in 1..phi0.len() {
         let ends = [readings.palms[row - 1], readings.palms[row]];
         let mut between = readings.part(&(row - 1..row));
+        let mut led = |at: f64, from: f64| {
+            between.palms = vec![[0, 1].map(|i: usize| ends[0][i] + at * (ends[1][i] - ends[0][i]))];
+            Together::of(&between).pose(0, from, &outline, PI).map(|found| found.0)
+        };
         let (mut pose, mut jumped, mut followed) = (phi0[row - 1], false, true);
         for step in 1..=STEPS {
-            let at = step as f64 / STEPS as f64;
-            between.palms = vec![[0, 1].map(|i: usize| ends[0][i] + at * (ends[1][i] - ends[0][i]))];
-            match Together::of(&between).pose(0, pose, support, PI) {
-                Some((next, _)) => {
-                    jumped |= (next - pose).abs() > JUMP;
+            let [before, at] = [step - 1, step].map(|step| step as f64 / STEPS as f64);
+            match led(at, pose) {
+                Some(next) => {
+                    jumped |= (next - pose).abs() > JUMP && remains([before, at], [pose, next], &mut led);
                     pose = next;
                 }
                 None => followed = false,

@@ -4,10 +4,11 @@
 //! is a vote for the height at the first sample; zeros at which the body rests are scattered votes. Where noise drowns the numerator, closure tells: the same direction touched twice has one radius, so that one closed
 //! support function goes through all radii of a track only where the constant is right.
 
+use super::found::SlowShape;
 use super::ladder::Orders;
 use super::quadrature::{Quadrature, SlowTrack};
 use super::readings::SlowReadings;
-use super::together::{SlowShape, Together};
+use super::together::Together;
 use crate::shape::{SupportSample, SupportSeries, SupportWeights, fit_support};
 
 /// Votes that lie so near, in parts of the mean contact, are for the same constant.

@@ -1,6 +1,7 @@
 //! Many bodies: how often, how well and how fast each way finds a shape.
 
 use super::families::Family;
+use super::kinks::with_kinks;
 use super::ladder::Orders;
 use super::quadrature::by_quadrature;
 use super::run::{readings_of, track_error};
@@ -223,6 +224,10 @@ fn one_body(
         let least = row.order.map_or(0, |order| order / 2);
         from_nothing_within(&readings, Orders { least, most: row.order }, interrupt)
     };
+    let found = found.map(|found| match row.order {
+        None => with_kinks(&readings, found, interrupt),
+        Some(_) => found,
+    });
     let error = found.as_ref().and_then(|found| track_error(&truth, &found.track));
     row.together.add(error, size, begin.elapsed().as_secs_f64());
     let outline =

@@ -5,14 +5,13 @@
 //! with the basis `b`, and by the coefficients' own. The turn of the body's frame is a choice; the search does not move it. Levenberg and Marquardt's steps by QR; the
 //! inverse of the last normal matrix is Cramér and Rao's bound. Which orders are tried says `ladder`.
 
+use super::found::SlowShape;
+use super::outline::{OF_KINK, Outline};
 use super::quadrature::SlowTrack;
 use super::readings::{Sampled, SlowReadings};
 use crate::shape::{ShapeEstimate, SupportSeries, convex_deviation};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{FRAC_PI_2, PI};
-
-/// So many deviations of chi-square are not chance.
-const CERTAIN: f64 = 5.0;
 
 /// Steps for an order.
 const STEPS: usize = 40;
@@ -23,32 +22,11 @@ const SETTLED: f64 = 1e-6;
 /// The standard deviation of exact readings, in parts of the mean contact.
 const NOMINAL: f64 = 1e-13;
 
+/// The order to which a shape with kinks is told.
+const EXPANDED: usize = 200;
+
 /// In one step no pose turns by more than this, in radians: it is another pose then.
 const LARGEST_TURN: f64 = 0.5;
-
-/// Shape and motion that explain all readings.
-#[derive(Clone, Debug)]
-pub struct SlowShape {
-    /// The support function with its covariance, by the readings' deviation: Cramér and Rao's bound.
-    pub shape: ShapeEstimate,
-    /// Radii, orientations, heights at the samples. The orientation is in the frame of the shape.
-    pub track: SlowTrack,
-    /// The root of the mean square of what is left of a contact, in m.
-    pub misfit: f64,
-    /// The deviation of a reading with which it was held against, in m.
-    pub sigma: f64,
-    /// The least of the potential's second derivatives at the samples, in parts of the mean radius.
-    pub stiffness: f64,
-}
-
-impl SlowShape {
-    /// Whether the readings are explained: what is left is what errors of their deviation leave, by chi-square within five deviations of its own; exact ones to a part of the mean radius. A shape
-    /// that is another leaves more, if only a quarter more: a body that is nearly its own mirror image does.
-    pub fn explains(&self, part: f64) -> bool {
-        let most = 1.0 + CERTAIN / (2.0 * self.shape.samples as f64).sqrt();
-        self.misfit <= (most * self.sigma).max(part * self.shape.support.mean)
-    }
-}
 
 /// A point of the search.
 #[derive(Clone)]
@@ -61,6 +39,7 @@ pub(super) struct Point {
     stiffness: f64,
 }
 
+#[derive(Clone)]
 pub(super) struct Together<'a> {
     sampled: Vec<Sampled>,
     angles: Vec<[f64; 2]>,
@@ -68,6 +47,10 @@ pub(super) struct Together<'a> {
     pub sigma: f64,
     /// A mean radius by which convexity's bounds are measured.
     pub size: f64,
+    /// How many kinks of the curvature the coefficients end with.
+    pub kinks: usize,
+    /// Samples that do not count for now.
+    pub passed_over: Vec<bool>,
 }
 
 /// Radius and its derivatives at both contacts.
@@ -83,15 +66,21 @@ impl<'a> Together<'a> {
             readings,
             sigma: readings.sigma.max(NOMINAL * scale),
             size: scale,
+            kinks: 0,
+            passed_over: vec![false; readings.rows()],
         }
     }
 
-    pub fn touched(&self, row: usize, phi0: f64, series: &SupportSeries) -> Touched {
+    pub fn outline(&self, coefficients: &[f64]) -> Outline {
+        Outline::of(coefficients, self.kinks)
+    }
+
+    pub fn touched(&self, row: usize, phi0: f64, series: &Outline) -> Touched {
         self.angles[row].map(|angle| series.support(angle - phi0))
     }
 
     /// The stable pose next to a given one, downhill, by Newton's steps while they stay near and halved brackets else.
-    pub fn pose(&self, row: usize, start: f64, series: &SupportSeries, farthest: f64) -> Option<(f64, f64)> {
+    pub fn pose(&self, row: usize, start: f64, series: &Outline, farthest: f64) -> Option<(f64, f64)> {
         let (a, b) = (self.sampled[row].second[0], self.sampled[row].first[0]);
         let slope = |phi0: f64| {
             let [first, second] = self.touched(row, phi0, series);
@@ -167,7 +156,7 @@ impl<'a> Together<'a> {
 
     /// A point to begin at: the poses next to those of a track, however far, or those to which the palms lead the body from the first one, whichever explain more.
     pub fn begin(&self, coefficients: &[f64], near: &[f64]) -> Option<Point> {
-        let series = SupportSeries::of_coefficients(coefficients);
+        let series = self.outline(coefficients);
         let mut led = Vec::with_capacity(near.len());
         for row in 0..near.len() {
             let from = led.last().copied().unwrap_or(near[0]);
@@ -178,12 +167,16 @@ impl<'a> Together<'a> {
     }
 
     fn settled(&self, coefficients: Vec<f64>, near: &[f64], farthest: f64) -> Option<Point> {
-        let series = SupportSeries::of_coefficients(&coefficients);
+        let series = self.outline(&coefficients);
         let rows = self.sampled.len();
         let mut left = DVector::zeros(2 * rows + coefficients.len());
         let mut phi0 = Vec::with_capacity(rows);
         let mut least = f64::INFINITY;
         for row in 0..rows {
+            if self.passed_over[row] {
+                phi0.push(near[row]);
+                continue;
+            }
             let (pose, stiffness) = self.pose(row, near[row], &series, farthest)?;
             least = least.min(stiffness);
             phi0.push(pose);
@@ -192,7 +185,7 @@ impl<'a> Together<'a> {
                 left[2 * row + i] = (self.readings.contacts[row][i] - s[i]) / self.sigma;
             }
         }
-        for (place, coefficient) in coefficients.iter().enumerate().skip(1) {
+        for (place, coefficient) in coefficients.iter().enumerate().take(1 + 2 * series.order()).skip(1) {
             left[2 * rows + place] = -coefficient / convex_deviation(self.size, place.div_ceil(2));
         }
         let cost = left.norm_squared();
@@ -202,16 +195,15 @@ impl<'a> Together<'a> {
     /// The derivatives of what is left by the coefficients, negative.
     fn rows(&self, at: &Point) -> DMatrix<f64> {
         let (rows, p) = (self.sampled.len(), at.coefficients.len());
-        let series = SupportSeries::of_coefficients(&at.coefficients);
+        let series = self.outline(&at.coefficients);
         // column by column in memory: a row of the transpose is written at once
         let mut transposed = DMatrix::zeros(p, 2 * rows + p);
-        for row in 0..rows {
+        for row in (0..rows).filter(|row| !self.passed_over[*row]) {
             let sampled = &self.sampled[row];
             let (a, b) = (sampled.second[0], sampled.first[0]);
             let [sine, cosine] = sampled.opening;
             let [first, second] = self.touched(row, at.phi0[row], &series);
-            let bases =
-                self.angles[row].map(|angle| SupportSeries::basis(angle - at.phi0[row], series.order()));
+            let bases = self.angles[row].map(|angle| series.basis(angle - at.phi0[row]));
             let stiffness = a * first[2] + b * second[2];
             let by_turn = [
                 -(first[1] * cosine + second[1]) / sine - first[2],
@@ -227,20 +219,22 @@ impl<'a> Together<'a> {
                 }
             }
         }
-        for k in 1..p {
+        for k in 1..=2 * series.order() {
             transposed[(k, 2 * rows + k)] = 1.0 / convex_deviation(self.size, k.div_ceil(2));
         }
         transposed.transpose()
     }
 
     /// The direction in which the body's frame alone turns.
-    fn turning(coefficients: &[f64]) -> DVector<f64> {
+    fn turning(&self, coefficients: &[f64]) -> DVector<f64> {
+        let harmonics = coefficients.len() - OF_KINK * self.kinks;
         let mut direction = DVector::zeros(coefficients.len());
-        for (k, pair) in (1..).zip(coefficients[1..].chunks_exact(2)) {
-            let k = f64::from(k);
-            direction[2 * k as usize - 1] = -k * pair[1];
-            direction[2 * k as usize] = k * pair[0];
+        for (k, pair) in coefficients[1..harmonics].chunks_exact(2).enumerate() {
+            let times = (k + 1) as f64;
+            direction[2 * k + 1] = -times * pair[1];
+            direction[2 * k + 2] = times * pair[0];
         }
+        (0..self.kinks).for_each(|kink| direction[harmonics + OF_KINK * (kink + 1) - 1] = 1.0);
         let length = direction.norm();
         if length > 0.0 { direction / length } else { direction }
     }
@@ -253,7 +247,7 @@ impl<'a> Together<'a> {
         all.view_mut((0, 0), (m, p)).copy_from(&rows);
         all.view_mut((0, p), (m, 1)).copy_from(&at.left);
         let hold = rows.norm() / (p as f64).sqrt();
-        let turning = Self::turning(&at.coefficients);
+        let turning = self.turning(&at.coefficients);
         for k in 0..p {
             all[(m, k)] = hold * turning[k];
         }
@@ -263,9 +257,14 @@ impl<'a> Together<'a> {
     }
 
     /// Levenberg and Marquardt's way down from a point.
-    pub fn down(&self, mut at: Point, interrupt: &dyn Fn() -> bool) -> Point {
+    pub fn down(&self, at: Point, interrupt: &dyn Fn() -> bool) -> Point {
+        self.down_by(STEPS, at, interrupt)
+    }
+
+    /// The same in so many steps at most.
+    pub fn down_by(&self, steps: usize, mut at: Point, interrupt: &dyn Fn() -> bool) -> Point {
         let mut damping = 1e-6;
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             if interrupt() {
                 break;
             }
@@ -314,9 +313,13 @@ impl<'a> Together<'a> {
         let chi_square = at.left.rows(0, 2 * rows).norm_squared();
         let degrees = (2 * rows).saturating_sub(p).max(1);
         let widened = (chi_square / degrees as f64).max(1.0).sqrt();
-        let support = SupportSeries::of_coefficients(&at.coefficients);
+        let outline = self.outline(&at.coefficients);
         let radii: Vec<[f64; 2]> =
-            (0..rows).map(|row| self.touched(row, at.phi0[row], &support).map(|r| r[0])).collect();
+            (0..rows).map(|row| self.touched(row, at.phi0[row], &outline).map(|r| r[0])).collect();
+        // with kinks the shape has the harmonics of their tails as well
+        let expanded = if self.kinks > 0 { EXPANDED } else { outline.order() };
+        let support = outline.expanded(expanded);
+        let inverse = if self.kinks > 0 { outline.by_own(expanded) * inverse } else { inverse };
         let height =
             self.sampled.iter().zip(&radii).map(|(sampled, [r1, r2])| {
                 (sampled.second[0] * r1 + sampled.first[0] * r2) / sampled.opening[0]
@@ -326,6 +329,8 @@ impl<'a> Together<'a> {
             misfit: (chi_square / (2 * rows) as f64).sqrt() * self.sigma,
             sigma: self.sigma,
             stiffness: at.stiffness / support.mean,
+            order: outline.order(),
+            kinks: outline.kinks,
             shape: ShapeEstimate {
                 covariance: &inverse * inverse.transpose() * (widened * widened),
                 support,

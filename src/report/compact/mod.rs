@@ -4,15 +4,20 @@
 mod looks;
 mod piece;
 mod runs;
+mod symbols;
 
 use looks::with_shared_looks;
 use piece::{Piece, pieces};
 use runs::joined;
+use symbols::without_frames;
 
 /// The same page, shorter: looks of pictures that repeat are classes, runs of symbols on one line are one element, and quotes and
 /// end tags that HTML does not ask for are left out.
 pub(super) fn compact(html: &str) -> String {
-    let (pieces, rules) = with_shared_looks(joined(pieces(html)));
+    let joined = joined(pieces(html));
+    // how text looks that is mathematics says the page's style
+    let framed = if html.contains("</style>") { without_frames(joined) } else { joined };
+    let (pieces, rules) = with_shared_looks(framed);
     let mut out = String::with_capacity(html.len());
     for (place, piece) in pieces.iter().enumerate() {
         match piece {

@@ -17,7 +17,7 @@ pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>)
     html! {
         article #(anchor) data-w=(outcome.word()) class=[(!outcome.ok).then_some("bad")] {
             h4 {
-                i { (outcome.id) } " " b { (outcome.word()) } " "
+                (outcome.id) " " b { (outcome.word()) } " "
                 @if !outcome.ok { em { "expected: " (outcome.expected_word()) } " " }
                 @if let Some(line) = anchors.line(file, &outcome.id) {
                     a href=(format!("#{}", Anchors::line_name(file, line))) { (line) }
@@ -27,7 +27,8 @@ pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>)
                 Some(fault) => (faulty(outcome, fault, engines)),
                 None => {
                     @if !matches!(outcome.verdict, Verdict::Definition { .. }) || formula_mathml(&outcome.statement).is_some() {
-                        (formula(&outcome.statement))
+                        // the entry itself scrolls: it needs no element of its own
+                        (bare_formula(&outcome.statement))
                     }
                     p { (engines.explain(&outcome.verdict)) (restated(outcome)) }
                 }
@@ -63,6 +64,13 @@ pub(super) fn formula(text: &str) -> Markup {
             Some(formula) => { div { (PreEscaped(formula)) } }
             None => { div { code { (text) } } }
         }
+    }
+}
+
+fn bare_formula(text: &str) -> Markup {
+    match formula_mathml(text) {
+        Some(formula) => html! { (PreEscaped(formula)) },
+        None => html! { code { (text) } },
     }
 }
 
@@ -146,7 +154,7 @@ pub(super) fn raised(power: &str) -> String {
 
 /// A text that is longer than a page needs has its first part here, and all of it in the terminal.
 fn in_short(text: &str) -> Cow<'_, str> {
-    const MOST: usize = 320;
+    const MOST: usize = 160;
     match text.char_indices().nth(MOST) {
         Some((end, _)) => format!("{} ... (palmistry prove says it all)", &text[..end]).into(),
         None => text.into(),

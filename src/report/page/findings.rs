@@ -8,6 +8,8 @@ use crate::report::claims::words::{counts, counts_text, errors};
 use crate::report::motion::answers::{Observed, observe_json};
 use crate::report::ranks::answer::rank_json;
 use crate::report::ranks::{drops_json, taken_for_granted};
+use crate::report::slow::slow_json;
+use crate::report::slow_observed::SlowObserved;
 use crate::report::stress::answer::stress_json;
 use crate::report::trade::answer::trade_json;
 use crate::sweep::RankAnswer;
@@ -174,7 +176,9 @@ pub fn findings_json(found: &Findings) -> Value {
         "stress": stress_json(&stress, found.seed),
         "experiments": found.experiments.iter().map(|(experiment, answers)| {
             observe_json(&Observed::of(experiment, answers))
-        }).collect::<Vec<_>>(),
+        }).chain(found.slow.iter().map(|(experiment, answers)| {
+            slow_json(&SlowObserved::of(experiment, answers))
+        })).collect::<Vec<_>>(),
         "seconds": found.seconds,
     })
 }
@@ -195,6 +199,7 @@ pub fn forget_times(found: &mut Findings) {
             certificate.seconds = f64::NAN;
         }
     }
+    found.slow.iter_mut().for_each(|(_, answers)| answers.seconds = [f64::NAN; 3]);
     found.experiments.iter_mut().flat_map(|(_, answers)| answers).for_each(Answer::forget_times);
 }
 

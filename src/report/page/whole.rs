@@ -12,14 +12,17 @@ use crate::report::axis::unit_of;
 use crate::report::document::document;
 use crate::report::motion::answers::Observed;
 use crate::report::motion::section::observed_section;
+use crate::report::slow_observed::SlowObserved;
+use crate::report::slow_section::slow_section;
 use maud::{Markup, PreEscaped, html};
 
 /// The names of the sections, which nothing else on the page may have.
-const SECTIONS: [&str; 12] = [
+const SECTIONS: [&str; 13] = [
     "equations",
     "errata",
     "extremes",
     "observers",
+    "slow",
     "claims",
     "sources",
     "filter",
@@ -43,6 +46,8 @@ pub fn page(found: &Findings) -> String {
     let numbering = &found.paper.numbering;
     let experiments: Vec<Observed<'_>> =
         found.experiments.iter().map(|(experiment, answers)| Observed::of(experiment, answers)).collect();
+    let slow: Vec<SlowObserved<'_>> =
+        found.slow.iter().map(|(experiment, answers)| SlowObserved::of(experiment, answers)).collect();
     let files: Vec<&str> = found.files.iter().map(|file| stem(&file.system.name)).collect();
     let systems: Vec<_> = found.files.iter().map(|file| &file.system).collect();
     let sections = || found.files.iter().zip(&names).filter(|(file, _)| has_a_section(file));
@@ -54,6 +59,7 @@ pub fn page(found: &Findings) -> String {
             @for (file, name) in sections() { a href=(format!("#{name}")) { (file.system.title) } }
             @if let Some(heading) = extremes_heading(found) { a href="#extremes" { (heading) } }
             @if !experiments.is_empty() { a href="#observers" { "Bodies in motion" } }
+            @if !slow.is_empty() { a href="#slow" { "Bodies at rest" } }
             a href="#claims" { "All claims" }
             a href="#sources" { "The proof files" }
         }))
@@ -63,6 +69,7 @@ pub fn page(found: &Findings) -> String {
             @for (file, name) in sections() { (file_section(name, file, &|name| unit_of(&file.system, name))) }
             @if let Some(heading) = extremes_heading(found) { (extremes(found, heading)) }
             @if !experiments.is_empty() { (observed_section(&experiments)) }
+            @if !slow.is_empty() { (slow_section(&slow)) }
             (all_claims(&claims, &anchors, &files))
             (sources(&systems, &anchors))
         }
