@@ -19,6 +19,7 @@ mod man;
 mod new;
 mod observe;
 mod observe_slow;
+mod observe_space;
 mod observe_stream;
 mod output;
 mod poses;

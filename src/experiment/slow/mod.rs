@@ -21,6 +21,7 @@ mod thesis;
 mod together;
 
 pub use families::Family;
+pub(in crate::experiment) use local::derivative;
 pub use patches::Arrangement;
 pub use quadrature::{SlowTrack, by_quadrature};
 pub use readings::SlowReadings;
