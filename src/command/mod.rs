@@ -20,6 +20,7 @@ mod new;
 mod observe;
 mod observe_modes;
 mod observe_slow;
+mod observe_space;
 mod observe_stream;
 mod output;
 mod poses;

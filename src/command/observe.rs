@@ -8,6 +8,7 @@ use super::{Status, Unusable};
 use clap::Args;
 use indicatif::ProgressBar;
 use palmistry::experiment::slow::SlowScene;
+use palmistry::experiment::space::SpaceScene;
 use palmistry::experiment::{
     Answer, Experiment, Reconstruction, Scene, SceneError, Studied, Studies, StudyPart, basins,
     curvature_map, noise_study, shown,
@@ -83,6 +84,9 @@ pub(crate) struct Observe {
 
 impl Observe {
     pub fn run(self) -> miette::Result<Status> {
+        if let Some(space) = SpaceScene::read(&self.scene) {
+            return self.run_space(space?);
+        }
         if let Some(slow) = SlowScene::read(&self.scene) {
             return self.run_slow(slow?);
         }

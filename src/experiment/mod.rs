@@ -23,6 +23,8 @@ mod since;
 pub mod slow;
 #[doc(hidden)]
 pub mod solid;
+#[doc(hidden)]
+pub mod space;
 mod stream;
 mod study;
 mod system_motion;

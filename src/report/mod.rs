@@ -26,6 +26,8 @@ mod slow_plot;
 mod slow_section;
 mod slow_study;
 mod solid_picture;
+mod space;
+mod space_page;
 mod stress;
 mod trade;
 mod value;
@@ -68,6 +70,10 @@ pub use slow::{slow_json, slow_page, slow_text};
 #[doc(hidden)]
 pub use slow_observed::SlowObserved;
 pub use solid_picture::{ShownSurface, solid_page};
+#[doc(hidden)]
+pub use space::{SpaceObserved, space_ended, space_json, space_text};
+#[doc(hidden)]
+pub use space_page::space_page;
 #[doc(hidden)]
 pub use stress::{stress_json, stress_pictures, stress_text};
 #[doc(hidden)]

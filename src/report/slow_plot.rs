@@ -101,7 +101,7 @@ pub(super) fn frames(observed: &SlowObserved<'_>, most: usize, dots_of: usize) -
 }
 
 /// A curve of sizes over the samples, by their logarithms.
-fn logarithmic(title: &str, unit: &str, series: &[(&str, &str, Vec<f64>)]) -> String {
+pub(super) fn logarithmic(title: &str, unit: &str, series: &[(&str, &str, Vec<f64>)]) -> String {
     let positive = || series.iter().flat_map(|(_, _, values)| values).filter(|v| v.is_finite() && **v > 0.0);
     let high = positive().copied().fold(f64::MIN_POSITIVE, f64::max).log10().ceil();
     let low = positive().copied().fold(f64::INFINITY, f64::min).log10().floor().max(high - 17.0);

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use std::fmt::Write;
 
 /// What turns pictures; one on a page is enough.
-const SCRIPT: &str = include_str!("solid_picture.js");
+pub(super) const SCRIPT: &str = include_str!("solid_picture.js");
 
 /// From where a picture is seen at first, in rad: the azimuth, and the height above the horizon.
 const TURN: f64 = 0.9;
@@ -41,7 +41,7 @@ pub fn solid_page(title: &str, rows: &[(String, String)], surfaces: &[ShownSurfa
 }
 
 /// The picture of surfaces, edges that are hidden by their own surface fainter. It is turned by the script of the page.
-fn turnable_picture(title: &str, surfaces: &[ShownSurface]) -> Markup {
+pub(super) fn turnable_picture(title: &str, surfaces: &[ShownSurface]) -> Markup {
     let corners = || surfaces.iter().flat_map(|shown| &shown.surface.corners);
     let count = corners().count().max(1) as f64;
     let middle = corners().sum::<Vector3<f64>>() / count;

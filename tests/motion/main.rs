@@ -8,3 +8,4 @@ mod mechanics;
 mod observe;
 mod observers;
 mod slow;
+mod space;

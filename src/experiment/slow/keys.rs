@@ -149,7 +149,7 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SlowSc
         return Err(wrong(
             "motion",
             message,
-            "say motion = \"quasistatic\", or leave it out where bodies have inertia",
+            "say motion = \"quasistatic\" or \"spatial\" (three palms), or leave it out where bodies between two palms have inertia",
         ));
     }
     let sensor = &keys.sensor;

@@ -72,7 +72,7 @@ const GAUSS: [[f64; 2]; 5] = [
 ];
 
 /// The slopes of a column at its samples.
-pub(super) fn derivative(times: &[f64], column: &[f64], points: usize) -> Vec<f64> {
+pub(in crate::experiment) fn derivative(times: &[f64], column: &[f64], points: usize) -> Vec<f64> {
     let at = |time: &f64| -> f64 {
         let stencil = Stencil::about(times, *time, points);
         stencil.slope_weights(*time).iter().zip(&column[stencil.range()]).map(|(w, x)| w * x).sum()

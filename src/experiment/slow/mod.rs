@@ -26,6 +26,7 @@ mod together;
 
 pub use families::Family;
 pub use found::SlowShape;
+pub(in crate::experiment) use local::derivative;
 pub use outline::Kink;
 pub use patches::Arrangement;
 pub use quadrature::{SlowTrack, by_quadrature};

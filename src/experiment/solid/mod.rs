@@ -46,6 +46,9 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 /// Fewer samples than these give no state.
 pub(super) const FEWEST: usize = 24;
 
+/// What the right state leaves of exact readings is no more than this part of the deviation that they are weighed with.
+const EXACT: f64 = 1e-2;
+
 /// The unknowns.
 pub const UNKNOWNS: usize = 16;
 
@@ -100,6 +103,12 @@ pub struct SolidState {
     pub degrees: usize,
     /// The root of the mean square of the errors that contacts had to have, in m.
     pub misfit: f64,
+    /// J. von Neumann's ratio of what is left, white: about 2 where it is noise.
+    pub ratio: f64,
+    /// The deviation that contacts were weighed with, in m: where none was stated a millionth of the body.
+    pub weighed: f64,
+    /// Whether the readings' deviations were stated.
+    pub is_stated: bool,
 }
 
 impl SolidState {
@@ -115,10 +124,30 @@ impl SolidState {
         })
     }
 
-    /// Whether what is left is what the stated deviations explain: below five deviations of the sum of as many squares.
+    /// Standard deviations of all entries, by the bound: for the deviations that are stated or, where readings were said to be exact, for errors like those that are left.
+    pub fn deviations(&self) -> [f64; UNKNOWNS] {
+        let left = if self.is_stated { 1.0 } else { self.chi_square / self.degrees as f64 };
+        std::array::from_fn(|i| (self.covariance[(i, i)] * left).sqrt())
+    }
+
+    /// Whether readings tell too little: the bound of centre, rate, inertia or 1/m is as large as what is sought.
+    pub fn is_blind(&self) -> bool {
+        let (entries, deviations) = (self.entries(), self.deviations());
+        let size = |of: &[f64]| of.iter().map(|x| x * x).sum::<f64>();
+        let seen = |range: std::ops::Range<usize>| size(&deviations[range.clone()]) < size(&entries[range]);
+        ![0..3, 6..9, 9..15, 15..16].into_iter().all(seen)
+    }
+
+    /// Whether what is left is explained. Where deviations are stated: below five deviations of the sum of as many squares. Where none is, it has to be what numbers and the rule of integration leave, `EXACT` of what
+    /// contacts were weighed with, or to look like noise: the remains of a wrong state are alike from sample to sample. By J. von Neumann's ratio (Annals of Mathematical Statistics 12, 1941), whose mean is 2 and
+    /// whose variance 4 over the number of differences, five deviations on the side of what is alike.
     pub fn fits(&self) -> bool {
         let n = self.degrees as f64;
-        self.chi_square <= n + 5.0 * (2.0 * n).sqrt()
+        if self.is_stated {
+            return self.chi_square <= n + 5.0 * (2.0 * n).sqrt();
+        }
+        let differences = n + UNKNOWNS as f64;
+        self.misfit <= EXACT * self.weighed || self.ratio >= 2.0 - 5.0 * (4.0 / differences).sqrt()
     }
 }
 
@@ -126,6 +155,19 @@ impl SolidReadings {
     /// The number of samples.
     pub fn rows(&self) -> usize {
         self.times.len()
+    }
+
+    /// Whether nothing moves: no palm turns, and no contact has gone further than its errors explain. Nothing can be told of such a body but where it is.
+    pub fn is_still(&self) -> bool {
+        let Some(first) = self.palms.first() else { return true };
+        let size = first.iter().flat_map(|palm| palm.place).fold(0.0, |most: f64, x| most.max(x.abs()));
+        let most = (10.0 * self.contact_deviation).max(1e-9 * size);
+        let still = |palms: &[PalmReading; 3]| {
+            palms.iter().zip(first).all(|(palm, first)| {
+                palm.rate == 0.0 && (0..2).all(|k| (palm.place[k] - first.place[k]).abs() <= most)
+            })
+        };
+        self.palms.iter().all(still)
     }
 
     /// Whether there are enough readings, all of them numbers, times that increase and contacts off the hinges.

@@ -20,6 +20,10 @@ pub(super) struct Refined {
     /// The inverse of the covariance of changes.
     information: [[f64; UNKNOWNS]; UNKNOWNS],
     misfit: f64,
+    /// J. von Neumann's ratio of the white residuals: about 2 where these are noise.
+    pub ratio: f64,
+    /// The deviation that contacts were weighed with, in m.
+    weighed: f64,
 }
 
 /// The readings less errors in units of their deviations.
@@ -45,6 +49,15 @@ struct Linear {
     column: Vec<[f64; 3]>,
     rows: Vec<[Change; 3]>,
     normal: Normal,
+    ratio: f64,
+}
+
+/// The mean square of what follows on each other less each other, over the mean square.
+fn neumann(white: &[[f64; 3]]) -> f64 {
+    let squares: f64 = white.iter().flatten().map(|value| value * value).sum();
+    let steps: f64 =
+        white.windows(2).flat_map(|pair| (0..3).map(|i| (pair[1][i] - pair[0][i]).powi(2))).sum();
+    steps / squares * white.len() as f64 / (white.len() - 1) as f64
 }
 
 impl Linear {
@@ -82,7 +95,8 @@ impl Linear {
                 normal.add(residual[i], &row);
             }
         }
-        normal.cost.is_finite().then_some(Linear { whitener, column, rows, normal })
+        let ratio = neumann(&white);
+        normal.cost.is_finite().then_some(Linear { whitener, column, rows, normal, ratio })
     }
 
     /// The likeliest errors after a step.
@@ -161,7 +175,17 @@ fn stepped(
     let contacts: f64 = errors.iter().flat_map(|error| &error[..6]).map(|e| e * e).sum();
     let misfit = deviations.contact * (contacts / (6 * errors.len()) as f64).sqrt();
     let corrected = corrected(readings, &errors, deviations);
-    Some(Refined { start, corrected, chi_square: here.normal.cost, information: here.normal.matrix, misfit })
+    let Linear { normal, ratio, .. } = here;
+    let weighed = deviations.contact;
+    Some(Refined {
+        start,
+        corrected,
+        chi_square: normal.cost,
+        information: normal.matrix,
+        misfit,
+        ratio,
+        weighed,
+    })
 }
 
 impl Refined {
@@ -204,6 +228,9 @@ impl Refined {
             chi_square: self.chi_square,
             degrees,
             misfit: self.misfit,
+            ratio: self.ratio,
+            weighed: self.weighed,
+            is_stated: self.corrected.contact_deviation > 0.0 || self.corrected.torque_deviation > 0.0,
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Where to begin, from readings alone: angular velocities all over a ball, each with a body that turns like a solid ball.
 //!
 //! It does not always arrive: with noise of a thousandth of the body, or over a second and a half in which a body turns little, a wrong minimum may be met first. One that does not explain the readings says so
-//! (`SolidState::fits`); readings that are nearly blind may be explained by more than one state.
+//! (`SolidState::fits`), and the search goes on; with noise, readings that are nearly blind may be explained by more than one state.
 
 use super::descent::{Free, Scale, descend};
 use super::flow::Start;
@@ -12,7 +12,8 @@ use super::whiten::Deviations;
 use super::{FEWEST, SolidReadings};
 use nalgebra::{Matrix3, Vector3};
 
-/// Contacts whose noise is not stated are taken to have errors of this part of their distances.
+/// Contacts whose noise is not stated are weighed as if they had errors of this part of their distances: what is left by the true state of exact readings is rounding and the rule of integration, a thousandth of that
+/// or less. How much may be left is for `SolidState::fits`.
 const NOTHING: f64 = 1e-6;
 /// Rates below these parts of the largest are softened: while it is sought, and at the end.
 const SOFTENED: [f64; 3] = [0.05, 0.01, 0.001];
@@ -30,10 +31,11 @@ struct Pass {
     kept: usize,
 }
 
-const PASSES: [Pass; 3] = [
+const PASSES: [Pass; 4] = [
     Pass { directions: 12, magnitudes: &[0.5], part: 0.5, samples: 9, kept: 3 },
     Pass { directions: 20, magnitudes: &[0.25, 0.7], part: 1.0, samples: 12, kept: 6 },
     Pass { directions: 40, magnitudes: &[0.15, 0.4, 1.0], part: 0.3, samples: 12, kept: 10 },
+    Pass { directions: 60, magnitudes: &[0.3, 0.8], part: 0.7, samples: 14, kept: 12 },
 ];
 
 /// What is known before anything is sought.

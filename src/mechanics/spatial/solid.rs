@@ -40,6 +40,8 @@ pub enum SolidFormError {
 pub struct ConvexSolid {
     form: SolidForm,
     centre: Vector3<f64>,
+    /// From the centre of mass.
+    centroid: Vector3<f64>,
     volume: f64,
     second: Matrix3<f64>,
 }
@@ -78,7 +80,7 @@ impl ConvexSolid {
             Matrix3::new(all[4], all[7], all[8], all[7], all[5], all[9], all[8], all[9], all[6]) / volume;
         let second = about_origin - centroid * centroid.transpose();
         let centre = centre.map_or(centroid, Vector3::from);
-        let solid = ConvexSolid { form, centre, volume, second };
+        let solid = ConvexSolid { form, centre, centroid: centroid - centre, volume, second };
         positive_everywhere(|n| solid.support(n).extent, size + solid.centre.norm(), 1e-13 * size).map_err(
             |doubt| SolidFormError::CentreOutside {
                 x: doubt.direction.x,
@@ -99,6 +101,11 @@ impl ConvexSolid {
     /// In cubic metres.
     pub fn volume(&self) -> f64 {
         self.volume
+    }
+
+    /// The middle of its volume, from its centre of mass.
+    pub fn centroid(&self) -> Vector3<f64> {
+        self.centroid
     }
 
     /// The inertia matrix of a body of one material about its centroid, for each kilogram, in square metres.

@@ -8,6 +8,7 @@ use palmistry::RankQuestion;
 use palmistry::certificate::{Limits, Region, RegionRows};
 use palmistry::checker::{Effort, VerdictFile};
 use palmistry::claim::{Kept, decide_all_keeping};
+use palmistry::experiment::space::SpaceScene;
 use palmistry::experiment::{Experiment, Scene, Studies, StudyPart};
 use palmistry::import::{ForeignFormat, ImportQuestion, import};
 use palmistry::observer::{FaultRules, OnFault, Record};
@@ -269,6 +270,7 @@ fn scene() {
     let reader = Watched::new("scene", |bytes| {
         if let Ok(text) = std::str::from_utf8(bytes) {
             let _ = Scene::parse("damaged.toml", text);
+            let _ = SpaceScene::parse("damaged.toml", text);
         }
     });
     reader.try_all(&shipped("proofs/moll2002/scenes", "toml"));
