@@ -144,7 +144,7 @@ fn the_kinks_of_a_spline_are_found() {
 fn a_paper_has_slow_scenes() {
     let folder = folder();
     write(&folder, "one.proof", "system \"one\" state x drift f x' = 1 output x claim one: 1 + 1 = 2");
-    write(&folder, "slow.toml", &scene(100, BODY, PLAN, ""));
+    write(&folder, "slow.toml", scene(100, BODY, PLAN, ""));
     write(&folder, "paper.toml", "title = \"A paper\"\nscenes = [\"slow.toml\"]\n");
     let page = folder.path().join("page").display().to_string();
     let paper = folder.path().to_str().unwrap();

@@ -129,9 +129,9 @@ fn momentum_is_what_the_contacts_give() {
                 assert!((side * (point[0] * away[0] + point[1] * away[1]) - palm.slip).abs() < 1e-11);
                 assert!((point[0] * normal[0] + point[1] * normal[1]).abs() < 1e-11);
             }
-            for k in 0..2 {
+            for (k, force) in force.iter().enumerate() {
                 assert!((slope(&|m| m.centre[k]) - here.velocity[k]).abs() < 1e-7);
-                let off = (scene.mass * slope(&|m| m.velocity[k]) - force[k]).abs();
+                let off = (scene.mass * slope(&|m| m.velocity[k]) - force).abs();
                 assert!(off < 1e-7, "{off:e} at {}", here.time);
             }
             let inertia = scene.mass * scene.gyration * scene.gyration;
