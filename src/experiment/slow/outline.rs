@@ -191,7 +191,7 @@ mod tests {
                     Outline::of(&moved, 2)
                 };
                 let (up, down) = (moved(1e-5), moved(-1e-5));
-                for (times, basis) in basis[place].iter().enumerate() {
+                for (times, basis) in basis[place].iter().take(3).enumerate() {
                     let slope = (up.support(angle)[times] - down.support(angle)[times]) / 2e-5;
                     assert!((slope - basis).abs() < 1e-7, "{angle} {place} {times}");
                 }

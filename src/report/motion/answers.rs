@@ -218,7 +218,7 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
     if let Some(shape) = shape_json(experiment, observed.answers) {
         found["shape"] = shape;
     }
-    studies_json(observed, &mut found);
+    studies_json(observed.studied, &experiment.names(), &mut found);
     found
 }
 
@@ -294,7 +294,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             let _ = writeln!(text, "  {remark}");
         }
     }
-    studies_text(observed, &mut text);
+    studies_text(observed.studied, &names, &noise_unit(observed), &mut text);
     text.push_str(&shape_text(experiment, observed.answers));
     if observed.interrupted {
         text.push_str("\ninterrupted; this is what was done until then\n");

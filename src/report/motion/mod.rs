@@ -14,6 +14,7 @@ pub(super) mod section;
 pub(super) mod shape;
 pub(super) mod stream;
 pub(super) mod studies;
+pub(super) mod studies_section;
 pub(super) mod study_plot;
 pub(super) mod table;
 

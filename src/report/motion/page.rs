@@ -7,7 +7,7 @@ use crate::report::motion::reconstruction::reconstruction;
 use crate::report::motion::section::{
     FRAMES, body_pictures, faults, sensor_pictures, state_pictures, summary,
 };
-use crate::report::motion::studies::studies;
+use crate::report::motion::studies_section::studies;
 use crate::report::motion::table::{ends, notes, updates};
 use maud::html;
 

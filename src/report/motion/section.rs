@@ -8,7 +8,7 @@ use crate::report::motion::outline_section::shape_section;
 use crate::report::motion::plot::{errors, sensor_errors, state};
 use crate::report::motion::reconstruction::length;
 use crate::report::motion::shape::{departure, outline};
-use crate::report::motion::studies::studies;
+use crate::report::motion::studies_section::studies;
 use crate::report::motion::table::{ends, notes, pace, updates};
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeMap;

@@ -1,19 +1,13 @@
-//! What the studies of a scene came to, as JSON, as text and as a part of a page.
+//! What the studies of a scene came to, as JSON and as text.
 
-use crate::experiment::{ARRIVED, Basin, CurvatureMap, NoiseLevel, Told};
-use crate::report::axis::unit_of;
-use crate::report::motion::answers::{Observed, noise_unit};
+use crate::experiment::{Basin, CurvatureMap, NoiseLevel, Studied, Told};
 use crate::report::motion::fit::finite;
-use crate::report::motion::study_plot;
-use maud::{Markup, PreEscaped, html};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// Adds each study that was made.
-pub(super) fn studies_json(observed: &Observed<'_>, found: &mut Value) {
-    let experiment = observed.experiment;
-    if !observed.studied.noise.is_empty() {
-        let names = experiment.names();
+/// Adds each study that was made, of what is sought by these names.
+pub(super) fn studies_json(studied: &Studied, names: &[&str], found: &mut Value) {
+    if !studied.noise.is_empty() {
         let level = |level: &NoiseLevel| {
             let by_name = |values: &[f64]| -> Map<String, Value> {
                 names.iter().zip(values).map(|(name, value)| ((*name).to_owned(), finite(*value))).collect()
@@ -27,9 +21,9 @@ pub(super) fn studies_json(observed: &Observed<'_>, found: &mut Value) {
                 "bound": by_name(&level.bounds),
             })
         };
-        found["noise"] = json!(observed.studied.noise.iter().map(level).collect::<Vec<_>>());
+        found["noise"] = json!(studied.noise.iter().map(level).collect::<Vec<_>>());
     }
-    if !observed.studied.basins.is_empty() {
+    if !studied.basins.is_empty() {
         let basin = |basin: &Basin| {
             json!({
                 "method": basin.method.name(),
@@ -39,9 +33,9 @@ pub(super) fn studies_json(observed: &Observed<'_>, found: &mut Value) {
                 "fraction": basin.fraction(),
             })
         };
-        found["basins"] = json!(observed.studied.basins.iter().map(basin).collect::<Vec<_>>());
+        found["basins"] = json!(studied.basins.iter().map(basin).collect::<Vec<_>>());
     }
-    if let Some(map) = &observed.studied.curvature {
+    if let Some(map) = &studied.curvature {
         found["curvature"] = curvature_json(map);
     }
 }
@@ -85,25 +79,20 @@ fn of_ratio(ratio: f64) -> Value {
     if ratio.is_finite() { json!(ratio) } else { json!("blind") }
 }
 
-/// Adds a paragraph for each study.
-pub(super) fn studies_text(observed: &Observed<'_>, text: &mut String) {
-    let names = observed.experiment.names();
-    for level in &observed.studied.noise {
+/// Adds a paragraph for each study; noise is in this unit.
+pub(super) fn studies_text(studied: &Studied, names: &[&str], unit: &str, text: &mut String) {
+    for level in &studied.noise {
         let _ = writeln!(
             text,
             "\nnoise {:.1e}{}: {} of {} seeds converged, of {} it was said that they do not fit",
-            level.noise,
-            noise_unit(observed),
-            level.converged,
-            level.seeds,
-            level.unfit
+            level.noise, unit, level.converged, level.seeds, level.unfit
         );
         for ((name, error), bound) in names.iter().zip(&level.errors).zip(&level.bounds) {
             let ratio = error / bound;
             let _ = writeln!(text, "  {name:<8} rms error {error:.3e}, bound {bound:.3e}, ratio {ratio:.3}");
         }
     }
-    for basin in &observed.studied.basins {
+    for basin in &studied.basins {
         let _ = writeln!(
             text,
             "\n{} arrives from {:.1}% of {} first guesses of {} and {}",
@@ -114,7 +103,7 @@ pub(super) fn studies_text(observed: &Observed<'_>, text: &mut String) {
             basin.names[1]
         );
     }
-    if let Some(map) = &observed.studied.curvature {
+    if let Some(map) = &studied.curvature {
         curvature_text(map, text);
     }
 }
@@ -141,83 +130,11 @@ pub(super) fn ratio_words(map: &CurvatureMap, cell: usize) -> String {
 }
 
 /// Of how many motions a map is the median.
-fn compared(map: &CurvatureMap) -> String {
+pub(super) fn compared(map: &CurvatureMap) -> String {
     let seen = map.motions.iter().filter(|motion| matches!(motion.flat, Told::Bound(_))).count();
     format!(
         "the median of those of {seen} motions in which the body is held (of {}, flat palms see nothing or do not hold it in the others), contacts read to {:.1e} m",
         map.motions.len(),
         map.noise
     )
-}
-
-fn curvature(map: &CurvatureMap) -> Markup {
-    html! {
-        h3 { "Between palms of other curvatures" }
-        figure {
-            (PreEscaped(study_plot::curvature(map)))
-            figcaption {
-                "The larger bound of Cramér and Rao of both support radii in the first window, over that between flat palms: " (compared(map)) ". "
-                "Below one these palms tell more than flat ones. Curvatures above zero are those of hollow palms."
-            }
-        }
-    }
-}
-
-/// The error over noise, and the basins of attraction.
-pub(super) fn studies(observed: &Observed<'_>) -> Markup {
-    let places = 0..observed.experiment.names().len();
-    html! {
-        @if !observed.studied.noise.is_empty() {
-            h3 { "The error over noise" }
-            figure {
-                div.grid { @for place in places { (PreEscaped(study_plot::noise(observed, place))) } }
-                figcaption {
-                    "The first window by least squares, over many seeds: the root of the mean square error of those that converged, and "
-                    "the bound at the truth, both in decades. Dots on the line: nothing more is to be had from these readings. Dots "
-                    "above it: the search did not find the best state. By chance they are off by a part of about one in the root of twice "
-                    "the number of seeds. "
-                    @for level in &observed.studied.noise {
-                        (format!("{:.0e}{}: {} of {} converged. ", level.noise, noise_unit(observed), level.converged, level.seeds))
-                    }
-                }
-            }
-            (noise_table(observed))
-        }
-        @if !observed.studied.basins.is_empty() {
-            h3 { "From where they arrive" }
-            figure {
-                div.basins { @for basin in &observed.studied.basins { (PreEscaped(study_plot::basin(observed, basin))) } }
-                figcaption {
-                    "First guesses of two states, the others as in the scene, from which each method comes within "
-                    (format!("{:.0}%", 100.0 * ARRIVED)) " of all that is sought: after the first window for methods that work by "
-                    "windows, at the last sample for the others. The cross is the truth. Where the readings have errors, and the bound "
-                    "of a state is near that part of it, they decide as well."
-                }
-            }
-        }
-        @if let Some(map) = &observed.studied.curvature { (curvature(map)) }
-    }
-}
-
-/// The error over noise beside its bound.
-fn noise_table(observed: &Observed<'_>) -> Markup {
-    let unit = noise_unit(observed);
-    let names = observed.experiment.names();
-    html! {
-        div.scroll { table {
-            thead { tr {
-                th { "noise" @if !unit.is_empty() { "," (unit) } } th { "converged" }
-                @for name in &names { th { (name) ", rms error" } th { "bound" @if let Some(unit) = unit_of(&observed.experiment.system, name) { ", " (unit) } } th { "ratio" } }
-            } }
-            tbody { @for level in &observed.studied.noise { tr {
-                td.number { (format!("{:.1e}", level.noise)) }
-                td.number { (level.converged) " of " (level.seeds) }
-                @for (error, bound) in level.errors.iter().zip(&level.bounds) {
-                    td.number { (format!("{error:.2e}")) }
-                    td.number { @if bound.is_finite() { (format!("{bound:.2e}")) } @else { "not seen" } }
-                    td.number { @if bound.is_finite() && *bound > 0.0 { (format!("{:.2}", error / bound)) } @else { "-" } }
-                }
-            } } }
-        } }
-    }
 }

@@ -1,7 +1,8 @@
 //! A scene with friction carried through time, from one pair of modes to the next.
 
+use super::consistent::consistent;
 use super::laws::Rubbing;
-use super::modes::{ContactMode, ModePair, consistent};
+use super::modes::{ContactMode, ModePair};
 use crate::mechanics::moving::integrate::own_steps;
 use crate::mechanics::moving::laws::State;
 use crate::mechanics::moving::scene::{MovingScene, SceneError};
