@@ -1,5 +1,5 @@
 //! How often a body in space is recovered from readings alone: so many drawn scenes of 1.76 s, without noise. With
-//! `cargo run --release --example drawn_solids -- 100 177` it prints a line a scene (what is left of a contact, the greatest relative error of centre, rate, inertia and mass) and the counts.
+//! `cargo bench --bench drawn_solids -- 100 177` it prints a line a scene (what is left of a contact, the greatest relative error of centre, rate, inertia and mass) and the counts.
 
 use palmistry::experiment::space::{SpaceReadings, SpaceSensor, drawn_scenes, relative_error, true_entries};
 use std::time::Instant;
@@ -8,7 +8,8 @@ use std::time::Instant;
 const ARRIVED: f64 = 1e-5;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut asked = std::env::args().skip(1);
+    // cargo adds one of its own
+    let mut asked = std::env::args().skip(1).filter(|text| !text.starts_with("--"));
     let mut next = |other: usize| asked.next().map_or(Ok(other), |text| text.parse());
     let (count, samples) = (next(100)?, next(177)?);
     let sensor = SpaceSensor::default();
