@@ -113,11 +113,11 @@
       found.searches = {};
       for (const text of window.searches ?? []) {
         await choose('text', text);
-        found.searches[text] = seen().map(entry => entry.querySelector('i').textContent);
+        found.searches[text] = seen().map(entry => entry.querySelector('h4').firstChild.data.trim());
       }
       await choose('text', '');
       await choose('sort', 'i');
-      found.sorted = [...document.querySelectorAll('article')].map(entry => entry.querySelector('i').textContent);
+      found.sorted = [...document.querySelectorAll('article')].map(entry => entry.querySelector('h4').firstChild.data.trim());
       await choose('sort', '');
       found.again = [...document.querySelectorAll('article')].every((entry, place) => entry === entries[place]);
       // a link to an entry that is filtered out shows it
