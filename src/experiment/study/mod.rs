@@ -7,6 +7,8 @@ mod curvature;
 mod noise;
 mod part;
 mod part_text;
+#[cfg(test)]
+mod tests;
 
 pub use basin::{ARRIVED, Basin, basins};
 pub use curvature::{CurvatureMap, CurvatureRatio, StudiedMotion, Told, curvature_map};

@@ -7,7 +7,7 @@ use super::mesh::SurfaceMesh;
 use super::vector::{Enclosed, cross, dot, length, minus};
 use crate::number::{Function, Interval, RealNumber};
 use nalgebra::Vector3;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// What the body contains where none of its radii of curvature is less than `least`: the hull of the balls of that radius that touch at the contacts. Its volume is
 /// that of the hull of the centres, with area times radius, edges' lengths times outer angles times half of the radius' square, and a ball (J. Steiner, 1840). The surface told is that of the hull of the centres.
@@ -42,7 +42,8 @@ pub fn rounded_hull(touches: &[SurfaceTouch], least: f64) -> Result<BoundedRegio
         .collect();
     let half = Interval::point(0.5);
     let area = normals.iter().fold(Interval::ZERO, |sum, n| sum + length(n) * half);
-    let owner: HashMap<(usize, usize), usize> = hull
+    // in an order that is the same in every run: sums of intervals depend on it
+    let owner: BTreeMap<(usize, usize), usize> = hull
         .facets
         .iter()
         .enumerate()
