@@ -463,7 +463,7 @@ class Beside(unittest.TestCase):
         self.assertIsNotNone(self.interrupted(lambda: surface.certify(budget=60)))
         self.assertTrue(self.found.json["interrupted"])
         self.assertGreater(self.found.proved_fraction, 0)
-        quick = "claim 0: L(f, x) = y*z\n"
+        quick = "claim 0: L(f, f, x) = z^3 - x*z + x*y^2\n"
         both = palmistry.System.parse(SURFACE + quick + "".join(f"claim {i}: rank = 3 everywhere\n" for i in range(1, 4000)))
         self.assertIsNotNone(self.interrupted(lambda: both.prove()))
         self.assertTrue(self.found.json["interrupted"])
