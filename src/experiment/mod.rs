@@ -55,8 +55,6 @@ pub use stream::{StreamAnswer, StreamEnd, StreamPiece, StreamTally, WindowReport
 #[doc(hidden)]
 pub use study::ARRIVED;
 #[doc(hidden)]
-pub(crate) use study::NOT_STUDIED;
-#[doc(hidden)]
 pub use study::{
     Basin, CurvatureMap, CurvatureRatio, NoiseLevel, Studied, StudiedMotion, Studies, StudyMergeError,
     StudyPart, Told, basins, curvature_map, noise_study,

@@ -13,5 +13,4 @@ mod tests;
 pub use basin::{ARRIVED, Basin, basins};
 pub use curvature::{CurvatureMap, CurvatureRatio, StudiedMotion, Told, curvature_map};
 pub use noise::{NoiseLevel, noise_study};
-pub(crate) use part::NOT_STUDIED;
 pub use part::{Studied, Studies, StudyMergeError, StudyPart};

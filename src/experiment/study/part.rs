@@ -28,9 +28,6 @@ pub struct StudyPart {
     pub(super) told: Vec<Told>,
 }
 
-/// Of an experiment that was not studied.
-pub(crate) static NOT_STUDIED: Studied = Studied { noise: Vec::new(), basins: Vec::new(), curvature: None };
-
 /// What all trials of a scene's studies come to; of those that it does not have nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Studied {

@@ -1,6 +1,6 @@
 //! What observers made of an experiment, as JSON and as text.
 
-use crate::experiment::{Answer, Experiment, NOT_STUDIED, Studied, error};
+use crate::experiment::{Answer, Experiment, Studied, error};
 use crate::mechanics::moving::Ended;
 use crate::observer::{Fault, Update, UpdateEnd};
 use crate::report::axis::unit_of;
@@ -9,6 +9,9 @@ use crate::report::motion::reconstruction::{shape_json, shape_text};
 use crate::report::motion::studies::{studies_json, studies_text};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
+
+/// Of an experiment that was not studied.
+static NOT_STUDIED: Studied = Studied { noise: Vec::new(), basins: Vec::new(), curvature: None };
 
 /// An experiment with all that was found: what the page and the JSON are made from.
 #[derive(Clone, Copy, Debug)]
