@@ -104,7 +104,12 @@ impl Experiment {
     pub fn run_modes(&self, interrupt: &AtomicBool, done: &dyn Fn()) -> Result<Vec<ModeWindow>, SceneError> {
         let modes = self.modes()?;
         let times = self.signals.times();
-        let window = self.scene.observer.window.min(times.len() - 1);
+        if times.len() < 2 {
+            let message = format!("of {} samples there is no window", times.len());
+            let help = "a window has two samples or more, and some for each unknown to tell anything";
+            return Err(self.scene.error_at("observer.window", message, "such windows", help));
+        }
+        let window = self.steps_of_windows();
         let mut learned: BTreeMap<String, f64> = BTreeMap::new();
         // where each mode that fitted came to at the end of its window
         let mut reached: Vec<Option<Vec<f64>>> = vec![None; modes.len()];
@@ -140,6 +145,16 @@ impl Experiment {
             }
         }
         Ok(windows)
+    }
+
+    /// How many steps from sample to sample a window has.
+    fn steps_of_windows(&self) -> usize {
+        self.scene.observer.window.min(self.signals.times().len().saturating_sub(1))
+    }
+
+    /// How many samples at the end are in no window, since a whole one does not fit there.
+    pub fn samples_after_windows(&self) -> usize {
+        self.signals.times().len().saturating_sub(1).checked_rem(self.steps_of_windows()).unwrap_or(0)
     }
 
     /// The experiment of one window.

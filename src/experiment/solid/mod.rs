@@ -109,6 +109,8 @@ pub struct SolidState {
     pub weighed: f64,
     /// Whether the readings' deviations were stated.
     pub is_stated: bool,
+    /// Whether those of contacts were: else they are weighed with more than they are said to err by, and chi-square is too lenient.
+    pub contacts_are_stated: bool,
 }
 
 impl SolidState {
@@ -143,11 +145,12 @@ impl SolidState {
     /// whose variance 4 over the number of differences, five deviations on the side of what is alike.
     pub fn fits(&self) -> bool {
         let n = self.degrees as f64;
-        if self.is_stated {
-            return self.chi_square <= n + 5.0 * (2.0 * n).sqrt();
-        }
         let differences = n + UNKNOWNS as f64;
-        self.misfit <= EXACT * self.weighed || self.ratio >= 2.0 - 5.0 * (4.0 / differences).sqrt()
+        let is_small = !self.is_stated || self.chi_square <= n + 5.0 * (2.0 * n).sqrt();
+        let is_noise = self.contacts_are_stated
+            || self.misfit <= EXACT * self.weighed
+            || self.ratio >= 2.0 - 5.0 * (4.0 / differences).sqrt();
+        is_small && is_noise
     }
 }
 

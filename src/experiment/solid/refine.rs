@@ -230,6 +230,7 @@ impl Refined {
             misfit: self.misfit,
             ratio: self.ratio,
             weighed: self.weighed,
+            contacts_are_stated: self.corrected.contact_deviation > 0.0,
             is_stated: self.corrected.contact_deviation > 0.0 || self.corrected.torque_deviation > 0.0,
         })
     }

@@ -156,6 +156,12 @@ fn a_wrong_state_that_leaves_little_says_so() {
     let deviations = whiten::Deviations { contact: 1e-6, torque: 0.0, softened: 1e-3 };
     let state = refine::refine(&unstated, &rules, begin, &scale, &deviations).unwrap().state().unwrap();
     assert!(!state.is_stated && state.fits(), "{}", state.ratio);
+    // what a wrong state leaves is alike from sample to sample; torques that are said to err do not excuse it
+    let alike = SolidState { ratio: 0.5, misfit: 0.5 * state.weighed, chi_square: 1.0, ..state };
+    for is_stated in [false, true] {
+        assert!(!SolidState { is_stated, ..alike.clone() }.fits(), "{is_stated}");
+    }
+    assert!(SolidState { is_stated: true, contacts_are_stated: true, ..alike }.fits());
     assert!(state.misfit > 2e-5 && state.misfit < 1e-4, "{:e}", state.misfit);
 }
 

@@ -11,6 +11,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The states whose bounds are compared: the support radii at both contacts.
 const COMPARED: [&str; 2] = ["r1", "r2"];
 
+/// Palms of less curvature count as flat ones, in 1/m.
+const FLATTEST: f64 = 1e-6;
+
 /// How the body of a scene begins, and what flat palms would tell of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudiedMotion {
@@ -118,8 +121,8 @@ impl<'a> CurvatureTrials<'a> {
         }
         let at = |i: usize| {
             let curvature = low + (high - low) * i as f64 / last as f64;
-            // flat is flat, whatever the sum rounds to
-            if curvature.abs() < 1e-12 * (high - low) { 0.0 } else { curvature }
+            // flat is flat, whatever the sum rounds to; arcs of more than 1e6 m are flat to the mechanics
+            if curvature.abs() < FLATTEST.max(1e-12 * (high - low)) { 0.0 } else { curvature }
         };
         let with_rates = |orientation: &f64| {
             let orientation = *orientation;

@@ -42,6 +42,7 @@ pub fn modes_json(experiment: &Experiment, windows: &[ModeWindow]) -> Value {
         "scene": experiment.scene.title,
         "seed": experiment.scene.seed,
         "samples": experiment.signals.times().len(),
+        "samples_after_windows": experiment.samples_after_windows(),
         "windows": windows.iter().map(window).collect::<Vec<_>>(),
     })
 }
@@ -67,6 +68,12 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
         let _ = writeln!(text, "{}{also}, misfit {misfit:.1e}{}", estimate.name, truth(window));
         if let Some(update) = &estimate.update {
             state_lines(&mut text, experiment, &estimate.sought, update);
+        }
+    }
+    match experiment.samples_after_windows() {
+        0 => {}
+        left => {
+            let _ = writeln!(text, "  the last {left} samples are in no window, and nothing is said of them");
         }
     }
     text

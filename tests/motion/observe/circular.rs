@@ -97,6 +97,12 @@ fn a_map_over_curvatures_tells_what_estimates_keep() {
     assert_eq!(pairs[4]["curvatures"], serde_json::json!([0.0, 0.0]));
     assert_eq!(pairs[4]["over_flat"]["median"], 1.0);
     assert_eq!(pairs[8]["bounds"][0], "not held", "a palm of half a metre about a body of more than one");
+    // what is flatter than the mechanics can tell is flat, and not a palm that holds nothing
+    let scene_of_flat = write(&folder, "flatter.toml", format!("{own}{}", study("[-1e-7, 1e-7]", 2)));
+    let (_, found) = observe(&scene_of_flat, &["--studies"]);
+    for pair in found["curvature"]["pairs"].as_array().unwrap() {
+        assert_eq!(pair["over_flat"]["median"], 1.0, "{pair}");
+    }
     let words = palmistry(&["observe", scene.to_str().unwrap(), "--studies"]);
     assert!(String::from_utf8_lossy(&words.stdout).contains("over that between flat palms"));
 }

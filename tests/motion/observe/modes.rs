@@ -63,6 +63,21 @@ fn the_program_tells_modes() {
     let refused = palmistry(&["observe", scene, "--out", folder.path().join("out").to_str().unwrap()]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("with --out"));
+    // records of no window, and of more than windows
+    let record = folder.path().join("whole.csv");
+    palmistry(&["observe", scene, "--record", record.to_str().unwrap()]);
+    let table = std::fs::read_to_string(&record).unwrap();
+    let first = |rows: usize| {
+        let lines: Vec<&str> = table.lines().take(1 + rows).collect();
+        write(&folder, "first.csv", lines.join("\n") + "\n").to_str().unwrap().to_owned()
+    };
+    let output = palmistry(&["observe", scene, "--json", "--data", &first(1)]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(json(&output)["error"]["message"].as_str().is_some_and(|message| !message.contains("panic")));
+    let windows = found["windows"].as_array().unwrap().len();
+    let rows = (found["samples"].as_u64().unwrap() as usize - 1) / windows + 4;
+    let short = json(&palmistry(&["observe", scene, "--json", "--data", &first(rows)]));
+    assert_eq!((short["windows"].as_array().unwrap().len(), &short["samples_after_windows"]), (1, &3.into()));
 }
 
 /// The shipped scene: wherever one pair of modes holds for a whole window, and the window fits at all, it is the mode that is chosen, the
