@@ -1,6 +1,7 @@
 """The package's answers. Oracles: the program's own JSON, numpy's matrices written down by hand, and clocks."""
 
 import json
+import math
 import os
 import pickle
 import re
@@ -428,6 +429,16 @@ class Beside(unittest.TestCase):
             timer.cancel()
         return None
 
+    def interrupted_until(self, work, enough):
+        """Interrupts ever later until enough was found: a slow machine has nothing to show for 0.6 s."""
+        after = 0.6
+        while True:
+            self.assertIsNotNone(self.interrupted(work, after), "it was through before it was interrupted")
+            self.assertTrue(self.found.json["interrupted"])
+            if enough(self.found):
+                return
+            after *= 2
+
     def test_interrupts_are_heeded(self):
         beacons, surface = palmistry.System.parse(BEACONS), palmistry.System.parse(SURFACE)
         states = numpy.random.default_rng(1).uniform(-1, 1, (4_000_000, 2))
@@ -446,8 +457,14 @@ class Beside(unittest.TestCase):
             ("prove", lambda: [palmistry.System.parse(LONG + "claim 1: rank = 6 everywhere\n").prove() for _ in range(1000)]),
             ("observe", lambda: [palmistry.observe(scene, studies=False) for _ in range(1000)]),
         ]:
-            late = self.interrupted(work)
-            self.assertIsNotNone(late, name)
+            # the shortest of several: another process may hold this machine for longer than that
+            late = math.inf
+            for _ in range(5):
+                ended = self.interrupted(work)
+                self.assertIsNotNone(ended, name)
+                late = min(late, ended)
+                if late < HEEDED:
+                    break
             self.assertLess(late, HEEDED, name)
         # and what is asked next is answered
         self.assertEqual(beacons.rank(samples=100).certified, 100)
@@ -455,18 +472,13 @@ class Beside(unittest.TestCase):
     def test_what_was_found_is_kept(self):
         """Oracle: what the states and boxes that were looked at say in a run of just as many, and the claims that need no time."""
         beacons, surface = palmistry.System.parse(BEACONS), palmistry.System.parse(SURFACE)
-        self.assertIsNotNone(self.interrupted(lambda: beacons.rank(samples=10**12)))
+        self.interrupted_until(lambda: beacons.rank(samples=10**12), lambda found: found.json["samples"] > 0)
         seen = self.found.json["samples"]
-        self.assertTrue(self.found.json["interrupted"])
-        self.assertGreater(seen, 0)
         self.assertEqual(self.found.json["rank_histogram"], beacons.rank(samples=seen).json["rank_histogram"])
-        self.assertIsNotNone(self.interrupted(lambda: surface.certify(budget=60)))
-        self.assertTrue(self.found.json["interrupted"])
-        self.assertGreater(self.found.proved_fraction, 0)
+        self.interrupted_until(lambda: surface.certify(budget=60), lambda found: found.proved_fraction > 0)
         quick = "claim 0: L(f, f, x) = z^3 - x*z + x*y^2\n"
         both = palmistry.System.parse(SURFACE + quick + "".join(f"claim {i}: rank = 3 everywhere\n" for i in range(1, 4000)))
-        self.assertIsNotNone(self.interrupted(lambda: both.prove()))
-        self.assertTrue(self.found.json["interrupted"])
+        self.interrupted_until(lambda: both.prove(), lambda found: found.json["claims"])
         told = {claim["id"]: claim["verdict"] for claim in self.found.json["claims"]}
         self.assertEqual(told["0"], "proved")
         self.assertLess(len(told), 4000)
