@@ -4,6 +4,7 @@ use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
+use palmistry::experiment::space::SpaceScene;
 use palmistry::experiment::{AdviceLimits, AdviceQuestion, Scene, advise};
 use palmistry::pose_surface::numbers;
 use palmistry::report::{advice_json, advice_text};
@@ -16,35 +17,43 @@ use std::path::PathBuf;
 /// the readings could tell the state: the bound of Cramér and Rao at the truth, with the scene's sensors. What is found is printed with the lines to paste
 /// into [palms]. The search is random: the same seed gives the same answer with any number of threads, and more trials may find better ones.
 ///
-/// The exit status is 1 where no course was found that holds the body to the end.
+/// Of a scene with motion = "spatial" it seeks runs: how to lay the body on its three palms, and how to set it turning, so that the hull of all contacts grows most, run by run, beside as
+/// many runs drawn at random.
+///
+/// The exit status is 1 where no course was found that holds the body to the end, or fewer runs than were asked.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry advise proofs/moll2002/scenes/general.toml --trials 64
-  palmistry advise SCENE --angle1 0.3,0.9 --angle2 1.2,1.9 --rate 2 --seed 7 --json")]
+  palmistry advise SCENE --angle1 0.3,0.9 --angle2 1.2,1.9 --rate 2 --seed 7 --json
+  palmistry advise proofs/moll2002/scenes/figure_5_3.toml --runs 4 --trials 32")]
 pub(crate) struct Advise {
     /// The scene.
-    scene: PathBuf,
-    /// How many courses are tried.
-    #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    trials: u64,
-    /// The least and the greatest angle of palm 1 against the ground, rad.
-    #[arg(long, value_name = "LOW,HIGH", default_value = "0.2,1.2", allow_hyphen_values = true)]
-    angle1: String,
-    /// The least and the greatest angle of palm 2 against palm 1, rad.
-    #[arg(long, value_name = "LOW,HIGH", default_value = "0.8,1.9", allow_hyphen_values = true)]
-    angle2: String,
-    /// The greatest rate of either palm, rad/s.
-    #[arg(long, value_name = "RATE", default_value_t = 3.0)]
-    rate: f64,
+    pub(super) scene: PathBuf,
+    /// How many courses are tried (400 unless given); in space for each run (32 unless given).
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub(super) trials: Option<u64>,
+    /// The least and the greatest angle of palm 1 against the ground, rad (0.2,1.2 unless given).
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
+    pub(super) angle1: Option<String>,
+    /// The least and the greatest angle of palm 2 against palm 1, rad (0.8,1.9 unless given).
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
+    pub(super) angle2: Option<String>,
+    /// The greatest rate of either palm, rad/s (3 unless given); in space that at which the body is set turning (0.5 unless given).
+    #[arg(long, value_name = "RATE")]
+    pub(super) rate: Option<f64>,
+    /// How many runs of a body in space (4 unless given).
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100))]
+    pub(super) runs: Option<u64>,
     /// Take this seed and not the scene's.
     #[arg(long, value_name = "S")]
-    seed: Option<u64>,
-    /// Print one JSON object with 'best' (its 'palms', 'coverage', 'gaps') and 'expected' bounds.
+    pub(super) seed: Option<u64>,
+    /// Print one JSON object with 'best' (its 'palms', 'coverage', 'gaps') and 'expected' bounds; in space with 'runs' (how they begin, 'hull', 'outer', 'random').
     #[arg(long)]
     pub json: bool,
 }
 
-fn range(option: &str, text: &str) -> miette::Result<[f64; 2]> {
+fn range(option: &str, text: Option<&str>, default: [f64; 2]) -> miette::Result<[f64; 2]> {
+    let Some(text) = text else { return Ok(default) };
     let help = "write the least and the greatest angle with a comma between them";
     let found = numbers(text).map_err(|why| Unusable::report(format!("{option}: {why}"), help))?;
     match found[..] {
@@ -55,18 +64,28 @@ fn range(option: &str, text: &str) -> miette::Result<[f64; 2]> {
 
 impl Advise {
     pub fn run(self) -> miette::Result<Status> {
-        let angles = [range("--angle1", &self.angle1)?, range("--angle2", &self.angle2)?];
-        if !(self.rate > 0.0 && self.rate.is_finite()) {
-            let message = format!("--rate: palms that turn at no more than {} rad/s do not move", self.rate);
+        if let Some(scene) = SpaceScene::read(&self.scene) {
+            return self.run_space(scene?);
+        }
+        let first = range("--angle1", self.angle1.as_deref(), [0.2, 1.2])?;
+        let second = range("--angle2", self.angle2.as_deref(), [0.8, 1.9])?;
+        let rate = self.rate.unwrap_or(3.0);
+        if !(rate > 0.0 && rate.is_finite()) {
+            let message = format!("--rate: palms that turn at no more than {rate} rad/s do not move");
             return Err(Unusable::report(message, "give a rate above zero"));
         }
+        if self.runs.is_some() {
+            let help = "leave it out, or name a scene with motion = \"spatial\"";
+            return Err(Unusable::report("--runs is for bodies in space", help));
+        }
         let scene = Scene::read(&self.scene)?;
+        let trials = self.trials.unwrap_or(400);
         let question = AdviceQuestion {
-            limits: AdviceLimits { angles, rate: self.rate },
-            trials: self.trials as usize,
+            limits: AdviceLimits { angles: [first, second], rate },
+            trials: trials as usize,
             seed: self.seed.unwrap_or(scene.seed),
         };
-        let bar = progress(self.trials, "moving bodies");
+        let bar = progress(trials, "moving bodies");
         let advice = advise(&scene, &question, &INTERRUPTED, &|| bar.inc(1))?;
         bar.finish_and_clear();
         begin_to_tell();

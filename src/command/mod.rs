@@ -5,6 +5,7 @@
 //! written, and 3 when the work was cut off by a signal and nothing that was found until then is wrong.
 
 mod advise;
+mod advise_space;
 mod arguments;
 mod certify;
 mod check;

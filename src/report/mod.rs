@@ -27,6 +27,7 @@ mod slow_section;
 mod slow_study;
 mod solid_picture;
 mod space;
+mod space_advice;
 mod space_page;
 mod stress;
 mod trade;
@@ -73,6 +74,7 @@ pub use solid_picture::{ShownSurface, solid_page};
 #[doc(hidden)]
 pub use space::{SpaceObserved, space_ended, space_json, space_text};
 #[doc(hidden)]
+pub use space_advice::{runs_advice_json, runs_advice_text};
 pub use space_page::space_page;
 #[doc(hidden)]
 pub use stress::{stress_json, stress_pictures, stress_text};

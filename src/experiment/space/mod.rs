@@ -5,6 +5,7 @@
 //!
 //! The estimator ([`solid`](super::solid)) has seen neither body nor motion.
 
+mod advice;
 mod answers;
 mod drawn;
 mod keys;
@@ -15,6 +16,7 @@ mod scene;
 mod shape;
 mod touched;
 
+pub use advice::{Laying, PlannedRun, RunsAdvice, RunsQuestion, advise_runs};
 pub use answers::{PoseError, SpaceUpdate, SpaceVerdict};
 pub use drawn::{drawn_scenes, relative_error, true_entries};
 pub use readings::{PalmTold, SpaceReadings, SpaceSensor};

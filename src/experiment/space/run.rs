@@ -171,7 +171,7 @@ fn angle(turn: &Matrix3<f64>) -> f64 {
     Vector3::new(skew[(2, 1)], skew[(0, 2)], skew[(1, 0)]).norm().atan2((turn.trace() - 1.0) / 2.0)
 }
 
-fn simulated(scene: &SpaceScene) -> Result<SpaceTruth, ReadError> {
+pub(super) fn simulated(scene: &SpaceScene) -> Result<SpaceTruth, ReadError> {
     let (Some(body), Some(drive)) = (&scene.body, &scene.drive) else {
         return Err(scene.error_at("title", "there is nothing to observe", "name a recording in [data]"));
     };

@@ -4,6 +4,7 @@
 //! the equations of `general.proof`. What is recovered is held against the body itself, never against another run.
 
 mod advice;
+mod advice_space;
 mod broken;
 mod channels;
 mod circular;
