@@ -7,5 +7,6 @@ mod implicit;
 mod mechanics;
 mod observe;
 mod observers;
+mod regimes;
 mod slow;
 mod space;
