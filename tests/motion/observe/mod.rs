@@ -8,6 +8,7 @@ mod advice_space;
 mod broken;
 mod channels;
 mod circular;
+mod coefficients;
 mod columns;
 mod inherited;
 mod modes;
