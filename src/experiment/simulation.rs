@@ -268,6 +268,9 @@ fn form(body: &scene::Body) -> Result<(BodyForm, CentreOfMass, Option<DrawnSplin
         scene::SceneOutline::Superellipse { semi_axes, exponent, rounding } => {
             BodyForm::Superellipse { semi_axes: *semi_axes, exponent: *exponent, rounding: *rounding }
         }
+        scene::SceneOutline::Arcs { corners, radius } => {
+            BodyForm::Arcs { corners: corners.clone(), radius: *radius }
+        }
         scene::SceneOutline::Spline { radii, knots } => BodyForm::Spline { radii: *radii, knots: *knots },
         scene::SceneOutline::RandomSpline { seed, knots } => {
             let drawn = SplineDraws::new(*seed, *knots).until_convex()?;

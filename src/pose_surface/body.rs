@@ -47,7 +47,7 @@ pub fn numbers(text: &str) -> Result<Vec<f64>, BodyTextError> {
 
 impl PoseBody {
     pub(crate) fn new(form: BodyForm, centre: CentreOfMass) -> Result<PoseBody, FormError> {
-        let shape = Shape::new(&form, centre)?;
+        let shape = Shape::new(&form, centre)?.without_corners()?;
         Ok(PoseBody { form, shape })
     }
 
@@ -130,6 +130,10 @@ impl PoseBody {
                     "superellipse of a scene: {}, exponent {exponent}, rounding {rounding}",
                     list(semi_axes)
                 )
+            }
+            BodyForm::Arcs { corners, radius } => {
+                let corners: Vec<f64> = corners.iter().flatten().copied().collect();
+                format!("arcs of a scene: {}, radius {radius}", list(&corners))
             }
             BodyForm::Spline { radii, knots: Knots::Uniform } => format!("spline:{}", list(radii)),
             BodyForm::Spline { radii, knots: Knots::Centripetal } => format!("centripetal:{}", list(radii)),

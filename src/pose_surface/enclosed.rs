@@ -97,7 +97,7 @@ impl EnclosedBody {
             BodyForm::Harmonics { harmonics, .. } => Outline::Harmonics(harmonics.clone()),
             BodyForm::Ellipse { semi_axes } => Outline::Ellipse(semi_axes.map(number)),
             BodyForm::Spline { radii, knots } => Outline::Spline(Box::new(spline(*radii, *knots))),
-            BodyForm::Superellipse { .. } => return None,
+            BodyForm::Superellipse { .. } | BodyForm::Arcs { .. } => return None,
         };
         let room = CENTRE * body.mean_radius();
         let centre = body.centre().map(|x| Interval::new(x - room, x + room));

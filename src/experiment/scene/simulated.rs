@@ -133,6 +133,13 @@ pub enum SceneOutline {
         #[serde(default)]
         rounding: f64,
     },
+    /// `arcs`: corners, counterclockwise, joined by arcs of one radius that bulge.
+    Arcs {
+        /// Where they are.
+        corners: Vec<[f64; 2]>,
+        /// Of all sides.
+        radius: f64,
+    },
     /// `spline`: the closed cubic spline through three points at even angles, as in section 3.4 of the thesis.
     Spline {
         /// Their distances from the origin.

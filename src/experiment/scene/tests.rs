@@ -239,6 +239,10 @@ fn every_shape_can_be_written() {
         shape("{ kind = \"ellipse\", semi_axes = [1, 2] }"),
         SceneOutline::Ellipse { semi_axes: [1.0, 2.0] }
     );
+    assert_eq!(
+        shape("{ kind = \"arcs\", corners = [[-1, 0], [1, 0]], radius = 2 }"),
+        SceneOutline::Arcs { corners: vec![[-1.0, 0.0], [1.0, 0.0]], radius: 2.0 }
+    );
     let radii = [1.2, 1.5, 1.3];
     assert_eq!(
         shape("{ kind = \"spline\", radii = [1.2, 1.5, 1.3] }"),

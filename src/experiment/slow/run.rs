@@ -90,8 +90,9 @@ impl SlowExperiment {
             return Err(scene.error_at("title", "there is nothing to observe", "name a recording in [data]"));
         };
         let help = "a body has to be smooth and strictly convex, with its centre of mass inside";
-        let (shape, _) =
-            outline(body).map_err(|error| scene.error_at("body.shape", error.to_string(), help))?;
+        let (shape, _) = outline(body)
+            .and_then(|(shape, draws)| Ok((shape.without_corners()?, draws)))
+            .map_err(|error| scene.error_at("body.shape", error.to_string(), help))?;
         let moved = MovingScene {
             mass: body.mass,
             gyration: body.radius_of_gyration.unwrap_or_else(|| shape.gyration()),

@@ -14,6 +14,8 @@ pub enum BodyForm {
     /// |y/b|^q <= 1` with `1/p + 1/q = 1`, to which a disc of the radius `rounding` is added (Minkowski). For `p > 2`
     /// the first has corners on its axes, which the disc rounds off.
     Superellipse { semi_axes: [f64; 2], exponent: u32, rounding: f64 },
+    /// Corners, counterclockwise, joined by arcs of one radius that bulge; while a corner touches a palm it is the same point of the body that does.
+    Arcs { corners: Vec<[f64; 2]>, radius: f64 },
     /// Section 3.4 of the thesis: the closed cubic spline through the points with the polar coordinates `(0, q1)`,
     /// `(2 pi/3, q2)` and `(4 pi/3, q3)`.
     Spline { radii: [f64; 3], knots: Knots },
@@ -70,6 +72,23 @@ pub enum FormError {
          is {curvature:.4e} 1/m; take radii that differ less, or uniform knots"
     )]
     Dent { x: f64, y: f64, polar: f64, curvature: f64 },
+    #[error("a body with corners has at least 2 of them, not {0}")]
+    FewCorners(usize),
+    #[error(
+        "side {side} is {chord:.4} m long: an arc of the radius {radius} m that is less than half of its circle \
+         has to join corners that are different and less than twice as far apart"
+    )]
+    Side { side: usize, chord: f64, radius: f64 },
+    #[error("at corner {corner} the outline turns back: give corners counterclockwise, or a greater radius")]
+    Bulges { corner: usize },
+    #[error(
+        "the corners turn {0:.4} times around where once is wanted; give them counterclockwise, in their order"
+    )]
+    CornersTurn(f64),
+    #[error(
+        "the body has corners, which is not for this: its radius of curvature has to be positive everywhere"
+    )]
+    HasCorners,
     #[error("the spline turns {0:.4} times around where once is wanted; take radii that differ less")]
     Loops(f64),
     #[error(

@@ -17,6 +17,7 @@
 //! Left out: impacts (a motion ends where a contact force reaches zero, for after that the body may
 //! come back and hit), palms that touch each other, the palms' own weight.
 
+mod arcs;
 mod breach;
 mod check;
 mod curved;

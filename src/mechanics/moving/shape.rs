@@ -1,5 +1,6 @@
-//! A smooth, strictly convex body by its support function about its centre of mass.
+//! A strictly convex body by its support function about its centre of mass.
 
+use super::arcs::Arcs;
 use super::form::{BodyForm, CentreOfMass, FormError};
 use super::plane::{Plane, along, dot, left_of, scaled, unit};
 use super::positive::{Doubt, positive_everywhere};
@@ -15,6 +16,7 @@ enum Curve {
     Harmonics(Series),
     Superellipse(Superellipse),
     Spline(ClosedSpline),
+    Arcs(Arcs),
 }
 
 impl Curve {
@@ -25,6 +27,7 @@ impl Curve {
             BodyForm::Superellipse { semi_axes, exponent, rounding } => {
                 Curve::Superellipse(Superellipse::new(*semi_axes, *exponent, *rounding)?)
             }
+            BodyForm::Arcs { corners, radius } => Curve::Arcs(Arcs::new(corners, *radius)?),
             BodyForm::Spline { radii, knots } => Curve::Spline(ClosedSpline::new(*radii, *knots)?),
         })
     }
@@ -34,6 +37,7 @@ impl Curve {
             Curve::Harmonics(curve) => curve.support(angle),
             Curve::Superellipse(curve) => curve.support(angle),
             Curve::Spline(curve) => curve.support(angle),
+            Curve::Arcs(curve) => curve.support(angle),
         }
     }
 
@@ -42,12 +46,15 @@ impl Curve {
             Curve::Harmonics(curve) => curve.reach(),
             Curve::Superellipse(curve) => curve.reach(),
             Curve::Spline(curve) => curve.reach(),
+            Curve::Arcs(curve) => curve.reach(),
         }
     }
 
     fn integrals(&self) -> Result<Integrals, FormError> {
-        if let Curve::Spline(curve) = self {
-            return curve.integrals();
+        match self {
+            Curve::Spline(curve) => return curve.integrals(),
+            Curve::Arcs(curve) => return curve.integrals(),
+            Curve::Harmonics(_) | Curve::Superellipse(_) => (),
         }
         over_a_turn(|angle| {
             let (normal, [h, slope, second]) = (unit(angle), self.support(angle));
@@ -57,7 +64,7 @@ impl Curve {
     }
 }
 
-/// A smooth, strictly convex body. Its frame has the origin at the centre of mass and the axes of its form.
+/// A strictly convex body, smooth but for corners where its form has some. Its frame has the origin at the centre of mass and the axes of its form.
 #[derive(Clone, Debug)]
 pub struct Shape {
     curve: Curve,
@@ -97,6 +104,17 @@ impl Shape {
             },
         )?;
         Ok(shape)
+    }
+
+    /// The same, where the body has no corners.
+    ///
+    /// # Errors
+    /// [`FormError::HasCorners`].
+    pub fn without_corners(self) -> Result<Self, FormError> {
+        match self.curve {
+            Curve::Arcs(_) => Err(FormError::HasCorners),
+            _ => Ok(self),
+        }
     }
 
     /// The support function about the centre of mass and its first two derivatives, `[h, h', h'']` in metres, at the

@@ -63,6 +63,7 @@ fn shape_in_words(shape: &SceneOutline) -> String {
         }
         SceneOutline::Ellipse { .. } => "an ellipse".to_owned(),
         SceneOutline::Superellipse { .. } => "a superellipse".to_owned(),
+        SceneOutline::Arcs { corners, .. } => format!("a body with {} corners", corners.len()),
         SceneOutline::Spline { .. } => "a closed spline".to_owned(),
         SceneOutline::RandomSpline { seed, .. } => format!("a random closed spline (seed {seed})"),
     }

@@ -238,6 +238,16 @@ impl Checks<'_> {
                 }
                 self.not_negative("body.shape.rounding", *rounding, "m")
             }
+            SceneOutline::Arcs { corners, radius } => {
+                if corners.len() > 64 {
+                    let message = format!("{} corners are too many", corners.len());
+                    return Err(self.wrong("body.shape.corners", message, "give at most 64"));
+                }
+                for (index, corner) in corners.iter().enumerate() {
+                    self.all_finite(&format!("body.shape.corners[{index}]"), corner)?;
+                }
+                self.positive("body.shape.radius", *radius, "m")
+            }
             SceneOutline::Spline { radii, .. } => self.all_positive("body.shape.radii", radii, "m"),
             SceneOutline::RandomSpline { .. } => Ok(()),
         }

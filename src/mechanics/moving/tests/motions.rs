@@ -4,7 +4,7 @@ use super::super::fixtures::*;
 use super::super::*;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 fn disc(radius: f64, palms: [Course; 2]) -> MovingScene {
     let form = BodyForm::Harmonics { mean: radius, harmonics: vec![] };
@@ -88,6 +88,44 @@ fn a_disc_between_opening_palms() {
             assert!((palm.force - (rise + 9.81) / (2.0 * p.cos())).abs() < 1e-12);
         }
     }
+}
+
+/// A lens of two arcs in a right angle, on both of its corners: a ladder of the length `2 a`, whose middle is a pendulum's, `a` from where the palms meet. Further on it lies on its sides.
+#[test]
+fn a_body_on_its_corners_is_a_ladder() {
+    let (half, radius) = (1.0, 2.0);
+    let form = BodyForm::Arcs { corners: vec![[-half, 0.0], [half, 0.0]], radius };
+    let shape = Shape::new(&form, CentreOfMass::Uniform).unwrap();
+    let mut scene = palms_fixed();
+    (scene.gyration, scene.shape) = (shape.gyration(), shape);
+    (scene.orientation, scene.rate) = (0.02, 0.1);
+    scene.drive = Drive::Prescribed([steady(PI / 4.0, 0.0), steady(PI / 2.0, 0.0)]);
+    let path = simulate(&scene, &times()).unwrap();
+    let inertia = half * half + scene.gyration * scene.gyration;
+    let energy = |moment: &Moment| {
+        let angle = FRAC_PI_2 + moment.phi0;
+        0.5 * inertia * moment.omega0 * moment.omega0 + 9.81 * half * angle.sin()
+    };
+    let at_first = energy(&path.moments[0]);
+    // half of the corner's 120 degrees are left at first
+    let (on_corners, on_sides): (Vec<&Moment>, Vec<&Moment>) =
+        path.moments.iter().partition(|moment| moment.phi0 < PI / 12.0);
+    assert!(on_corners.len() > 50 && on_sides.len() > 10, "{} {}", on_corners.len(), on_sides.len());
+    for moment in on_corners {
+        assert!((moment.centre[0].hypot(moment.centre[1]) - half).abs() < 1e-12);
+        assert!((energy(moment) - at_first).abs() < 1e-10, "{:e}", energy(moment) - at_first);
+        let (s, c) = moment.phi0.sin_cos();
+        let ends = [
+            [moment.centre[0] + half * c, moment.centre[1] + half * s],
+            [moment.centre[0] - half * c, moment.centre[1] - half * s],
+        ];
+        for (palm, end) in moment.palms.iter().zip(ends) {
+            assert!((palm.s - end[0].hypot(end[1])).abs() < 1e-12);
+        }
+    }
+    assert!(on_sides.iter().all(|moment| (energy(moment) - at_first).abs() > 1e-9));
+    println!("energy drift {:e} J", path.energy_drift());
+    assert!(path.energy_drift() < 1e-9, "{:e}", path.energy_drift());
 }
 
 /// A sum of sines through values at the times of [`times`]: least squares over sines of twice the period, which
