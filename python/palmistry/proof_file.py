@@ -74,11 +74,11 @@ FUNCTIONS = {
 
 
 class Field(list):
-    """The column of the rates of what moves; `along` it is differentiated."""
+    """What is differentiated `along`; as a matrix, the column of its rates, or what else has its name."""
 
-    def __init__(self, rate, columns):
-        self.along = Derivation(rate)
-        super().__init__([self.along[symbol(name)]] for name in columns)
+    def __init__(self, along, rows):
+        super().__init__(rows)
+        self.along = along
 
 
 class Reader:
@@ -127,7 +127,8 @@ class Reader:
             return found
         if name == "bracket":
             f, g = (field.along for field in of)
-            return self.system.field(lambda name: f[g[symbol(name)]] - g[f[symbol(name)]])
+            along = Derivation(lambda name: f[g[symbol(name)]] - g[f[symbol(name)]])
+            return Field(along, [[along[symbol(column)]] for column in self.system.columns()])
         if name == "d":
             columns = [named(single(x)) for x in of[1:]] or self.system.columns()
             return [[self.system.unit(column)[x] for column in columns] for x in entries(of[0])]
@@ -140,7 +141,7 @@ class System:
     def __init__(self, path, depth=0):
         with open(path, encoding="utf-8") as file:
             text = re.sub(r'"[^"]*"|#[^\n]*', lambda x: " ".join(x[0].split()) * (x[0][0] == '"'), file.read())
-        self.path, self.depth, self.source, self.texts, self.known = path, depth, "".join(text.split()), {}, {}
+        self.path, self.depth, self.source, self.lets, self.rates, self.known = path, depth, "".join(text.split()), {}, {}, {}
         self.states, self.unknown, self.initial, self.outputs, self.moving, self.signals = [], [], [], [], [], []
         self.symbols = {"pi"}
         for entry in ENTRY.split(text if re.search(r"^\s*drift\b", text, re.M) else text + "\ndrift signals"):
@@ -157,10 +158,10 @@ class System:
             self.known[name] = System(path, self.depth + 1)
             self.symbols |= self.known[name].symbols
         elif kind == "let" and (found := re.fullmatch(r"(\w+)\s*(?::[^=]*)?=(.*)", text, re.S)):
-            self.texts[found[1]] = found[2]
+            self.lets[found[1]] = found[2]
         elif kind in ("drift", "input", "field"):
             name, *bodies = re.split(r"(\w+)'\s*=", text)
-            self.texts[name.strip()] = kind, dict(zip(bodies[::2], bodies[1::2]))
+            self.rates[name.strip()] = kind, dict(zip(bodies[::2], bodies[1::2]))
             self.moving += [name.strip()] * (kind != "field")
         elif kind == "output":
             self.outputs += [re.sub(":[^,]*", "", text)] if "=" not in text else refuse("an output that is zero")
@@ -190,15 +191,14 @@ class System:
         if rest:
             return self.known[first].named(rest)
         if name not in self.known:
-            of = self.texts.get(name)
-            if isinstance(of, tuple):
-                self.known[name] = self.field(lambda symbol: self.rate(symbol, *of))
-            elif of:
-                (self.known[name],) = self.read(of)
+            found = [[symbol(name)]] if name in self.symbols or name.rstrip("'") in self.signals else []
+            if name in self.lets:
+                (found,) = self.read(self.lets[name])
+            if name in self.rates:
+                found = Field(Derivation(lambda symbol: self.rate(symbol, *self.rates[name])), found)
             elif name == "output":
-                return [[x] for x in self.seen()]
-            else:
-                return [[symbol(name)]] if name in self.symbols or name.rstrip("'") in self.signals else refuse(f"'{name}'")
+                found = [[x] for x in self.seen()]
+            self.known[name] = found if found or name in self.rates else refuse(f"'{name}'")
         return self.known[name]
 
     def rate(self, name, kind, bodies):
@@ -207,7 +207,6 @@ class System:
         (found,) = self.read(bodies.get(name, "0"))
         return single(found)
 
-    def field(self, rate): return Field(rate, self.columns())
     def unit(self, column): return self.known.setdefault((column, "unit"), Derivation(lambda name: number(name == column)))
     def columns(self): return [name for name in self.states + self.unknown if name not in self.initial]
     def seen(self): return [x for text in self.outputs or refuse("no output") for of in self.read(text) for x in entries(of)]

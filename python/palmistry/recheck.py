@@ -45,8 +45,8 @@ def adds(row, basis, prime):
 def solution(system, gap):
     """A symbol in which a gap is linear, or for which it is zero at a quarter turn, and its value."""
     names, zero = [node for node in gap.below() if node.kind == "symbol"], number(0)
-    for name in names:
-        slope = system.unit(name.args[0])[gap]
+    slopes = [(name, system.unit(name.args[0])[gap]) for name in names]
+    for name, slope in sorted(slopes, key=lambda pair: pair[1].kind != "number"):
         if slope is not zero and name not in slope.below():
             return name, -Map({name: zero})[gap] / slope
     turns = [(name, turn) for name in names for turn in (zero, number("1/2") * symbol("pi"))]
