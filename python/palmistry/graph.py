@@ -19,11 +19,12 @@ class Node:
     known = {}
 
     def __new__(cls, kind, *args):
-        if (kind, *args) not in cls.known:
-            made = cls.known[kind, *args] = object.__new__(cls) if len(cls.known) < MOST else refuse("a large graph")
+        key = kind, *args
+        if key not in cls.known:
+            made = cls.known[key] = object.__new__(cls) if len(cls.known) < MOST else refuse("a large graph")
             made.kind, made.args, made.place = kind, args, len(cls.known)
             made.parts = [part for part in args if isinstance(part, Node)]
-        return cls.known[kind, *args]
+        return cls.known[key]
 
     def __add__(self, other):
         a, b = sorted((self, other), key=lambda node: (node.kind != "number", node.place))
@@ -57,13 +58,10 @@ class Node:
         return sorted(seen, key=lambda node: node.place)
 
 
+def refuse(why): raise NotRead(why)
 def number(value): return Node("number", Fraction(value))
 def symbol(name): return Node("symbol", name)
 def call(kind, x): return turned(x)[kind == "cos"] if kind in ("sin", "cos") else Node(kind, x)
-
-
-def refuse(why):
-    raise NotRead(why)
 
 
 def turned(x):
@@ -76,7 +74,8 @@ def turned(x):
         sine, cosine = turned(-x)
         return -sine, cosine
     if of.kind == "+" or factor in range(2, 20):
-        (a, b), (c, d) = map(turned, [number(factor) * y for y in of.args] if of.kind == "+" else [of, number(factor - 1) * of])
+        parts = [number(factor) * y for y in of.args] if of.kind == "+" else [of, number(factor - 1) * of]
+        (a, b), (c, d) = map(turned, parts)
         return a * d + b * c, b * d - a * c
     return Node("sin", x), Node("cos", x)
 
@@ -90,7 +89,7 @@ SLOPES = {  # the derivatives of a node by its parts
 
 
 class Map(dict):
-    """What nodes are mapped to by a rule, from what their parts are mapped to; here, other expressions by some given."""
+    """What a rule makes of nodes, from what it makes of their parts; here, expressions with what is given put in."""
 
     def __missing__(self, root):
         for node in root.below(self):

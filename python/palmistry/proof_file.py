@@ -12,14 +12,11 @@ ENTRY = re.compile(r"^\s*(?=(?:system|use|state|param|angle|known|unknown|initia
                    r"|reduction)\b)", re.M)
 
 
+def each(do, *of): return [[do(*x) for x in zip(*rows, strict=True)] for rows in zip(*of, strict=True)]
 def entries(x): return [entry for row in x for entry in row]
 def single(x): return x[0][0] if len(x) == len(x[0]) == 1 else refuse("a matrix where a number is meant")
 def named(x): return x.args[0] if x.kind == "symbol" else refuse("an expression where a symbol is meant")
 def dot(a, b): return sum((x * y for x, y in zip(a, b, strict=True)), number(0))
-
-
-def each(operation, a, *more):
-    return [[operation(*of) for of in zip(*rows, strict=True)] for rows in zip(a, *more, strict=True)]
 
 
 def times(a, b):
@@ -66,7 +63,7 @@ OPERATIONS = {  # how they bind, and what they do
     "at": (3, lambda a, b: each(Map({symbol(named(single(x))): single(y) for x, _, y in b}).__getitem__, a)),
     **{mark: (0, lambda a, b, mark=mark: (a, mark, b)) for mark in ("=", "!=", "<", "<=", ">", ">=")}}
 FUNCTIONS = {
-    "transpose": lambda a: [list(column) for column in zip(*a)], "det": lambda a: [[determinant(a)]], "inverse": inverse,
+    "transpose": lambda a: [list(row) for row in zip(*a)], "det": lambda a: [[determinant(a)]], "inverse": inverse,
     "dot": lambda a, b: [[dot(entries(a), entries(b))]], "cross": lambda a, b: cross(entries(a), entries(b)),
     "tan": lambda x: [[call("sin", single(x)) / call("cos", single(x))]],
     "cot": lambda x: [[call("cos", single(x)) / call("sin", single(x))]],
@@ -141,7 +138,8 @@ class System:
     def __init__(self, path, depth=0):
         with open(path, encoding="utf-8") as file:
             text = re.sub(r'"[^"]*"|#[^\n]*', lambda x: " ".join(x[0].split()) * (x[0][0] == '"'), file.read())
-        self.path, self.depth, self.source, self.lets, self.rates, self.known = path, depth, "".join(text.split()), {}, {}, {}
+        self.path, self.depth, self.source = path, depth, "".join(text.split())
+        self.lets, self.rates, self.known = {}, {}, {}
         self.states, self.unknown, self.initial, self.outputs, self.moving, self.signals = [], [], [], [], [], []
         self.symbols = {"pi"}
         for entry in ENTRY.split(text if re.search(r"^\s*drift\b", text, re.M) else text + "\ndrift signals"):
@@ -207,9 +205,14 @@ class System:
         (found,) = self.read(bodies.get(name, "0"))
         return single(found)
 
-    def unit(self, column): return self.known.setdefault((column, "unit"), Derivation(lambda name: number(name == column)))
-    def columns(self): return [name for name in self.states + self.unknown if name not in self.initial]
-    def seen(self): return [x for text in self.outputs or refuse("no output") for of in self.read(text) for x in entries(of)]
+    def unit(self, column):
+        return self.known.setdefault((column, "unit"), Derivation(lambda name: number(name == column)))
+
+    def columns(self):
+        return [name for name in self.states + self.unknown if name not in self.initial]
+
+    def seen(self):
+        return [x for text in self.outputs or refuse("no output") for of in self.read(text) for x in entries(of)]
 
     def word(self, text):
         """A word by its name, as `Lf Lg y`: an output, differentiated along what moves the system."""

@@ -2,8 +2,8 @@
 
     python -m palmistry.recheck VERDICTS.json [--proofs FOLDER]
 
-From a verdict file (`palmistry prove proofs/ --verdicts FILE`) only witnesses, minors and boxes are taken; what they are
-about is read anew from the proof file (`proof_file`), into a graph of expressions (`graph`). `confirmed` is so;
+From a verdict file (`palmistry prove proofs/ --verdicts FILE`) only witnesses, minors and boxes are taken; what they
+are about is read anew from the proof file (`proof_file`), into a graph of expressions (`graph`). `confirmed` is so;
 `consistent`: nothing speaks against it at random points modulo primes; what is not read is `not checked`, and why.
 The exit status is 1 where something is not confirmed, and 2 for what is no verdict file.
 """
@@ -33,7 +33,7 @@ def rank(rows, prime, basis=()): return sum(adds(row, basis, prime) for basis in
 
 
 def adds(row, basis, prime):
-    """Whether a row is independent of a basis, to which it is added then: rows with a one in a column, by this column."""
+    """Whether a row is independent of a basis, to which it is added then, with a one in a column."""
     for column, other in basis:
         row = [(x - row[column] * y) % prime for x, y in zip(row, other)]
     column = next((column for column, x in enumerate(row) if x), None)
@@ -54,7 +54,7 @@ def solution(system, gap):
 
 
 def points(system, conditions, seed):
-    """Random points modulo primes on the set of the equations; inequalities hold somewhere near, and do not matter."""
+    """Random points modulo primes on the set of the equations; inequalities hold somewhere, and do not matter."""
     found = []
     for gap in [gap for relation in conditions if relation[1] == "=" for gap in gaps(relation)]:
         for given in found:
@@ -70,14 +70,16 @@ def points(system, conditions, seed):
 
 
 def codistribution(system, point, patience):
-    """The rows of all words: without conditions, those that add nothing end; with them, there may be some such between."""
+    """The rows of all words; those behind more words than `patience` that add nothing are not looked at."""
     columns, words, rows, basis = system.states + system.unknown, [(word, 0) for word in system.seen()], [], []
     for word, idle in words:
         row = point.gradient(word, columns)
         rows.append([x for x, name in zip(row, columns) if name not in system.initial])
         idle = 0 if adds(row, basis, point.prime) else idle + 1
         new = [(system.named(field).along[word], idle) for field in system.moving if idle <= patience]
-        words += [pair for pair in new if pair not in words] if len(words) < WORDS else refuse(f"more than {WORDS} words")
+        words += [pair for pair in new if pair not in words]
+        if len(words) > WORDS:
+            refuse(f"more than {WORDS} words")
     return rows
 
 
@@ -185,7 +187,8 @@ def has_one_sign(system, of, box):
             is_told = sum(parts.values(), found).sign() != 0
         if not is_told:
             most = max(sides, key=lambda name: parts[name].high - parts[name].low if name in parts else 0)
-            waiting += [{**sides, most: (sides[most][0], middle[most])}, {**sides, most: (middle[most], sides[most][1])}]
+            ends = sides[most][0], middle[most], sides[most][1]
+            waiting += [{**sides, most: ends[:2]}, {**sides, most: ends[1:]}]
         if not waiting:
             return True
     return False
