@@ -127,6 +127,9 @@ class Modulo(Map):
         if not node.parts:
             return self.chance(x) if node.kind == "symbol" else x.numerator * pow(x.denominator, -1, self.prime)
         self.guessed |= node.parts[0].kind != "symbol" or node.kind not in ("sin", "cos", "exp")
+        if node.kind == "sqrt":
+            root = pow(x, (self.prime + 1) // 4, self.prime)
+            return root if (root * root - x) % self.prime == 0 else 1 // 0
         tangent = self.chance(f"{node.kind.replace('cos', 'sin')} of {x}")  # of half the angle
         over = pow(1 + tangent**2, -1, self.prime)
         return {"sin": 2 * tangent * over, "cos": (1 - tangent**2) * over}.get(node.kind, tangent) % self.prime
