@@ -1,240 +1,195 @@
-"""Expressions as a graph in which what is equal stands once; their derivatives; their values modulo primes and in intervals of fractions."""
+"""Expressions as a graph in which what is equal stands once, and maps of it: derivatives, residues, enclosures."""
 
 import random
 from fractions import Fraction
-from math import isqrt
+from math import floor, isqrt
+from operator import add, mul
 
-MOST, WORK = 400_000, 1_000_000  # nodes of a graph; nodes that may be gone through for a verdict
-LONGEST, ONE = 100_000, 1 << 300  # bits of a fraction; an interval's ends are parts of this
+MOST, LONGEST, FINE = 400_000, 100_000, 1 << 400  # nodes; bits of a fraction; ends of an interval are parts of this
+PI = Fraction(3141592653589793238462643383279502884197169399375105820974944592307816406286, 10**75)
+SERIES = {"exp": (1, 1, 1, 1), "sin": (0, 1, 0, -1), "cos": (1, 0, -1, 0)}  # times x^k/k!, by k modulo 4
 
 
 class NotRead(Exception):
     """What this program does not read, or does not tell."""
 
 
-def refuse(why):
-    raise NotRead(why)
-
-
 class Node:
-    """A `number`, a `symbol`, `+` or `*` of two nodes, `^` with a whole exponent, or a function such as `sin` of a node."""
-    known, work = {}, 0
+    """A `number`, a `symbol`, `+` or `*` of two nodes, `^` with a whole exponent, or a function such as `sin`."""
+    known = {}
 
-    def __new__(cls, *key):
+    def __new__(cls, kind, *args):
+        key = kind, *args
         if key not in cls.known:
-            made = cls.known[key] = object.__new__(cls) if len(cls.known) < MOST else refuse(f"more than {MOST} parts of expressions")
-            made.kind, made.args, made.place = key[0], key[1:], len(cls.known)
-            made.parts = [part for part in key if isinstance(part, Node)]
+            made = cls.known[key] = object.__new__(cls) if len(cls.known) < MOST else refuse("a large graph")
+            made.kind, made.args, made.place = kind, args, len(cls.known)
+            made.parts = [part for part in args if isinstance(part, Node)]
         return cls.known[key]
 
     def __add__(self, other):
-        first, second = sorted((self, other), key=lambda node: (node.kind != "number", node.place))
-        if second.kind == "number":
-            return number(first.args[0] + second.args[0])
-        return second if first is number(0) else Node("+", first, second)
+        a, b = sorted((self, other), key=lambda node: (node.kind != "number", node.place))
+        if b.kind == "number":
+            return number(a.args[0] + b.args[0])
+        return b if a.args == (0,) else Node("+", a, b)
 
     def __mul__(self, other):
-        first, second = sorted((self, other), key=lambda node: (node.kind != "number", node.place))
-        if second.kind == "number":
-            return number(first.args[0] * second.args[0])
-        if first.kind == "number" and second.kind == "*" and second.args[0].kind == "number":
-            return number(first.args[0] * second.args[0].args[0]) * second.args[1]
-        return first if first is number(0) else second if first is number(1) else Node("*", first, second)
+        a, b = sorted((self, other), key=lambda node: (node.kind != "number", node.place))
+        if b.kind == "number":
+            return number(a.args[0] * b.args[0])
+        if a.kind == "number" and b.kind == "*" and b.args[0].kind == "number":
+            return a * b.args[0] * b.args[1]
+        return a if a.args == (0,) else b if a.args == (1,) else Node("*", a, b)
 
     def __pow__(self, n):
-        if n in (0, 1) or self is number(1):
-            return self if n else number(1)
-        is_small = self.kind == "number" and abs(n) < 64 and 0 < abs(self.args[0].numerator * self.args[0].denominator) < ONE
-        return number(self.args[0] ** n) if is_small else Node("^", self, n)
+        if self.kind == "number" and abs(n) < 64 and 0 < abs(self.args[0].numerator * self.args[0].denominator) < FINE:
+            return number(self.args[0] ** n)
+        return Node("^", self, n) if n not in (0, 1) else self if n else number(1)
 
     def __neg__(self): return number(-1) * self
     def __sub__(self, other): return self + -other
     def __truediv__(self, other): return self * other**-1
 
+    def below(self, known=()):
+        """This node and all that it is made of, what is made behind what it is made of; not what is known."""
+        seen, new = set(), {self}
+        while new:
+            seen |= new
+            new = {part for node in new for part in node.parts if part not in known} - seen
+        return sorted(seen, key=lambda node: node.place)
 
+
+def refuse(why): raise NotRead(why)
 def number(value): return Node("number", Fraction(value))
 def symbol(name): return Node("symbol", name)
-
-
-def call(kind, x):
-    """A function of a node. Sines and cosines of sums are made of those of their parts: an angle is met by these alone."""
-    known = {("exp", 0): 1, ("log", 1): 0, ("sqrt", 0): 0, ("sqrt", 1): 1, ("atan", 0): 0}
-    if x.kind == "number" and (kind, x.args[0]) in known:
-        return number(known[kind, x.args[0]])
-    return turned(x)[kind == "cos"] if kind in ("sin", "cos") else Node(kind, x)
+def call(kind, x): return turned(x)[kind == "cos"] if kind in ("sin", "cos") else Node(kind, x)
 
 
 def turned(x):
-    """The sine and the cosine."""
+    """The sine and the cosine: of sums and multiples, by those of the angles that a state tells."""
     factor, of = (x.args[0].args[0], x.args[1]) if x.kind == "*" and x.args[0].kind == "number" else (Fraction(1), x)
-    if x is number(0) or of is symbol("pi") and (2 * factor).denominator == 1:
-        quarter = int(2 * factor) % 4 if x is not number(0) else 0
+    if x.args == (0,) or of is symbol("pi") and (2 * factor).denominator == 1:
+        quarter = int(2 * factor) % 4 if x.args != (0,) else 0
         return number((0, 1, 0, -1)[quarter]), number((1, 0, -1, 0)[quarter])
     if factor < 0:
         sine, cosine = turned(-x)
         return -sine, cosine
     if of.kind == "+" or factor in range(2, 20):
-        parts = [number(factor) * part for part in of.args] if of.kind == "+" else [of, number(factor - 1) * of]
+        parts = [number(factor) * y for y in of.args] if of.kind == "+" else [of, number(factor - 1) * of]
         (a, b), (c, d) = map(turned, parts)
         return a * d + b * c, b * d - a * c
     return Node("sin", x), Node("cos", x)
 
 
-SLOPES = {"sin": lambda x: call("cos", x), "cos": lambda x: -call("sin", x), "exp": lambda x: call("exp", x), "log": lambda x: x**-1,
-          "sqrt": lambda x: (number(2) * call("sqrt", x)) ** -1, "atan": lambda x: (number(1) + x * x) ** -1}
+RING = {"+": add, "*": mul, "^": pow}
+SLOPES = {  # the derivatives of a node by its parts
+    "+": lambda a, b: [number(1), number(1)], "*": lambda a, b: [b, a], "^": lambda x, n: [number(n) * x ** (n - 1)],
+    "sin": lambda x: [call("cos", x)], "cos": lambda x: [-call("sin", x)], "exp": lambda x: [call("exp", x)],
+    "log": lambda x: [x**-1], "sqrt": lambda x: [number("1/2") / call("sqrt", x)],
+    "atan": lambda x: [(number(1) + x**2) ** -1]}
 
 
-def partials(node):
-    """What a node is made of, each with the derivative of the node by it."""
-    if node.kind == "^":
-        return [(node.args[0], number(node.args[1]) * node.args[0] ** (node.args[1] - 1))]
-    if node.kind == "*":
-        return [node.args, node.args[::-1]]
-    return [(part, SLOPES.get(node.kind, lambda x: number(1))(part)) for part in node.parts]
+class Map(dict):
+    """What a rule makes of nodes, from what it makes of their parts; here, expressions with what is given put in."""
+
+    def __missing__(self, root):
+        for node in root.below(self):
+            self[node] = self.rule(node, *(self[x] if isinstance(x, Node) else x for x in node.args))
+        return self[root]
+
+    def rule(self, node, *of):
+        return RING[node.kind](*of) if node.kind in RING else call(node.kind, *of) if node.parts else node
 
 
-def below(root, known=()):
-    """A node and all that it is made of, what is made behind what it is made of; not what is known."""
-    seen, waiting = set(), [root]
-    while waiting:
-        node = waiting.pop()
-        if node not in seen and node not in known:
-            seen.add(node)
-            waiting += node.parts
-    Node.work += len(seen)
-    return refuse("it takes too long here") if Node.work > WORK else sorted(seen, key=lambda node: node.place)
+class Derivation(Map):
+    """Derivatives along a field, by the rate of each symbol."""
+
+    def __init__(self, rate):
+        self.rate = rate
+
+    def rule(self, node, *slopes):
+        if all(slope.args == (0,) for slope in slopes[:len(node.parts)]) or not node.parts:
+            return self.rate(*node.args) if node.kind == "symbol" else number(0)
+        return sum(map(mul, SLOPES[node.kind](*node.args), slopes), number(0))
 
 
-class Field:
-    """A way to move, by the rate of each symbol."""
+class Modulo(Map):
+    """Residues: of symbols by chance, and of functions, the same of the same argument, which may be `guessed` then."""
 
-    def __init__(self, rate): self.rate, self.kept = rate, {}
+    def __init__(self, prime, seed):
+        self.prime, self.guessed = prime, False
+        self.chance = lambda name: random.Random(f"{seed} {name}").randrange(prime)
 
-    def along(self, of):
-        """The derivative along the field."""
-        for node in below(of, self.kept):
-            slope = self.rate(node.args[0]) if node.kind == "symbol" else number(0)
-            if any(self.kept[part] is not number(0) for part in node.parts):
-                for part, by in partials(node):
-                    slope = slope + by * self.kept[part]
-            self.kept[node] = slope
-        return self.kept[of]
-
-
-class Point:
-    """Values of nodes: what a domain gives to numbers, symbols and functions, or what they are given here."""
-
-    def __init__(self, domain, given): self.domain, self.values = domain, dict(given)
-
-    def value(self, root):
-        for node in below(root, self.values):
-            parts = [self.values[part] for part in node.parts]
-            if node.kind in ("number", "symbol"):
-                self.values[node] = getattr(self.domain, node.kind)(node.args[0])
-            elif node.kind in ("+", "*"):
-                self.values[node] = parts[0] + parts[1] if node.kind == "+" else parts[0] * parts[1]
-            else:
-                self.values[node] = parts[0] ** node.args[1] if node.kind == "^" else self.domain.function(node, parts[0])
-        return self.values[root]
-
-    def slopes(self, root, names):
-        """The derivatives by symbols, from the root downwards."""
-        slopes = {root: self.domain.number(Fraction(1))}
-        for node in reversed(below(root)):
-            for part, by in partials(node) if node in slopes else ():
-                more = slopes[node] * self.value(by)
-                slopes[part] = slopes[part] + more if part in slopes else more
-        return [slopes.get(symbol(name), self.domain.number(Fraction(0))) for name in names]
-
-
-class Expressions:
-    """The domain of nodes: other expressions are put in the place of symbols."""
-    number, symbol, function = staticmethod(number), staticmethod(symbol), staticmethod(lambda node, x: call(node.kind, x))
-
-
-class Residue:
-    def __init__(self, value, prime): self.value, self.prime = value % prime, prime
-    def __add__(self, other): return Residue(self.value + other.value, self.prime)
-    def __mul__(self, other): return Residue(self.value * other.value, self.prime)
-    def sign(self): return int(self.value != 0)
-
-    def __pow__(self, n):
-        if self.value == 0 and n < 0:
-            raise ZeroDivisionError
-        return Residue(pow(self.value, n, self.prime), self.prime)
-
-
-class Modulo:
-    """Residues: of symbols by chance, and of functions, the same of the same argument; `guessed` tells whether these may depend on others."""
-
-    def __init__(self, prime, seed): self.prime, self.seed, self.guessed = prime, seed, False
-    def number(self, x): return Residue(x.numerator * pow(x.denominator, -1, self.prime), self.prime)
-    def symbol(self, name): return Residue(random.Random(f"{self.seed} {name}").randrange(self.prime), self.prime)
-
-    def function(self, node, x):
+    def rule(self, node, x, other=0):
+        if node.kind in ("+", "*"):
+            return RING[node.kind](x, other) % self.prime
+        if node.kind == "^":
+            return pow(x, other, self.prime) if x or other > 0 else 1 // x
+        if not node.parts:
+            return self.chance(x) if node.kind == "symbol" else x.numerator * pow(x.denominator, -1, self.prime)
         self.guessed |= node.parts[0].kind != "symbol" or node.kind not in ("sin", "cos", "exp")
         if node.kind == "sqrt":
-            root = x ** ((self.prime + 1) // 4)
-            return root if (root * root).value == x.value else Residue(0, self.prime) ** -1
-        chance, one = self.symbol(f"{node.kind.replace('cos', 'sin')} of {x.value}"), Residue(1, self.prime)
-        over = (one + chance * chance) ** -1  # by the tangent of half the angle
-        return {"sin": (chance + chance) * over, "cos": over + over + Residue(-1, self.prime)}.get(node.kind, chance)
+            root = pow(x, (self.prime + 1) // 4, self.prime)
+            return root if (root * root - x) % self.prime == 0 else 1 // 0
+        tangent = self.chance(f"{node.kind.replace('cos', 'sin')} of {x}")  # of half the angle
+        over = pow(1 + tangent**2, -1, self.prime)
+        return {"sin": 2 * tangent * over, "cos": (1 - tangent**2) * over}.get(node.kind, tangent) % self.prime
+
+    def gradient(self, root, names):
+        """The derivatives by symbols, from the root downwards."""
+        slopes = {root: 1}
+        for node in reversed(root.below()):
+            for part, by in zip(node.parts, SLOPES[node.kind](*node.args) if node.parts else ()):
+                slopes[part] = (slopes.get(part, 0) + slopes[node] * self[by]) % self.prime
+        return [slopes.get(symbol(name), 0) for name in names]
 
 
 class Interval:
-    """Two fractions between which a number lies, rounded outward; or one, exactly, as long as there is only arithmetic."""
+    """Two fractions between which a number lies, rounded outward; or one, exactly, where there is only arithmetic."""
 
-    def __init__(self, low, high):
-        self.low, self.high = (low, high) if low == high else (Fraction((low * ONE).__floor__(), ONE), Fraction((high * ONE).__ceil__(), ONE))
-        if (low.numerator * low.denominator).bit_length() > LONGEST:
+    def __init__(self, *among):
+        low, high = self.low, self.high = min(among), max(among)
+        if low < high:
+            self.low, self.high = Fraction(floor(low * FINE), FINE), Fraction(-floor(-high * FINE), FINE)
+        elif (low.numerator * low.denominator).bit_length() > LONGEST:
             refuse("numbers of great length")
 
     def __add__(self, other): return Interval(self.low + other.low, self.high + other.high)
-
-    def __mul__(self, other):
-        products = [a * b for a in (self.low, self.high) for b in (other.low, other.high)]
-        return Interval(min(products), max(products))
+    def __mul__(self, other): return Interval(*(a * b for a in (self.low, self.high) for b in (other.low, other.high)))
 
     def __pow__(self, n):
-        if n < 0 and self.low <= 0 <= self.high:
-            raise ZeroDivisionError
-        if abs(n) * max((end.numerator * end.denominator).bit_length() for end in (self.low, self.high)) > LONGEST:
+        if abs(n) * max((x.numerator * x.denominator).bit_length() for x in (self.low, self.high)) > LONGEST:
             refuse("numbers of great length")
-        ends = sorted((self.low**n, self.high**n))
-        return Interval(Fraction(0) if n % 2 == 0 and self.low < 0 < self.high else ends[0], ends[1])
+        turn = [Fraction(0) ** n] if self.low < 0 < self.high else []  # no value if the power is negative
+        return Interval(self.low**n, self.high**n, *turn)
 
     def sign(self):
-        return (self.low > 0) - (self.high < 0) if self.low == self.high or not self.low <= 0 <= self.high else refuse("not told from zero")
+        is_told = self.low == self.high or not self.low <= 0 <= self.high
+        return (self.low > 0) - (self.high < 0) if is_told else refuse("not told from zero")
 
 
-class Intervals:
-    """The domain of intervals; a symbol that is not given has any value."""
+class Enclosure(Map):
+    """Intervals; a symbol that is not given has some value."""
 
-    def number(self, x): return Interval(x, x)
-
-    def symbol(self, name):
-        pi = Fraction(3141592653589793238462643383279502884197169399375105820974944592307816406286, 10**75)
-        return Interval(pi, pi + Fraction(1, 10**75)) if name == "pi" else self.number(Fraction(random.Random(name).randrange(1, 99), 32))
-
-    def function(self, node, x):
+    def rule(self, node, x, *other):
+        if node.kind in RING:
+            return RING[node.kind](x, *other)
+        if not node.parts:
+            some = Fraction(random.Random(x).randrange(1, 99), 32) if node.kind == "symbol" else x
+            return Interval(PI, PI + Fraction(1, 10**75)) if x == "pi" else Interval(some)
+        half = (x.high - x.low) / 2
         if node.kind in ("sin", "cos"):  # no further from the one in the middle than half the width
-            half = (x.high - x.low) / 2
             return image(node.kind, x.low + half) + Interval(-half, half)
         return Interval(image(node.kind, x.low).low, image(node.kind, x.high).high)
 
 
 def image(kind, x):
     """A function of a fraction; a root is exact where it is a fraction."""
-    if kind == "sqrt" and x >= 0:
-        exact, root = Fraction(isqrt(x.numerator), isqrt(x.denominator)), Fraction(isqrt((x * ONE**2).__floor__()), ONE)
-        return Interval(exact, exact) if exact * exact == x else Interval(root, root + Fraction(1, ONE))
-    if kind not in ("exp", "sin", "cos") or abs(x) > 64:
-        return refuse(f"a value of {kind}") if kind != "sqrt" else Interval(Fraction(0), Fraction(0)) ** -1
-    k, step, fine = int(kind == "sin"), 1 if kind == "exp" else 2, ONE**2 << 128  # what is rounded on the way grows by no more than exp(64)
-    part, total = (x**k * fine).__floor__(), 0
-    while k < 2 * abs(x) or abs(part) * ONE > fine:
-        total, k = total + part, k + step
-        ratio = x / k if step == 1 else -x * x / (k * (k - 1))
-        part = part * ratio.numerator // ratio.denominator
-    slack = Fraction(2 * abs(part), fine) + Fraction(k, ONE)  # the parts fall by half at least from here on
-    return Interval(Fraction(total, fine) - slack, Fraction(total, fine) + slack)
+    if kind == "sqrt":
+        exact, root = Fraction(isqrt(x.numerator), isqrt(x.denominator)), isqrt(floor(x * FINE**2))
+        return Interval(exact) if exact * exact == x else Interval(Fraction(root, FINE), Fraction(root + 1, FINE))
+    k, total, part = 0, Interval(Fraction(0)), Interval(Fraction(1), 1 + Fraction(1, FINE))
+    while k < 2 * abs(x) or abs(part.low + part.high) * FINE > 4:
+        total, k = total + part * Interval(Fraction(SERIES[kind][k % 4])), k + 1
+        part = part * Interval(x / k) if abs(x) < 64 else refuse("large arguments")
+    rest = 2 * max(abs(part.low), abs(part.high))  # the parts fall by half at least from here on
+    return total + Interval(-rest, rest)

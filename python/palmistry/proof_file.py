@@ -1,47 +1,28 @@
-"""Proof files, read into graphs of expressions. Everything is a matrix, a number one of one entry. What is not read is refused by name."""
+"""Proof files, read by a parser of their own into matrices of expressions. What is not read is refused."""
 
 import os
 import re
 
-from .graph import Expressions, Field, Node, NotRead, Point, call, number, refuse, symbol
+from .graph import Derivation, Map, Node, call, number, refuse, symbol
 
-TOKEN = re.compile(r'#[^\n]*|"[^"]*"|[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\'*|(?:\d+\.?\d*|\.\d+)(?:e-?\d{1,3}\b)?|!=|<=|>=|\S')
-ENTRIES = ("system use state param angle known unknown initial experiments let drift input field output sample claim erratum damaged scan"
-           " convention loose definition undecided set pole map line reduction").split()
-SEEN = "observable", "unobservable", "identifiable", "unidentifiable"
-
-
-def tokens_of(text): return tuple(token for token in TOKEN.findall(text) if token[0] != "#")
-def squeezed(text): return re.sub(r"#[^\n]*|\s+", "", text)
+NAME = r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*'*"
+TOKEN = re.compile(NAME + r"|(?:\d+\.?\d*|\.\d+)(?:e-?\d{1,3}\b)?|!=|<=|>=|\S")
+ENTRY = re.compile(r"^\s*(?=(?:system|use|state|param|angle|known|unknown|initial|experiments|let|drift|input|field"
+                   r"|output|sample|claim|erratum|damaged|scan|convention|loose|definition|undecided|set|pole|map|line"
+                   r"|reduction)\b)", re.M)
 
 
-def split(tokens, mark):
-    """The parts between those marks that stand in no brackets."""
-    depth, found = 0, [[]]
-    for token in tokens:
-        depth += (token in ("(", "[", "{")) - (token in (")", "]", "}"))
-        found.append([]) if token == mark and depth == 0 else found[-1].append(token)
-    return found
-
-
-def each(operation, a, *more):
-    shapes = {tuple(len(row) for row in b) for b in (a, *more)}
-    return [[operation(*entries) for entries in zip(*rows)] for rows in zip(a, *more)] if len(shapes) == 1 else refuse("matrices of two shapes")
-
-
-def single(x):
-    return x[0][0] if len(x) == len(x[0]) == 1 else refuse("a matrix where a number is meant")
-
-
+def each(do, *of): return [[do(*x) for x in zip(*rows, strict=True)] for rows in zip(*of, strict=True)]
 def entries(x): return [entry for row in x for entry in row]
-def dot(a, b): return sum((x * y for x, y in zip(a, b)), number(0))
+def single(x): return x[0][0] if len(x) == len(x[0]) == 1 else refuse("a matrix where a number is meant")
+def named(x): return x.args[0] if x.kind == "symbol" else refuse("an expression where a symbol is meant")
+def dot(a, b): return sum((x * y for x, y in zip(a, b, strict=True)), number(0))
 
 
 def times(a, b):
     if len(a[0]) == len(b):
         return [[dot(row, column) for column in zip(*b)] for row in a]
-    factor, of = (single(a), b) if len(a) == len(a[0]) == 1 else (single(b), a)
-    return each(lambda x: factor * x, of)
+    return each(lambda x: single(a) * x, b) if len(entries(a)) == 1 else each(lambda x: x * single(b), a)
 
 
 def determinant(rows):
@@ -49,7 +30,7 @@ def determinant(rows):
     for row in rows:
         grown = {}
         for columns, minor in minors.items():
-            for column in (c for c in range(len(rows)) if c not in columns and row[c] is not number(0)):
+            for column in (c for c in range(len(rows)) if c not in columns and row[c].args != (0,)):
                 key, sign = tuple(sorted((*columns, column))), (-1) ** sum(c > column for c in columns)
                 grown[key] = grown.get(key, number(0)) + number(sign) * row[column] * minor
         minors = grown
@@ -58,275 +39,198 @@ def determinant(rows):
 
 def inverse(rows):
     size, whole = range(len(rows)), determinant(rows)
-    minor = lambda i, j: determinant([[rows[k][m] for m in size if m != i] for k in size if k != j])
-    return [[number((-1) ** (i + j)) * minor(i, j) / whole for j in size] for i in size]
+    rest = lambda i, j: [row[:i] + row[i + 1:] for row in rows[:j] + rows[j + 1:]]
+    return [[number((-1) ** (i + j)) * determinant(rest(i, j)) / whole for j in size] for i in size]
 
 
 def cross(a, b):
-    turned = [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(len(a))]
-    return [[x] for x in turned] if len(a) == 3 else [[a[0] * b[1] - a[1] * b[0]]]
+    pairs = [(1, 2), (2, 0), (0, 1)] if len(a) == 3 else [(0, 1)]
+    return [[a[i] * b[j] - a[j] * b[i]] for i, j in pairs]
 
 
-def power(base, exponent):
-    half = exponent.args[0] if exponent.kind == "number" else None
-    if half is not None and half.denominator <= 2 and abs(half) < 10_000:
-        return base ** int(half) if half.denominator == 1 else call("sqrt", base) ** int(2 * half)
-    return call("exp", exponent * call("log", base))
+def blocks(rows):
+    found = [sum(parts, []) for row in rows for parts in zip(*row, strict=True)]
+    return found if len({len(row) for row in found}) == 1 else refuse("blocks that do not fit")
 
 
-OF_MATRICES = {
-    "transpose": lambda a: [list(column) for column in zip(*a)], "det": lambda a: [[determinant(a)]], "inverse": inverse,
-    "dot": lambda a, b: [[dot(entries(a), entries(b))]], "cross": lambda a, b: cross(entries(a), entries(b))}
-OF_NUMBERS = {"tan": lambda x: call("sin", x) / call("cos", x), "cot": lambda x: call("cos", x) / call("sin", x)}
-OF_NUMBERS.update({name: lambda x, name=name: call(name, x) for name in ("sqrt", "exp", "log", "sin", "cos", "atan")})
-BINDING = {"+": 1, "-": 1, "*": 2, "/": 2, "at": 3, "^": 4}
-OPERATIONS = {"+": lambda a, b: each(Node.__add__, a, b), "-": lambda a, b: each(Node.__sub__, a, b), "*": times,
-              "/": lambda a, b: times(a, [[single(b) ** -1]]), "^": lambda a, b: [[power(single(a), single(b))]]}
+def power(x, n):
+    return x ** int(n.args[0]) if n.kind == "number" and n.args[0].denominator == 1 else refuse("a power")
+
+
+OPERATIONS = {  # how they bind, and what they do
+    "+": (1, lambda a, b: each(Node.__add__, a, b)), "-": (1, lambda a, b: each(Node.__sub__, a, b)), "*": (2, times),
+    "/": (2, lambda a, b: times(a, [[single(b) ** -1]])), "^": (4, lambda a, b: [[power(single(a), single(b))]]),
+    "at": (3, lambda a, b: each(Map({symbol(named(single(x))): single(y) for x, _, y in b}).__getitem__, a)),
+    **{mark: (0, lambda a, b, mark=mark: (a, mark, b)) for mark in ("=", "!=", "<", "<=", ">", ">=")}}
+FUNCTIONS = {
+    "transpose": lambda a: [list(row) for row in zip(*a)], "det": lambda a: [[determinant(a)]], "inverse": inverse,
+    "dot": lambda a, b: [[dot(entries(a), entries(b))]], "cross": lambda a, b: cross(entries(a), entries(b)),
+    "tan": lambda x: [[call("sin", single(x)) / call("cos", single(x))]],
+    "cot": lambda x: [[call("cos", single(x)) / call("sin", single(x))]],
+    **{name: lambda x, name=name: [[call(name, single(x))]] for name in ("sin", "cos", "exp", "log", "sqrt", "atan")}}
+
+
+class Field(list):
+    """What is differentiated `along`; as a matrix, the column of its rates, or what else has its name."""
+
+    def __init__(self, along, rows):
+        super().__init__(rows)
+        self.along = along
 
 
 class Reader:
-    """Reads expressions and statements with the names of a system."""
+    """Reads and computes a text with the names of a system: a matrix, a field, or a relation of matrices."""
 
-    def __init__(self, system, tokens): self.system, self.tokens, self.at = system, [*tokens, ""], 0
+    def __init__(self, system, text):
+        self.system, self.tokens = system, ["", *reversed(TOKEN.findall(text))]
 
-    def take(self, *wanted):
-        """What comes next, if it is one of these."""
-        found = self.tokens[self.at] if self.tokens[self.at] in wanted else ""
-        self.at += bool(found)
-        return found
+    def listed(self, end):
+        """What stands between commas, in rows between semicolons."""
+        rows, mark = [[]], ","
+        while mark != end:
+            rows += [[]] if mark == ";" else []
+            rows[-1].append(self.value(0))
+            mark = self.tokens.pop()
+            if mark not in (",", ";", end):
+                refuse(f"'{' '.join([mark, *self.tokens[:0:-1]][:4])}' where '{end}' is awaited")
+        return rows
 
-    def need(self, *wanted):
-        return self.take(*wanted) or refuse(f"'{' '.join(self.tokens[self.at:self.at + 4])}' where '{wanted[0]}' is awaited")
-
-    def name(self):
-        found = self.need(self.tokens[self.at] if re.match(r"[A-Za-z_]", self.tokens[self.at]) else "a name")
-        return found if self.tokens[self.at] not in ("[", "@") else refuse("a vector, or an experiment")
-
-    def commas(self, read, end=""):
-        found = [read()]
-        while self.take(","):
-            found.append(read())
-        if end:
-            self.need(end)
-        return found
-
-    def whole(self, read):
-        found = read()
-        return found if self.at == len(self.tokens) - 1 else refuse(f"'{' '.join(self.tokens[self.at:self.at + 4])}'")
-
-    def relation(self):
-        left, relation, right = self.sum(), self.need("=", "!=", "<", "<=", ">", ">="), self.sum()
-        return left, relation, right
-
-    def statement(self):
-        """What is asked, of what, the answer, and the conditions."""
-        asked, of, rank = self.take("rank", *SEEN), None, None
-        if asked in SEEN:
-            self.need("(")
-            of = entries(sum(self.commas(self.sum, ")"), []))
-        elif asked:
-            of = self.commas(self.sum, ")")[0] if self.take("(") else None
-            self.need("=")
-            rank = int(self.need(self.tokens[self.at]))
+    def value(self, least):
+        """As far as operations bind as much as that."""
+        token = self.tokens.pop()
+        if token in ("+", "-"):
+            found = times([[number(token + "1")]], self.value(max(least, 3)))
+        elif token == "[":
+            found = blocks(self.listed("]"))
+        elif token in ("(", "{"):
+            (found,) = self.listed(")" if token == "(" else "}")
+            (found,) = found if token == "(" else [found]
+        elif not re.match(NAME, token):
+            found = [[number(token)]]
+        elif self.tokens[-1] == "(" and self.tokens.pop():
+            found = self.called(token, *self.listed(")")[0])
         else:
-            of = self.relation()
-        conditions = self.commas(self.relation) if self.take("where") else []
-        if self.take("everywhere", "except"):
-            self.at = len(self.tokens) - 1
-        return asked, of, rank, conditions
-
-    def sum(self, binding=1):
-        sign = self.take("+", "-")
-        found = self.sum(3) if sign else self.primary()
-        found = each(Node.__neg__, found) if sign == "-" else found
-        while BINDING.get(self.tokens[self.at], 0) >= binding:
-            operation = self.need(self.tokens[self.at])
-            if operation == "at":
-                self.need("{")
-                found = each(Point(Expressions, self.commas(self.given, "}")).value, found)
-            else:
-                found = OPERATIONS[operation](found, self.sum(BINDING[operation] + 1))
+            found = self.system.named(token)
+        while OPERATIONS.get(self.tokens[-1], (-1,))[0] >= least:
+            binding, operation = OPERATIONS[self.tokens.pop()]
+            found = operation(found, self.value(binding + 1))
         return found
 
-    def given(self):
-        name = self.symbol()
-        self.need("=")
-        return symbol(name), single(self.sum())
-
-    def symbol(self): return self.system.home(self.name())[1]
-
-    def primary(self):
-        if self.take("("):
-            return self.commas(self.sum, ")")[0]
-        if self.take("["):
-            return self.blocks()
-        if re.match(r"\.?\d", self.tokens[self.at]):
-            return [[number(self.need(self.tokens[self.at]))]]
-        name = self.name()
-        return self.called(name) if self.take("(") else self.system.named(name)
-
-    def blocks(self):
-        found = []
-        while True:
-            blocks = self.commas(self.sum)
-            found += [sum(parts, []) for parts in zip(*blocks)]
-            if len({len(block) for block in blocks}) > 1 or len({len(row) for row in found}) > 1:
-                refuse("blocks that do not fit")
-            if self.need("]", ";") == "]":
-                return found
-
-    def field(self):
-        name = self.name()
-        if name != "bracket" or not self.take("("):
-            return self.system.field(name)
-        field = self.bracket()
-        self.need(")")
-        return field
-
-    def bracket(self):
-        f, _, g = self.field(), self.need(","), self.field()
-        return Field(lambda name: f.along(g.rate(name)) - g.along(f.rate(name)))
-
-    def lie(self):
-        """What stands last, differentiated along the fields before it."""
-        mark = self.at
-        try:
-            field = self.field()
-            self.need(",")
-        except NotRead:
-            self.at = mark
-            return self.commas(self.sum, ")")[0]
-        return each(field.along, self.lie())
-
-    def called(self, name):
+    def called(self, name, *of):
         if name == "L":
-            return self.lie()
+            *fields, found = of
+            for field in reversed(fields):
+                found = each(field.along.__getitem__, found)
+            return found
         if name == "bracket":
-            field = self.bracket()
-            return [[field.rate(column)] for column in self.by()]
+            f, g = (field.along for field in of)
+            along = Derivation(lambda name: f[g[symbol(name)]] - g[f[symbol(name)]])
+            return Field(along, [[along[symbol(column)]] for column in self.system.columns()])
         if name == "d":
-            of, columns = entries(self.sum()), self.by()
-            return [[self.system.unit(column).along(x) for column in columns] for x in of]
-        arguments = self.commas(self.sum, ")")
-        if name in OF_NUMBERS:
-            return [[OF_NUMBERS[name](*map(single, arguments))]]
-        return OF_MATRICES[name](*arguments) if name in OF_MATRICES else refuse(f"'{name}('")
-
-    def by(self):
-        return self.commas(self.symbol, ")") if self.need(",", ")") == "," else self.system.columns()
+            columns = [named(single(x)) for x in of[1:]] or self.system.columns()
+            return [[self.system.unit(column)[x] for column in columns] for x in entries(of[0])]
+        return FUNCTIONS[name](*of) if name in FUNCTIONS else refuse(f"'{name}('")
 
 
-class ProofFile:
-    """A system: its states, fields, outputs and definitions, which are read when they are asked for."""
+class System:
+    """A proof file: its states, fields, outputs and definitions, which are computed when they are asked for."""
 
     def __init__(self, path, depth=0):
         with open(path, encoding="utf-8") as file:
-            text = file.read()
-        self.path, self.depth, self.source, self.tokens = path, depth, squeezed(text), tokens_of(text)
-        self.states, self.unknown, self.known, self.symbols, self.outputs, self.moving = [], [], set(), {"pi"}, [], []
-        self.lets, self.fields, self.imports, self.signals, self.units, self.drifts = {}, {}, {}, {}, {}, False
-        entry, nesting, before = [], 0, ""
-        for token, *ahead in zip(self.tokens, (*self.tokens[1:], ""), (*self.tokens[2:], "", "")):
-            is_entry = ahead[0].startswith('"') if token in ("set", "pole", "map", "line") else token not in ("known", "unknown") or ahead[1] == "("
-            if token in ENTRIES and nesting == 0 and len(entry) != 1 and before != ":" and is_entry:
-                self.read(*(entry or ["system"]))
-                entry = []
-            nesting += (token in ("(", "[", "{")) - (token in (")", "]", "}"))
-            entry, before = [*entry, token], token
-        self.read(*entry)
-        if self.signals and not self.drifts:
-            self.read("drift", "signals")
+            text = re.sub(r'"[^"]*"|#[^\n]*', lambda x: " ".join(x[0].split()) * (x[0][0] == '"'), file.read())
+        self.path, self.depth, self.source = path, depth, "".join(text.split())
+        self.lets, self.rates, self.known = {}, {}, {}
+        self.states, self.unknown, self.initial, self.outputs, self.moving, self.signals = [], [], [], [], [], []
+        self.symbols = {"pi"}
+        for entry in ENTRY.split(text if re.search(r"^\s*drift\b", text, re.M) else text + "\ndrift signals"):
+            self.read_entry(*(*entry.split(None, 1), "", "")[:2])
 
-    def read(self, kind, *words):
-        """One entry."""
-        parts = split(words, ",") if kind in ENTRIES and kind != "experiments" else refuse(f"'{kind}' where an entry is awaited")
-        if kind in ("state", "param", "known", "unknown", "initial") and ("[" in words or "@" in words):
-            refuse("a vector, or an experiment")
+    def read_entry(self, kind, text):
+        names = [TOKEN.findall(part) for part in text.split(",")]
+        is_list = kind in ("state", "param", "known", "initial")
+        if is_list and re.search(r"[\[@]|\b(?:state|param|let|drift|input|field|output)\b", text):
+            refuse("a vector, an experiment, or entries that share a line")
         if kind == "use":
-            other = ProofFile(os.path.join(os.path.dirname(self.path), words[2][1:-1]), self.depth + 1) if self.depth < 8 else refuse("deep imports")
-            self.imports[words[0]], self.symbols = other, self.symbols | other.symbols
-        elif kind == "let" and words[1] not in ("[", "@"):
-            self.lets[words[0]] = words[words.index("=") + 1:]
+            name, other = re.fullmatch(r'(\w+) = "(.*)"\s*', text).groups()
+            path = os.path.join(os.path.dirname(self.path), other) if self.depth < 8 else refuse("deep imports")
+            self.known[name] = System(path, self.depth + 1)
+            self.symbols |= self.known[name].symbols
+        elif kind == "let" and (found := re.fullmatch(r"(\w+)\s*(?::[^=]*)?=(.*)", text, re.S)):
+            self.lets[found[1]] = found[2]
         elif kind in ("drift", "input", "field"):
-            self.read_field(kind, words[0], split(words[1:], "="))
+            name, *bodies = re.split(r"(\w+)'\s*=", text)
+            self.rates[name.strip()] = kind, dict(zip(bodies[::2], bodies[1::2]))
+            self.moving += [name.strip()] * (kind != "field")
         elif kind == "output":
-            self.outputs += parts
+            self.outputs += [re.sub(":[^,]*", "", text)] if "=" not in text else refuse("an output that is zero")
+        elif kind == "initial":
+            self.initial += [name for name, *_ in names] if "=" not in text else refuse("a value at the beginning")
+        elif kind in ("unknown", "experiments"):
+            refuse("an unknown signal, or experiments")
+        elif kind == "known":
+            self.signals += [name for name, *_ in names]
         elif kind in ("state", "param"):
             waiting = []
-            for name, *rest in parts:
+            for name, *rest in names:
                 waiting.append(name)
-                if kind == "state" or rest[-1:] == ["unknown"]:
-                    (self.states if kind == "state" else self.unknown).extend(waiting)
-                waiting = [] if kind == "state" or "=" in rest or rest[-1:] in (["known"], ["unknown"]) else waiting
+                self.unknown += waiting if rest[-1:] == ["unknown"] else []
+                self.states += [name] if kind == "state" else []
                 self.symbols.add(name)
-        elif kind == "initial":
-            self.known |= {part[0] for part in parts} if words[-1] == "known" and "=" not in words else refuse("a value at the beginning")
-        elif kind in ("known", "unknown"):
-            for name, *rest in parts:
-                told = [len(token) - len(name) for token in self.tokens if token.rstrip("'") == name]
-                self.signals[name] = int(rest[rest.index("order") + 1]) if "order" in rest else max(1, *told) if kind == "unknown" else 1 << 20
-                self.unknown += [name + "'" * k for k in range(self.signals[name] + 1)] if kind == "unknown" else []
+                waiting = [] if "=" in rest or rest[-1:] in (["known"], ["unknown"]) else waiting
 
-    def read_field(self, kind, field, parts):
-        names = [part[-1] for part in parts[:-1]]
-        bodies = dict(zip(names, [part[:-1] for part in parts[1:-1]] + parts[-1:]))
-
-        def rate(name):
-            order = self.signals.get(name.rstrip("'"))
-            if kind == "drift" and order is not None:
-                return symbol(name + "'") if name.count("'") < order else number(0)
-            reader = Reader(self, bodies.get(name + "'", ["0"]))
-            return single(reader.whole(reader.sum))
-        self.fields[field] = Field(rate) if all(re.fullmatch(r"\w.*'", name) for name in names) else refuse("discrete time, or a vector")
-        self.moving, self.drifts = self.moving + [field] * (kind != "field"), self.drifts or kind == "drift"
-
-    # what is asked of a system
-
-    def home(self, name):
-        """The system in which a name is declared, and its name there."""
-        first, _, rest = name.partition(".")
-        return self.imports[first].home(rest) if first in self.imports and rest else (self, name)
+    def read(self, text):
+        """The values that stand between the commas of a text."""
+        reader = Reader(self, text + ")")
+        (found,) = reader.listed(")")
+        return found if reader.tokens == [""] else refuse(f"what stands behind '{text}'")
 
     def named(self, name):
-        home, plain = self.home(name)
-        if plain in home.lets:
-            if isinstance(home.lets[plain], tuple):
-                reader = Reader(home, home.lets[plain])
-                home.lets[plain] = reader.whole(reader.sum)
-            return home.lets[plain]
-        if plain == "output" and home is not self:
-            return [[x] for x in home.seen()]
-        return [[symbol(plain)]] if plain in home.symbols or plain.rstrip("'") in home.signals else refuse(f"'{name}'")
+        first, _, rest = name.partition(".")
+        if rest:
+            return self.known[first].named(rest)
+        if name not in self.known:
+            found = [[symbol(name)]] if name in self.symbols or name.rstrip("'") in self.signals else []
+            if name in self.lets:
+                (found,) = self.read(self.lets[name])
+            if name in self.rates:
+                found = Field(Derivation(lambda symbol: self.rate(symbol, *self.rates[name])), found)
+            elif name == "output":
+                found = [[x] for x in self.seen()]
+            self.known[name] = found if found or name in self.rates else refuse(f"'{name}'")
+        return self.known[name]
 
-    def field(self, name):
-        home, plain = self.home(name)
-        if plain.endswith("'") and plain.rstrip("'") in home.signals:
-            return self.unit(plain[:-1])
-        return home.fields.get(plain) or refuse(f"'{name}' where a field is awaited")
+    def rate(self, name, kind, bodies):
+        if kind == "drift" and name.rstrip("'") in self.signals:
+            return symbol(name + "'")
+        (found,) = self.read(bodies.get(name, "0"))
+        return single(found)
 
     def unit(self, column):
-        """The field that moves one symbol."""
-        return self.units.setdefault(column, Field(lambda name: number(name == column)))
+        return self.known.setdefault((column, "unit"), Derivation(lambda name: number(name == column)))
 
     def columns(self):
-        return [name for name in self.states + self.unknown if name not in self.known]
+        return [name for name in self.states + self.unknown if name not in self.initial]
 
     def seen(self):
-        """The outputs."""
-        readers = [Reader(self, output) for output in self.outputs]
-        found = [(reader.sum(), reader.tokens[reader.at] in ("", ":") or refuse("an output that is zero")) for reader in readers]
-        return [x for of, _ in found for x in entries(of)]
+        return [x for text in self.outputs or refuse("no output") for of in self.read(text) for x in entries(of)]
 
     def word(self, text):
         """A word by its name, as `Lf Lg y`: an output, differentiated along what moves the system."""
         first, _, rest = text.partition(" ")
         if rest and first[1:] in self.moving:
-            return self.fields[first[1:]].along(self.word(rest))
-        reader = Reader(self, tokens_of(text))
-        found = single(reader.whole(reader.sum))
+            return self.named(first[1:]).along[self.word(rest)]
+        ((found,),) = self.read(text)[0]
         return found if found in self.seen() else refuse(f"'{text}' is no output")
 
     def statement(self, text):
-        """A statement that stands in the file."""
-        reader = Reader(self, tokens_of(text) if squeezed(text) in self.source else refuse("the statement does not stand in the file"))
-        return reader.whole(reader.statement)
+        """What is asked, of what, the answer, and the conditions, of a statement that stands in the file."""
+        if "".join(text.split()) not in self.source:
+            refuse("the statement does not stand in the file")
+        claim, *where = re.split(r"\bwhere\b", re.split(r"\b(?:everywhere|except)\b", text)[0])
+        conditions = [x for text in where for x in self.read(text)]
+        if found := re.fullmatch(r"\s*rank\s*(?:\((.*)\)\s*)?=\s*(\d+)\s*", claim, re.S):
+            return "rank", found[1] and self.read(found[1])[0], int(found[2]), conditions
+        if found := re.fullmatch(r"\s*((?:un)?(?:observable|identifiable))\s*\((.*)\)\s*", claim, re.S):
+            return found[1], entries(sum(self.read(found[2]), [])), None, conditions
+        (of,) = self.read(claim)
+        return "=", of, None, conditions

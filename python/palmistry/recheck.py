@@ -2,24 +2,25 @@
 
     python -m palmistry.recheck VERDICTS.json [--proofs FOLDER]
 
-From a verdict file (`palmistry prove proofs/ --verdicts FILE`) only witnesses, minors and boxes are taken; what they are about is read anew from
-the proof file (`proof_file`), into a graph of expressions (`graph`). Refutations are evaluated at their witness, minors at their states, in
-fractions and, where there are functions, in intervals; minors of boxes in intervals; identities and ranks at almost all states at points modulo
-primes of this program's own choice. `confirmed` is so; `consistent`: nothing speaks against it; what is not read is `not checked`, and why.
+From a verdict file (`palmistry prove proofs/ --verdicts FILE`) only witnesses, minors and boxes are taken; what they
+are about is read anew from the proof file (`proof_file`), into a graph of expressions (`graph`). `confirmed` is so;
+`consistent`: nothing speaks against it at random points modulo primes; what is not read is `not checked`, and why.
 The exit status is 1 where something is not confirmed, and 2 for what is no verdict file.
 """
 
+import contextlib
 import json
 import os
 import sys
 from fractions import Fraction
+from operator import eq, ge, gt, le, lt, ne
 
-from .graph import MOST, Expressions, Interval, Intervals, Modulo, Node, NotRead, Point, below, call, number, refuse, symbol
-from .proof_file import ProofFile, determinant, each, entries
+from .graph import MOST, Enclosure, Interval, Map, Modulo, Node, NotRead, call, number, refuse, symbol
+from .proof_file import System, determinant, each, entries
 
-PRIMES = [(1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1]
+PRIMES = (1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1
 POINTS, TRIES, WORDS, PIECES = 4, 40, 200, 500  # points that are compared; draws; words of a rank; pieces of a box
-HOLDS = {"=": lambda s: s == 0, "!=": lambda s: s != 0, "<": lambda s: s < 0, "<=": lambda s: s <= 0, ">": lambda s: s > 0, ">=": lambda s: s >= 0}
+HOLDS = {"=": eq, "!=": ne, "<": lt, "<=": le, ">": gt, ">=": ge}  # of a sign and zero
 
 
 class Doubt(Exception):
@@ -27,241 +28,200 @@ class Doubt(Exception):
 
 
 def gaps(relation): return entries(each(Node.__sub__, relation[0], relation[2]))
-def holds(point, relation): return all(HOLDS[relation[1]](point.value(gap).sign()) for gap in gaps(relation))
+def holds(point, relation): return all(HOLDS[relation[1]](point[gap].sign(), 0) for gap in gaps(relation))
+def rank(rows, prime, basis=()): return sum(adds(row, basis, prime) for basis in [list(basis)] for row in rows)
 
 
-def adds(row, basis, domain):
-    """Whether a row is independent of a basis, to which it is added then: rows with a one in a column, by this column."""
+def adds(row, basis, prime):
+    """Whether a row is independent of a basis, to which it is added then, with a one in a column."""
     for column, other in basis:
-        factor = row[column] * domain.number(Fraction(-1))
-        row = [domain.number(Fraction(0)) if place == column else x + factor * y for place, (x, y) in enumerate(zip(row, other))]
-    told = []
-    for column, x in enumerate(row):
-        try:
-            told.append((column, x.sign()))
-        except NotRead:
-            continue
-    pivot = next((column for column, sign in told if sign), None)
-    if pivot is None:
-        return False if len(told) == len(row) else refuse("a value that is not told from zero")
-    basis.append((pivot, [x * row[pivot] ** -1 for x in row]))
-    return True
+        row = [(x - row[column] * y) % prime for x, y in zip(row, other)]
+    column = next((column for column, x in enumerate(row) if x), None)
+    if column is not None:
+        basis.append((column, [x * pow(row[column], -1, prime) % prime for x in row]))
+    return column is not None
 
 
-def rank(rows, domain, basis=()):
-    basis = list(basis)
-    return sum(adds(row, basis, domain) for row in rows)
+def solution(system, gap):
+    """A symbol in which a gap is linear, or for which it is zero at a quarter turn, and its value."""
+    names, zero = [node for node in gap.below() if node.kind == "symbol"], number(0)
+    slopes = [(name, system.unit(name.args[0])[gap]) for name in names]
+    for name, slope in sorted(slopes, key=lambda pair: pair[1].kind != "number"):
+        if slope is not zero and name not in slope.below():
+            return name, -Map({name: zero})[gap] / slope
+    turns = [(name, turn) for name in names for turn in (zero, number("1/2") * symbol("pi"))]
+    return next((x for x in turns if Map([x])[gap] is zero), None) or refuse("a condition that is not solved")
 
 
-def put(of, name, value): return Point(Expressions, {name: value}).value(of)
-
-
-def solved(conditions, unit):
-    """Symbols with the values that equations among the conditions give them, one after the other."""
+def points(system, conditions, seed):
+    """Random points modulo primes on the set of the equations; inequalities hold somewhere, and do not matter."""
     found = []
-    for left, relation, right in conditions:
-        for gap in gaps((left, relation, right)) if relation == "=" else ():
-            for name, value in found:
-                gap = put(gap, name, value)
-            if gap is not number(0):
-                found.append(solution(gap, left[0][0], unit))
-    return found
-
-
-def solution(gap, first, unit):
-    """A symbol in which the gap is linear, or an angle for which it is zero at some quarter turns."""
-    names = sorted((node for node in below(gap) if node.kind == "symbol" and node is not symbol("pi")), key=lambda node: (node is not first, node.place))
-    slopes = [(name, unit(name.args[0]).along(gap)) for name in names]
-    for name, slope in sorted(slopes, key=lambda pair: (pair[0] is not first, pair[1].kind != "number")):
-        if slope is not number(0) and name not in below(slope):
-            return name, -put(gap, name, number(0)) / slope
-    turns = [(name, number(Fraction(quarter, 2)) * symbol("pi")) for name in names for quarter in range(4)]
-    zero = [(name, turn) for name, turn in turns if put(gap, name, turn) is number(0)]
-    return zero[0] if zero else refuse("a condition that is not solved")
-
-
-def compared(system, conditions, seed, compare):
-    """What is found at random points modulo primes on the set of the conditions; inequalities hold somewhere near, and do not matter."""
-    found, guessed, given = [], False, solved(conditions, system.unit)
+    for gap in [gap for relation in conditions if relation[1] == "=" for gap in gaps(relation)]:
+        for given in found:
+            gap = Map([given])[gap]
+        found += [solution(system, gap)] if gap is not number(0) else []
     for draw in range(TRIES):
-        point = Point(Modulo(PRIMES[draw % len(PRIMES)], (seed, draw)), {})
-        try:
-            for name, value in reversed(given):
-                nodes = {name: value, Node("sin", name): call("sin", value), Node("cos", name): call("cos", value)}
-                point.values.update({node: point.value(of) for node, of in nodes.items()})
-            found.append(compare(point))
-        except ZeroDivisionError:
-            continue
-        guessed |= point.domain.guessed
-        if len(found) == POINTS:
-            break
-    return (found, guessed) if found else refuse("no point was found at which it has values")
+        point = Modulo(PRIMES[draw % len(PRIMES)], (seed, draw))
+        with contextlib.suppress(ZeroDivisionError):
+            for name, value in reversed(found):
+                turns = {Node(kind, name): call(kind, value) for kind in ("sin", "cos")}
+                point.update({node: point[of] for node, of in {name: value, **turns}.items()})
+            yield point
 
 
-def codistribution(system, point, conditions):
-    """The rows of words, until further ones add nothing; where there are no conditions, words that add nothing are not followed."""
-    columns, words, rows, basis, idle = system.states + system.unknown, system.seen(), [], [], 0
-    while words and idle <= (len(conditions) + 1 if conditions else 0):
-        before, followed = len(basis), []
-        for word in dict.fromkeys(words):
-            row = point.slopes(word, columns)
-            if adds(row, basis, point.domain) or conditions:
-                followed.append(word)
-                rows.append([x for x, name in zip(row, columns) if name not in system.known])
-        idle = 0 if len(basis) > before else idle + 1
-        words = [system.fields[field].along(word) for word in followed for field in system.moving]
-        if len(rows) + len(words) > WORDS:
+def codistribution(system, point, patience):
+    """The rows of all words; those behind more words than `patience` that add nothing are not looked at."""
+    columns, words, rows, basis = system.states + system.unknown, [(word, 0) for word in system.seen()], [], []
+    for word, idle in words:
+        row = point.gradient(word, columns)
+        rows.append([x for x, name in zip(row, columns) if name not in system.initial])
+        idle = 0 if adds(row, basis, point.prime) else idle + 1
+        new = [(system.named(field).along[word], idle) for field in system.moving if idle <= patience]
+        words += [pair for pair in new if pair not in words]
+        if len(words) > WORDS:
             refuse(f"more than {WORDS} words")
     return rows
 
 
-def at_random(system, statement, is_proved, seed):
-    """An identity, a rank at almost all states, or what is observable at almost all states."""
-    asked, of, claimed, conditions = statement
+def is_so(system, point, asked, of, claimed, conditions):
+    """Whether an identity, a rank at almost all states, or what is observable there is so at a point."""
+    if asked == "=":
+        return all(point[gap] == 0 for gap in gaps(of)) if of[1] == "=" else refuse("an inequality")
+    patience = len(conditions) + 1 if conditions else 0
+    rows = each(point.__getitem__, of) if asked == "rank" and of else codistribution(system, point, patience)
+    found = rank(rows, point.prime)
+    if asked == "rank":
+        return found == claimed
+    more = [rank([*rows, point.gradient(x, system.columns())], point.prime) > found for x in of]
+    return all(more) if asked.startswith("un") else not any(more)
 
-    def measured(point):
-        if not asked:
-            return all(point.value(gap).sign() == 0 for gap in gaps(of))
-        rows = each(point.value, of) if asked == "rank" and of else codistribution(system, point, conditions)
-        found = rank(rows, point.domain)
-        further = [] if asked == "rank" else [rank([*rows, point.slopes(x, system.columns())], point.domain) > found for x in of]
-        return found if asked == "rank" else all(more == asked.startswith("un") for more in further)
-    if not asked and of[1] != "=":
-        refuse("an inequality")
-    found, guessed = compared(system, conditions, seed, measured)
-    if (max(found) == claimed if asked == "rank" else all(found)) != is_proved:
-        if guessed:
-            refuse("functions that were taken for unknowns")
-        raise Doubt(f"the rank is {max(found)} at random points" if asked == "rank" else "it is not so at a random point modulo a prime")
-    return "consistent", f"{len(found)} points modulo primes"
+
+def at_random(system, record, evidence, seed):
+    """An identity, or what is claimed of almost all states, at random points."""
+    statement, found, is_proved = system.statement(record["statement"]), 0, evidence.get("word", "proved") == "proved"
+    for point in points(system, statement[3], seed):
+        with contextlib.suppress(ZeroDivisionError):
+            if is_so(system, point, *statement) != is_proved:
+                if point.guessed:
+                    refuse("functions that were taken for unknowns")
+                raise Doubt("it is not so at a random point modulo a prime")
+            found += 1
+        if found == POINTS:
+            return "consistent", f"{found} points modulo primes"
+    return refuse(f"it has values at {found} of {TRIES} random points")
 
 
 def witness(state):
-    """The point of a witness; what it does not name does not matter, and may have any value."""
-    point = Point(Intervals(), {})
+    """The point of a state; what it does not name does not matter, and may have any value."""
+    point = Enclosure()
     for name, value in state.items():
-        told, of = [Fraction(value[key]) for key in ("number",) if key in value], symbol(name)
+        of = symbol(name)
         if "angle" in value:
-            sine, cosine = Fraction(value["angle"]["sin"]), Fraction(value["angle"]["cos"])
+            sine, cosine = (Fraction(value["angle"][key]) for key in ("sin", "cos"))
             if sine**2 + cosine**2 != 1:
                 raise Doubt(f"{name} is no angle")
-            point.values.update({Node("sin", of): Interval(sine, sine), Node("cos", of): Interval(cosine, cosine)})
+            point.update({of: None, Node("sin", of): Interval(sine), Node("cos", of): Interval(cosine)})
         else:
-            point.values[of] = Interval(told[0], told[0]) if told else refuse("a coordinate that is told by an operation")
+            point[of] = Interval(Fraction(value["number"])) if "number" in value else refuse("a value by an operation")
     return point
 
 
-def refuted(relation, conditions, state):
-    point = witness(state)
-    if not all(holds(point, condition) for condition in conditions):
-        raise Doubt("a condition does not hold at the witness")
-    if holds(point, relation):
-        raise Doubt("what was refuted holds at the witness")
+def refuted(system, record, evidence):
+    asked, of, _, conditions = system.statement(record["statement"])
+    point = witness(evidence["state"]) if asked == "=" else refuse("a rank without a minor")
+    if not all(holds(point, condition) for condition in conditions) or holds(point, of):
+        raise Doubt("a condition does not hold at the witness, or what was refuted does")
     return "confirmed", "at its witness"
 
 
-def matrix_of(system, record, evidence):
-    """What a record names by rows and columns: differentials of words, or a matrix of the file's own."""
+def minor(system, record, evidence, rows, columns):
+    """The determinant of some rows and columns: of differentials of words, or of a matrix of the file's own."""
+    if len(rows) != len(columns) or min([0, *rows, *columns]) < 0:
+        raise Doubt("it has no such minor")
     if evidence["columns"][0] == "column 1":
         of = system.statement(record["statement"])[1]
-        return [of[int(word.split()[1]) - 1] for word in evidence["words"]]
-    return [[system.unit(column).along(system.word(word)) for column in evidence["columns"]] for word in evidence["words"]]
+        return determinant([[of[row][column] for column in columns] for row in rows])
+    names = [system.unit(evidence["columns"][column]) for column in columns]
+    return determinant([[unit[system.word(evidence["words"][row])] for unit in names] for row in rows])
 
 
-def minor(matrix, rows, columns, size):
-    if not len(set(rows)) == len(rows) == len(set(columns)) == len(columns) == size or min([0, *rows, *columns]) < 0:
-        raise Doubt("it has no minor of its rank")
-    return [[matrix[row][column] for column in columns] for row in rows]
+def ranks(system, record, evidence):
+    for state in evidence["states"]:
+        of = minor(system, record, evidence, state["minor"]["rows"], state["minor"]["columns"])
+        if len(state["minor"]["rows"]) != state["rank"] or witness(state["state"])[of].sign() == 0:
+            raise Doubt("a minor is zero, or of another size")
+    return "confirmed", f"the rank is no less at {len(evidence['states'])} states"
 
 
-def ranks(matrix, states):
-    for state in states:
-        point, of = witness(state["state"]), minor(matrix, state["minor"]["rows"], state["minor"]["columns"], state["rank"])
-        if rank(each(point.value, of) if of else [], point.domain) != state["rank"]:
-            raise Doubt("a minor is zero")
-    return "confirmed", f"the rank is no less at {len(states)} states"
-
-
-def nowhere_zero(of, sides):
-    """Whether an expression has one sign in a box, by intervals and the mean value theorem on pieces of the box."""
-    waiting, names = [sides], [name.args[0] for name in sides]
-    for _ in range(PIECES):
-        sides = waiting.pop()
-        middle = {name: (side.low + side.high) / 2 for name, side in sides.items()}
-        parts = {name: side.high - side.low for name, side in sides.items()}
-        try:
-            near = Point(Intervals(), {name: Interval(x, x) for name, x in middle.items()}).value(of)
-            for (name, side), slope in zip(sides.items(), Point(Intervals(), sides).slopes(of, names)):
-                part = slope * Interval(side.low - middle[name], side.high - middle[name])
-                near, parts[name] = near + part, part.high - part.low
-            is_told = near.sign() != 0
-        except (NotRead, ZeroDivisionError):
-            is_told = False
-        if not is_told:
-            most = max(sides, key=lambda name: parts[name])
-            ends = sides[most].low, middle[most], sides[most].high
-            waiting += [{**sides, most: Interval(*half)} for half in (ends[:2], ends[1:])]
-        if not waiting:
-            return True
-    return False
-
-
-def boxes(matrix, evidence):
+def boxes(system, record, evidence):
     whole = {symbol(side["symbol"]): (Fraction(side["low"]), Fraction(side["high"])) for side in evidence["ranges"]}
     free, volume, seen = {name: ends for name, ends in whole.items() if ends[0] < ends[1]}, Fraction(0), []
     for box in evidence["boxes"]:
         sides, part = [(Fraction(low), Fraction(high)) for low, high in box["sides"]], Fraction(1)
-        for (least, most), (low, high) in zip(free.values(), sides):
+        for (least, most), (low, high) in zip(free.values(), sides, strict=True):
             part *= (high - low) / (most - least) if least <= low < high <= most else 0
-        if not part or len(sides) != len(free) or any(all(a < d and c < b for (a, b), (c, d) in zip(sides, other)) for other in seen):
+        if not part or any(all(a < d and c < b for (a, b), (c, d) in zip(sides, other)) for other in seen):
             raise Doubt("a box is no part of the whole, or has a part in common with another one")
         volume, seen = volume + part, [*seen, sides]
-        of = determinant(minor(matrix, box["rows"], range(len(matrix[0])), len(matrix[0])))
-        if any(node.kind == "symbol" and node not in {**whole, symbol("pi"): 0} for node in below(of)):
+        of = minor(system, record, evidence, box["rows"], range(len(evidence["columns"])))
+        if any(node.kind == "symbol" and node not in (*whole, symbol("pi")) for node in of.below()):
             refuse("a symbol without a range")
-        if not nowhere_zero(of, {name: Interval(*ends) for name, ends in {**whole, **dict(zip(free, sides))}.items()}):
+        if not has_one_sign(system, of, {**whole, **dict(zip(free, sides))}):
             refuse(f"a box that is not shown by {PIECES} pieces")
     if volume != Fraction(evidence["volume"]):
         raise Doubt("the boxes have another volume")
     return "confirmed", f"{len(seen)} boxes"
 
 
+def has_one_sign(system, of, box):
+    """Whether an expression has it in a box: from the middle by slopes, on pieces, halved where it varies most."""
+    waiting = [box]
+    for _ in range(PIECES):
+        sides, parts, is_told = waiting.pop(), {}, False
+        middle = {name: (low + high) / 2 for name, (low, high) in sides.items()}
+        inside, found = Enclosure({name: Interval(*ends) for name, ends in sides.items()}), None
+        with contextlib.suppress(NotRead, ZeroDivisionError):
+            for name, (low, high) in sides.items():
+                parts[name] = inside[system.unit(name.args[0])[of]] * Interval(low - middle[name], high - middle[name])
+            found = Enclosure({name: Interval(x) for name, x in middle.items()})[of]
+            is_told = sum(parts.values(), found).sign() != 0
+        if not is_told:
+            most = max(sides, key=lambda name: parts[name].high - parts[name].low if name in parts else 0)
+            ends = sides[most][0], middle[most], sides[most][1]
+            waiting += [{**sides, most: ends[:2]}, {**sides, most: ends[1:]}]
+        if not waiting:
+            return True
+    return False
+
+
 def check(record, folder, systems, seed):
     """What comes of one verdict: a word, and why."""
     try:
         (kind, evidence), = record["evidence"].items()
-        Node.work = 0
         if kind == "unchecked":
             return "not checked", str(evidence)
         path = os.path.join(folder, record["file"])
-        if path not in systems:
+        if path not in systems or len(Node.known) > MOST // 4:
             systems.clear()
             Node.known.clear()
-            systems[path] = ProofFile(path)
-        system = systems[path]
-        if kind in ("rank", "boxes"):
-            matrix = matrix_of(system, record, evidence)
-            return ranks(matrix, evidence["states"]) if kind == "rank" else boxes(matrix, evidence)
-        statement = system.statement(record["statement"])
-        if kind == "refuted":
-            return refuted(statement[1], statement[3], evidence["state"]) if not statement[0] else refuse("a rank without a minor")
-        return at_random(system, statement, evidence.get("word", "proved") == "proved", seed)
-    except (NotRead, RecursionError, OSError) as why:
-        if len(Node.known) > MOST // 4:
-            systems.clear()
-        return "not checked", str(why) or "it is nested too deeply"
-    except (ValueError, KeyError, TypeError, AttributeError, IndexError) as why:
-        return "not checked", f"the record or its file is not as it should be: {why!r}"
-    except ZeroDivisionError:
-        return "not confirmed", "it has no value at the witness"
+            systems[path] = System(path)
+        if kind in ("refuted", "rank", "boxes"):
+            return {"refuted": refuted, "rank": ranks, "boxes": boxes}[kind](systems[path], record, evidence)
+        return at_random(systems[path], record, evidence, seed)
     except Doubt as why:
         return "not confirmed", str(why)
+    except ZeroDivisionError:
+        return "not confirmed", "it has no value at the witness"
+    except NotRead as why:
+        return "not checked", str(why)
+    except Exception as why:  # whatever a damaged record or file leads to
+        return "not checked", f"the record or its file is not as it should be: {why!r}"
 
 
 def main(arguments):
     """The command; returns its exit status."""
     folder = arguments[arguments.index("--proofs") + 1] if "--proofs" in arguments[:-1] else "."
-    files = [x for x in arguments if x != "--proofs" and x != folder]
+    files = [x for x in arguments if x not in ("--proofs", folder)]
     if not files or files[0].startswith("-"):
         print(__doc__)
         return 0 if files and files[0] in ("-h", "--help") else 2
