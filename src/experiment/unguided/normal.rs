@@ -10,21 +10,29 @@ pub(super) type Unknowns = [f64; 6];
 pub(super) struct Normal {
     pub cost: f64,
     pub gradient: [f64; 6],
-    /// Its lower triangle.
     pub matrix: [[f64; 6]; 6],
 }
 
-impl Normal {
-    /// One more residual, and then its derivatives.
-    pub(super) fn add(&mut self, row: &[f64; 7]) {
-        let [residual, slopes @ ..] = row;
-        self.cost += residual * residual;
-        for i in 0..6 {
-            self.gradient[i] += slopes[i] * residual;
-            for j in 0..=i {
-                self.matrix[i][j] += slopes[i] * slopes[j];
+/// A residual and its derivatives by the unknowns; the last is zero, and fills the processor's registers up.
+pub(super) type Row = [f64; 8];
+
+/// Sums of the products of residuals and derivatives.
+#[derive(Default)]
+pub(super) struct Sums([Row; 7]);
+
+impl Sums {
+    #[inline(always)]
+    pub(super) fn add(&mut self, row: &Row) {
+        for (sums, by) in self.0.iter_mut().zip(row) {
+            for (sum, value) in sums.iter_mut().zip(row) {
+                *sum += by * value;
             }
         }
+    }
+
+    pub(super) fn normal(&self) -> Normal {
+        let [[cost, gradient @ .., _], rows @ ..] = &self.0;
+        Normal { cost: *cost, gradient: *gradient, matrix: rows.map(|[_, row @ .., _]| row) }
     }
 }
 
@@ -86,7 +94,7 @@ pub(super) fn cost(all: &Integrals, x: &Unknowns, look: Look) -> f64 {
 pub(super) fn expand(all: &Integrals, x: &Unknowns, look: Look) -> Normal {
     let [cx, cy, vx, vy, rate, log_k] = *x;
     let k = log_k.exp();
-    let mut normal = Normal::default();
+    let mut sums = Sums::default();
     for sample in looked_at(all, look) {
         let turned = sample.c - sample.a[0] * cx - sample.a[1] * cy - sample.b[0] * vx - sample.b[1] * vy;
         let omega = rate + k * turned;
@@ -102,21 +110,19 @@ pub(super) fn expand(all: &Integrals, x: &Unknowns, look: Look) -> Normal {
             let weight = 1.0 / (swept * swept + look.softened * look.softened);
             let root = weight.sqrt();
             let bend = arm - off * swept * weight;
-            let mut row = by.map(|by| by * bend);
-            row[0] -= omega * ny;
-            row[1] += omega * nx;
-            row[2] += nx - omega * time * ny;
-            row[3] += ny + omega * time * nx;
-            let row = row.map(|value| value * root);
-            let residual = off * root;
-            normal.cost += residual * residual;
-            for i in 0..6 {
-                normal.gradient[i] += row[i] * residual;
-                for j in 0..=i {
-                    normal.matrix[i][j] += row[i] * row[j];
-                }
-            }
+            let [x, y] = [-omega * ny, omega * nx];
+            let row = [
+                off,
+                bend * by[0] + x,
+                bend * by[1] + y,
+                bend * by[2] + nx + time * x,
+                bend * by[3] + ny + time * y,
+                bend * by[4],
+                bend * by[5],
+                0.0,
+            ];
+            sums.add(&row.map(|value| value * root));
         }
     }
-    normal
+    sums.normal()
 }
