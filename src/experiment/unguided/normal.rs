@@ -52,20 +52,15 @@ fn looked_at(all: &Integrals, look: Look) -> impl Iterator<Item = &Sample> {
 
 /// The derivative of the constraint by a contact's place along its palm, up to its sign: the palm turns with its own rate against the body, and
 /// where it is bent its normal turns along it, so that the speed of sliding counts.
+#[inline]
 pub(super) fn swept(palm: &PalmSample, place: [f64; 2], velocity: [f64; 2], omega: f64) -> f64 {
     let turned = omega - palm.rate;
     if palm.bend == 0.0 {
         return turned;
     }
-    // along the palm, away from the hinge
-    let [tx, ty] = [palm.side * palm.normal[1], -palm.side * palm.normal[0]];
-    let [nx, ny] = palm.normal;
-    let along = palm.side * palm.lever;
-    let contact = [along * tx + palm.height * nx, along * ty + palm.height * ny];
-    let [x, y] = [contact[0] - place[0], contact[1] - place[1]];
-    let body = [velocity[0] - omega * y, velocity[1] + omega * x];
-    let own = [-palm.rate * contact[1], palm.rate * contact[0]];
-    let sliding = tx * (body[0] - own[0]) + ty * (body[1] - own[1]);
+    let [tx, ty] = palm.tangent;
+    let [x, y] = [palm.contact[0] - place[0], palm.contact[1] - place[1]];
+    let sliding = tx * velocity[0] + ty * velocity[1] + omega * (ty * x - tx * y) - palm.own;
     turned - palm.bend * sliding
 }
 
