@@ -25,6 +25,16 @@ struct Carried {
 }
 
 impl Carried {
+    /// The covariances with what moves by these derivatives.
+    #[inline(always)]
+    fn covary(&self, by: &Vector) -> Vector {
+        std::array::from_fn(|i| {
+            let before: f64 =
+                self.covariance[i].iter().zip(by).take(i + 1).map(|(value, by)| value * by).sum();
+            before + (i + 1..N).map(|j| self.covariance[j][i] * by[j]).sum::<f64>()
+        })
+    }
+
     /// The residuals of a sample with their derivatives, less what is foreseen, in units in which what is not is independent and alike.
     #[inline(always)]
     fn whiten(&mut self, rows: &mut [Row; 2], at: &Errors) {
@@ -32,17 +42,17 @@ impl Carried {
         let mut covariance = [[0.0; 2]; 2];
         for p in 0..2 {
             let by = &at.by[p];
-            for i in 0..N {
-                let before: f64 = (0..=i).map(|j| self.covariance[i][j] * by[j]).sum();
-                gain[p][i] = before + (i + 1..N).map(|j| self.covariance[j][i] * by[j]).sum::<f64>();
-            }
-            for q in 0..=p {
-                let carried: f64 = at.by[q].iter().zip(&gain[p]).map(|(by, gain)| by * gain).sum();
-                covariance[p][q] = carried + at.own[p][0] * at.own[q][0] + at.own[p][1] * at.own[q][1];
+            gain[p] = self.covary(by);
+            for (covariance, (by, own)) in covariance[p].iter_mut().zip(at.by.iter().zip(&at.own)).take(p + 1)
+            {
+                let carried: f64 = by.iter().zip(&gain[p]).map(|(by, gain)| by * gain).sum();
+                *covariance = carried + at.own[p][0] * own[0] + at.own[p][1] * own[1];
             }
             covariance[p][p] += at.other;
-            for i in 2..N {
-                gain[p][i] += at.later[0][i] * at.own[p][0] + at.later[1][i] * at.own[p][1];
+            for (gain, (first, second)) in
+                gain[p].iter_mut().zip(at.later[0].iter().zip(&at.later[1])).skip(2)
+            {
+                *gain += first * at.own[p][0] + second * at.own[p][1];
             }
             for (by, foreseen) in by.iter().zip(&self.foreseen) {
                 for (value, foreseen) in rows[p].iter_mut().zip(foreseen) {
@@ -63,12 +73,13 @@ impl Carried {
         let unmixed: [[f64; 2]; N] = std::array::from_fn(|i| [gain[0][i], gain[1][i] - mixed * gain[0][i]]);
         let parts = unmixed.map(|[a, b]| [a * first, b * second]);
         for i in 0..N {
-            for j in 0..=i {
-                self.covariance[i][j] -= parts[i][0] * unmixed[j][0] + parts[i][1] * unmixed[j][1];
+            for (j, (covariance, unmixed)) in
+                self.covariance[i].iter_mut().zip(&unmixed).enumerate().take(i + 1)
+            {
+                *covariance -= parts[i][0] * unmixed[0] + parts[i][1] * unmixed[1];
                 // an error changes no place at once
                 if j >= 2 {
-                    self.covariance[i][j] +=
-                        at.later[0][i] * at.later[0][j] + at.later[1][i] * at.later[1][j];
+                    *covariance += at.later[0][i] * at.later[0][j] + at.later[1][i] * at.later[1][j];
                 }
             }
             let [first, second] = [unmixed[i][0] * roots[0], unmixed[i][1] * roots[1]];
