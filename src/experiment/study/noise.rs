@@ -22,7 +22,7 @@ pub struct NoiseLevel {
     pub seeds: usize,
     /// The root of the mean square error of what is sought at the first sample, over the seeds that converged.
     pub errors: Vec<f64>,
-    /// The bound of Cramér and Rao there, at the truth.
+    /// The bound of Cramér and Rao there: at the truth, and for outputs that are states at what is read first.
     pub bounds: Vec<f64>,
 }
 
@@ -190,7 +190,8 @@ pub(super) fn first_window(task: &Task<'_>, observer: &MovingWindow) -> std::ops
     0..(observer.window.max(2) + 1).min(task.signals.times().len())
 }
 
-/// The bound of Cramér and Rao for what is sought at the first sample, at the truth.
+/// The bound of Cramér and Rao for what is sought at the first sample, at the truth; outputs that are states begin at what is read, which is off where a pole
+/// is near.
 fn bounds(task: &Task<'_>, observer: &MovingWindow, truth: &[f64]) -> Vec<f64> {
     observer.bounds(task, truth, &first_window(task, observer), &task.clamped)
 }

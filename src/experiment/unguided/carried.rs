@@ -10,86 +10,112 @@
 //! The integrals of errors are those of the trapezoidal rule: these are weights.
 
 use super::integrals::{Integrals, Sample};
-use super::normal::{Normal, Unknowns, swept};
+use super::normal::{Normal, Row, Sums, Unknowns, swept};
 
 /// `c`, `v` and `omega`.
 const N: usize = 5;
-/// The residual, and its derivatives by the unknowns.
-const COLUMNS: usize = 7;
-
 type Vector = [f64; N];
 
 /// What the filter foresees of the errors of `(c, v, omega)`: their covariance in units of a contact's variance, and what the
 /// residuals before tell of them, for the residual and each of its derivatives.
 struct Carried {
+    /// Its lower triangle.
     covariance: [Vector; N],
-    foreseen: [[f64; COLUMNS]; N],
+    foreseen: [Row; N],
 }
 
 impl Carried {
+    /// The covariances with what moves by these derivatives.
+    #[inline(always)]
+    fn covary(&self, by: &Vector) -> Vector {
+        std::array::from_fn(|i| {
+            let before: f64 =
+                self.covariance[i].iter().zip(by).take(i + 1).map(|(value, by)| value * by).sum();
+            before + (i + 1..N).map(|j| self.covariance[j][i] * by[j]).sum::<f64>()
+        })
+    }
+
     /// The residuals of a sample with their derivatives, less what is foreseen, in units in which what is not is independent and alike.
-    fn whiten(&mut self, mut rows: [[f64; COLUMNS]; 2], at: &Errors) -> [[f64; COLUMNS]; 2] {
+    #[inline(always)]
+    fn whiten(&mut self, rows: &mut [Row; 2], at: &Errors) {
         let mut gain = [[0.0; N]; 2];
         let mut covariance = [[0.0; 2]; 2];
         for p in 0..2 {
-            for i in 0..N {
-                let foreseen: f64 = (0..N).map(|j| self.covariance[i][j] * at.by[p][j]).sum();
-                gain[p][i] = foreseen + at.later[0][i] * at.own[p][0] + at.later[1][i] * at.own[p][1];
-                for (q, by) in at.by.iter().enumerate() {
-                    covariance[p][q] += by[i] * foreseen;
-                }
-                for (value, foreseen) in rows[p].iter_mut().zip(&self.foreseen[i]) {
-                    *value -= at.by[p][i] * foreseen;
-                }
-            }
-            for (q, value) in covariance[p].iter_mut().enumerate() {
-                *value += at.own[p][0] * at.own[q][0] + at.own[p][1] * at.own[q][1];
+            let by = &at.by[p];
+            gain[p] = self.covary(by);
+            for (covariance, (by, own)) in covariance[p].iter_mut().zip(at.by.iter().zip(&at.own)).take(p + 1)
+            {
+                let carried: f64 = by.iter().zip(&gain[p]).map(|(by, gain)| by * gain).sum();
+                *covariance = carried + at.own[p][0] * own[0] + at.own[p][1] * own[1];
             }
             covariance[p][p] += at.other;
+            for (gain, (first, second)) in
+                gain[p].iter_mut().zip(at.later[0].iter().zip(&at.later[1])).skip(2)
+            {
+                *gain += first * at.own[p][0] + second * at.own[p][1];
+            }
+            for (by, foreseen) in by.iter().zip(&self.foreseen) {
+                for (value, foreseen) in rows[p].iter_mut().zip(foreseen) {
+                    *value -= by * foreseen;
+                }
+            }
         }
-        // Cholesky's factor, two by two
-        let first = 1.0 / covariance[0][0].sqrt();
+        // L D L', two by two: covariances wait for no square root
+        let first = 1.0 / covariance[0][0];
         let mixed = covariance[1][0] * first;
-        let second = 1.0 / (covariance[1][1] - mixed * mixed).max(at.other).sqrt();
-        let unmixed = |of: [f64; 2]| [of[0] * first, (of[1] - mixed * of[0] * first) * second];
-        let [above, below] = &mut rows;
+        let second = 1.0 / (covariance[1][1] - mixed * covariance[1][0]).max(at.other);
+        let roots = [first.sqrt(), second.sqrt()];
+        let [above, below] = rows;
         for (a, b) in above.iter_mut().zip(below) {
-            [*a, *b] = unmixed([*a, *b]);
+            (*a, *b) = (*a * roots[0], (*b - mixed * *a) * roots[1]);
         }
-        let parts: [[f64; 2]; N] = std::array::from_fn(|i| unmixed([gain[0][i], gain[1][i]]));
+        let [above, below] = &*rows;
+        let unmixed: [[f64; 2]; N] = std::array::from_fn(|i| [gain[0][i], gain[1][i] - mixed * gain[0][i]]);
+        let parts = unmixed.map(|[a, b]| [a * first, b * second]);
         for i in 0..N {
-            for j in 0..N {
-                self.covariance[i][j] += at.later[0][i] * at.later[0][j] + at.later[1][i] * at.later[1][j]
-                    - parts[i][0] * parts[j][0]
-                    - parts[i][1] * parts[j][1];
+            for (j, (covariance, unmixed)) in
+                self.covariance[i].iter_mut().zip(&unmixed).enumerate().take(i + 1)
+            {
+                *covariance -= parts[i][0] * unmixed[0] + parts[i][1] * unmixed[1];
+                // an error changes no place at once
+                if j >= 2 {
+                    *covariance += at.later[0][i] * at.later[0][j] + at.later[1][i] * at.later[1][j];
+                }
             }
-            for (column, foreseen) in self.foreseen[i].iter_mut().enumerate() {
-                *foreseen += parts[i][0] * rows[0][column] + parts[i][1] * rows[1][column];
+            let [first, second] = [unmixed[i][0] * roots[0], unmixed[i][1] * roots[1]];
+            for (foreseen, (a, b)) in self.foreseen[i].iter_mut().zip(above.iter().zip(below)) {
+                *foreseen += first * a + second * b;
             }
         }
-        rows
     }
 
     /// To the next sample: the place moves with the velocity, and the forces turn the body about another place.
-    fn pass(&mut self, time: f64, turning: [f64; 2]) {
-        for (axis, turning) in turning.iter().enumerate() {
-            for column in 0..COLUMNS {
-                let [place, velocity] = [self.foreseen[axis][column], self.foreseen[2 + axis][column]];
-                self.foreseen[4][column] -= time * turning * place;
-                self.foreseen[axis][column] += time * velocity;
-            }
-            for column in 0..N {
-                let [place, velocity] = [self.covariance[axis][column], self.covariance[2 + axis][column]];
-                self.covariance[4][column] -= time * turning * place;
-                self.covariance[axis][column] += time * velocity;
-            }
+    #[inline(always)]
+    fn pass(&mut self, time: f64, [x, y]: [f64; 2]) {
+        let (x, y) = (time * x, time * y);
+        let [px, py, vx, vy, omega] = &mut self.foreseen;
+        for column in 0..px.len() {
+            omega[column] -= x * px[column] + y * py[column];
+            px[column] += time * vx[column];
+            py[column] += time * vy[column];
         }
-        for row in &mut self.covariance {
-            for (axis, turning) in turning.iter().enumerate() {
-                row[4] -= time * turning * row[axis];
-                row[axis] += time * row[2 + axis];
-            }
-        }
+        let [[xx, ..], [xy, yy, ..], [xu, yu, uu, ..], [xv, yv, uv, vv, _], [xo, yo, uo, vo, oo]] =
+            &mut self.covariance;
+        // the rate first: it is moved by where the place was
+        *oo -= x * (2.0 * *xo - x * *xx - y * *xy) + y * (2.0 * *yo - x * *xy - y * *yy);
+        *xo -= x * *xx + y * *xy;
+        *yo -= x * *xy + y * *yy;
+        *uo -= x * *xu + y * *yu;
+        *vo -= x * *xv + y * *yv;
+        *xo += time * *uo;
+        *yo += time * *vo;
+        *xx += time * (2.0 * *xu + time * *uu);
+        *xy += time * (*yu + *xv + time * *uv);
+        *yy += time * (2.0 * *yv + time * *vv);
+        *xu += time * *uu;
+        *yu += time * *uv;
+        *xv += time * *uv;
+        *yv += time * *vv;
     }
 }
 
@@ -109,8 +135,8 @@ struct Errors {
 pub(super) fn expand(all: &Integrals, x: &Unknowns, softened: f64) -> Normal {
     let [cx, cy, vx, vy, rate, log_k] = *x;
     let k = log_k.exp();
-    let mut normal = Normal::default();
-    let mut carried = Carried { covariance: [[0.0; N]; N], foreseen: [[0.0; COLUMNS]; N] };
+    let mut sums = Sums::default();
+    let mut carried = Carried { covariance: [[0.0; N]; N], foreseen: [[0.0; 8]; N] };
     let samples = &all.samples;
     for (i, sample) in samples.iter().enumerate() {
         let time = sample.time;
@@ -122,7 +148,7 @@ pub(super) fn expand(all: &Integrals, x: &Unknowns, softened: f64) -> Normal {
             [-k * sample.a[0], -k * sample.a[1], -k * sample.b[0], -k * sample.b[1], 1.0, k * turned];
         let place = [cx + vx * time + sample.place[0], cy + vy * time + sample.place[1]];
         let velocity = [vx + sample.velocity[0], vy + sample.velocity[1]];
-        let mut rows = [[0.0; COLUMNS]; 2];
+        let mut rows = [[0.0; 8]; 2];
         let mut at = Errors {
             by: [[0.0; N]; 2],
             own: [[0.0; 2]; 2],
@@ -144,6 +170,7 @@ pub(super) fn expand(all: &Integrals, x: &Unknowns, softened: f64) -> Normal {
                 turns[3] + ny + y * time,
                 turns[4],
                 turns[5],
+                0.0,
             ];
             // the force's derivative by the contact: the torque stays
             let along = -palm.force * palm.lever_slope / palm.lever;
@@ -162,10 +189,11 @@ pub(super) fn expand(all: &Integrals, x: &Unknowns, softened: f64) -> Normal {
             }
         }
         at.later.iter_mut().flatten().for_each(|value| *value *= held);
-        carried.whiten(rows, &at).iter().for_each(|row| normal.add(row));
+        carried.whiten(&mut rows, &at);
+        rows.iter().for_each(|row| sums.add(row));
         carried.pass(after - time, turning(sample).map(|turning| k * turning));
     }
-    normal
+    sums.normal()
 }
 
 /// `A'`.

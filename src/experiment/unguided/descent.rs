@@ -113,15 +113,37 @@ pub(super) fn descend(
 /// Rates below this part of the largest likely one are softened where errors are carried on.
 const SOFTENED: f64 = 0.0005;
 
-/// Levenberg and Marquardt's method by the residuals as the errors of contacts leave them, all unknowns let go; the unknowns and the sum of
-/// the squares that it ends with.
-pub(super) fn refine(all: &Integrals, start: Unknowns, steps: usize) -> (Unknowns, f64) {
+/// A step that makes the sum of the squares smaller by no more than this part of it is the last one.
+const SETTLED: f64 = 1e-3;
+
+/// Where a step leads that is to be the last by the normal equations, and what they foresee to be left: it is taken, and not looked back on.
+fn last_step(all: &Integrals, normal: &Normal, x: &Unknowns, damping: f64) -> Option<(Unknowns, f64)> {
+    let step = solve(normal, &places(all), damping)?;
+    let gained = -step.iter().zip(&normal.gradient).map(|(step, gradient)| step * gradient).sum::<f64>();
+    (gained < SETTLED * normal.cost).then(|| (std::array::from_fn(|i| x[i] + step[i]), normal.cost - gained))
+}
+
+/// Where a descent by all samples ends.
+pub(super) struct End {
+    pub x: Unknowns,
+    /// The sum of the squares there.
+    pub cost: f64,
+    /// The normal equations there, of residuals as the errors of contacts leave them, where they are at hand.
+    pub carried: Option<Normal>,
+}
+
+/// Levenberg and Marquardt's method by the residuals as the errors of contacts leave them, all unknowns let go.
+pub(super) fn refine(all: &Integrals, start: Unknowns, steps: usize) -> End {
     let places = places(all);
     let softened = SOFTENED * all.rate;
     let mut x = start;
     let mut normal = carried::expand(all, &x, softened);
     let mut damping = 1e-6;
     for _ in 0..steps {
+        if let Some((there, cost)) = last_step(all, &normal, &x, damping) {
+            (x, normal.cost) = (there, cost);
+            break;
+        }
         let mut better = None;
         for _ in 0..5 {
             if let Some(mut step) = solve(&normal, &places, damping) {
@@ -136,21 +158,22 @@ pub(super) fn refine(all: &Integrals, start: Unknowns, steps: usize) -> (Unknown
             damping = (damping * 30.0).max(1e-4);
         }
         let Some((there, next)) = better else { break };
-        let is_settled = next.cost > normal.cost * (1.0 - 1e-3);
+        let is_settled = next.cost > normal.cost * (1.0 - SETTLED);
         (x, normal) = (there, next);
         damping *= 0.03;
         if is_settled {
             break;
         }
     }
-    (x, if normal.cost.is_nan() { f64::INFINITY } else { normal.cost })
+    let cost = if normal.cost.is_nan() { f64::INFINITY } else { normal.cost };
+    End { x, cost, carried: Some(normal) }
 }
 
-/// The least standard deviations of the palms' radii and the rate at some unknowns, for contacts whose errors have the deviation one; infinite where
+/// The least standard deviations of the palms' radii and the rate where a descent ended, for contacts whose errors have the deviation one; infinite where
 /// they are not told.
-pub(super) fn deviations(all: &Integrals, x: &Unknowns) -> [f64; 3] {
+pub(super) fn deviations(all: &Integrals, end: &End) -> [f64; 3] {
     let places = places(all);
-    let normal = carried::expand(all, x, SOFTENED * all.rate);
+    let normal = end.carried.clone().unwrap_or_else(|| carried::expand(all, &end.x, SOFTENED * all.rate));
     let [first, second] = all.samples[0].palms.map(|palm| palm.normal);
     let sought = [
         [first[0], first[1], 0.0, 0.0, 0.0, 0.0],

@@ -60,9 +60,13 @@ impl Grid {
             .collect();
         let [rates, slopes] = self.size;
         let least = (self.softened * all.rate).powi(2);
+        let lines = |largest: f64, count: usize| -> Vec<f64> {
+            (0..count).map(|i| largest * part(i, count)).collect()
+        };
+        let (all_rates, all_slopes) = (lines(all.rate, rates), lines(all.slope, slopes));
         let mut found = vec![None; rates * slopes];
         for (i, place) in found.iter_mut().enumerate() {
-            let line = [all.rate * part(i / slopes, rates), all.slope * part(i % slopes, slopes)];
+            let line = [all_rates[i / slopes], all_slopes[i % slopes]];
             *place =
                 solved(&rows, line, least).filter(|(x, _)| all.radii([x[0], x[1]]).iter().all(|r| *r > 0.0));
         }
@@ -75,8 +79,7 @@ impl Grid {
             })
             .map(|i| {
                 let (x, cost) = found[i].unwrap_or_default();
-                let slope = all.slope * part(i % slopes, slopes);
-                ([x[0], x[1], x[2], x[3], x[4], log_k(all, &x, slope)], cost)
+                ([x[0], x[1], x[2], x[3], x[4], log_k(all, &x, all_slopes[i % slopes])], cost)
             })
             .collect();
         minima.sort_by(|a, b| a.1.total_cmp(&b.1));

@@ -15,6 +15,10 @@ pub(super) struct PalmSample {
     /// By how much the normal turns in a metre of contact, counterclockwise; and which way the contact goes round the body, 1 or -1.
     pub bend: f64,
     pub side: f64,
+    /// The tangent away from the hinge, the contact, and how fast the palm's own point there moves along the tangent.
+    pub tangent: [f64; 2],
+    pub contact: [f64; 2],
+    pub own: f64,
     /// How fast the lever grows with the contact.
     pub lever_slope: f64,
     /// The contact force, along the normal.
@@ -124,11 +128,18 @@ impl Integrals {
                 let ([along, above], [nx, ny]) = (point.place, point.normal);
                 let bend = side * point.curvature;
                 let height = along * nx + above * ny;
+                let normal = [nx * cosine - side * ny * sine, nx * sine + side * ny * cosine];
+                let [cx, cy] = [along * cosine - side * above * sine, along * sine + side * above * cosine];
+                let tangent = [side * normal[1], -side * normal[0]];
+                let rate = readings.rates[p][i];
                 let mut palm = PalmSample {
-                    normal: [nx * cosine - side * ny * sine, nx * sine + side * ny * cosine],
+                    normal,
+                    tangent,
+                    contact: [cx, cy],
+                    own: rate * (tangent[1] * cx - tangent[0] * cy),
                     lever: side * (along * ny - above * nx),
                     height,
-                    rate: readings.rates[p][i],
+                    rate,
                     bend,
                     side,
                     lever_slope: side + bend * height,

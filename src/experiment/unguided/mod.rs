@@ -97,6 +97,16 @@ impl PalmReadings {
         }
         search::search(&Integrals::of(self)?)
     }
+
+    /// The bound of Cramér and Rao for `r1`, `r2` and `omega0` at a true state, by the constraint at all samples: of contacts without
+    /// errors, with the errors they are to have stated. None where nothing is stated.
+    pub fn bound_at(&self, truth: &FirstState) -> Option<[f64; 3]> {
+        let (sigma, all) = (self.sigma?, Integrals::of(self)?);
+        let log_k = -(self.mass * truth.gyration * truth.gyration).ln();
+        let ([x, y], [u, v]) = (truth.centre, truth.velocity);
+        let end = descent::End { x: [x, y, u, v, truth.rate, log_k], cost: 0.0, carried: None };
+        Some(descent::deviations(&all, &end).map(|deviation| sigma * deviation))
+    }
 }
 
 impl PalmReadings {

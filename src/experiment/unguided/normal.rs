@@ -10,21 +10,29 @@ pub(super) type Unknowns = [f64; 6];
 pub(super) struct Normal {
     pub cost: f64,
     pub gradient: [f64; 6],
-    /// Its lower triangle.
     pub matrix: [[f64; 6]; 6],
 }
 
-impl Normal {
-    /// One more residual, and then its derivatives.
-    pub(super) fn add(&mut self, row: &[f64; 7]) {
-        let [residual, slopes @ ..] = row;
-        self.cost += residual * residual;
-        for i in 0..6 {
-            self.gradient[i] += slopes[i] * residual;
-            for j in 0..=i {
-                self.matrix[i][j] += slopes[i] * slopes[j];
+/// A residual and its derivatives by the unknowns; the last is zero, and fills the processor's registers up.
+pub(super) type Row = [f64; 8];
+
+/// Sums of the products of residuals and derivatives.
+#[derive(Default)]
+pub(super) struct Sums([Row; 7]);
+
+impl Sums {
+    #[inline(always)]
+    pub(super) fn add(&mut self, row: &Row) {
+        for (sums, by) in self.0.iter_mut().zip(row) {
+            for (sum, value) in sums.iter_mut().zip(row) {
+                *sum += by * value;
             }
         }
+    }
+
+    pub(super) fn normal(&self) -> Normal {
+        let [[cost, gradient @ .., _], rows @ ..] = &self.0;
+        Normal { cost: *cost, gradient: *gradient, matrix: rows.map(|[_, row @ .., _]| row) }
     }
 }
 
@@ -44,20 +52,15 @@ fn looked_at(all: &Integrals, look: Look) -> impl Iterator<Item = &Sample> {
 
 /// The derivative of the constraint by a contact's place along its palm, up to its sign: the palm turns with its own rate against the body, and
 /// where it is bent its normal turns along it, so that the speed of sliding counts.
+#[inline]
 pub(super) fn swept(palm: &PalmSample, place: [f64; 2], velocity: [f64; 2], omega: f64) -> f64 {
     let turned = omega - palm.rate;
     if palm.bend == 0.0 {
         return turned;
     }
-    // along the palm, away from the hinge
-    let [tx, ty] = [palm.side * palm.normal[1], -palm.side * palm.normal[0]];
-    let [nx, ny] = palm.normal;
-    let along = palm.side * palm.lever;
-    let contact = [along * tx + palm.height * nx, along * ty + palm.height * ny];
-    let [x, y] = [contact[0] - place[0], contact[1] - place[1]];
-    let body = [velocity[0] - omega * y, velocity[1] + omega * x];
-    let own = [-palm.rate * contact[1], palm.rate * contact[0]];
-    let sliding = tx * (body[0] - own[0]) + ty * (body[1] - own[1]);
+    let [tx, ty] = palm.tangent;
+    let [x, y] = [palm.contact[0] - place[0], palm.contact[1] - place[1]];
+    let sliding = tx * velocity[0] + ty * velocity[1] + omega * (ty * x - tx * y) - palm.own;
     turned - palm.bend * sliding
 }
 
@@ -86,7 +89,7 @@ pub(super) fn cost(all: &Integrals, x: &Unknowns, look: Look) -> f64 {
 pub(super) fn expand(all: &Integrals, x: &Unknowns, look: Look) -> Normal {
     let [cx, cy, vx, vy, rate, log_k] = *x;
     let k = log_k.exp();
-    let mut normal = Normal::default();
+    let mut sums = Sums::default();
     for sample in looked_at(all, look) {
         let turned = sample.c - sample.a[0] * cx - sample.a[1] * cy - sample.b[0] * vx - sample.b[1] * vy;
         let omega = rate + k * turned;
@@ -102,21 +105,19 @@ pub(super) fn expand(all: &Integrals, x: &Unknowns, look: Look) -> Normal {
             let weight = 1.0 / (swept * swept + look.softened * look.softened);
             let root = weight.sqrt();
             let bend = arm - off * swept * weight;
-            let mut row = by.map(|by| by * bend);
-            row[0] -= omega * ny;
-            row[1] += omega * nx;
-            row[2] += nx - omega * time * ny;
-            row[3] += ny + omega * time * nx;
-            let row = row.map(|value| value * root);
-            let residual = off * root;
-            normal.cost += residual * residual;
-            for i in 0..6 {
-                normal.gradient[i] += row[i] * residual;
-                for j in 0..=i {
-                    normal.matrix[i][j] += row[i] * row[j];
-                }
-            }
+            let [x, y] = [-omega * ny, omega * nx];
+            let row = [
+                off,
+                bend * by[0] + x,
+                bend * by[1] + y,
+                bend * by[2] + nx + time * x,
+                bend * by[3] + ny + time * y,
+                bend * by[4],
+                bend * by[5],
+                0.0,
+            ];
+            sums.add(&row.map(|value| value * root));
         }
     }
-    normal
+    sums.normal()
 }

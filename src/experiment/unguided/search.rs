@@ -4,7 +4,7 @@
 //! accepted at once explains the readings, by chi-square where the noise is stated; only where nothing does the finer grids are searched.
 
 use super::FirstState;
-use super::descent::{Free, descend, deviations, refine};
+use super::descent::{End, Free, descend, deviations, refine};
 use super::grid::Grid;
 use super::integrals::Integrals;
 use super::normal::{Look, Unknowns};
@@ -40,56 +40,78 @@ const NOTHING: f64 = 1e-6;
 /// A body that is no disc turns within this factor like one of its size.
 const UNLIKELY: f64 = 30.0;
 
+/// What leaves less of some samples than this, in parts of a contact's length or in deviations of its noise, is likely to be the state.
+const LIKELY: [f64; 2] = [1e-4, 3.0];
+
+/// What leaves no more than this is taken at once, without a look at what else there is; and what leaves least of a pass is taken up to this.
+const SURELY: f64 = 2.5;
+const BARELY: f64 = 5.0;
+
 /// What leaves more than so many variances of a contact is no state that carried errors explain.
 const NEAR: f64 = 100.0;
 
 pub(super) fn search(all: &Integrals) -> Option<FirstState> {
-    let mut best: Option<(Unknowns, f64)> = None;
+    let mut best: Option<End> = None;
     for pass in &PASSES {
-        for candidate in pass.candidates(all) {
-            let (found, cost) = polished(all, candidate);
-            if !is_body(all, &found) || best.is_some_and(|(_, least)| cost >= least) {
-                continue;
+        let is_sure = pass.is_explained(all, |candidate| {
+            let end = polished(all, candidate);
+            let is_best = is_body(all, &end.x) && best.as_ref().is_none_or(|best| end.cost < best.cost);
+            let is_sure = is_best && is_explained(all, end.cost, SURELY);
+            if is_best {
+                best = Some(end);
             }
-            best = Some((found, cost));
-            if is_explained(all, cost) {
-                return Some(first_state(all, &found, cost));
-            }
+            is_sure
+        });
+        if let Some(best) = best.as_ref().filter(|best| is_sure || is_explained(all, best.cost, BARELY)) {
+            return Some(first_state(all, best));
         }
     }
-    let (mut found, mut cost) = best?;
-    if !is_nothing(all, cost) {
-        let refined = refine(all, found, 30);
-        if is_body(all, &refined.0) {
-            (found, cost) = refined;
+    let best = best?;
+    if !is_nothing(all, best.cost) {
+        let refined = refine(all, best.x, 30);
+        if is_body(all, &refined.x) {
+            return Some(first_state(all, &refined));
         }
     }
-    Some(first_state(all, &found, cost))
+    Some(first_state(all, &best))
 }
 
 /// A descent by all samples, by the errors of contacts as they are carried on where their noise is known.
-fn polished(all: &Integrals, candidate: Unknowns) -> (Unknowns, f64) {
+fn polished(all: &Integrals, candidate: Unknowns) -> End {
     let look = Look { stride: 1, softened: SOFTENED[1] * all.rate };
-    let Some(sigma) = all.sigma else { return descend(all, candidate, Free::All, look, 30) };
-    // two steps: what carries errors on takes the others
-    let (found, cost) = descend(all, candidate, Free::All, look, 2);
-    let is_near = cost <= NEAR * sigma * sigma * 2.0 * all.samples.len() as f64;
-    if is_near && !is_nothing(all, cost) { refine(all, found, 8) } else { (found, cost) }
+    // two steps where what carries errors on takes the others
+    let steps = if all.sigma.is_some() { 2 } else { 30 };
+    let (x, cost) = descend(all, candidate, Free::All, look, steps);
+    let near = NEAR * all.sigma.unwrap_or(0.0).powi(2) * 2.0 * all.samples.len() as f64;
+    if cost <= near && !is_nothing(all, cost) { refine(all, x, 8) } else { End { x, cost, carried: None } }
 }
 
 impl Pass {
-    /// Where descents by all samples begin, those first that leave least of some.
-    fn candidates(&self, all: &Integrals) -> Vec<Unknowns> {
+    /// Tries where descents by some samples end on all, until what one ends with explains the readings. What leaves little of the few is tried at once,
+    /// the others, those first that leave least, when all have ended.
+    fn is_explained(&self, all: &Integrals, mut explains: impl FnMut(Unknowns) -> bool) -> bool {
         let look =
             Look { stride: (all.samples.len() / self.samples).max(1), softened: SOFTENED[0] * all.rate };
-        let minima = self.grid.minima(all).into_iter().take(self.kept);
-        let descents = minima.map(|(x, _)| {
-            let (drawn, _) = descend(all, x, Free::Drawn, look, 8);
-            descend(all, drawn, Free::All, look, 8)
-        });
-        let mut ends: Vec<(Unknowns, f64)> = descents.filter(|(_, cost)| cost.is_finite()).collect();
+        let rows = 2.0 * all.samples.len().div_ceil(look.stride) as f64;
+        let likely = all.sigma.map_or(LIKELY[0] * all.length, |sigma| LIKELY[1] * sigma);
+        let mut ends = Vec::new();
+        let mut tried = 0;
+        for (start, _) in self.grid.minima(all).into_iter().take(self.kept) {
+            let (drawn, _) = descend(all, start, Free::Drawn, look, 8);
+            let (end, cost) = descend(all, drawn, Free::All, look, 8);
+            let is_likely = cost <= rows * likely * likely && tried < self.polished;
+            if is_likely {
+                tried += 1;
+                if explains(end) {
+                    return true;
+                }
+            }
+            if cost.is_finite() {
+                ends.push((end, cost, is_likely));
+            }
+        }
         ends.sort_by(|a, b| a.1.total_cmp(&b.1));
-        ends.into_iter().take(self.polished).map(|(x, _)| x).collect()
+        ends.into_iter().take(self.polished).any(|(end, _, was_tried)| !was_tried && explains(end))
     }
 }
 
@@ -108,14 +130,15 @@ fn is_nothing(all: &Integrals, cost: f64) -> bool {
     cost <= 2.0 * all.samples.len() as f64 * (NOTHING * all.length).powi(2)
 }
 
-/// Whether what is left is the noise of the contacts: below five deviations of the sum of as many squares.
-fn is_explained(all: &Integrals, cost: f64) -> bool {
+/// Whether what is left is the noise of the contacts: so many deviations of the sum of as many squares above its mean at most.
+fn is_explained(all: &Integrals, cost: f64, deviations: f64) -> bool {
     let n = 2.0 * all.samples.len() as f64;
-    let noise = all.sigma.unwrap_or(0.0).powi(2) * (n + 5.0 * (2.0 * n).sqrt());
+    let noise = all.sigma.unwrap_or(0.0).powi(2) * (n + deviations * (2.0 * n).sqrt());
     cost <= noise + n * (NOTHING * all.length).powi(2)
 }
 
-fn first_state(all: &Integrals, x: &Unknowns, cost: f64) -> FirstState {
+fn first_state(all: &Integrals, end: &End) -> FirstState {
+    let (x, cost) = (end.x, end.cost);
     let centre = [x[0], x[1]];
     FirstState {
         radii: all.radii(centre),
@@ -123,7 +146,9 @@ fn first_state(all: &Integrals, x: &Unknowns, cost: f64) -> FirstState {
         gyration: ((-x[5]).exp() / all.mass).sqrt(),
         centre,
         velocity: [x[2], x[3]],
-        deviations: all.sigma.map_or([0.0; 3], |sigma| deviations(all, x).map(|deviation| sigma * deviation)),
+        deviations: all
+            .sigma
+            .map_or([0.0; 3], |sigma| deviations(all, end).map(|deviation| sigma * deviation)),
         misfit: (cost / (2.0 * all.samples.len() as f64)).sqrt(),
     }
 }

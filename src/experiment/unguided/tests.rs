@@ -63,6 +63,43 @@ fn arrives(experiment: &Experiment) -> bool {
     found.iter().zip(truth).all(|(found, truth)| (found / truth - 1.0).abs() < 0.01)
 }
 
+/// Over many draws of errors what is found is as far off as the bound at the truth says. In some motions in which a palm and the body come to turn at one
+/// rate it is farther off even for small errors: nothing there is linear.
+#[test]
+fn errors_are_as_large_as_the_bound() {
+    let mut draws = scenes::Draws::new(5);
+    let mut ratios = Vec::new();
+    let mut normal = || (0..12).map(|_| draws.between(-0.5, 0.5)).sum::<f64>();
+    for experiment in held(6, false).into_iter().chain(held(6, true)) {
+        let whole = experiment.palm_readings().unwrap();
+        let exact = PalmReadings { sigma: Some(1e-5), ..whole };
+        let moment = experiment.simulation.as_ref().unwrap().trajectory.moments[0];
+        let truth = FirstState {
+            radii: moment.palms.map(|palm| palm.r),
+            rate: moment.omega0,
+            gyration: experiment.simulation.as_ref().unwrap().constants["rho"],
+            centre: moment.centre,
+            velocity: moment.velocity,
+            deviations: [0.0; 3],
+            misfit: 0.0,
+        };
+        let bound = exact.bound_at(&truth).unwrap();
+        let mut squares = [0.0; 3];
+        for _ in 0..60 {
+            let mut noisy = exact.clone();
+            noisy.contacts.iter_mut().flatten().for_each(|contact| *contact += 1e-5 * normal());
+            let found = noisy.first_state().unwrap();
+            let off =
+                [found.radii[0] - truth.radii[0], found.radii[1] - truth.radii[1], found.rate - truth.rate];
+            squares.iter_mut().zip(off).for_each(|(sum, off)| *sum += off * off / 60.0);
+        }
+        ratios.extend(squares.iter().zip(bound).map(|(square, bound)| square.sqrt() / bound));
+    }
+    ratios.sort_by(f64::total_cmp);
+    assert!(ratios[0] > 0.7, "{ratios:?}");
+    assert!((0.9..1.1).contains(&ratios[ratios.len() / 2]), "{ratios:?}");
+}
+
 /// A known radius of gyration is used and given back.
 #[test]
 fn what_is_known_is_not_sought() {
