@@ -179,11 +179,10 @@ fn a_study_sets_the_ways_beside_each_other() {
         let errors = rows[row]["ways"][way]["radius_errors"].as_array().unwrap();
         errors.iter().map(serde_json::Value::as_f64).collect()
     };
-    for row in 0..4 {
-        let (bodies, asked) = (&rows[row]["bodies"], &rows[row]["asked"]);
-        assert_eq!((bodies, asked, &rows[row]["silent"]), (&2.into(), &2.into(), &0.into()));
+    for (row, of) in rows.iter().enumerate() {
+        assert_eq!((&of["bodies"], &of["asked"], &of["silent"]), (&2.into(), &2.into(), &0.into()));
         let names: Vec<&str> =
-            (rows[row]["ways"].as_array().unwrap().iter()).map(|way| way["name"].as_str().unwrap()).collect();
+            (of["ways"].as_array().unwrap().iter()).map(|way| way["name"].as_str().unwrap()).collect();
         assert_eq!(names.len(), 5);
         assert!(names[1].contains("Dopri5") && names[2].contains("Dop853"));
         // the same bodies, whatever the order of the harmonics: the other ways do not know of it
@@ -191,7 +190,7 @@ fn a_study_sets_the_ways_beside_each_other() {
             (0..4).map(|way| errors(row, way)).collect::<Vec<_>>(),
             (0..4).map(|way| errors(row - row % 2, way)).collect::<Vec<_>>()
         );
-        assert!(rows[row]["ways"][4]["seconds"].as_f64().unwrap() > 0.0);
+        assert!(of["ways"][4]["seconds"].as_f64().unwrap() > 0.0);
     }
     assert_eq!([0, 1, 2, 3].map(|row| rows[row]["recovered"].as_u64().unwrap()), [0, 2, 0, 2]);
     for row in [1, 3] {
@@ -209,6 +208,34 @@ fn a_study_sets_the_ways_beside_each_other() {
     let ended = drawn.filter(|(row, way)| errors(*row, *way).iter().all(Option::is_some)).count();
     assert_eq!(picture.matches("<title>").count(), ended);
     assert_eq!(picture.matches("stroke-opacity=\"0.5\"").count(), 6, "a line for each order of three ways");
+}
+
+/// A study of runs with jumps: splines, whose harmonics fall slowly, and bodies whose mass is off centre, each found whole, every jump between its own samples and where descent leads. The simulation knows
+/// nothing of what is sought.
+#[test]
+fn a_study_counts_runs_with_jumps() {
+    let study =
+        "[study]\nbodies = 2\nfamilies = [\"uniform\", \"off-centre\"]\nsamples = [120]\njumps = [1, 4]\n";
+    let folder = folder();
+    let file = write(&folder, "slow.toml", scene(60, BODY, PLAN, study));
+    let run = palmistry(&["observe", file.to_str().unwrap(), "--studies", "--json", "--no-times"]);
+    assert_eq!(run.status.code(), Some(0));
+    let found = json(&run);
+    // of 20 mm; a spline is told by as many harmonics as 120 samples allow
+    for (row, (family, most)) in [("uniform", 1e-6), ("off-centre", 1e-15)].into_iter().enumerate() {
+        let row = &found["study"][row];
+        assert_eq!(
+            (&row["family"], &row["recovered"], &row["silent"]),
+            (&family.into(), &2.into(), &0.into())
+        );
+        let errors = row["outline_errors"].as_array().unwrap();
+        assert!(errors.iter().all(|error| error.as_f64().unwrap() < most), "{errors:?}");
+        for jumps in row["jumps"].as_array().unwrap() {
+            let of = |key: &str| jumps[key].as_u64().unwrap();
+            assert_eq!((of("recovered"), of("located")), (of("runs"), of("runs")), "{jumps}");
+            assert_eq!((of("found"), of("predicted")), (of("runs") * of("jumps"), of("runs") * of("jumps")));
+        }
+    }
 }
 
 /// Pads that are too short end the motion.
