@@ -150,7 +150,12 @@ pub fn slow_study(
                     while row.bodies < study.bodies && row.jumped < MOST_DRAWS * study.bodies && !interrupt()
                     {
                         let shape = family.draw(study.size, &mut random)?;
-                        if one_body(&mut row, shape, study, scene.seed, interrupt) {
+                        let before = row.clone();
+                        let is_one = one_body(&mut row, shape, study, scene.seed, interrupt);
+                        if interrupt() {
+                            // a search that was cut off is no failure
+                            row = before;
+                        } else if is_one {
                             done();
                         }
                     }
