@@ -197,7 +197,7 @@ impl Verb {
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Advise(verb) => interrupt::watched(move || verb.run(), nothing),
-            Verb::Poses(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Poses(verb) => verb.run(),
             Verb::Import(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::New(verb) => verb.run(),
             Verb::Fmt(verb) => verb.run(),

@@ -1,18 +1,19 @@
 //! `palmistry poses`: the surface of stable poses of a body between slow palms.
 
-use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
+use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::{Args, ValueEnum};
 use palmistry::experiment::Scene;
 use palmistry::pose_surface::{
-    BodyFamily, ConjectureQuestion, PalmPair, PoseBody, PoseLimits, PoseQuestion, conjecture, numbers,
-    survey_poses,
+    BodyFamily, ConjectureFinding, ConjectureQuestion, PalmPair, PoseBody, PoseLimits, PoseQuestion,
+    conjecture, numbers, survey_poses,
 };
 use palmistry::report::{conjecture_json, conjecture_text, poses_json, poses_page, poses_text};
 use serde_json::json;
 use std::f64::consts::PI;
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Where a body lies between two slow palms, how its stable poses hang together, and how palms have to move to turn it or to touch all of it.
 ///
@@ -131,8 +132,21 @@ impl Poses {
         let limits =
             PoseLimits { margin: margin_in_range("--margin", self.margin)?, pad, tolerance: self.tolerance };
         match self.bodies {
-            Some(bodies) => self.study(bodies, &margins, limits),
-            None => self.one(&margins, limits),
+            Some(bodies) => {
+                let found: Arc<Mutex<Vec<ConjectureFinding>>> = Arc::default();
+                let study = Study { asked: self, bodies, margins, limits };
+                let (worker, filled) = (study.clone(), found.clone());
+                let work = move || {
+                    worker.work(&filled);
+                    begin_to_tell();
+                    worker.tell(&filled)
+                };
+                watched(work, || study.tell(&found))
+            }
+            None => {
+                let form = Form::of(self.json);
+                watched(move || self.one(&margins, limits), move || nothing_found(form))
+            }
         }
     }
 
@@ -184,35 +198,67 @@ impl Poses {
         }
         files.print(Form::of(self.json), object, || poses_text(&survey), Status::of(true))
     }
+}
 
-    fn study(&self, bodies: u64, margins: &[f64], limits: PoseLimits) -> miette::Result<Status> {
-        let families: Vec<BodyFamily> = BodyFamily::ALL
-            .into_iter()
-            .filter(|family| {
-                self.family.is_empty()
-                    || self.family.iter().any(|asked| BodyFamily::ALL[*asked as usize] == *family)
-            })
-            .collect();
-        let bar = progress(bodies * families.len() as u64, "bodies");
-        let question = ConjectureQuestion {
-            seed: self.seed,
-            bodies,
-            margins,
-            nodes: NODES,
-            plans: self.plans.then_some((limits, self.grid as usize)),
-            interrupt: &INTERRUPTED,
-            progress: &|| bar.inc(1),
+/// Many random bodies. What was found of each is kept as soon as it is there: a body takes longer than an interrupt leaves.
+#[derive(Clone)]
+struct Study {
+    asked: Poses,
+    bodies: u64,
+    margins: Vec<f64>,
+    limits: PoseLimits,
+}
+
+impl Study {
+    fn families(&self) -> Vec<BodyFamily> {
+        let is_asked = |family: &BodyFamily| {
+            let mut asked = self.asked.family.iter().map(|asked| BodyFamily::ALL[*asked as usize]);
+            self.asked.family.is_empty() || asked.any(|asked| asked == *family)
         };
-        let findings = conjecture(&families, &question);
+        BodyFamily::ALL.into_iter().filter(is_asked).collect()
+    }
+
+    fn question<'a>(&'a self, found: &'a (dyn Fn(&ConjectureFinding) + Sync)) -> ConjectureQuestion<'a> {
+        ConjectureQuestion {
+            seed: self.asked.seed,
+            bodies: self.bodies,
+            margins: &self.margins,
+            nodes: NODES,
+            plans: self.asked.plans.then_some((self.limits, self.asked.grid as usize)),
+            interrupt: &INTERRUPTED,
+            found,
+        }
+    }
+
+    fn work(&self, found: &Mutex<Vec<ConjectureFinding>>) {
+        let families = self.families();
+        let bar = progress(self.bodies * families.len() as u64, "bodies");
+        let keep = |one: &ConjectureFinding| {
+            found.lock().unwrap_or_else(PoisonError::into_inner).push(one.clone());
+            bar.inc(1);
+        };
+        let _ = conjecture(&families, &self.question(&keep));
         bar.finish_and_clear();
-        begin_to_tell();
+    }
+
+    /// Prints and writes what was found, in the order of families and numbers.
+    fn tell(&self, found: &Mutex<Vec<ConjectureFinding>>) -> miette::Result<Status> {
+        let mut findings = found.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let form = Form::of(self.asked.json);
+        if findings.is_empty() && interrupted() {
+            return nothing_found(form);
+        }
+        let place = |family: BodyFamily| BodyFamily::ALL.iter().position(|one| *one == family);
+        findings.sort_by_key(|one| (place(one.family), one.number));
+        let nobody = |_: &ConjectureFinding| ();
+        let question = self.question(&nobody);
         let mut object = conjecture_json(&findings, &question);
         object["interrupted"] = json!(interrupted());
         let mut files = Files::default();
-        if let Some(folder) = &self.out {
+        if let Some(folder) = &self.asked.out {
             files.json(&folder.join("poses.json"), &object);
             files.announce(&folder.join("poses.json"));
         }
-        files.print(Form::of(self.json), object, || conjecture_text(&findings, &question), Status::of(true))
+        files.print(form, object, || conjecture_text(&findings, &question), Status::of(true))
     }
 }

@@ -27,8 +27,8 @@ pub struct ConjectureQuestion<'a> {
     pub plans: Option<(PoseLimits, usize)>,
     /// Stop where it is set.
     pub interrupt: &'a AtomicBool,
-    /// Called once a body.
-    pub progress: &'a (dyn Fn() + Sync),
+    /// Told of each body as soon as it was looked at, in any order: a run that is cut off has these.
+    pub found: &'a (dyn Fn(&ConjectureFinding) + Sync),
 }
 
 /// What is found of one body at one margin.
@@ -168,7 +168,7 @@ pub fn conjecture(families: &[BodyFamily], question: &ConjectureQuestion<'_>) ->
             return None;
         }
         let found = finding(*family, *number, question);
-        (question.progress)();
+        (question.found)(&found);
         Some(found)
     };
     let found: Vec<Option<ConjectureFinding>> = all.par_iter().map(one).collect();

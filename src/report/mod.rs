@@ -24,6 +24,7 @@ mod slow;
 mod slow_observed;
 mod slow_plot;
 mod slow_section;
+mod slow_speed;
 mod slow_study;
 mod solid_picture;
 mod space;

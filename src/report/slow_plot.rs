@@ -1,6 +1,6 @@
-//! Pictures of a slow body, written as SVG: the motion, what was touched, errors, speed.
+//! Pictures of a slow body, written as SVG: the motion, what was touched, errors.
 
-use crate::experiment::slow::{SlowTrack, StudyRow, median_and_worst};
+use crate::experiment::slow::SlowTrack;
 use crate::report::moved_body::{MovedPose, moved_body, rows};
 use crate::report::slow_observed::SlowObserved;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -207,67 +207,4 @@ fn seen_errors(observed: &SlowObserved<'_>) -> String {
     ];
     logarithmic("e_f of 3.38", "m", &force.into_iter().flatten().collect::<Vec<_>>())
         + &logarithmic("e_c of 3.39", "m", &contact.into_iter().flatten().collect::<Vec<_>>())
-}
-
-/// Speed against accuracy of all ways: a mark a row of the study.
-pub(super) fn speed(rows: &[StudyRow]) -> String {
-    let mut marks = Vec::new();
-    for row in rows {
-        let ways = [("#d55e00", &row.thesis), ("#009e73", &row.quadrature), ("#0072b2", &row.together)];
-        for (colour, way) in ways {
-            let seconds = way.seconds / row.bodies.max(1) as f64;
-            let error = median_and_worst(&way.radius).map_or(f64::INFINITY, |[median, _]| median);
-            if seconds > 0.0 && error > 0.0 && error.is_finite() {
-                let order = row.order.map_or_else(String::new, |order| format!(", order {order}"));
-                let title = format!(
-                    "{}, {} samples, resolution {} m{order}",
-                    row.family.name(),
-                    row.samples,
-                    row.resolution
-                );
-                marks.push((seconds.log10(), error.log10(), colour, title));
-            }
-        }
-    }
-    let ends = |all: Vec<f64>| {
-        let range = all
-            .into_iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |ends, x| [ends[0].min(x), ends[1].max(x)]);
-        [range[0].floor(), range[1].ceil().max(range[0].floor() + 1.0)]
-    };
-    if marks.is_empty() {
-        return String::new();
-    }
-    let (x, y) =
-        (ends(marks.iter().map(|mark| mark.0).collect()), ends(marks.iter().map(|mark| mark.1).collect()));
-    let place =
-        |a: f64, [low, high]: [f64; 2], from: f64, to: f64| from + (to - from) * (a - low) / (high - low);
-    let mut out = String::from(
-        "<svg role=\"img\" aria-label=\"Speed against accuracy\" viewBox=\"0 0 460 290\" width=\"460\" height=\"290\"><text x=\"230\" y=\"14\" font-size=\"13\" text-anchor=\"middle\" fill=\"currentColor\">median error of a radius over its mean, against seconds a body</text>",
-    );
-    for decade in x[0] as i32..=x[1] as i32 {
-        let at = place(f64::from(decade), x, 50.0, 440.0);
-        let _ = write!(
-            out,
-            "<path d=\"M{at:.1},25V240\" stroke=\"currentColor\" stroke-opacity=\"0.15\"/><text x=\"{at:.1}\" y=\"254\" font-size=\"10\" text-anchor=\"middle\" fill=\"currentColor\">1e{decade} s</text>"
-        );
-    }
-    for decade in (y[0] as i32..=y[1] as i32).step_by(2) {
-        let at = place(f64::from(decade), y, 240.0, 25.0);
-        let _ = write!(
-            out,
-            "<path d=\"M50,{at:.1}H440\" stroke=\"currentColor\" stroke-opacity=\"0.15\"/><text x=\"46\" y=\"{:.1}\" font-size=\"10\" text-anchor=\"end\" fill=\"currentColor\">1e{decade}</text>",
-            at + 3.0
-        );
-    }
-    for (seconds, error, colour, title) in &marks {
-        let _ = write!(
-            out,
-            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4\" fill=\"{colour}\"><title>{title}</title></circle>",
-            place(*seconds, x, 50.0, 440.0),
-            place(*error, y, 240.0, 25.0)
-        );
-    }
-    out.push_str("<text x=\"50\" y=\"280\" font-size=\"11\" fill=\"#d55e00\">thesis</text><text x=\"180\" y=\"280\" font-size=\"11\" fill=\"#009e73\">quadrature</text><text x=\"310\" y=\"280\" font-size=\"11\" fill=\"#0072b2\">all at once</text></svg>");
-    out
 }

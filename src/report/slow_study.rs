@@ -1,16 +1,23 @@
 //! What a study of slow motion over many bodies found: text, JSON, a section of the page.
 
 use crate::experiment::slow::{JumpTally, StudyRow, WayTally, median_and_worst};
-use crate::report::slow_plot::speed;
+use crate::report::slow_speed::speed;
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Beside each other what stands in the table of a study.
+/// Beside each other what stands in the table of a study: of the bodies over which the way came to its end, and how many those are that are not among them.
 fn tally(way: &WayTally) -> [String; 2] {
-    [&way.radius, &way.phi0].map(|values| match median_and_worst(values) {
-        Some([median, worst]) => format!("{median:.1e} ({worst:.1e})"),
-        None => "-".to_owned(),
+    let stopped = match way.stopped() {
+        0 => String::new(),
+        some => format!(", stopped on {some} of {}", way.radius.len()),
+    };
+    [&way.radius, &way.phi0].map(|values| {
+        let ended: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
+        match median_and_worst(&ended) {
+            Some([median, worst]) => format!("{median:.1e} ({worst:.1e}){stopped}"),
+            None => format!("-{stopped}"),
+        }
     })
 }
 
@@ -34,12 +41,19 @@ fn row_in_words(row: &StudyRow) -> String {
 /// Bodies that were drawn and do not count, in words.
 fn passed_over(row: &StudyRow) -> String {
     let why = if row.jumps.is_empty() { "jumped" } else { "did not jump as often as is asked" };
-    format!("{} {why}", row.jumped)
+    let ended = match row.asked.saturating_sub(row.bodies) {
+        0 => String::new(),
+        missing => format!("; it ended {missing} bodies before the {} that were asked for", row.asked),
+    };
+    format!("{} {why}{ended}", row.jumped)
 }
 
-fn ways_of(row: &StudyRow) -> [(&'static str, &WayTally); 3] {
+pub(super) fn ways_of(row: &StudyRow) -> [(&'static str, &WayTally); 5] {
+    let [own, dopri5, dop853] = &row.thesis;
     [
-        ("thesis, true radii", &row.thesis),
+        ("thesis, true radii", own),
+        ("thesis by Dopri5, true radii", dopri5),
+        ("thesis by Dop853, true radii", dop853),
         ("quadrature, true height", &row.quadrature),
         ("all at once, nothing known", &row.together),
     ]
@@ -67,7 +81,7 @@ pub(super) fn study_text(rows: &[StudyRow]) -> String {
         for (name, way) in ways_of(row) {
             let [radius, phi0] = tally(way);
             let each = way.seconds / row.bodies.max(1) as f64;
-            let _ = writeln!(out, "  {name}: radius {radius}, phi0 {phi0} rad, {each:.3} s");
+            let _ = writeln!(out, "  {name}: radius {radius}, phi0 {phi0} rad, {each:.1e} s");
         }
     }
     out
@@ -90,6 +104,7 @@ pub(super) fn study_json(rows: &[StudyRow]) -> Vec<Value> {
             "samples": row.samples,
             "resolution": row.resolution,
             "bodies": row.bodies,
+            "asked": row.asked,
             "order": row.order,
             "jumped": row.jumped,
             "jumps": row.jumps.iter().map(|(jumps, at)| {
@@ -107,7 +122,7 @@ pub(super) fn study_json(rows: &[StudyRow]) -> Vec<Value> {
 /// The section of the page.
 pub(super) fn study_section(rows: &[StudyRow]) -> Markup {
     html! {
-        p { "Medians over all bodies, the worst in brackets; errors of a support radius in parts of the mean radius, of the orientation in rad. An infinite one stopped on the way." }
+        p { "Medians over all bodies, the worst in brackets; errors of a support radius in parts of the mean radius, of the orientation in rad, over the bodies on which the way came to the last sample. Seconds are those of the processor." }
         table {
             thead { tr {
                 th { "family" } th { "samples" } th { "resolution" } th { "order" } th { "way" } th { "radius" } th { "phi0" } th { "s a body" }
@@ -118,7 +133,7 @@ pub(super) fn study_section(rows: &[StudyRow]) -> Markup {
                         @let [radius, phi0] = tally(way);
                         tr {
                             td { (row.family.name()) } td { (row.samples) } td { (row.resolution) " m" } td { (row.order.map_or_else(|| "chosen".to_owned(), |order| order.to_string())) } td { (name) }
-                            td { (radius) } td { (phi0) } td { (format!("{:.3}", way.seconds / row.bodies.max(1) as f64)) }
+                            td { (radius) } td { (phi0) } td { (format!("{:.1e}", way.seconds / row.bodies.max(1) as f64)) }
                         }
                     }
                 }
@@ -128,7 +143,7 @@ pub(super) fn study_section(rows: &[StudyRow]) -> Markup {
             p {
                 (row_in_words(row)) ": "
                 b { (row.recovered) " of " (row.bodies) " recovered, " (row.silent) " silent failures" }
-                "; " (passed_over(row)) " and were drawn anew"
+                "; " (passed_over(row))
                 @if let Some([median, worst]) = median_and_worst(&row.outline) {
                     "; greatest error of the outline: median " (format!("{median:.1e} m, worst {worst:.1e} m"))
                 }

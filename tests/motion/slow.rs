@@ -161,6 +161,83 @@ fn a_paper_has_slow_scenes() {
     assert_eq!(html.matches("After ").count(), 4);
 }
 
+/// A study: in each row every way over the same bodies. Exact readings tell a body of six harmonics to rounding and quadrature falls with the samples; where the order is too low the
+/// readings are not explained, and it is said. One that ends early says so.
+#[test]
+fn a_study_sets_the_ways_beside_each_other() {
+    let study = "[study]\nbodies = 2\nfamilies = [\"harmonics\"]\nsamples = [60, 120]\norders = [3, 6]\n";
+    let folder = folder();
+    let file = write(&folder, "slow.toml", scene(60, BODY, PLAN, study));
+    let page = folder.path().join("page").display().to_string();
+    let run = palmistry(&["observe", file.to_str().unwrap(), "--studies", "--json", "--out", &page]);
+    assert_eq!(run.status.code(), Some(0));
+    let found = json(&run);
+    let rows = found["study"].as_array().unwrap();
+    let key = |row: &serde_json::Value| (row["samples"].as_u64().unwrap(), row["order"].as_u64().unwrap());
+    assert_eq!(rows.iter().map(key).collect::<Vec<_>>(), [(60, 3), (60, 6), (120, 3), (120, 6)]);
+    let errors = |row: usize, way: usize| -> Vec<Option<f64>> {
+        let errors = rows[row]["ways"][way]["radius_errors"].as_array().unwrap();
+        errors.iter().map(serde_json::Value::as_f64).collect()
+    };
+    for (row, of) in rows.iter().enumerate() {
+        assert_eq!((&of["bodies"], &of["asked"], &of["silent"]), (&2.into(), &2.into(), &0.into()));
+        let names: Vec<&str> =
+            (of["ways"].as_array().unwrap().iter()).map(|way| way["name"].as_str().unwrap()).collect();
+        assert_eq!(names.len(), 5);
+        assert!(names[1].contains("Dopri5") && names[2].contains("Dop853"));
+        // the same bodies, whatever the order of the harmonics: the other ways do not know of it
+        assert_eq!(
+            (0..4).map(|way| errors(row, way)).collect::<Vec<_>>(),
+            (0..4).map(|way| errors(row - row % 2, way)).collect::<Vec<_>>()
+        );
+        assert!(of["ways"][4]["seconds"].as_f64().unwrap() > 0.0);
+    }
+    assert_eq!([0, 1, 2, 3].map(|row| rows[row]["recovered"].as_u64().unwrap()), [0, 2, 0, 2]);
+    for row in [1, 3] {
+        assert!(errors(row, 4).iter().all(|error| error.unwrap() < 1e-13), "{:?}", errors(row, 4));
+    }
+    // a body of which the true height is known: an order of the quadrature more than halves what is left
+    for (few, many) in errors(0, 3).iter().zip(errors(2, 3)) {
+        assert!(many.unwrap() < 0.25 * few.unwrap(), "{few:?} {many:?}");
+    }
+    let html = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+    let picture =
+        html.split("aria-label=\"Speed against accuracy\"").nth(1).unwrap().split("</svg>").next().unwrap();
+    // a mark for each row of a way that came to the end on most bodies, and lines over both numbers of samples
+    let drawn = (0..4).flat_map(|row| (0..5).map(move |way| (row, way)));
+    let ended = drawn.filter(|(row, way)| errors(*row, *way).iter().all(Option::is_some)).count();
+    assert_eq!(picture.matches("<title>").count(), ended);
+    assert_eq!(picture.matches("stroke-opacity=\"0.5\"").count(), 6, "a line for each order of three ways");
+}
+
+/// A study of runs with jumps: splines, whose harmonics fall slowly, and bodies whose mass is off centre, each found whole, every jump between its own samples and where descent leads. The simulation knows
+/// nothing of what is sought.
+#[test]
+fn a_study_counts_runs_with_jumps() {
+    let study =
+        "[study]\nbodies = 2\nfamilies = [\"uniform\", \"off-centre\"]\nsamples = [120]\njumps = [1, 4]\n";
+    let folder = folder();
+    let file = write(&folder, "slow.toml", scene(60, BODY, PLAN, study));
+    let run = palmistry(&["observe", file.to_str().unwrap(), "--studies", "--json", "--no-times"]);
+    assert_eq!(run.status.code(), Some(0));
+    let found = json(&run);
+    // of 20 mm; a spline is told by as many harmonics as 120 samples allow
+    for (row, (family, most)) in [("uniform", 1e-6), ("off-centre", 1e-15)].into_iter().enumerate() {
+        let row = &found["study"][row];
+        assert_eq!(
+            (&row["family"], &row["recovered"], &row["silent"]),
+            (&family.into(), &2.into(), &0.into())
+        );
+        let errors = row["outline_errors"].as_array().unwrap();
+        assert!(errors.iter().all(|error| error.as_f64().unwrap() < most), "{errors:?}");
+        for jumps in row["jumps"].as_array().unwrap() {
+            let of = |key: &str| jumps[key].as_u64().unwrap();
+            assert_eq!((of("recovered"), of("located")), (of("runs"), of("runs")), "{jumps}");
+            assert_eq!((of("found"), of("predicted")), (of("runs") * of("jumps"), of("runs") * of("jumps")));
+        }
+    }
+}
+
 /// Pads that are too short end the motion.
 #[test]
 fn a_pad_that_is_too_short_ends_the_motion() {

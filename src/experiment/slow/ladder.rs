@@ -29,10 +29,12 @@ pub(super) struct Orders {
     pub least: usize,
     /// The last order, whether it is one of the usual ones or not; none leaves it to the readings.
     pub most: Option<usize>,
+    /// Where no more than this part of the mean radius is left no higher order is tried, whatever it would tell.
+    pub enough: f64,
 }
 
 impl Orders {
-    pub const CHOSEN: Orders = Orders { least: 0, most: None };
+    pub const CHOSEN: Orders = Orders { least: 0, most: None, enough: 0.0 };
 
     fn all(self) -> Vec<usize> {
         let most = self.most.unwrap_or(usize::MAX);
@@ -85,15 +87,16 @@ impl Together<'_> {
                 best = best.or(Some(end));
                 break;
             }
+            let is_enough = misfit <= orders.enough * end.coefficients[0];
             last = Some(end.clone());
             if best.as_ref().is_none_or(|best| criterion(&end) < criterion(best)) {
                 best = Some(end);
                 patience = PATIENCE;
             } else {
                 patience -= 1;
-                if patience == 0 {
-                    break;
-                }
+            }
+            if patience == 0 || is_enough {
+                break;
             }
         }
         best.map(|best| self.shape(&best))

@@ -20,6 +20,7 @@ mod run;
 mod scene;
 mod segments;
 mod start;
+mod stopwatch;
 mod study;
 mod thesis;
 mod together;

@@ -3,6 +3,7 @@
 use super::found::SlowShape;
 use super::keys::COLUMNS;
 use super::kinks::with_kinks;
+use super::ladder::Orders;
 use super::local::derivative;
 use super::patches::{Arrangement, arrangements};
 use super::quadrature::{SlowTrack, by_quadrature};
@@ -161,7 +162,7 @@ impl SlowExperiment {
         let mut thesis = Vec::new();
         let mut misled = None;
         if let Some((height, radii)) = start {
-            for method in [ThesisMethod::PredictorCorrector, ThesisMethod::Dopri5, ThesisMethod::Dop853] {
+            for method in ThesisMethod::ALL {
                 let begin = Instant::now();
                 thesis.push((method, by_thesis(readings, radii, method)));
                 if method == ThesisMethod::PredictorCorrector {
@@ -199,7 +200,7 @@ impl SlowExperiment {
 /// A shape from few starts; where none explains the readings one for all segments between jumps; where there is none either from all starts.
 fn from_any(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
     let explains = |found: &SlowShape| found.explains(EXACT);
-    from_nothing_briefly(readings, interrupt)
+    from_nothing_briefly(readings, Orders::CHOSEN, interrupt)
         .filter(explains)
         .or_else(|| from_segments(readings, interrupt).filter(explains))
         .or_else(|| from_nothing(readings, interrupt))

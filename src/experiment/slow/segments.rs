@@ -22,6 +22,10 @@ const WINDOW_STEP: f64 = 0.34;
 /// The fewest samples of a window.
 const FEWEST: usize = 40;
 
+/// A stretch is explained well enough to grow where so little is left, in parts of the mean radius. Of bodies whose harmonics fall slowly each order leaves less than the one before, and all of
+/// them at every step would take most of the time; they are asked at the end, of all readings.
+const ENOUGH: f64 = 0.1 * EXACT;
+
 /// Samples by which a stretch grows at once.
 const BLOCK: usize = 10;
 
@@ -160,8 +164,11 @@ impl Growth<'_> {
     /// A shape that explains the samples from poses near these, by the present order alone or by all from it on.
     fn explained(&self, together: &Together<'_>, near: &[f64], is_quick: bool) -> Option<SlowShape> {
         let least = self.support.order();
-        let orders =
-            Orders { least: if is_quick { least } else { least + 1 }, most: is_quick.then_some(least) };
+        let orders = Orders {
+            least: if is_quick { least } else { least + 1 },
+            most: is_quick.then_some(least),
+            enough: ENOUGH,
+        };
         let found = together.explain(&self.support, near, orders, self.interrupt)?;
         found.explains(EXACT).then_some(found)
     }
@@ -180,6 +187,7 @@ pub fn from_segments(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> O
     let rows = readings.rows();
     let together = Together::of(readings);
     let mut best: Option<SlowShape> = None;
+    let in_window = Orders { enough: ENOUGH, ..Orders::CHOSEN };
     for window in WINDOWS {
         let width = ((rows as f64 * window) as usize).max(FEWEST).min(rows);
         let step = ((width as f64 * WINDOW_STEP) as usize).max(1);
@@ -188,7 +196,9 @@ pub fn from_segments(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> O
                 return best;
             }
             let stretch = start..start + width;
-            let Some(found) = from_nothing_briefly(&readings.part(&stretch), interrupt) else { continue };
+            let Some(found) = from_nothing_briefly(&readings.part(&stretch), in_window, interrupt) else {
+                continue;
+            };
             if !found.explains(EXACT) {
                 continue;
             }
@@ -199,7 +209,7 @@ pub fn from_segments(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> O
             if growth.rows.len() < rows {
                 continue;
             }
-            let orders = Orders { least: growth.support.order(), most: None };
+            let orders = Orders { least: growth.support.order(), ..Orders::CHOSEN };
             let whole = together.explain(&growth.support, &growth.phi0, orders, interrupt);
             if let Some(whole) = whole
                 && best.as_ref().is_none_or(|best| whole.misfit < best.misfit)

@@ -177,10 +177,11 @@ pub(super) fn from_nothing_within(
 /// The same with few starts: for a window of which there are many.
 pub(super) fn from_nothing_briefly(
     readings: &SlowReadings,
+    orders: Orders,
     interrupt: &dyn Fn() -> bool,
 ) -> Option<SlowShape> {
     let briefly = Effort { starts: BRIEF_STARTS, orders: &[ORDER, 3], parted: 0 };
-    search(readings, Orders::CHOSEN, &briefly, interrupt)
+    search(readings, orders, &briefly, interrupt)
 }
 
 /// How much is tried.
@@ -207,7 +208,7 @@ fn search(
         {
             *best = Some(found);
         }
-        best.as_ref().is_some_and(|best| best.explains(EXACT * 1e-2)) || interrupt()
+        best.as_ref().is_some_and(|best| best.explains(orders.enough.max(EXACT * 1e-2))) || interrupt()
     };
     let heights = starts(readings, &quadrature);
     // the whole from every start; then, where nothing explains it, from its beginning on

@@ -8,6 +8,7 @@ use super::run::{readings_of, track_error};
 use super::scene::{SlowScene, SlowStudy};
 use super::segments::{found_jumps, from_segments};
 use super::start::{EXACT, from_nothing_within};
+use super::stopwatch::Stopwatch;
 use super::thesis::{ThesisMethod, by_thesis};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::{DEFAULT_TOLERANCE, Drive, FormError, MovingScene, Shape, Trajectory};
@@ -17,7 +18,6 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::time::Instant;
 
 /// How long the plan takes, in s: nothing depends on it.
 const DURATION: f64 = 100.0;
@@ -36,7 +36,7 @@ pub struct WayTally {
     pub radius: Vec<f64>,
     /// The greatest error of the orientation.
     pub phi0: Vec<f64>,
-    /// All seconds.
+    /// All seconds of the processor.
     pub seconds: f64,
 }
 
@@ -45,6 +45,11 @@ impl WayTally {
         self.radius.push(error.map_or(f64::INFINITY, |error| error.radius / size));
         self.phi0.push(error.map_or(f64::INFINITY, |error| error.phi0));
         self.seconds += seconds;
+    }
+
+    /// Bodies on which the way ended before the last sample, or found nothing.
+    pub fn stopped(&self) -> usize {
+        self.radius.iter().filter(|radius| radius.is_infinite()).count()
     }
 }
 
@@ -81,12 +86,14 @@ pub struct StudyRow {
     pub order: Option<usize>,
     /// The bodies.
     pub bodies: usize,
+    /// How many were asked for: fewer are there where the draws ran out, or it was interrupted.
+    pub asked: usize,
     /// The bodies that were drawn beside them and jumped, or did not as often as is asked.
     pub jumped: usize,
     /// Of runs with jumps, by their number.
     pub jumps: BTreeMap<usize, JumpTally>,
-    /// Sections 3.3 and 3.4, from the true radii.
-    pub thesis: WayTally,
+    /// Sections 3.3 and 3.4, from the true radii, by each of [`ThesisMethod::ALL`].
+    pub thesis: [WayTally; 3],
     /// From the true height.
     pub quadrature: WayTally,
     /// With nothing known.
@@ -137,13 +144,18 @@ pub fn slow_study(
         for &samples in &study.samples {
             for &resolution in &study.resolutions {
                 for &order in &orders {
-                    let mut row = StudyRow::begun(family, samples, resolution, order);
+                    let mut row = StudyRow::begun(family, samples, resolution, order, study.bodies);
                     // the same bodies in every row of a family
                     let mut random = ChaCha8Rng::seed_from_u64(scene.seed);
                     while row.bodies < study.bodies && row.jumped < MOST_DRAWS * study.bodies && !interrupt()
                     {
                         let shape = family.draw(study.size, &mut random)?;
-                        if one_body(&mut row, shape, study, scene.seed, interrupt) {
+                        let before = row.clone();
+                        let is_one = one_body(&mut row, shape, study, scene.seed, interrupt);
+                        if interrupt() {
+                            // a search that was cut off is no failure
+                            row = before;
+                        } else if is_one {
                             done();
                         }
                     }
@@ -156,16 +168,23 @@ pub fn slow_study(
 }
 
 impl StudyRow {
-    fn begun(family: Family, samples: usize, resolution: f64, order: Option<usize>) -> StudyRow {
+    fn begun(
+        family: Family,
+        samples: usize,
+        resolution: f64,
+        order: Option<usize>,
+        asked: usize,
+    ) -> StudyRow {
         StudyRow {
             family,
             samples,
             resolution,
             order,
             bodies: 0,
+            asked,
             jumped: 0,
             jumps: BTreeMap::new(),
-            thesis: WayTally::default(),
+            thesis: Default::default(),
             quadrature: WayTally::default(),
             together: WayTally::default(),
             outline: Vec::new(),
@@ -211,25 +230,30 @@ fn one_body(
     let size = study.size;
     row.bodies += 1;
     let first = &truth.moments[0];
-    let begin = Instant::now();
-    let thesis = by_thesis(&readings, first.palms.map(|palm| palm.r), ThesisMethod::PredictorCorrector);
-    row.thesis.add(track_error(&truth, &thesis.track), size, begin.elapsed().as_secs_f64());
-    let begin = Instant::now();
+    for (tally, method) in row.thesis.iter_mut().zip(ThesisMethod::ALL) {
+        let watch = Stopwatch::begun();
+        let thesis = by_thesis(&readings, first.palms.map(|palm| palm.r), method);
+        let seconds = watch.seconds();
+        tally.add(track_error(&truth, &thesis.track), size, seconds);
+    }
+    let watch = Stopwatch::begun();
     let quadrature = by_quadrature(&readings, first.centre[1]);
-    row.quadrature.add(track_error(&truth, &quadrature), size, begin.elapsed().as_secs_f64());
-    let begin = Instant::now();
+    let seconds = watch.seconds();
+    row.quadrature.add(track_error(&truth, &quadrature), size, seconds);
+    let watch = Stopwatch::begun();
     let found = if study.jumps.is_some() {
         from_segments(&readings, interrupt)
     } else {
         let least = row.order.map_or(0, |order| order / 2);
-        from_nothing_within(&readings, Orders { least, most: row.order }, interrupt)
+        from_nothing_within(&readings, Orders { least, most: row.order, enough: 0.0 }, interrupt)
     };
     let found = found.map(|found| match row.order {
         None => with_kinks(&readings, found, interrupt),
         Some(_) => found,
     });
+    let seconds = watch.seconds();
     let error = found.as_ref().and_then(|found| track_error(&truth, &found.track));
-    row.together.add(error, size, begin.elapsed().as_secs_f64());
+    row.together.add(error, size, seconds);
     let outline =
         found.as_ref().map_or(f64::INFINITY, |found| outline_error(&moved.shape, &found.shape.support));
     let explained = found.as_ref().is_some_and(|found| found.explains(EXACT));

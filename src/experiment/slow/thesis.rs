@@ -29,6 +29,12 @@ pub enum ThesisMethod {
     Dop853,
 }
 
+impl ThesisMethod {
+    /// All of them, the thesis's own first.
+    pub const ALL: [ThesisMethod; 3] =
+        [ThesisMethod::PredictorCorrector, ThesisMethod::Dopri5, ThesisMethod::Dop853];
+}
+
 /// What the thesis's way makes of readings.
 #[derive(Clone, Debug)]
 pub struct ThesisTrack {

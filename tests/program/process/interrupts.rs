@@ -118,6 +118,31 @@ fn a_recheck_that_is_cut_off_finds_no_fault() {
     assert!(counts[2] > 40 && counts.iter().sum::<u64>() == all as u64, "{counts:?}");
 }
 
+/// Of many random bodies those that were looked at are told, as a run over so many tells them: one takes longer than an interrupt leaves.
+#[test]
+fn bodies_that_were_looked_at_are_kept() {
+    let run = |bodies: u64| {
+        let bodies = bodies.to_string();
+        let mut command =
+            program(&["poses", "--bodies", &bodies, "--family", "splines", "--margins", "0.15", "--json"]);
+        // one after the other
+        command.env("RAYON_NUM_THREADS", "1");
+        command
+    };
+    let output = (5..14).map(|doublings| 1 << doublings).find_map(|ticks| {
+        let child = started_for(&mut run(100_000), ticks);
+        signal("INT", &child.id().to_string());
+        let output = end_of(child);
+        json(&output)["families"].is_array().then_some(output)
+    });
+    let output = output.expect("a body is looked at");
+    let found = json(&output);
+    assert_eq!((output.status.code(), &found["interrupted"]), (Some(3), &true.into()), "{}", words(&output));
+    let bodies = found["families"][0]["bodies"].as_u64().expect("how many");
+    assert!((1..100_000).contains(&bodies), "{bodies}");
+    assert_eq!(found["families"], json(&finish(&mut run(bodies)))["families"]);
+}
+
 /// Claims for which nobody waits, half a minute in all, and before them one that is decided at once.
 fn slow() -> String {
     let claim = |number: usize| {
