@@ -28,6 +28,7 @@ pub mod space;
 mod stream;
 mod study;
 mod system_motion;
+mod terrain;
 #[doc(hidden)]
 pub mod unguided;
 
@@ -60,3 +61,4 @@ pub use study::{
     StudyPart, Told, basins, curvature_map, noise_study,
 };
 pub use system_motion::SystemMotion;
+pub use terrain::{Closure, ClosureSetting, ComputedRank};

@@ -8,6 +8,7 @@ use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{NOMINAL, Simulation, TOUCH, deviation};
 use super::since::Since;
 use super::system_motion::SystemMotion;
+use super::terrain::Closure;
 use super::unguided::{PalmReadings, palm_readings};
 use crate::observer::{
     EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
@@ -31,6 +32,8 @@ pub struct Experiment {
     pub simulation: Option<Simulation>,
     /// Present where a system was simulated by its own equations.
     pub motion: Option<SystemMotion>,
+    /// What it adds that wheel 2 rolls where wheel 1 has been, where a robot was simulated.
+    pub closure: Option<Closure>,
     /// The readings.
     pub record: Record,
     /// The same as instruments write them, where the scene says that they have other names or units than the model.
@@ -142,11 +145,16 @@ impl Experiment {
         };
         channels::are_told(&scene, &system, &question, &signals)?;
         let motion = described.filter(|_| simulates);
+        let closure = match (&scene.robot, &motion) {
+            (Some(robot), Some(motion)) => Closure::of(robot, &motion.response.times),
+            _ => None,
+        };
         let experiment = Experiment {
             scene,
             system,
             simulation,
             motion,
+            closure,
             record,
             written,
             origin,

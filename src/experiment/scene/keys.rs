@@ -2,6 +2,7 @@
 
 use super::observing::{Channel, Data, Method, Sensor, Study};
 use super::place::Places;
+use super::robot::{SceneGround, SceneRobot};
 use super::simulated::Body;
 use crate::mechanics::moving::{Course, PushedPalm};
 use crate::observer::{HighGain, Kalman, Loss, Shooting, Unscented, WhenBlind};
@@ -25,6 +26,8 @@ pub(super) struct SceneKeys {
     pub rate: Option<f64>,
     pub body: Option<Body>,
     pub palms: Option<PalmsKeys>,
+    pub robot: Option<SceneRobot>,
+    pub ground: Option<SceneGround>,
     pub start: Option<BTreeMap<String, f64>>,
     pub inputs: Option<BTreeMap<String, String>>,
     #[serde(default)]

@@ -102,7 +102,7 @@ pub struct Body {
     pub gravity: f64,
 }
 
-fn downwards() -> f64 {
+pub(super) fn downwards() -> f64 {
     -9.81
 }
 

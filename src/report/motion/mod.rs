@@ -1,6 +1,7 @@
 //! Bodies in motion and what observers made of them.
 
 pub(super) mod answers;
+pub(super) mod closure;
 pub(super) mod curves;
 pub(super) mod fit;
 pub(super) mod frames;

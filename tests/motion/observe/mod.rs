@@ -17,6 +17,7 @@ mod random;
 mod recorded;
 mod recovered;
 mod refused;
+mod robot;
 mod shape;
 mod stream;
 mod systems;

@@ -88,17 +88,12 @@ impl Checks<'_> {
         duration: Option<f64>,
         samples: Option<usize>,
         rate: Option<f64>,
-        body: bool,
-        palms: bool,
+        described: [(&'static str, bool); 3],
     ) -> Result<Option<(f64, usize)>, Problem> {
-        let given = [
-            ("duration", duration.is_some()),
-            ("samples", samples.is_some()),
-            ("rate", rate.is_some()),
-            ("body", body),
-            ("palms", palms),
-        ];
-        let Some((first, _)) = given.into_iter().find(|(_, there)| *there) else { return Ok(None) };
+        let given =
+            [("duration", duration.is_some()), ("samples", samples.is_some()), ("rate", rate.is_some())];
+        let mut given = given.into_iter().chain(described);
+        let Some((first, _)) = given.find(|(_, there)| *there) else { return Ok(None) };
         let beside = |missing: &str, example: &str| {
             self.wrong_key(
                 first,
@@ -322,7 +317,11 @@ impl Checks<'_> {
         Ok(())
     }
 
-    fn all_finite<'a>(&self, place: &str, values: impl IntoIterator<Item = &'a f64>) -> Result<(), Problem> {
+    pub(super) fn all_finite<'a>(
+        &self,
+        place: &str,
+        values: impl IntoIterator<Item = &'a f64>,
+    ) -> Result<(), Problem> {
         values
             .into_iter()
             .enumerate()
