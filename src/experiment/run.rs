@@ -3,6 +3,7 @@
 use super::channels;
 use super::groundwork::{Groundwork, Steady, estimate_question, sample_range};
 use super::known_motion::KnownMotion;
+use super::recognised::Recognition;
 use super::recovered::Reconstruction;
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{NOMINAL, Simulation, TOUCH, deviation};
@@ -34,6 +35,8 @@ pub struct Experiment {
     pub motion: Option<SystemMotion>,
     /// What it adds that wheel 2 rolls where wheel 1 has been, where a robot was simulated.
     pub closure: Option<Closure>,
+    /// Which body of the library it is, once that was asked: [`Experiment::recognise`].
+    pub recognition: Option<Recognition>,
     /// The readings.
     pub record: Record,
     /// The same as instruments write them, where the scene says that they have other names or units than the model.
@@ -155,6 +158,7 @@ impl Experiment {
             simulation,
             motion,
             closure,
+            recognition: None,
             record,
             written,
             origin,

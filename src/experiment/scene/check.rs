@@ -1,6 +1,7 @@
 //! Holds every value of a scene to what it may be, and settles which of two ways of saying a thing was used.
 
 mod columns;
+mod library;
 mod observer;
 mod physics;
 mod robot;
@@ -161,6 +162,7 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         checks.jitter(sensor.jitter, span)?;
         checks.delays(&channels, span)?;
     }
+    checks.library(&keys.observer.library, &sensor, &channels, robot.as_ref())?;
     let is_noisy = sensor.noise > 0.0 || sensor.resolution > 0.0 || !channels.is_empty();
     let source =
         Source { is_noisy, samples: span.map(|(_, samples)| samples), has_palms: simulated.is_some() };

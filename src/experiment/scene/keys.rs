@@ -3,7 +3,7 @@
 use super::observing::{Channel, Data, Method, Sensor, Study};
 use super::place::Places;
 use super::robot::{SceneGround, SceneRobot};
-use super::simulated::Body;
+use super::simulated::{Body, LibraryBody};
 use crate::mechanics::moving::{Course, PushedPalm};
 use crate::observer::{HighGain, Kalman, Loss, Shooting, Unscented, WhenBlind};
 use crate::system::Problem;
@@ -222,6 +222,8 @@ pub(super) struct ObserverKeys {
     pub mode: String,
     #[serde(default)]
     pub modes: Vec<ModeKeys>,
+    #[serde(default)]
+    pub library: Vec<LibraryBody>,
 }
 
 /// `[[observer.modes]]`: another system that the readings may be of, beside the scene's own.

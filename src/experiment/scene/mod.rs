@@ -19,7 +19,7 @@ pub use observing::{
 };
 pub use robot::SimulatedRobot;
 pub(in crate::experiment) use simulated::sample_times;
-pub use simulated::{Body, Palms, SceneOutline, Simulated, SimulatedSystem};
+pub use simulated::{Body, LibraryBody, Palms, SceneOutline, Simulated, SimulatedSystem};
 
 use crate::mechanics::Palm;
 use crate::observer::{ColumnNames, FaultRules};

@@ -10,6 +10,7 @@ pub(super) mod outline_plot;
 pub(super) mod outline_section;
 pub(super) mod page;
 pub(super) mod plot;
+pub(super) mod recognition;
 pub(super) mod reconstruction;
 pub(super) mod section;
 pub(super) mod shape;

@@ -9,6 +9,7 @@ mod channels;
 mod circular;
 mod columns;
 mod inherited;
+mod library;
 mod modes;
 mod noise;
 mod options;

@@ -49,12 +49,23 @@ impl Checks<'_> {
             let message = format!("{} waves are too many", ground.waves.len());
             return Err(self.wrong("ground.waves", message, format!("give at most {MOST_WAVES}")));
         }
-        let mut steepest = 0.0;
+        let (mut steepest, step) = (0.0, duration / samples.saturating_sub(1).max(1) as f64);
         for (index, wave) in ground.waves.iter().enumerate() {
             let place = format!("ground.waves[{index}]");
             self.finite(&format!("{place}.amplitude"), wave.amplitude)?;
             self.positive(&format!("{place}.wavelength"), wave.wavelength, "m")?;
             self.finite(&format!("{place}.phase"), wave.phase)?;
+            if robot.speed.abs() * step > wave.wavelength {
+                let message = format!(
+                    "from one sample to the next wheel 1 goes {:.3e} m, more than this wave",
+                    robot.speed.abs() * step
+                );
+                return Err(self.wrong(
+                    &format!("{place}.wavelength"),
+                    message,
+                    "take more samples, or leave the wave out",
+                ));
+            }
             steepest += std::f64::consts::TAU * (wave.amplitude / wave.wavelength).abs();
         }
         if steepest > STEEPEST {
