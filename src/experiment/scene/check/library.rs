@@ -43,6 +43,9 @@ impl Checks<'_> {
         self.names(library, &names, |name| format!("'{name}'"))?;
         for (index, body) in bodies.iter().enumerate() {
             let place = |key: &str| format!("{library}[{index}].{key}");
+            if body.name.trim().is_empty() {
+                return Err(self.wrong(&place("name"), "a name is empty", "name the body"));
+            }
             self.shape(&place("shape"), &body.shape)?;
             if let Some(radius) = body.radius_of_gyration {
                 self.positive(&place("radius_of_gyration"), radius, "m")?;
