@@ -10,8 +10,8 @@ use indicatif::ProgressBar;
 use palmistry::experiment::slow::SlowScene;
 use palmistry::experiment::space::SpaceScene;
 use palmistry::experiment::{
-    Answer, Experiment, Reconstruction, Scene, SceneError, Studied, Studies, StudyPart, basins,
-    curvature_map, noise_study, shown,
+    Answer, Experiment, Recognition, RecognitionVerdict, Reconstruction, Scene, SceneError, Studied, Studies,
+    StudyPart, basins, curvature_map, noise_study, shown,
 };
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
@@ -40,7 +40,7 @@ use std::path::{Path, PathBuf};
 ///
 /// An update that converged is held against the noise that the scene states: what is left has to be what the noise explains. Where
 /// no noise is stated it is estimated from what is left, which then has to look like noise. The exit status is 1 where an update
-/// converged and does not fit, or a method by windows has no update that does.
+/// converged and does not fit, a method by windows has no update that does, or the body is none of the scene's library.
 #[derive(Args)]
 #[command(after_help = "Examples:
   palmistry observe proofs/moll2002/scenes/section_4_6.toml --out observed
@@ -99,7 +99,7 @@ impl Observe {
             return observe_stream::observe(scene, Form::of(self.json), self.no_times);
         }
         let bar = progress(scene.observer.methods.len() as u64 + 1, "simulating");
-        let experiment = Experiment::new(scene, self.data.as_deref())?;
+        let mut experiment = Experiment::new(scene, self.data.as_deref())?;
         bar.inc(1);
         let asks_for_studies = self.studies || self.shards.are_asked();
         if asks_for_studies && experiment.simulated().is_none() {
@@ -152,6 +152,7 @@ impl Observe {
             bar.set_message(method.name());
             bar.inc(1);
         })?;
+        experiment.recognition = experiment.recognise(&INTERRUPTED)?;
         bar.finish_and_clear();
         let no_times = self.no_times || merged.is_some();
         if no_times {
@@ -191,7 +192,8 @@ impl Observe {
             true => !answer.track.is_contradicted(),
             false => answer.track.is_sound(),
         });
-        let status = Status::of(as_expected);
+        let is_known = |found: &Recognition| found.verdict != RecognitionVerdict::NoneOfThem;
+        let status = Status::of(as_expected && experiment.recognition.as_ref().is_none_or(is_known));
         files.print(Form::of(self.json), json, || observe_text(&observed), status)
     }
 }
@@ -267,6 +269,11 @@ impl Observe {
     fn goes_together(&self, scene: &Scene, is_stream: bool) -> miette::Result<()> {
         self.records_alone()?;
         self.goes_with_modes(scene, is_stream)?;
+        if !scene.observer.library.is_empty() && (is_stream || !scene.observer.modes.is_empty()) {
+            let message = "a body is recognised by all readings at once: not by those of a stream, and not beside modes";
+            let help = "leave out [[observer.library]]; or [[observer.modes]], and hold the readings in a file first";
+            return Err(Unusable::report(message, help));
+        }
         if is_stream {
             let asked = [
                 ("--studies", self.studies || self.shards.are_asked()),

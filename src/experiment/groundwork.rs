@@ -48,10 +48,11 @@ impl Groundwork {
             _ => None,
         };
         // a recording of what the scene describes is told the same constants
-        let described = match (&scene.system, simulates) {
-            (Some(own), true) => Some(SystemMotion::of(&scene, &system, own)?),
-            (Some(own), false) => Some(SystemMotion::beginning(&scene, &system, own)?),
-            (None, _) => None,
+        let described = match (&scene.system, &scene.robot) {
+            (Some(own), _) if simulates => Some(SystemMotion::of(&scene, &system, own)?),
+            (Some(own), _) => Some(SystemMotion::beginning(&scene, &system, own)?),
+            (None, Some(robot)) => Some(SystemMotion::of_robot(&scene, robot, simulates)?),
+            (None, None) => None,
         };
         let known = known_constants(&scene, &system, simulation.as_ref(), described.as_ref())?;
         Ok(Groundwork { scene, system, names, simulation, begun, described, simulates, known })

@@ -13,6 +13,7 @@ mod columns;
 mod groundwork;
 mod known_motion;
 mod modes;
+mod recognised;
 mod reconstruction;
 mod recovered;
 mod run;
@@ -28,6 +29,7 @@ pub mod space;
 mod stream;
 mod study;
 mod system_motion;
+mod terrain;
 #[doc(hidden)]
 pub mod unguided;
 
@@ -35,6 +37,7 @@ pub mod unguided;
 pub use advice::{Advice, AdviceLimits, AdviceQuestion, ExpectedBounds, TriedMotion, advise};
 pub use known_motion::KnownMotion;
 pub use modes::{ModeEstimate, ModeWindow};
+pub use recognised::{LibraryAnswer, Recognition, RecognitionVerdict};
 #[doc(hidden)]
 pub use reconstruction::{on_palm, shown, turned};
 pub use recovered::{Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
@@ -46,7 +49,8 @@ pub use scene::SceneOutline;
 #[doc(hidden)]
 pub use scene::{BasinStudy, CurvatureStudy, NoiseStudy};
 pub use scene::{
-    Channel, Data, Guess, Method, ModeSettings, ObserverSettings, Scene, SceneColumn, SceneError, Sensor,
+    Channel, Data, Guess, LibraryBody, Method, ModeSettings, ObserverSettings, Scene, SceneColumn,
+    SceneError, Sensor,
 };
 #[doc(hidden)]
 pub use simulation::NOMINAL;
@@ -60,3 +64,4 @@ pub use study::{
     StudyPart, Told, basins, curvature_map, noise_study,
 };
 pub use system_motion::SystemMotion;
+pub use terrain::{Closure, ClosureSetting, ComputedRank};

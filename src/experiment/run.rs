@@ -3,11 +3,13 @@
 use super::channels;
 use super::groundwork::{Groundwork, Steady, estimate_question, sample_range};
 use super::known_motion::KnownMotion;
+use super::recognised::Recognition;
 use super::recovered::Reconstruction;
 use super::scene::{self, Guess, Scene, SceneError};
 use super::simulation::{NOMINAL, Simulation, TOUCH, deviation};
 use super::since::Since;
 use super::system_motion::SystemMotion;
+use super::terrain::Closure;
 use super::unguided::{PalmReadings, palm_readings};
 use crate::observer::{
     EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
@@ -31,6 +33,10 @@ pub struct Experiment {
     pub simulation: Option<Simulation>,
     /// Present where a system was simulated by its own equations.
     pub motion: Option<SystemMotion>,
+    /// What it adds that wheel 2 rolls where wheel 1 has been, where a robot was simulated.
+    pub closure: Option<Closure>,
+    /// Which body of the library it is, once that was asked: [`Experiment::recognise`].
+    pub recognition: Option<Recognition>,
     /// The readings.
     pub record: Record,
     /// The same as instruments write them, where the scene says that they have other names or units than the model.
@@ -142,11 +148,17 @@ impl Experiment {
         };
         channels::are_told(&scene, &system, &question, &signals)?;
         let motion = described.filter(|_| simulates);
+        let closure = match (&scene.robot, &motion) {
+            (Some(robot), Some(motion)) => Closure::of(robot, &motion.response.times),
+            _ => None,
+        };
         let experiment = Experiment {
             scene,
             system,
             simulation,
             motion,
+            closure,
+            recognition: None,
             record,
             written,
             origin,

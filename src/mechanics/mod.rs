@@ -19,6 +19,7 @@
 //!
 //! Left out here: friction (`moving` has it), contact that breaks (the sign of a contact force is reported, not enforced), and time: a motion is known at one moment, with its first two derivatives there. Through time
 //! and in double precision bodies are moved by [`moving`] in the plane and by [`spatial`] in space, for which this is the witness.
+//! [`terrain`] has a robot that rolls over uneven ground.
 
 mod body;
 mod contact;
@@ -37,6 +38,7 @@ mod rest;
 pub mod resting;
 mod solid;
 pub mod spatial;
+pub mod terrain;
 mod tumbling;
 
 #[doc(hidden)]

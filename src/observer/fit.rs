@@ -179,6 +179,14 @@ impl Misfit<'_> {
     }
 }
 
+/// Whether differences of two outputs in turn are what stated errors explain, after so many unknowns were fitted: `size` is the root of the mean square
+/// of what was read, and the only test of a run may have all of its false alarms.
+pub(crate) fn explains(differences: &DVector<f64>, unknowns: usize, size: f64, noise: Noise) -> Fit {
+    let alarm = FALSE_ALARMS;
+    Misfit { differences, outputs: 2, relations: 0, unknowns, size, alarm, least: 0.0, timing: 0.0 }
+        .fit(noise)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -53,6 +53,7 @@ pub(crate) use bound::cramer_rao;
 pub use calibration::CalibrationKind;
 #[doc(hidden)]
 pub use chi_square::exceeded_with;
+pub(crate) use fit::explains;
 pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom, ReadingErrors};
 pub use flow::Lost;
 pub(crate) use flow::advance;

@@ -5,6 +5,7 @@
 //! believes of the support radii (`track`). Either way it is one estimator's ([`crate::shape`]).
 
 mod law;
+mod recognition;
 mod record;
 mod start;
 mod table;

@@ -1,8 +1,10 @@
 //! Holds every value of a scene to what it may be, and settles which of two ways of saying a thing was used.
 
 mod columns;
+mod library;
 mod observer;
 mod physics;
+mod robot;
 
 use super::keys::{SceneKeys, SensorKeys};
 use super::place::Places;
@@ -129,11 +131,17 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
     let columns = checks.columns(keys.columns)?;
     let palm_forms = checks.forms(keys.palms.as_ref().and_then(|palms| palms.radii))?;
     let has_palms = keys.body.is_some() || keys.palms.is_some();
-    let span =
-        checks.span(keys.duration, keys.samples, keys.rate, keys.body.is_some(), keys.palms.is_some())?;
+    let described =
+        [("body", keys.body.is_some()), ("palms", keys.palms.is_some()), ("robot", keys.robot.is_some())];
+    let span = checks.span(keys.duration, keys.samples, keys.rate, described)?;
+    if keys.robot.is_some() && (has_palms || keys.start.is_some()) {
+        let help = "leave out [body] and [palms], and [start]; or [robot] and [ground]";
+        return Err(checks.wrong_key("robot", "a robot and something else are simulated at once", help));
+    }
+    let robot = checks.robot(span, keys.robot, keys.ground)?;
     let system = checks.system(span, keys.start, keys.inputs, has_palms)?;
-    let simulated = match (span, &system) {
-        (Some(span), None) => Some(checks.held(span, keys.body, keys.palms)?),
+    let simulated = match (span, &system, &robot) {
+        (Some(span), None, None) => Some(checks.held(span, keys.body, keys.palms)?),
         _ => None,
     };
     match &span {
@@ -154,6 +162,7 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         checks.jitter(sensor.jitter, span)?;
         checks.delays(&channels, span)?;
     }
+    checks.library(&keys.observer.library, &sensor, &channels, robot.as_ref())?;
     let is_noisy = sensor.noise > 0.0 || sensor.resolution > 0.0 || !channels.is_empty();
     let source =
         Source { is_noisy, samples: span.map(|(_, samples)| samples), has_palms: simulated.is_some() };
@@ -171,6 +180,7 @@ pub(super) fn scene(keys: SceneKeys, places: &Places, name: &str, text: &str) ->
         seed: keys.seed,
         simulated,
         system,
+        robot,
         palm_forms,
         sensor,
         channels,

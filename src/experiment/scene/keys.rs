@@ -2,7 +2,8 @@
 
 use super::observing::{Channel, Data, Method, Sensor, Study};
 use super::place::Places;
-use super::simulated::Body;
+use super::robot::{SceneGround, SceneRobot};
+use super::simulated::{Body, LibraryBody};
 use crate::mechanics::moving::{Course, PushedPalm};
 use crate::observer::{HighGain, Kalman, Loss, Shooting, Unscented, WhenBlind};
 use crate::system::Problem;
@@ -25,6 +26,8 @@ pub(super) struct SceneKeys {
     pub rate: Option<f64>,
     pub body: Option<Body>,
     pub palms: Option<PalmsKeys>,
+    pub robot: Option<SceneRobot>,
+    pub ground: Option<SceneGround>,
     pub start: Option<BTreeMap<String, f64>>,
     pub inputs: Option<BTreeMap<String, String>>,
     #[serde(default)]
@@ -219,6 +222,8 @@ pub(super) struct ObserverKeys {
     pub mode: String,
     #[serde(default)]
     pub modes: Vec<ModeKeys>,
+    #[serde(default)]
+    pub library: Vec<LibraryBody>,
 }
 
 /// `[[observer.modes]]`: another system that the readings may be of, beside the scene's own.

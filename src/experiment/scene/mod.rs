@@ -8,6 +8,7 @@ mod columns;
 mod keys;
 mod observing;
 pub(in crate::experiment) mod place;
+mod robot;
 mod simulated;
 
 pub use crate::system::ReadError as SceneError;
@@ -16,8 +17,9 @@ pub use observing::{
     BasinStudy, Channel, CurvatureStudy, Data, Guess, Method, ModeSettings, NoiseStudy, ObserverSettings,
     Sensor, Study,
 };
+pub use robot::SimulatedRobot;
 pub(in crate::experiment) use simulated::sample_times;
-pub use simulated::{Body, Palms, SceneOutline, Simulated, SimulatedSystem};
+pub use simulated::{Body, LibraryBody, Palms, SceneOutline, Simulated, SimulatedSystem};
 
 use crate::mechanics::Palm;
 use crate::observer::{ColumnNames, FaultRules};
@@ -42,6 +44,8 @@ pub struct Scene {
     /// `duration`, `samples` or `rate`, `[start]` and `[inputs]`: a system that is simulated by its own equations. Absent where a body
     /// is simulated or the data is recorded.
     pub system: Option<SimulatedSystem>,
+    /// `duration`, `samples` or `rate`, `[robot]` and `[ground]`: a robot on uneven ground. Absent where anything else is simulated.
+    pub robot: Option<SimulatedRobot>,
     /// `radii` of `[palms]`, in m: positive of a hollow circular palm, negative of a bulging one, infinite of a flat one, as both
     /// are unless given.
     pub palm_forms: [Palm<f64>; 2],

@@ -1,5 +1,6 @@
 //! What is measured, and what is to be found out from it.
 
+use super::simulated::LibraryBody;
 use crate::observer::{
     HighGain, Integration, Kalman, Loss, MovingWindow, MultipleShooting, Observer, OnFault, Shooting,
     Unscented, WhenBlind, WindowSearch,
@@ -108,6 +109,8 @@ pub struct ObserverSettings {
     pub mode: String,
     /// `[[observer.modes]]`: other systems that the readings may be of, window by window, beside the scene's own; none unless given.
     pub modes: Vec<ModeSettings>,
+    /// `[[observer.library]]`: known bodies of which one may be what was read; none unless given.
+    pub library: Vec<LibraryBody>,
 }
 
 /// A system that the readings may be of in some windows, and what is sought of it.

@@ -102,8 +102,22 @@ pub struct Body {
     pub gravity: f64,
 }
 
-fn downwards() -> f64 {
+pub(super) fn downwards() -> f64 {
     -9.81
+}
+
+/// A known body, of which it is asked whether it was read: `[[observer.library]]`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LibraryBody {
+    /// `name`.
+    pub name: String,
+    /// `shape`: its outline.
+    pub shape: SceneOutline,
+    /// `radius_of_gyration` about the centre of mass, in m; absent: that of a uniform body.
+    pub radius_of_gyration: Option<f64>,
+    /// `centre_of_mass`, in m in the shape's own frame; absent: that of a uniform body.
+    pub centre_of_mass: Option<[f64; 2]>,
 }
 
 /// An outline, by its `kind`. Lengths are in metres, the angle `a` is that of the outward normal.

@@ -4,7 +4,9 @@ use crate::experiment::{Answer, Experiment, Studied, error};
 use crate::mechanics::moving::Ended;
 use crate::observer::{Fault, Update, UpdateEnd};
 use crate::report::axis::unit_of;
+use crate::report::motion::closure::{closure_json, closure_text};
 use crate::report::motion::fit::{finite, fit_in_words, noise_from, suspect_json, suspects_in_words};
+use crate::report::motion::recognition::{recognition_json, recognition_text};
 use crate::report::motion::reconstruction::{shape_json, shape_text};
 use crate::report::motion::studies::{studies_json, studies_text};
 use serde_json::{Map, Value, json};
@@ -218,6 +220,12 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         let ended = motion.ended().map_or_else(|| "completed".to_owned(), |lost| format!("ended {lost}"));
         found["simulation"] = json!({ "ended": ended });
     }
+    if let Some(recognition) = &experiment.recognition {
+        found["recognition"] = recognition_json(recognition);
+    }
+    if let Some(closure) = &experiment.closure {
+        found["closure"] = closure_json(closure);
+    }
     if let Some(shape) = shape_json(experiment, observed.answers) {
         found["shape"] = shape;
     }
@@ -296,6 +304,12 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
         for remark in &answer.track.remarks {
             let _ = writeln!(text, "  {remark}");
         }
+    }
+    if let Some(found) = &experiment.recognition {
+        text.push_str(&recognition_text(found));
+    }
+    if let Some(closure) = &experiment.closure {
+        text.push_str(&closure_text(closure));
     }
     studies_text(observed.studied, &names, &noise_unit(observed), &mut text);
     text.push_str(&shape_text(experiment, observed.answers));

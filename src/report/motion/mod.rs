@@ -1,6 +1,7 @@
 //! Bodies in motion and what observers made of them.
 
 pub(super) mod answers;
+pub(super) mod closure;
 pub(super) mod curves;
 pub(super) mod fit;
 pub(super) mod frames;
@@ -9,6 +10,7 @@ pub(super) mod outline_plot;
 pub(super) mod outline_section;
 pub(super) mod page;
 pub(super) mod plot;
+pub(super) mod recognition;
 pub(super) mod reconstruction;
 pub(super) mod section;
 pub(super) mod shape;

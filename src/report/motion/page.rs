@@ -2,7 +2,9 @@
 
 use crate::report::document::document;
 use crate::report::motion::answers::Observed;
+use crate::report::motion::closure::closure_section;
 use crate::report::motion::outline_section::shape_section;
+use crate::report::motion::recognition::recognition_section;
 use crate::report::motion::reconstruction::reconstruction;
 use crate::report::motion::section::{
     FRAMES, body_pictures, faults, sensor_pictures, state_pictures, summary,
@@ -24,6 +26,8 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
             nav {
                 @if has_palms { a href="#body" { "The body" } }
                 @if shape { a href="#shape" { "The shape" } }
+                @if observed.experiment.recognition.is_some() { a href="#recognition" { "Which body it is" } }
+                @if observed.experiment.closure.is_some() { a href="#closure" { "Closure" } }
                 a href="#found" { "What they found" }
                 a href="#states" { "States over time" }
                 a href="#sensors" { "Sensor errors" }
@@ -35,6 +39,12 @@ pub fn observe_page(observed: &Observed<'_>) -> String {
             @if has_palms { section #body { h2 { "The body between its palms" } (body_pictures(observed, FRAMES)) } }
             @if shape { section #shape { h2 { "The shape" } (shape_section(observed)) } }
             section #found { h2 { "What they found" } (ends(observed)) (notes(observed)) }
+            @if let Some(found) = &observed.experiment.recognition {
+                section #recognition { h2 { "Which body it is" } (recognition_section(found)) }
+            }
+            @if let Some(closure) = &observed.experiment.closure {
+                section #closure { h2 { "Closure" } (closure_section(closure)) }
+            }
             section #states { h2 { "States over time" } (state_pictures(observed)) }
             section #sensors { h2 { "Sensor errors" } (sensor_pictures(observed)) }
             @if studied { section #studies { h2 { "Studies" } (studies(observed)) } }

@@ -113,6 +113,12 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
                     ". "
                 }
                 @if sensor.jitter > 0.0 { "Steps in time vary by " (format!("{:.1e} s", sensor.jitter)) ". " }
+            } @else if let (Some(motion), Some(simulated)) = (&experiment.motion, &scene.robot) {
+                "Simulated: a robot of " (simulated.robot.mass) " kg on two wheels over uneven ground, wheel 1 at " (simulated.robot.speed) " m/s; "
+                b { (times.len()) " samples over " (shortest(last - first)) " s" } ". "
+                @if let Some(lost) = motion.ended() { "The motion " b { "ended early: " (lost.to_string()) } ". " }
+                @for (name, own) in &scene.channels { (channel_in_words(name, own)) " " }
+                @if sensor.jitter > 0.0 { "Steps in time vary by " (format!("{:.1e} s", sensor.jitter)) ". " }
             } @else {
                 "Recorded: " b { (times.len()) " samples from " (shortest(first)) " s to " (shortest(last)) " s" }
                 @if let Some(file) = scene.data.record.as_ref().and_then(|path| path.file_name()) {

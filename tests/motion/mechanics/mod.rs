@@ -14,3 +14,4 @@ mod drawn;
 mod quaternions;
 mod sheet;
 mod spatial;
+mod terrain;

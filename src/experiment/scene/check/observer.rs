@@ -68,6 +68,7 @@ impl Checks<'_> {
         Ok(ObserverSettings {
             mode,
             modes,
+            library: keys.library,
             inherit: keys.inherit,
             whole: keys.whole,
             bounds: keys.bounds,

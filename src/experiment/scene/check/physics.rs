@@ -88,17 +88,12 @@ impl Checks<'_> {
         duration: Option<f64>,
         samples: Option<usize>,
         rate: Option<f64>,
-        body: bool,
-        palms: bool,
+        described: [(&'static str, bool); 3],
     ) -> Result<Option<(f64, usize)>, Problem> {
-        let given = [
-            ("duration", duration.is_some()),
-            ("samples", samples.is_some()),
-            ("rate", rate.is_some()),
-            ("body", body),
-            ("palms", palms),
-        ];
-        let Some((first, _)) = given.into_iter().find(|(_, there)| *there) else { return Ok(None) };
+        let given =
+            [("duration", duration.is_some()), ("samples", samples.is_some()), ("rate", rate.is_some())];
+        let mut given = given.into_iter().chain(described);
+        let Some((first, _)) = given.find(|(_, there)| *there) else { return Ok(None) };
         let beside = |missing: &str, example: &str| {
             self.wrong_key(
                 first,
@@ -201,7 +196,7 @@ impl Checks<'_> {
     }
 
     fn body(&self, body: &Body) -> Result<(), Problem> {
-        self.shape(&body.shape)?;
+        self.shape("body.shape", &body.shape)?;
         self.positive("body.mass", body.mass, "kg")?;
         if let Some(radius) = body.radius_of_gyration {
             self.positive("body.radius_of_gyration", radius, "m")?;
@@ -212,43 +207,40 @@ impl Checks<'_> {
         self.finite("body.gravity", body.gravity)
     }
 
-    fn shape(&self, shape: &SceneOutline) -> Result<(), Problem> {
+    pub(super) fn shape(&self, place: &str, shape: &SceneOutline) -> Result<(), Problem> {
+        let within = |key: &str| format!("{place}.{key}");
         match shape {
             SceneOutline::Harmonics { mean, harmonics } => {
-                self.positive("body.shape.mean", *mean, "m")?;
+                self.positive(&within("mean"), *mean, "m")?;
                 if harmonics.len() > 64 {
                     let message = format!("{} harmonics are too many", harmonics.len());
-                    return Err(self.wrong("body.shape.harmonics", message, "give at most 64"));
+                    return Err(self.wrong(&within("harmonics"), message, "give at most 64"));
                 }
                 for (index, pair) in harmonics.iter().enumerate() {
-                    self.all_finite(&format!("body.shape.harmonics[{index}]"), pair)?;
+                    self.all_finite(&format!("{place}.harmonics[{index}]"), pair)?;
                 }
                 Ok(())
             }
-            SceneOutline::Ellipse { semi_axes } => self.all_positive("body.shape.semi_axes", semi_axes, "m"),
+            SceneOutline::Ellipse { semi_axes } => self.all_positive(&within("semi_axes"), semi_axes, "m"),
             SceneOutline::Superellipse { semi_axes, exponent, rounding } => {
-                self.all_positive("body.shape.semi_axes", semi_axes, "m")?;
+                self.all_positive(&within("semi_axes"), semi_axes, "m")?;
                 if !(2..=64).contains(exponent) || exponent % 2 == 1 {
                     let message = format!("an exponent of {exponent} gives no smooth body");
-                    return Err(self.wrong(
-                        "body.shape.exponent",
-                        message,
-                        "give an even number from 2 to 64",
-                    ));
+                    return Err(self.wrong(&within("exponent"), message, "give an even number from 2 to 64"));
                 }
-                self.not_negative("body.shape.rounding", *rounding, "m")
+                self.not_negative(&within("rounding"), *rounding, "m")
             }
             SceneOutline::Arcs { corners, radius } => {
                 if corners.len() > 64 {
                     let message = format!("{} corners are too many", corners.len());
-                    return Err(self.wrong("body.shape.corners", message, "give at most 64"));
+                    return Err(self.wrong(&within("corners"), message, "give at most 64"));
                 }
                 for (index, corner) in corners.iter().enumerate() {
-                    self.all_finite(&format!("body.shape.corners[{index}]"), corner)?;
+                    self.all_finite(&format!("{place}.corners[{index}]"), corner)?;
                 }
-                self.positive("body.shape.radius", *radius, "m")
+                self.positive(&within("radius"), *radius, "m")
             }
-            SceneOutline::Spline { radii, .. } => self.all_positive("body.shape.radii", radii, "m"),
+            SceneOutline::Spline { radii, .. } => self.all_positive(&within("radii"), radii, "m"),
             SceneOutline::RandomSpline { .. } => Ok(()),
         }
     }
@@ -332,7 +324,11 @@ impl Checks<'_> {
         Ok(())
     }
 
-    fn all_finite<'a>(&self, place: &str, values: impl IntoIterator<Item = &'a f64>) -> Result<(), Problem> {
+    pub(super) fn all_finite<'a>(
+        &self,
+        place: &str,
+        values: impl IntoIterator<Item = &'a f64>,
+    ) -> Result<(), Problem> {
         values
             .into_iter()
             .enumerate()

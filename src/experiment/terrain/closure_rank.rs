@@ -1,0 +1,64 @@
+//! A rank by singular values: it is computed, and proves nothing.
+
+use nalgebra::DMatrix;
+
+/// A singular value below this part of the largest one is not counted. Rows are differentiated to rounding, so that those that should be zero are about 1e-15 of it.
+const COUNTED: f64 = 1e-9;
+
+/// An unknown is told where its unit vector meets the space that is not seen by less than this.
+const TOLD: f64 = 1e-6;
+
+/// What rows of derivatives say of their unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ComputedRank {
+    /// How many singular values were counted.
+    pub rank: usize,
+    /// All of them, from the largest on: as many as unknowns.
+    pub singular_values: Vec<f64>,
+    /// For each unknown whether it is told by itself.
+    pub told: Vec<bool>,
+}
+
+impl ComputedRank {
+    /// Of rows, each with a derivative by each of `unknowns` unknowns.
+    pub(super) fn of(rows: &[Vec<f64>], unknowns: usize) -> ComputedRank {
+        // zero rows change nothing, and with them all directions come out
+        let filled = rows.len().max(unknowns);
+        let matrix = DMatrix::from_fn(filled, unknowns, |i, j| rows.get(i).map_or(0.0, |row| row[j]));
+        let svd = matrix.svd(false, true);
+        let mut order: Vec<usize> = (0..unknowns).collect();
+        order.sort_by(|a, b| svd.singular_values[*b].total_cmp(&svd.singular_values[*a]));
+        let singular_values: Vec<f64> = order.iter().map(|place| svd.singular_values[*place]).collect();
+        let largest = singular_values.first().copied().unwrap_or(0.0);
+        let rank = singular_values.iter().filter(|value| **value > COUNTED * largest).count();
+        let unseen = |unknown: usize| {
+            let part = |place: &usize| svd.v_t.as_ref().map_or(1.0, |v| v[(*place, unknown)].powi(2));
+            order[rank..].iter().map(part).sum::<f64>().sqrt()
+        };
+        let told = (0..unknowns).map(|unknown| unseen(unknown) < TOLD).collect();
+        ComputedRank { rank, singular_values, told }
+    }
+
+    /// The least singular value that was counted.
+    pub fn least(&self) -> Option<f64> {
+        self.singular_values[..self.rank].last().copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: (1, 1, 0) and its double tell the sum of two unknowns, and none of them by itself; a row for the third tells it.
+    #[test]
+    fn what_rows_tell() {
+        let rows = [vec![1.0, 1.0, 0.0], vec![2.0, 2.0, 0.0], vec![0.0, 0.0, 3.0]];
+        let found = ComputedRank::of(&rows, 3);
+        assert_eq!((found.rank, &found.told[..]), (2, &[false, false, true][..]));
+        assert!((found.singular_values[0] - 10.0_f64.sqrt()).abs() < 1e-14);
+        assert!((found.least().unwrap() - 3.0).abs() < 1e-14 && found.singular_values[2] < 1e-15);
+        let none = ComputedRank::of(&[], 2);
+        assert_eq!((none.rank, none.least(), &none.told[..]), (0, None, &[false, false][..]));
+        assert_eq!(ComputedRank::of(&[vec![0.5, 0.0]], 2).told, [true, false]);
+    }
+}
