@@ -1,5 +1,5 @@
 //! How often a body in space is recovered from readings alone: so many drawn scenes of 1.76 s, without noise. With
-//! `cargo bench --bench drawn_solids -- 100 177` it prints a line a scene (what is left of a contact, the greatest relative error of centre, rate, inertia and mass) and the counts.
+//! `cargo bench --bench drawn_solids -- 100 177 6`, the last a seed, it prints a line a scene (what is left of a contact, the greatest relative error of centre, rate, inertia and mass) and the counts.
 
 use palmistry::experiment::space::{SpaceReadings, SpaceSensor, drawn_scenes, relative_error, true_entries};
 use std::time::Instant;
@@ -11,10 +11,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // cargo adds one of its own
     let mut asked = std::env::args().skip(1).filter(|text| !text.starts_with("--"));
     let mut next = |other: usize| asked.next().map_or(Ok(other), |text| text.parse());
-    let (count, samples) = (next(100)?, next(177)?);
+    let (count, samples, seed) = (next(100)?, next(177)?, next(5)? as u64);
     let sensor = SpaceSensor::default();
     let [mut arrived, mut exact, mut untold] = [0; 3];
-    for (place, (scene, moments)) in drawn_scenes(5, count, samples, 1.76).iter().enumerate() {
+    for (place, (scene, moments)) in drawn_scenes(seed, count, samples, 1.76).iter().enumerate() {
         let readings = SpaceReadings::of(moments, &sensor, 1).solid(&scene.palms, scene.gravity, &sensor);
         let begin = Instant::now();
         let found = readings.first_state();

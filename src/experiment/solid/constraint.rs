@@ -10,9 +10,8 @@ pub(super) struct Constrained {
     pub value: [f64; 3],
     /// A row a palm.
     pub by: [[f64; DIRECTIONS]; 3],
-    /// By how much each changes with its contact's two coordinates, and how that changes in each direction.
+    /// By how much each changes with its contact's two coordinates.
     pub slopes: [[f64; 2]; 3],
-    pub slopes_by: [[[f64; 2]; DIRECTIONS]; 3],
     pub centre: Vector,
     pub at: Turned<DIRECTIONS>,
 }
@@ -23,8 +22,8 @@ fn approach(palm: &PalmSample, hinge_to: f64, centre: &Vector, velocity: &Vector
     dot(&palm.normal, &along(velocity, 1.0, &cross(omega, &arm))) - palm.rate * hinge_to
 }
 
-/// The values alone, with the slopes.
-pub(super) fn values(start: &Start, all: &Integrals) -> Vec<([f64; 3], [[f64; 2]; 3])> {
+/// The values alone.
+pub(super) fn values(start: &Start, all: &Integrals) -> Vec<[f64; 3]> {
     let path = turned::<0>(start, all);
     let at = |(k, here): (usize, &Turned<0>)| {
         let node: &Node = &all.nodes[k];
@@ -35,7 +34,7 @@ pub(super) fn values(start: &Start, all: &Integrals) -> Vec<([f64; 3], [[f64; 2]
         let palms = &all.palms[k];
         // n . (w axis x (p axis + q up)) = w q
         let value = |i: usize| approach(&palms[i], palms[i].lever, &centre, &velocity, &omega);
-        (std::array::from_fn(value), std::array::from_fn(|i| palms[i].slopes(&omega)))
+        std::array::from_fn(value)
     };
     path.iter().enumerate().map(at).collect()
 }
@@ -58,7 +57,6 @@ fn sample(start: &Start, all: &Integrals, k: usize, here: &Turned<DIRECTIONS>) -
         value: std::array::from_fn(|i| approach(&palms[i], palms[i].lever, &centre, &velocity, &omega)),
         by: [[0.0; DIRECTIONS]; 3],
         slopes: std::array::from_fn(|i| palms[i].slopes(&omega)),
-        slopes_by: [[[0.0; 2]; DIRECTIONS]; 3],
         centre,
         at: *here,
     };
@@ -76,7 +74,6 @@ fn sample(start: &Start, all: &Integrals, k: usize, here: &Turned<DIRECTIONS>) -
             let arm = along(&palm.contact, -1.0, &centre);
             let change = along(&along(&sped, 1.0, &cross(&spun, &arm)), -1.0, &cross(&omega, &moved));
             found.by[i][direction] = dot(&palm.normal, &change);
-            found.slopes_by[i][direction] = [-dot(&spun, &palm.up), dot(&spun, &palm.axis)];
         }
     }
     found

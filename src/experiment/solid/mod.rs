@@ -20,26 +20,30 @@
 //!
 //! Errors of a contact are in the constraint at that sample, and by force and lever in all integrals after it. `whiten` carries them: they move the initial state as a random walk, so that an
 //! innovations filter with 12 states makes the residuals white; its adjoint tells by how much each contact was off. `refine` corrects readings by that and begins again, which is the maximum of the likelihood over state
-//! and contacts at once (errors in variables), and not of one with readings in the derivatives. `search` finds where to begin.
+//! and contacts at once (errors in variables), and not of one with readings in the derivatives. `search` finds where to begin, by `regular` steps from what is
+//! thought of a body before. `two_stage` is the thesis's own search, beside it.
 //!
 //! Palms' angles, rates and accelerations are taken as exact, contacts and torques with their standard deviations.
 
 // matrices are written by their indices, as in the formulas
 #![allow(clippy::needless_range_loop)]
 
+mod change;
 mod constraint;
-mod descent;
 mod flow;
 mod integrals;
 mod linear;
 mod refine;
+mod regular;
 mod rule;
 mod search;
 mod touches;
+mod two_stage;
 mod vector;
 mod whiten;
 
 pub use touches::{SolidPose, SolidTouch};
+pub use two_stage::{KnownSolid, TwoStages};
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 

@@ -1,7 +1,7 @@
 //! The likeliest state and errors of the readings at once: Gauss and Newton's method on both, errors eliminated by the filter.
 
+use super::change::{Change, Normal, Positive, Scale, shortened};
 use super::constraint::expanded;
-use super::descent::{Change, Normal, Positive, Scale, shortened};
 use super::flow::Start;
 use super::integrals::{Integrals, Rules};
 use super::linear::{backward, cholesky, forward};
@@ -39,8 +39,10 @@ fn corrected(readings: &SolidReadings, errors: &[[f64; ERRORS]], deviations: &De
     own
 }
 
-/// What a whole step would gain, in units of the deviations squared, below which no other one is taken; and below which what was found counts where none gains anything.
+/// What a whole step would gain, in units of the deviations squared, below which no other one is taken; and below which what was found counts where none gains anything. Contacts that are said to be exact are weighed with
+/// deviations that they have not, so that what is told a million times less than the rest still gains by far less.
 const GAINED: [f64; 2] = [1e-8, 1e-2];
+const EXACT_GAINED: f64 = 1e-18;
 
 /// All constraints about a start and errors of the readings.
 struct Linear {
@@ -136,23 +138,23 @@ fn stepped(
     let about = |start: &Start, errors: &[[f64; ERRORS]]| {
         Linear::about(readings, rules, &spacing, deviations, start, errors)
     };
-    let places: Vec<usize> = (0..UNKNOWNS).collect();
     let mut start = from;
     let mut here = about(&start, &vec![[0.0; ERRORS]; readings.rows()])?;
     let mut damping = if growth.is_finite() { 1e-4 } else { 0.0 };
+    let least = if readings.contact_deviation > 0.0 { GAINED[0] } else { EXACT_GAINED };
     let (mut gain, mut last) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..most {
-        let whole = here.normal.step(&places, 0.0)?;
+        let whole = here.normal.step(0.0)?;
         gain = -whole.iter().zip(&here.normal.gradient).map(|(a, b)| a * b).sum::<f64>();
         // where rounding alone is left, steps gain no less than those before
-        if gain < GAINED[0] || (gain >= last && gain < GAINED[1] / 10.0) {
+        if gain < least || (gain >= last && gain < GAINED[1] / 10.0) {
             break;
         }
         last = gain;
         let mut next = None;
         for _ in 0..8 {
             let by = if gain < GAINED[1] { 0.0 } else { damping };
-            let step = shortened(&here.normal.step(&places, by)?, scale);
+            let step = shortened(&here.normal.step(by)?, scale);
             if let Some(there) = start.changed(&step) {
                 let its_errors = here.errors(&step);
                 let found = about(&there, &its_errors);

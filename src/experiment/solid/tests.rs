@@ -57,7 +57,7 @@ fn the_true_state_leaves_nothing() {
             let (above, below) = (moved(1e-5), moved(-1e-5));
             for k in [20, 88] {
                 for i in 0..3 {
-                    let difference = (above[k].0[i] - below[k].0[i]) / 2e-5;
+                    let difference = (above[k][i] - below[k][i]) / 2e-5;
                     let by = samples[k].by[i][direction];
                     assert!(
                         (difference - by).abs() < 1e-6 * (1.0 + by.abs()),
@@ -100,7 +100,7 @@ fn ratios(scene: &SpatialScene, moments: &[SpatialMoment], noise: f64, seeds: u6
     let truth = true_entries(scene, &moments[0]);
     let begin = true_start(&truth);
     let rules = integrals::Rules::of(&exact.times, (0..exact.rows()).collect());
-    let scale = descent::Scale { length: 1.0, rate: 1.0 };
+    let scale = change::Scale { length: 1.0, rate: 1.0 };
     let deviations = whiten::Deviations { contact: noise, torque: 0.0, softened: 1e-3 };
     let bound =
         refine::refine(&exact, &rules, begin, &scale, &deviations).unwrap().state().unwrap().covariance;
@@ -124,18 +124,67 @@ fn many(full: usize, quick: usize) -> usize {
 }
 
 /// Centre, velocity, rate, inertia and mass of bodies of three kinds, on palms at rest, at constant rates and swinging, without
-/// noise: eight of nine are found, and the one that is not says so.
+/// noise, and of scenes of another seed than that by which the search was chosen.
 #[test]
-fn most_bodies_are_found_without_a_guess() {
-    let scenes = held(many(9, 3), 177);
-    let mut found = 0;
-    for (scene, moments) in &scenes {
-        let Some(state) = readings(scene, moments, 0.0, 1).first_state() else { continue };
-        let error = relative_error(&state.entries(), &true_entries(scene, &moments[0]));
-        found += usize::from(error < 1e-8);
-        assert!(error < 1e-8 || !state.fits(), "{error:e}");
+fn bodies_are_found_without_a_guess() {
+    let scenes = held(many(9, 3), 177).into_iter().chain(drawn_scenes(6, many(9, 3), 177, 1.76));
+    for (place, (scene, moments)) in scenes.enumerate() {
+        let state = readings(&scene, &moments, 0.0, 1).first_state().unwrap();
+        let error = relative_error(&state.entries(), &true_entries(&scene, &moments[0]));
+        assert!(error < 1e-8 && state.fits(), "{place}: {error:e}");
     }
-    assert!(found + 1 >= scenes.len(), "{found} of {}", scenes.len());
+}
+
+/// What the prior's weight is multiplied with has the derivatives of differences.
+#[test]
+fn the_prior_changes_as_it_says() {
+    let (scene, moments) = held(1, 89).remove(0);
+    let here = true_start(&true_entries(&scene, &moments[0]));
+    let at = flow::Start { centre: [0.1, 0.2, 1.7], mu: 1.2 * here.mu, ..here };
+    let prior = regular::Prior { at, ball: 1.3, length: 1.5, fall: 2.5 };
+    let rows = prior.rows(&here).unwrap();
+    for place in 0..UNKNOWNS {
+        let off = |by: f64| {
+            let mut change = [0.0; UNKNOWNS];
+            change[place] = by;
+            prior.rows(&here.changed(&change).unwrap()).unwrap().map(|(off, _)| off)
+        };
+        let (above, below) = (off(1e-5), off(-1e-5));
+        for (i, (_, row)) in rows.iter().enumerate() {
+            let difference = (above[i] - below[i]) / 2e-5;
+            assert!((difference - row[place]).abs() < 1e-7, "{i} {place}: {} {difference}", row[place]);
+        }
+    }
+}
+
+/// The thesis's search, which is told rate, inertia and mass, finds centre and turn from some seeds; others end in a wrong minimum.
+#[test]
+fn two_stages_are_a_base_line() {
+    let (scene, moments) = figure_5_3(177, 4.4);
+    let exact = readings(&scene, &moments, 0.0, 1);
+    let truth = true_entries(&scene, &moments[0]);
+    let known = KnownSolid {
+        rate: Vector3::new(truth[6], truth[7], truth[8]),
+        inertia_over_mass: scene.inertia_over_mass,
+        mass: scene.mass,
+        radii: [0.5, 3.0],
+    };
+    let turn = moments[0].orientation.matrix();
+    let inertia = turn * scene.inertia_over_mass * turn.transpose();
+    let (mut found, seeds) = (0, many(12, 5));
+    for seed in 1..=seeds as u64 {
+        let end = exact.two_stages(&known, 5000, seed).unwrap();
+        let (centre, turned) =
+            ((end.centre - moments[0].centre).norm(), (end.inertia_over_mass - inertia).norm());
+        let is_near = centre < 1e-6 && turned < 1e-5;
+        // what is left tells which
+        assert_eq!(is_near, end.left < 1e-6, "{seed}: {centre:e} m, {turned:e} m^2, {:e} m/s left", end.left);
+        found += usize::from(is_near);
+    }
+    assert!(found > 0 && found < seeds, "{found} of {seeds}");
+    let mut short = exact;
+    short.times.truncate(5);
+    assert!(short.two_stages(&known, 10, 1).is_none());
 }
 
 /// A state that leaves less than a millionth of the body and is wrong is not one that fits: of the first scenes at half the samples, one ends so.
@@ -152,7 +201,7 @@ fn a_wrong_state_that_leaves_little_says_so() {
     unstated.contact_deviation = 0.0;
     let begin = true_start(&true_entries(&scene, &moments[0]));
     let rules = integrals::Rules::of(&unstated.times, (0..unstated.rows()).collect());
-    let scale = descent::Scale { length: 1.0, rate: 1.0 };
+    let scale = change::Scale { length: 1.0, rate: 1.0 };
     let deviations = whiten::Deviations { contact: 1e-6, torque: 0.0, softened: 1e-3 };
     let state = refine::refine(&unstated, &rules, begin, &scale, &deviations).unwrap().state().unwrap();
     assert!(!state.is_stated && state.fits(), "{}", state.ratio);

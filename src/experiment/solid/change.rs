@@ -1,9 +1,7 @@
-//! Steps that make the residuals smaller, before errors are carried: each constraint over its own change by its contact.
+//! Changes of what a motion follows from, and the normal equations for them.
 
 use super::UNKNOWNS;
-use super::constraint::{Constrained, expanded, values};
 use super::flow::{DIRECTIONS, INVERSE, MOMENTUM, MU, Start};
-use super::integrals::Integrals;
 use super::linear::{backward, cholesky, forward, solved};
 use super::vector::{Matrix, PLACES, Vector, along, dot, symmetric, times};
 
@@ -28,7 +26,7 @@ impl Positive {
     }
 
     /// `C X C^T`.
-    fn around(&self, x: &Matrix) -> [f64; 6] {
+    pub fn around(&self, x: &Matrix) -> [f64; 6] {
         let c = &self.triangle;
         PLACES.map(|(i, j)| {
             let mut sum = 0.0;
@@ -108,27 +106,6 @@ impl Chain {
     }
 }
 
-/// Which unknowns are free.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Free {
-    /// Centre, velocity, rate.
-    Motion,
-    /// These and the mass.
-    Mass,
-    /// All.
-    All,
-}
-
-impl Free {
-    fn places(self) -> Vec<usize> {
-        match self {
-            Free::Motion => (0..9).collect(),
-            Free::Mass => (0..9).chain([15]).collect(),
-            Free::All => (0..UNKNOWNS).collect(),
-        }
-    }
-}
-
 /// Normal equations.
 #[derive(Clone)]
 pub(super) struct Normal {
@@ -152,60 +129,14 @@ impl Normal {
         }
     }
 
-    /// The step of least squares in some unknowns, the diagonal made larger by a part of itself.
-    pub fn step(&self, places: &[usize], damping: f64) -> Option<Change> {
-        let mut matrix = [[0.0; UNKNOWNS]; UNKNOWNS];
-        let mut right = [0.0; UNKNOWNS];
-        for (i, from) in places.iter().enumerate() {
-            for (j, to) in places.iter().enumerate().take(i + 1) {
-                matrix[i][j] = self.matrix[*from][*to];
-            }
-            matrix[i][i] *= 1.0 + damping;
-            right[i] = -self.gradient[*from];
+    /// The step of least squares, the diagonal made larger by a part of itself.
+    pub fn step(&self, damping: f64) -> Option<Change> {
+        let mut matrix = self.matrix;
+        for (i, row) in matrix.iter_mut().enumerate() {
+            row[i] *= 1.0 + damping;
         }
-        let found = solved(&matrix, places.len(), &right)?;
-        let mut step = [0.0; UNKNOWNS];
-        for (value, place) in found.iter().zip(places) {
-            step[*place] = *value;
-        }
-        Some(step)
+        solved(&matrix, UNKNOWNS, &self.gradient.map(|value| -value))
     }
-}
-
-/// What is left of contacts, in m^2: each constraint over its change by its contact, of which rates below `softened` count as this one.
-pub(super) fn cost(all: &Integrals, start: &Start, softened: f64) -> f64 {
-    let mut sum = 0.0;
-    for (value, slopes) in values(start, all) {
-        for i in 0..3 {
-            let [p, q] = slopes[i];
-            sum += value[i] * value[i] / (p * p + q * q + softened * softened);
-        }
-    }
-    sum
-}
-
-pub(super) fn expand(all: &Integrals, start: &Start, softened: f64) -> Option<Normal> {
-    let chain = start.chain()?;
-    let mut normal = Normal::none();
-    for sample in expanded(start, all) {
-        for i in 0..3 {
-            let (residual, row) = weighed(&sample, i, softened);
-            normal.add(residual, &chain.row(&row));
-        }
-    }
-    Some(normal)
-}
-
-fn weighed(sample: &Constrained, i: usize, softened: f64) -> (f64, [f64; DIRECTIONS]) {
-    let [p, q] = sample.slopes[i];
-    let size = p * p + q * q + softened * softened;
-    let root = size.sqrt();
-    let residual = sample.value[i] / root;
-    let row = std::array::from_fn(|d| {
-        let [dp, dq] = sample.slopes_by[i][d];
-        sample.by[i][d] / root - residual * (p * dp + q * dq) / size
-    });
-    (residual, row)
 }
 
 /// The longest step: in parts of a length, of a length in a second, of a rate, and relatively.
@@ -224,46 +155,4 @@ pub(super) fn shortened(step: &Change, scale: &Scale) -> Change {
     };
     let longest = (0..UNKNOWNS).map(|i| step[i].abs() / most(i)).fold(1.0, f64::max);
     step.map(|value| value / longest)
-}
-
-/// Levenberg and Marquardt's method from a start; the start and the sum of the squares that it ends with.
-pub(super) fn descend(
-    all: &Integrals,
-    from: Start,
-    free: Free,
-    scale: &Scale,
-    softened: f64,
-    steps: usize,
-) -> (Start, f64) {
-    let places = free.places();
-    let mut here = from;
-    let Some(mut normal) = expand(all, &here, softened) else { return (here, f64::INFINITY) };
-    let mut damping = 1e-3;
-    for _ in 0..steps {
-        let mut better = None;
-        for _ in 0..7 {
-            if let Some(there) =
-                normal.step(&places, damping).and_then(|step| here.changed(&shortened(&step, scale)))
-            {
-                let reached = cost(all, &there, softened);
-                if reached < normal.cost {
-                    better = Some((there, reached));
-                    break;
-                }
-            }
-            damping = (damping * 8.0).max(1e-6);
-        }
-        let Some((there, reached)) = better else { break };
-        let is_settled = reached > normal.cost * (1.0 - 1e-5);
-        here = there;
-        damping *= 0.1;
-        if is_settled {
-            return (here, reached);
-        }
-        match expand(all, &here, softened) {
-            Some(next) => normal = next,
-            None => break,
-        }
-    }
-    (here, normal.cost)
 }
