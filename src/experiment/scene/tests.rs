@@ -182,6 +182,7 @@ fn every_key_arrives_where_it_belongs() {
         kalman: Kalman { prior: 0.2, ..Kalman::default() },
         unscented: Unscented { kappa: 0.0, ..Unscented::default() },
         high_gain: HighGain { gain: 30.0 },
+        library: Vec::new(),
         mode: "the scene's own model".to_owned(),
         modes: Vec::new(),
     };
