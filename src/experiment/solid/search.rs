@@ -126,7 +126,7 @@ pub(super) fn chosen(rows: usize, part: f64, samples: usize) -> Vec<usize> {
 
 /// The best that was found.
 pub(super) fn found(readings: &SolidReadings, interrupt: &dyn Fn() -> bool) -> Option<Refined> {
-    if !readings.is_whole() {
+    if !readings.is_whole() || readings.is_still() {
         return None;
     }
     let mut search = Search::of(readings, Likely::of(readings)?);
