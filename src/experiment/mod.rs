@@ -13,6 +13,7 @@ mod columns;
 mod groundwork;
 mod known_motion;
 mod modes;
+mod past_poles;
 mod reconstruction;
 mod recovered;
 mod run;
@@ -27,6 +28,7 @@ pub mod solid;
 pub mod space;
 mod stream;
 mod study;
+mod switch;
 mod system_motion;
 #[doc(hidden)]
 pub mod unguided;
@@ -35,6 +37,8 @@ pub mod unguided;
 pub use advice::{Advice, AdviceLimits, AdviceQuestion, ExpectedBounds, TriedMotion, advise};
 pub use known_motion::KnownMotion;
 pub use modes::{ModeEstimate, ModeWindow};
+#[doc(hidden)]
+pub use past_poles::EQUATIONS;
 #[doc(hidden)]
 pub use reconstruction::{on_palm, shown, turned};
 pub use recovered::{Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
@@ -47,6 +51,7 @@ pub use scene::SceneOutline;
 pub use scene::{BasinStudy, CurvatureStudy, NoiseStudy};
 pub use scene::{
     Channel, Data, Guess, Method, ModeSettings, ObserverSettings, Scene, SceneColumn, SceneError, Sensor,
+    Switch,
 };
 #[doc(hidden)]
 pub use simulation::NOMINAL;

@@ -14,7 +14,7 @@ pub use crate::system::ReadError as SceneError;
 pub use columns::SceneColumn;
 pub use observing::{
     BasinStudy, Channel, CurvatureStudy, Data, Guess, Method, ModeSettings, NoiseStudy, ObserverSettings,
-    Sensor, Study,
+    Sensor, Study, Switch,
 };
 pub(in crate::experiment) use simulated::sample_times;
 pub use simulated::{Body, Palms, SceneOutline, Simulated, SimulatedSystem};

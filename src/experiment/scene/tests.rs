@@ -184,6 +184,7 @@ fn every_key_arrives_where_it_belongs() {
         high_gain: HighGain { gain: 30.0 },
         mode: "the scene's own model".to_owned(),
         modes: Vec::new(),
+        switch: None,
     };
     assert_eq!(scene.observer, observer);
     assert_eq!(scene.study.noise, Some(NoiseStudy { levels: vec![1e-5, 1e-4], seeds: 500 }));

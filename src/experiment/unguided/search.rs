@@ -123,6 +123,7 @@ fn first_state(all: &Integrals, x: &Unknowns, cost: f64) -> FirstState {
         gyration: ((-x[5]).exp() / all.mass).sqrt(),
         centre,
         velocity: [x[2], x[3]],
+        receding: all.receding([x[2], x[3]]),
         deviations: all.sigma.map_or([0.0; 3], |sigma| deviations(all, x).map(|deviation| sigma * deviation)),
         misfit: (cost / (2.0 * all.samples.len() as f64)).sqrt(),
     }

@@ -19,6 +19,7 @@ mod recovered;
 mod refused;
 mod shape;
 mod stream;
+mod switch;
 mod systems;
 mod witness;
 mod wrong;
