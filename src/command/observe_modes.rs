@@ -38,7 +38,10 @@ impl Observe {
         bar: &ProgressBar,
         files: Files,
     ) -> miette::Result<Status> {
-        let windows = experiment.run_modes(&INTERRUPTED, &|| bar.tick())?;
+        let windows = match experiment.scene.observer.switch {
+            Some(_) => experiment.run_switched(&INTERRUPTED, &|| bar.tick())?,
+            None => experiment.run_modes(&INTERRUPTED, &|| bar.tick())?,
+        };
         bar.finish_and_clear();
         begin_to_tell();
         if let Some(simulation) = &experiment.simulation

@@ -37,6 +37,14 @@ impl Groundwork {
     /// What is wrong with the scene or its model, with the place in the scene.
     pub fn of(scene: Scene, simulates: bool) -> Result<Groundwork, SceneError> {
         let system = System::read(&scene.model)?;
+        Groundwork::with_system(scene, system, simulates)
+    }
+
+    /// The same with a system that is no file's.
+    ///
+    /// # Errors
+    /// As for [`Groundwork::of`].
+    pub fn with_system(scene: Scene, system: System, simulates: bool) -> Result<Groundwork, SceneError> {
         let names = scene.column_names(&system)?;
         let simulation = match (&scene.simulated, simulates) {
             (Some(simulated), true) => Some(Simulation::of(&scene, simulated)?),

@@ -13,6 +13,7 @@ mod columns;
 mod groundwork;
 mod known_motion;
 mod modes;
+mod past_poles;
 mod recognised;
 mod reconstruction;
 mod recovered;
@@ -28,6 +29,7 @@ pub mod solid;
 pub mod space;
 mod stream;
 mod study;
+mod switch;
 mod system_motion;
 mod terrain;
 #[doc(hidden)]
@@ -39,6 +41,8 @@ pub use known_motion::KnownMotion;
 pub use modes::{ModeEstimate, ModeWindow};
 pub use recognised::{LibraryAnswer, Recognition, RecognitionVerdict};
 #[doc(hidden)]
+pub use past_poles::EQUATIONS;
+#[doc(hidden)]
 pub use reconstruction::{on_palm, shown, turned};
 pub use recovered::{Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
 #[doc(hidden)]
@@ -49,8 +53,8 @@ pub use scene::SceneOutline;
 #[doc(hidden)]
 pub use scene::{BasinStudy, CurvatureStudy, NoiseStudy};
 pub use scene::{
-    Channel, Data, Guess, LibraryBody, Method, ModeSettings, ObserverSettings, Scene, SceneColumn,
-    SceneError, Sensor,
+    Channel, Data, Guess, LibraryBody, Method, ModeSettings, ObserverSettings, Scene, SceneColumn, SceneError, Sensor,
+    Switch,
 };
 #[doc(hidden)]
 pub use simulation::NOMINAL;

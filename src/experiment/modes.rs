@@ -8,7 +8,7 @@
 use super::groundwork::{Groundwork, Steady, sample_range};
 use super::run::Experiment;
 use super::scene::{Guess, SceneError};
-use crate::observer::{NoiseFrom, RecordReading, Signals, Update};
+use crate::observer::{MotionRankFound, NoiseFrom, Objection, RecordReading, Signals, Update};
 use crate::system::UnknownKind;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,8 +36,13 @@ pub struct ModeEstimate {
     pub name: String,
     /// What was sought, in the order of the update's estimate.
     pub sought: Vec<String>,
-    /// The search: none where the model could not be made of these readings.
+    /// The search: none where it was not asked.
     pub update: Option<Update>,
+    /// What the rank says of its motion through the window, where it decides who may answer: of the motion that was found, where one was that the
+    /// readings bear out, and else of the one that was foretold.
+    pub rank: Option<MotionRankFound>,
+    /// Why it had better not answer, by the rank.
+    pub objection: Option<Objection>,
 }
 
 impl ModeEstimate {
@@ -65,7 +70,7 @@ pub struct ModeWindow {
     pub to: f64,
     /// Each mode, the scene's own first.
     pub estimates: Vec<ModeEstimate>,
-    /// The one with the least error of those that fit.
+    /// The one with the least error of those that fit; where the rank decides, the first of those that may answer and fit.
     pub chosen: Option<usize>,
     /// What the contacts did, where a body was simulated with friction: more than one where they changed.
     pub true_modes: Vec<String>,
@@ -76,7 +81,7 @@ impl Experiment {
     ///
     /// # Errors
     /// What is wrong with a mode's model, with the place in the scene.
-    fn modes(&self) -> Result<Vec<(String, Experiment)>, SceneError> {
+    pub(super) fn modes(&self) -> Result<Vec<(String, Experiment)>, SceneError> {
         let mut all = vec![(self.scene.observer.mode.clone(), self.clone())];
         for mode in &self.scene.observer.modes {
             let mut scene = self.scene.clone();
@@ -85,6 +90,7 @@ impl Experiment {
             settings.estimate.clone_from(&mode.estimate);
             settings.known.clone_from(&mode.known);
             settings.bounds.clone_from(&mode.bounds);
+            settings.inputs.clone_from(&mode.inputs);
             settings.guess = Guess::Sample;
             settings.clamp.clear();
             let ground = Groundwork::of(scene, false)?;
@@ -104,11 +110,7 @@ impl Experiment {
     pub fn run_modes(&self, interrupt: &AtomicBool, done: &dyn Fn()) -> Result<Vec<ModeWindow>, SceneError> {
         let modes = self.modes()?;
         let times = self.signals.times();
-        if times.len() < 2 {
-            let message = format!("of {} samples there is no window", times.len());
-            let help = "a window has two samples or more, and some for each unknown to tell anything";
-            return Err(self.scene.error_at("observer.window", message, "such windows", help));
-        }
+        self.has_windows()?;
         let window = self.steps_of_windows();
         let mut learned: BTreeMap<String, f64> = BTreeMap::new();
         // where each mode that fitted came to at the end of its window
@@ -122,7 +124,13 @@ impl Experiment {
                 let (update, came_to) =
                     own.search(mode.starts(&learned, reached[place].take()), interrupt)?;
                 reached[place] = came_to;
-                estimates.push(ModeEstimate { name: name.clone(), sought, update });
+                estimates.push(ModeEstimate {
+                    name: name.clone(),
+                    sought,
+                    update,
+                    rank: None,
+                    objection: None,
+                });
             }
             let fitting = (0..estimates.len()).filter(|place| estimates[*place].fits());
             let chosen = fitting.min_by(|a, b| estimates[*a].error().total_cmp(&estimates[*b].error()));
@@ -147,8 +155,23 @@ impl Experiment {
         Ok(windows)
     }
 
+    /// Whether there is a window at all.
+    ///
+    /// # Errors
+    /// That there is none.
+    pub(super) fn has_windows(&self) -> Result<(), SceneError> {
+        match self.signals.times().len() {
+            samples @ 0..2 => {
+                let message = format!("of {samples} samples there is no window");
+                let help = "a window has two samples or more, and some for each unknown to tell anything";
+                Err(self.scene.error_at("observer.window", message, "such windows", help))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// How many steps from sample to sample a window has.
-    fn steps_of_windows(&self) -> usize {
+    pub(super) fn steps_of_windows(&self) -> usize {
         self.scene.observer.window.min(self.signals.times().len().saturating_sub(1))
     }
 
@@ -158,7 +181,7 @@ impl Experiment {
     }
 
     /// The experiment of one window.
-    fn window_of(&self, first: usize, window: usize) -> Result<Experiment, SceneError> {
+    pub(super) fn window_of(&self, first: usize, window: usize) -> Result<Experiment, SceneError> {
         let mut own = self.clone();
         let rows = first..=first + window;
         let times = self.signals.times()[rows.clone()].to_vec();
@@ -174,7 +197,7 @@ impl Experiment {
 
     /// Where the search of a window begins, one after the other until one fits: with what is known from the last window, and at states of the
     /// sample box (Halton's), constants as far as they were learned.
-    fn starts(&self, learned: &BTreeMap<String, f64>, reached: Option<Vec<f64>>) -> Vec<Vec<f64>> {
+    pub(super) fn starts(&self, learned: &BTreeMap<String, f64>, reached: Option<Vec<f64>>) -> Vec<Vec<f64>> {
         let settings = &self.scene.observer;
         let guess = match &settings.guess {
             Guess::Values(values) => values.clone(),
@@ -203,7 +226,7 @@ impl Experiment {
     }
 
     /// What one mode makes of a window, and where it came to.
-    fn search(
+    pub(super) fn search(
         &self,
         starts: Vec<Vec<f64>>,
         interrupt: &AtomicBool,
@@ -231,7 +254,7 @@ impl Experiment {
     }
 
     /// What the contacts of a body that was simulated with friction did between two times.
-    fn true_modes(&self, from: f64, to: f64) -> Vec<String> {
+    pub(super) fn true_modes(&self, from: f64, to: f64) -> Vec<String> {
         let Some(simulation) = &self.simulation else { return Vec::new() };
         let all = &simulation.modes;
         let ends = all.iter().skip(1).map(|(time, _)| *time).chain([f64::INFINITY]);

@@ -209,7 +209,7 @@ impl Experiment {
         if !task.exact {
             task.noise = Noise::Stated { normal: sensor.noise, rounding: sensor.resolution };
         }
-        channels::tell(&self.scene, &mut task, self.simulation.is_some(), self.simulated().is_some())?;
+        channels::tell(&self.scene, &mut task, self.scene.simulated.is_some(), self.simulated().is_some())?;
         let settings = &self.scene.observer;
         (task.inherit, task.whole, task.loss) = (settings.inherit, settings.whole, settings.loss);
         for (name, bounds) in self.names().into_iter().zip(&mut task.bounds) {
@@ -268,7 +268,8 @@ impl Experiment {
         let mut answers = Vec::new();
         for &method in &self.scene.observer.methods {
             let begin = Instant::now();
-            let track = self.observer(method).observe(&task);
+            let mut track = self.observer(method).observe(&task);
+            self.pass_poles(method, &mut track, interrupt);
             let seconds = begin.elapsed().as_secs_f64();
             answers.push(Answer { method, track, seconds, reconstruction: None });
             done(method);

@@ -21,6 +21,9 @@ const ROUNDS: usize = 6;
 /// An answer stays that moves by less than this part of its deviation.
 const STAYS: f64 = 1e-3;
 
+/// A state that leaves no more than so many variances a reading is where weighted steps begin.
+const EXPLAINED: f64 = 4.0;
+
 impl MovingWindow {
     /// One update by weighted differences, begun at the answer of those that are not weighted; with the suspects of an update of
     /// which they are asked.
@@ -33,7 +36,27 @@ impl MovingWindow {
         ask: bool,
     ) -> Update {
         let begin = Instant::now();
-        let mut update = self.attempt(task, belief, rows, clamped);
+        // an implicit output errs as the readings in it do, now much and now hardly at all: weighed alike they may lead far away from where one is
+        let believed = match task.full.has_implicit() {
+            true => self.weighed(task, belief, None, rows, clamped),
+            false => None,
+        };
+        let count = rows.len() * task.full.outputs.len();
+        let explains = |square: f64| square <= EXPLAINED * count as f64 * task.sigma * task.sigma;
+        let steps = if believed.is_some_and(explains) { 1 } else { self.steps };
+        let mut update = MovingWindow { steps, ..*self }.attempt(task, belief, rows, clamped);
+        if let Some(believed) = believed {
+            let outputs =
+                Some(update.outputs.as_slice()).filter(|_| !matches!(update.end, UpdateEnd::Lost(_)));
+            let found =
+                outputs.and_then(|own| self.weighed(task, &update.estimate, Some(own), rows, clamped));
+            if found.is_none_or(|found| believed < found) {
+                let start = Self::window(task, belief, rows, clamped).start;
+                update.estimate = start[..task.estimated()].to_vec();
+                update.outputs = start[task.estimated()..].to_vec();
+                update.end = UpdateEnd::Stuck;
+            }
+        }
         if matches!(update.end, UpdateEnd::Lost(_)) {
             return update;
         }
@@ -73,6 +96,27 @@ impl MovingWindow {
             taken_off = Some(errors);
         }
         Update { steps, troubled, seconds: begin.elapsed().as_secs_f64(), ..update }
+    }
+
+    /// The sum of the squares of what a state leaves, weighed by the errors of the readings there, in units in which each of these is as
+    /// large as the task's; nothing where the model cannot be followed.
+    fn weighed(
+        &self,
+        task: &Task<'_>,
+        belief: &[f64],
+        outputs: Option<&[f64]>,
+        rows: &std::ops::Range<usize>,
+        clamped: &[usize],
+    ) -> Option<f64> {
+        let mut window = Self::window(task, belief, rows, clamped);
+        if let Some(outputs) = outputs {
+            window.start[task.estimated()..].clone_from_slice(outputs);
+        }
+        window.arrival = None;
+        let weights = Weights::of(task, &window.start, window.times, None, task.signals).ok()?;
+        window.weights = Some(Arc::new(weights));
+        let expansion = window.expand(&window.unknowns(&window.start), Order::First).ok()?;
+        Some(expansion.differences.norm_squared()).filter(|square| square.is_finite())
     }
 
     /// The least standard deviations that estimates of what is sought can have at the first of some rows, where this is believed of it;

@@ -27,10 +27,12 @@ mod late;
 mod learned;
 mod loss;
 mod model;
+mod motion_rank;
 mod moving_window;
 mod multiple_shooting;
 mod newton;
 mod nodes;
+mod objection;
 mod quick_step;
 pub(crate) mod record;
 mod response;
@@ -67,9 +69,11 @@ pub use loss::Loss;
 #[doc(hidden)]
 pub use model::ModelQuestion;
 pub use model::{Model, ModelError};
+pub use motion_rank::MotionRank;
 pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
 pub use multiple_shooting::{MultipleShooting, Shooting};
 pub use newton::Newton;
+pub use objection::{MotionRankFound, Objection, PoleMet};
 pub use record::{
     ColumnNames, ColumnSource, Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading,
 };

@@ -79,7 +79,14 @@ impl Weights {
         let errors: Vec<ReadingErrors> = columns.iter().map(|column| task.errors[&names[*column]]).collect();
         let sensitivity = Sensitivity::of(&task.full_flow(), start, times, columns)?;
         let rows = sensitivity.first..sensitivity.first + sensitivity.rows;
-        let runs = sensitivity.columns.iter().map(|c| runs(&read.column(*c)[rows.clone()])).collect();
+        // an implicit output has no error of its own: a contact that creeps through a step of the resolution errs from one half of it to the other,
+        // and neighbours with one error would foretell differences that are not there
+        let one_by_one = task.full.has_implicit();
+        let of = |column: &usize| match one_by_one {
+            true => (0..rows.len()).map(|row| row..row + 1).collect(),
+            false => runs(&read.column(*column)[rows.clone()]),
+        };
+        let runs = sensitivity.columns.iter().map(of).collect();
         let outputs = (0..task.full.outputs.len()).map(|output| task.output_errors(output)).collect();
         let offset = match taken_off {
             Some(errors) => sensitivity.times(errors),

@@ -183,7 +183,7 @@ impl<'g> RankDecider<'g> {
     }
 
     /// The same with a graph of its own.
-    pub(super) fn owning(self) -> RankDecider<'static> {
+    pub(crate) fn owning(self) -> RankDecider<'static> {
         RankDecider { graph: Cow::Owned(self.graph.into_owned()), ..self }
     }
 

@@ -1,6 +1,6 @@
 //! The file as it is written: what serde reads, before it is known whether the values go together.
 
-use super::observing::{Channel, Data, Method, Sensor, Study};
+use super::observing::{Channel, Data, Method, Sensor, Study, Switch};
 use super::place::Places;
 use super::robot::{SceneGround, SceneRobot};
 use super::simulated::{Body, LibraryBody};
@@ -224,6 +224,7 @@ pub(super) struct ObserverKeys {
     pub modes: Vec<ModeKeys>,
     #[serde(default)]
     pub library: Vec<LibraryBody>,
+    pub switch: Option<Switch>,
 }
 
 /// `[[observer.modes]]`: another system that the readings may be of, beside the scene's own.
@@ -235,6 +236,8 @@ pub(super) struct ModeKeys {
     pub estimate: Vec<String>,
     #[serde(default)]
     pub known: BTreeMap<String, f64>,
+    #[serde(default)]
+    pub inputs: BTreeMap<String, String>,
     #[serde(default)]
     pub guess: BTreeMap<String, f64>,
     #[serde(default)]

@@ -15,7 +15,7 @@ pub use crate::system::ReadError as SceneError;
 pub use columns::SceneColumn;
 pub use observing::{
     BasinStudy, Channel, CurvatureStudy, Data, Guess, Method, ModeSettings, NoiseStudy, ObserverSettings,
-    Sensor, Study,
+    Sensor, Study, Switch,
 };
 pub use robot::SimulatedRobot;
 pub(in crate::experiment) use simulated::sample_times;

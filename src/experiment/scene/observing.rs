@@ -111,6 +111,22 @@ pub struct ObserverSettings {
     pub modes: Vec<ModeSettings>,
     /// `[[observer.library]]`: known bodies of which one may be what was read; none unless given.
     pub library: Vec<LibraryBody>,
+    /// `switch`: whether the rank decides which of `modes` answers each window, and how; by the error of the output unless given.
+    pub switch: Option<Switch>,
+}
+
+/// Who may answer where the rank decides.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Switch {
+    /// `condition`: an observer does not answer a window in which the condition of its codistribution exceeds this anywhere; 1e6 unless given.
+    pub condition: f64,
+}
+
+impl Default for Switch {
+    fn default() -> Self {
+        Switch { condition: 1e6 }
+    }
 }
 
 /// A system that the readings may be of in some windows, and what is sought of it.
@@ -120,10 +136,12 @@ pub struct ModeSettings {
     pub name: String,
     /// `model`: as of the scene.
     pub model: PathBuf,
-    /// `estimate`, `known`, `bounds`: as of `[observer]`, and instead of those.
+    /// `estimate`, `known`, `inputs`, `bounds`: as of `[observer]`, and instead of those.
     pub estimate: Vec<String>,
     /// What no column gives and is not sought.
     pub known: BTreeMap<String, f64>,
+    /// `inputs`: as of `[observer]`, and instead of those; none unless given.
+    pub inputs: BTreeMap<String, String>,
     /// Between what some of what is sought lies.
     pub bounds: BTreeMap<String, [f64; 2]>,
     /// `guess`: where the search begins in any window; what is not given begins in the middle of its sample box.

@@ -185,6 +185,7 @@ fn every_key_arrives_where_it_belongs() {
         library: Vec::new(),
         mode: "the scene's own model".to_owned(),
         modes: Vec::new(),
+        switch: None,
     };
     assert_eq!(scene.observer, observer);
     assert_eq!(scene.study.noise, Some(NoiseStudy { levels: vec![1e-5, 1e-4], seeds: 500 }));

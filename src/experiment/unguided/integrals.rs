@@ -208,6 +208,11 @@ impl Integrals {
             .palms
             .map(|palm| palm.normal[0] * centre[0] + palm.normal[1] * centre[1] - palm.height)
     }
+
+    /// A velocity at the first sample along the palms' normals.
+    pub fn receding(&self, velocity: [f64; 2]) -> [f64; 2] {
+        self.samples[0].palms.map(|palm| palm.normal[0] * velocity[0] + palm.normal[1] * velocity[1])
+    }
 }
 
 /// The largest rate of change over an eighth of a window.

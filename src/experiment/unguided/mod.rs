@@ -76,6 +76,8 @@ pub struct FirstState {
     pub centre: [f64; 2],
     /// Its velocity.
     pub velocity: [f64; 2],
+    /// The same along the normals of the palms, `v1` and `v2`.
+    pub receding: [f64; 2],
     /// The least standard deviations that `r1`, `r2` and `omega0` can have, by the stated noise of the contacts; zeros where none is stated.
     pub deviations: [f64; 3],
     /// The root of the mean square by which the contacts would have to be elsewhere.

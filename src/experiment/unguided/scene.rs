@@ -52,10 +52,12 @@ impl Unguided {
             "r2" => Some(found.radii[1]),
             "omega0" => Some(found.rate),
             "rho" => Some(found.gyration),
+            "v1" => Some(found.receding[0]),
+            "v2" => Some(found.receding[1]),
             _ => None,
         });
         value.ok_or_else(|| {
-            let help = "r1, r2, omega0 and rho are found without one";
+            let help = "r1, r2, omega0, rho, v1 and v2 are found without one";
             refuse(scene, format!("there is no first guess of '{name}'"), help)
         })
     }

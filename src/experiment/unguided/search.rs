@@ -146,6 +146,7 @@ fn first_state(all: &Integrals, end: &End) -> FirstState {
         gyration: ((-x[5]).exp() / all.mass).sqrt(),
         centre,
         velocity: [x[2], x[3]],
+        receding: all.receding([x[2], x[3]]),
         deviations: all
             .sigma
             .map_or([0.0; 3], |sigma| deviations(all, end).map(|deviation| sigma * deviation)),

@@ -3,11 +3,35 @@
 use super::answers::end_name;
 use super::fit::finite;
 use crate::experiment::{Experiment, ModeEstimate, ModeWindow};
-use crate::observer::Update;
+use crate::observer::{MotionRankFound, Objection, Update};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
+/// What the rank says of an observer in a window.
+fn rank_json(rank: &MotionRankFound, objection: Option<&Objection>) -> Value {
+    json!({
+        "samples": rank.asked,
+        "rank": rank.rank,
+        "of": rank.of,
+        "certified": rank.certified,
+        "smallest_singular_value": finite(rank.smallest),
+        "condition": finite(rank.condition),
+        "at": rank.at,
+        "pole": rank.pole.as_ref().map(|pole| json!({ "divisor": pole.divisor, "at": pole.time })),
+        "objection": objection.map(Objection::word),
+        "why": objection.map(ToString::to_string),
+    })
+}
+
 fn estimate_json(estimate: &ModeEstimate) -> Value {
+    let mut value = update_json(estimate);
+    if let Some(rank) = &estimate.rank {
+        value["rank"] = rank_json(rank, estimate.objection.as_ref());
+    }
+    value
+}
+
+fn update_json(estimate: &ModeEstimate) -> Value {
     let Some(update) = &estimate.update else { return json!({ "name": estimate.name, "fits": false }) };
     let states: Map<String, Value> = (0..estimate.sought.len())
         .map(|i| {
@@ -57,6 +81,11 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
         let Some(estimate) = window.chosen.map(|place| &window.estimates[place]) else {
             let least = window.estimates.iter().filter_map(|estimate| estimate.update.as_ref());
             let least = least.map(|update| update.misfit).fold(f64::INFINITY, f64::min);
+            if window.estimates.iter().any(|estimate| estimate.rank.is_some()) {
+                let _ = writeln!(text, "no observer answers");
+                window.estimates.iter().for_each(|estimate| rank_line(&mut text, estimate));
+                continue;
+            }
             let _ = writeln!(text, "no mode fits, the least misfit is {least:.1e}{}", truth(window));
             continue;
         };
@@ -66,6 +95,7 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
             if others.is_empty() { String::new() } else { format!(" ({} fit worse)", others.join(", ")) };
         let misfit = estimate.update.as_ref().map_or(f64::NAN, |update| update.misfit);
         let _ = writeln!(text, "{}{also}, misfit {misfit:.1e}{}", estimate.name, truth(window));
+        window.estimates.iter().for_each(|estimate| rank_line(&mut text, estimate));
         if let Some(update) = &estimate.update {
             state_lines(&mut text, experiment, &estimate.sought, update);
         }
@@ -77,6 +107,24 @@ pub fn modes_text(experiment: &Experiment, windows: &[ModeWindow]) -> String {
         }
     }
     text
+}
+
+/// What the rank says of an observer, and what came of it.
+fn rank_line(text: &mut String, estimate: &ModeEstimate) {
+    let Some(rank) = &estimate.rank else { return };
+    let is_certain = if rank.certified { ", certified" } else { "" };
+    let word = format!(
+        "rank {} of {} at {} samples{is_certain}, condition at most {:.1e}",
+        rank.rank, rank.of, rank.asked, rank.condition
+    );
+    let came = match (&estimate.objection, &estimate.update) {
+        (Some(why), None) => format!("not asked: {why}"),
+        (Some(why), Some(_)) => format!("does not answer: what it found has {why}"),
+        (None, Some(_)) if estimate.fits() => format!("answers: {word}"),
+        (None, Some(update)) => format!("asked, and {}: {word}", end_name(&update.end)),
+        (None, None) => word,
+    };
+    let _ = writeln!(text, "    {}: {came}", estimate.name);
 }
 
 fn truth(window: &ModeWindow) -> String {

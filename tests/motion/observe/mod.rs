@@ -23,6 +23,7 @@ mod refused;
 mod robot;
 mod shape;
 mod stream;
+mod switch;
 mod systems;
 mod witness;
 mod wrong;

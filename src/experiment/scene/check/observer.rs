@@ -60,6 +60,17 @@ impl Checks<'_> {
             let help = "let the first method be newton, trust-region or multiple-shooting";
             return Err(self.wrong("observer.methods", "modes are told apart by windows", help));
         }
+        if let Some(switch) = keys.switch {
+            self.positive("observer.switch.condition", switch.condition, "")?;
+            if keys.modes.is_empty() {
+                let help = "give the other observers, each in its own [[observer.modes]], or leave it out";
+                return Err(self.wrong(
+                    "observer.switch",
+                    "there is one observer, and nothing to switch to",
+                    help,
+                ));
+            }
+        }
         let modes = keys.modes.into_iter().enumerate();
         let modes = modes.map(|(index, own)| self.mode(index, own)).collect::<Result<Vec<_>, _>>()?;
         let mode = if keys.mode.is_empty() { "the scene's own model".to_owned() } else { keys.mode };
@@ -69,6 +80,7 @@ impl Checks<'_> {
             mode,
             modes,
             library: keys.library,
+            switch: keys.switch,
             inherit: keys.inherit,
             whole: keys.whole,
             bounds: keys.bounds,
@@ -115,8 +127,8 @@ impl Checks<'_> {
             self.sought(&place(&format!("guess.{name}")), name, &keys.estimate)?;
             self.finite(&place(&format!("guess.{name}")), *value)?;
         }
-        let ModeKeys { name, model, estimate, known, bounds, guess } = keys;
-        Ok(ModeSettings { name, model, estimate, known, bounds, guess })
+        let ModeKeys { name, model, estimate, known, inputs, bounds, guess } = keys;
+        Ok(ModeSettings { name, model, estimate, known, inputs, bounds, guess })
     }
 
     /// What is asked of the estimates of windows.

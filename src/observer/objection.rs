@@ -1,0 +1,100 @@
+//! What the rank has found of a motion, and whether it objects to an observer that would answer there.
+
+use std::fmt;
+
+/// A zero of a divisor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoleMet {
+    /// What is divided by.
+    pub divisor: String,
+    /// When it is zero, in s; between two samples as a straight line has it.
+    pub time: f64,
+}
+
+/// What the rank says of a motion through a window.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionRankFound {
+    /// At so many samples it was asked.
+    pub asked: usize,
+    /// The least rank; of the same where all is seen.
+    pub rank: usize,
+    /// How many states are followed.
+    pub of: usize,
+    /// Whether each of them is proved for its state, taken as the doubles are.
+    pub certified: bool,
+    /// The least singular value at the sample of the worst condition, equilibrated, of what remains without unit rows.
+    pub smallest: f64,
+    /// The worst condition; infinite where the rank is short.
+    pub condition: f64,
+    /// The time of the least rank, and of those of this rank of the worst condition, in s.
+    pub at: f64,
+    /// The first pole that the motion meets.
+    pub pole: Option<PoleMet>,
+    /// Why the motion could not be followed to the end of the window: it is known at its beginning alone.
+    pub lost: Option<String>,
+}
+
+/// Why an observer had better not answer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Objection {
+    /// Its equations have a pole on the way.
+    Pole(PoleMet),
+    /// Its state is not seen at some moment.
+    Short {
+        /// The rank there.
+        rank: usize,
+        /// What it would have to be.
+        of: usize,
+        /// In s.
+        at: f64,
+    },
+    /// Its state is hardly seen at some moment.
+    Condition {
+        /// The largest over the smallest singular value there.
+        condition: f64,
+        /// In s.
+        at: f64,
+    },
+    /// Its equations cannot be followed.
+    Lost(String),
+}
+
+impl fmt::Display for Objection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Objection::Pole(PoleMet { divisor, time }) => write!(f, "a pole, {divisor} = 0 at {time:.4} s"),
+            Objection::Short { rank, of, at } => write!(f, "rank {rank} of {of} at {at:.4} s"),
+            Objection::Condition { condition, at } => write!(f, "condition {condition:.1e} at {at:.4} s"),
+            Objection::Lost(why) => write!(f, "its equations cannot be followed: {why}"),
+        }
+    }
+}
+
+impl Objection {
+    /// In one word, for machines.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Objection::Pole(_) => "pole",
+            Objection::Short { .. } => "rank",
+            Objection::Condition { .. } => "condition",
+            Objection::Lost(_) => "lost",
+        }
+    }
+}
+
+impl MotionRankFound {
+    /// What speaks against an observer whose condition must not exceed a limit.
+    pub fn objection(&self, limit: f64) -> Option<Objection> {
+        if let Some(pole) = &self.pole {
+            return Some(Objection::Pole(pole.clone()));
+        }
+        if let Some(why) = &self.lost {
+            return Some(Objection::Lost(why.clone()));
+        }
+        let Self { rank, of, condition, at, .. } = *self;
+        if rank < of {
+            return Some(Objection::Short { rank, of, at });
+        }
+        (condition > limit).then_some(Objection::Condition { condition, at })
+    }
+}
