@@ -162,7 +162,7 @@ class System:
             self.rates[name.strip()] = kind, dict(zip(bodies[::2], bodies[1::2]))
             self.moving += [name.strip()] * (kind != "field")
         elif kind == "output":
-            self.outputs += [re.sub(":[^,]*", "", text)] if "=" not in text else refuse("an output that is zero")
+            self.outputs.append(re.sub(":[^,]*", "", text))
         elif kind == "initial":
             self.initial += [name for name, *_ in names] if "=" not in text else refuse("a value at the beginning")
         elif kind in ("unknown", "experiments"):
@@ -212,7 +212,8 @@ class System:
         return [name for name in self.states + self.unknown if name not in self.initial]
 
     def seen(self):
-        return [x for text in self.outputs or refuse("no output") for of in self.read(text) for x in entries(of)]
+        texts = [] if "=" in "".join(self.outputs) else self.outputs
+        return [x for text in texts or refuse("an output that is zero") for of in self.read(text) for x in entries(of)]
 
     def word(self, text):
         """A word by its name, as `Lf Lg y`: an output, differentiated along what moves the system."""
