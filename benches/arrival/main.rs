@@ -116,6 +116,7 @@ fn at_truth(text: &str, noisy: &Experiment) -> Option<[f64; 3]> {
         gyration: simulation.constants["rho"],
         centre: moment.centre,
         velocity: moment.velocity,
+        receding: [0.0; 2],
         deviations: [0.0; 3],
         misfit: 0.0,
     })

@@ -39,9 +39,9 @@ pub mod unguided;
 pub use advice::{Advice, AdviceLimits, AdviceQuestion, ExpectedBounds, TriedMotion, advise};
 pub use known_motion::KnownMotion;
 pub use modes::{ModeEstimate, ModeWindow};
-pub use recognised::{LibraryAnswer, Recognition, RecognitionVerdict};
 #[doc(hidden)]
 pub use past_poles::EQUATIONS;
+pub use recognised::{LibraryAnswer, Recognition, RecognitionVerdict};
 #[doc(hidden)]
 pub use reconstruction::{on_palm, shown, turned};
 pub use recovered::{Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
@@ -53,8 +53,8 @@ pub use scene::SceneOutline;
 #[doc(hidden)]
 pub use scene::{BasinStudy, CurvatureStudy, NoiseStudy};
 pub use scene::{
-    Channel, Data, Guess, LibraryBody, Method, ModeSettings, ObserverSettings, Scene, SceneColumn, SceneError, Sensor,
-    Switch,
+    Channel, Data, Guess, LibraryBody, Method, ModeSettings, ObserverSettings, Scene, SceneColumn,
+    SceneError, Sensor, Switch,
 };
 #[doc(hidden)]
 pub use simulation::NOMINAL;

@@ -80,6 +80,7 @@ fn errors_are_as_large_as_the_bound() {
             gyration: experiment.simulation.as_ref().unwrap().constants["rho"],
             centre: moment.centre,
             velocity: moment.velocity,
+            receding: [0.0; 2],
             deviations: [0.0; 3],
             misfit: 0.0,
         };
