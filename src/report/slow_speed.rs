@@ -1,8 +1,19 @@
 //! Speed against accuracy of all ways to a slow body's shape, as a picture: a mark a row of a study, lines over the numbers of samples.
 
-use crate::experiment::slow::{StudyRow, median_and_worst};
-use crate::report::slow_study::ways_of;
+use crate::experiment::slow::{StudyRow, WayTally, median_and_worst};
 use std::fmt::Write;
+
+/// All ways of a row, by their names.
+pub(super) fn ways_of(row: &StudyRow) -> [(&'static str, &WayTally); 5] {
+    let [own, dopri5, dop853] = &row.thesis;
+    [
+        ("thesis, true radii", own),
+        ("thesis by Dopri5, true radii", dopri5),
+        ("thesis by Dop853, true radii", dop853),
+        ("quadrature, true height", &row.quadrature),
+        ("all at once, nothing known", &row.together),
+    ]
+}
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 450.0;

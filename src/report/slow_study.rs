@@ -1,7 +1,7 @@
 //! What a study of slow motion over many bodies found: text, JSON, a section of the page.
 
 use crate::experiment::slow::{JumpTally, StudyRow, WayTally, median_and_worst};
-use crate::report::slow_speed::speed;
+use crate::report::slow_speed::{speed, ways_of};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -46,17 +46,6 @@ fn passed_over(row: &StudyRow) -> String {
         missing => format!("; it ended {missing} bodies before the {} that were asked for", row.asked),
     };
     format!("{} {why}{ended}", row.jumped)
-}
-
-pub(super) fn ways_of(row: &StudyRow) -> [(&'static str, &WayTally); 5] {
-    let [own, dopri5, dop853] = &row.thesis;
-    [
-        ("thesis, true radii", own),
-        ("thesis by Dopri5, true radii", dopri5),
-        ("thesis by Dop853, true radii", dop853),
-        ("quadrature, true height", &row.quadrature),
-        ("all at once, nothing known", &row.together),
-    ]
 }
 
 /// As text.
