@@ -51,7 +51,10 @@ impl Experiment {
         for place in 0..track.updates.len() {
             let update = &track.updates[place];
             let is_last = track.updates.get(place + 1).is_none_or(|next| next.from > update.from);
-            let is_lost = !update.is_borne_out() && !matches!(update.end, UpdateEnd::Blind { .. });
+            // blind where the readings do not bear it out says nothing of the truth
+            let is_blind =
+                matches!(update.end, UpdateEnd::Blind { .. }) && update.fit.is_none_or(|fit| fit.fits);
+            let is_lost = !update.is_borne_out() && !is_blind;
             let Some(rows) = self.rows(update).filter(|_| is_last && is_lost) else { continue };
             if interrupt.load(Ordering::Relaxed) {
                 return;

@@ -25,6 +25,7 @@ mod shape;
 mod stream;
 mod switch;
 mod systems;
+mod touchpad;
 mod witness;
 mod wrong;
 
