@@ -108,6 +108,7 @@ impl MotionRank {
         let times = task.signals.times();
         let mut found = MotionRankFound {
             asked: 0,
+            decided: 0,
             rank: self.of,
             of: self.of,
             certified: true,
@@ -138,6 +139,10 @@ impl MotionRank {
             }
             self.ask(&inputs, &states[row], row, &mut found);
         }
+        if found.decided == 0 {
+            // interrupted, or a pole at every sample: nothing is known of the rank
+            (found.rank, found.condition, found.certified) = (0, f64::INFINITY, false);
+        }
         found
     }
 
@@ -161,9 +166,10 @@ impl MotionRank {
                     None if report.rank == self.of => 1.0,
                     _ => f64::INFINITY,
                 };
+                found.decided += 1;
                 found.certified &= report.certainty == Certainty::Certified;
                 let is_worse = report.rank < found.rank
-                    || (report.rank == found.rank && (found.asked == 1 || condition > found.condition));
+                    || (report.rank == found.rank && (found.decided == 1 || condition > found.condition));
                 if is_worse {
                     found.smallest = report.spectrum.as_ref().map_or(f64::NAN, |all| all.smallest());
                     (found.rank, found.condition, found.at) = (report.rank, condition, time);

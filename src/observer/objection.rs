@@ -16,7 +16,9 @@ pub struct PoleMet {
 pub struct MotionRankFound {
     /// At so many samples it was asked.
     pub asked: usize,
-    /// The least rank; of the same where all is seen.
+    /// At so many of them there was no pole.
+    pub decided: usize,
+    /// The least rank, 0 where none was decided; of the same where all is seen.
     pub rank: usize,
     /// How many states are followed.
     pub of: usize,

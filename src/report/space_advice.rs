@@ -29,7 +29,7 @@ pub fn runs_advice_text(scene: &SpaceScene, advice: &RunsAdvice) -> String {
     );
     for (place, PlannedRun { hull, outer, random, .. }) in advice.plan.iter().enumerate() {
         let part = 100.0 * hull.low() / advice.volume;
-        let outer = outer.map_or("unbounded".to_owned(), |outer| format!("{:.4}", outer.high()));
+        let outer = outer.as_ref().map_or_else(Clone::clone, |outer| format!("{:.4}", outer.high()));
         let random = random.map_or("-".to_owned(), |[median, most]| format!("{median:.4}, {most:.4}"));
         let _ = writeln!(out, "{:>5}{:>12.4}{part:>6.1} %{outer:>14}   {random}", place + 1, hull.low());
     }
@@ -51,7 +51,8 @@ pub fn runs_advice_json(scene: &SpaceScene, advice: &RunsAdvice, interrupted: bo
             "orientation": run.laying.orientation,
             "rate": run.laying.rate,
             "hull": run.hull.low(),
-            "outer": run.outer.map(|outer| outer.high()),
+            "outer": run.outer.as_ref().ok().map(|outer| outer.high()),
+            "why": run.outer.as_ref().err(),
             "random": run.random.map(|[median, most]| json!({ "median": median, "most": most })),
         })
     };

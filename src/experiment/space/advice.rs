@@ -55,8 +55,8 @@ pub struct PlannedRun {
     pub laying: Laying,
     /// The volume of the hull of all contacts of this run and those before it, in m^3.
     pub hull: Interval,
-    /// The volume that the half-spaces leave, in m^3; none where they do not bound it.
-    pub outer: Option<Interval>,
+    /// The volume that the half-spaces leave, in m^3; or why none is known: they do not bound it, or a contact cannot be used.
+    pub outer: Result<Interval, String>,
     /// Of as many runs drawn at random: the hull's volume in the median and at most, in m^3; none where too few of them held the body.
     pub random: Option<[f64; 2]>,
 }
@@ -137,12 +137,14 @@ pub fn advise_runs(
         advice.tried += count;
         let Some(best) = best.into_iter().next() else { break };
         touched.extend(best.touches);
-        let Ok(hull) = contact_hull(&touched) else { break };
+        // contacts in a plane, as those of one body that lies still, hold nothing
+        let hull = contact_hull(&touched).map_or(Interval::point(0.0), |hull| hull.volume);
         let outer = match half_space_intersection(&touched) {
-            Ok(OuterBound::Bounded(region)) => Some(region.volume),
-            _ => None,
+            Ok(OuterBound::Bounded(region)) => Ok(region.volume),
+            Ok(OuterBound::Unbounded { .. }) => Err("unbounded".to_owned()),
+            Err(why) => Err(why.to_string()),
         };
-        advice.plan.push(PlannedRun { laying: best.laying, hull: hull.volume, outer, random: None });
+        advice.plan.push(PlannedRun { laying: best.laying, hull, outer, random: None });
     }
     held_against(&random_runs, &mut advice);
     Ok(advice)

@@ -71,6 +71,21 @@ fn runs_are_those_of_their_seed() {
     assert_ne!(one, run("2", "5"));
 }
 
+/// A body that is laid and not set turning touches three points: a plane, which holds nothing; and that is not "no run was found".
+#[test]
+fn a_body_that_lies_still_holds_nothing() {
+    let folder = folder();
+    let scene = write(&folder, "scene.toml", text().replacen("samples = 89", "samples = 24", 1));
+    let search = ["advise", scene.to_str().unwrap(), "--runs", "1", "--trials", "2", "--rate", "0"];
+    let output = palmistry(&[&search[..], &["--json"]].concat());
+    let found = json(&output);
+    assert_eq!(output.status.code(), Some(0), "{found}");
+    assert!(found["held"].as_u64().unwrap() > 0, "{found}");
+    // rounding moves the points by a last bit, and may give them a volume of that size
+    assert!(found["runs"][0]["hull"].as_f64().unwrap() < 1e-9, "{found}");
+    assert!(found["runs"][0]["outer"].is_null() && found["runs"][0]["why"].is_string(), "{found}");
+}
+
 /// Options that are not for such a scene, and scenes that have no body.
 #[test]
 fn runs_that_are_none_are_refused() {

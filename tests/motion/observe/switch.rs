@@ -124,6 +124,21 @@ fn the_equations_are_those_of_the_proof_file() {
     assert_eq!(from(palmistry::experiment::EQUATIONS).trim_end(), equations);
 }
 
+/// Interrupted before any state was asked about, nothing is certified, and nobody answers.
+#[test]
+fn a_rank_at_no_sample_is_none() {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs/moll2002/scenes/touchpad_switch.toml");
+    let experiment = Experiment::new(Scene::read(&scene).unwrap(), None).unwrap();
+    let windows = experiment.run_switched(&std::sync::atomic::AtomicBool::new(true), &|| ()).unwrap();
+    for window in &windows {
+        assert_eq!(window.chosen, None);
+        for rank in window.estimates.iter().filter_map(|estimate| estimate.rank.as_ref()) {
+            assert_eq!((rank.asked, rank.decided, rank.rank, rank.certified), (0, 0, 0, false));
+            assert!(rank.objection(f64::INFINITY).is_some());
+        }
+    }
+}
+
 /// The shipped scene: a touchpad (100 Hz, 0.1 mm) under a body of the size of a hand. All seven windows are answered, four of them by the thesis's state, and whoever
 /// answers, rate and distances at the window's beginning are within five and a half bounds of the body's own.
 #[test]
