@@ -30,7 +30,7 @@ pub use body::{BodyTextError, PoseBody, numbers};
 pub use certify::{CertifiedComponent, SurfaceCertificate, certify_surface};
 pub use contact_chart::{ClosingFold, ContactChart, SurfaceComponent, closing_folds};
 pub use families::BodyFamily;
-pub use plan::{NoPlan, PlanGoal, PosePlan, pose_plan};
+pub use plan::{NoPlan, PlanGoal, PosePlan, finer_pose_plan, pose_plan};
 pub use potential::{PalmPair, potential, readings};
 pub use sheets::{GridPose, PoseGrid, PoseLimits};
 pub use slide::{PoseJump, Slide, path_length, plan_of_figure_3_14, slide};

@@ -242,9 +242,27 @@ pub fn pose_plan(
     Err(NoPlan::NotConfirmed)
 }
 
+/// So many times as many nodes along a side are tried where a grid gives no plan.
+const FINER: [usize; 2] = [2, 4];
+
+/// The same on finer grids, one after the other, where this one gives no plan: between its nodes a fold may be nearer than a step. What the finest says is told.
+///
+/// # Errors
+/// As for [`pose_plan`].
+pub fn finer_pose_plan(
+    body: &PoseBody,
+    grid: &PoseGrid,
+    limits: &PoseLimits,
+    goal: PlanGoal,
+) -> Result<PosePlan, NoPlan> {
+    let finer = |by: usize| pose_plan(body, &PoseGrid::new(body, limits, by * grid.side), limits, goal);
+    FINER.into_iter().fold(pose_plan(body, grid, limits, goal), |found, by| found.or_else(|_| finer(by)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pose_surface::BodyFamily;
     use crate::pose_surface::body::tests::egg;
     use crate::pose_surface::slide::plan_of_figure_3_14;
 
@@ -273,6 +291,17 @@ mod tests {
         assert!(seen.iter().all(|seen| *seen));
         assert!(plan.slide.jumps.is_empty());
         assert!(plan.length < path_length(&plan_of_figure_3_14(0.2, 2)), "{}", plan.length);
+    }
+
+    /// A body for which the way on a grid of 20 is not confirmed, since a fold is nearer than its steps: a finer one has a plan.
+    #[test]
+    fn a_finer_grid_confirms_a_plan() {
+        let body = BodyFamily::Splines.draw(1, 9);
+        let limits = PoseLimits { margin: 0.15, ..LIMITS };
+        let grid = PoseGrid::new(&body, &limits, 20);
+        assert_eq!(pose_plan(&body, &grid, &limits, PlanGoal::TouchAll), Err(NoPlan::NotConfirmed));
+        let plan = finer_pose_plan(&body, &grid, &limits, PlanGoal::TouchAll).expect("a plan");
+        assert!(plan.slide.jumps.is_empty() && plan.coverage >= 1.0 - 1e-9);
     }
 
     /// From any orientation to any other; with a pad that is too short, or palms that may be off by half a radian, it is told that nothing is left.

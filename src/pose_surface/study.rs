@@ -3,7 +3,7 @@
 use super::body::PoseBody;
 use super::contact_chart::{ContactChart, SurfaceComponent, closing_folds};
 use super::families::BodyFamily;
-use super::plan::{NoPlan, PlanGoal, pose_plan};
+use super::plan::{NoPlan, PlanGoal, finer_pose_plan};
 use super::potential::readings;
 use super::sheets::{PoseGrid, PoseLimits};
 use super::slide::{Slide, plan_of_figure_3_14, slide};
@@ -23,7 +23,7 @@ pub struct ConjectureQuestion<'a> {
     pub margins: &'a [f64],
     /// Nodes between two extrema of the support function; the answer counts where as many again say the same.
     pub nodes: usize,
-    /// Also plans that touch all normals, on a grid with so many nodes along a side.
+    /// Also plans that touch all normals, on a grid with so many nodes along a side, or on finer ones where it has none.
     pub plans: Option<(PoseLimits, usize)>,
     /// Stop where it is set.
     pub interrupt: &'a AtomicBool,
@@ -91,7 +91,7 @@ fn farthest_reading(body: &PoseBody, run: &Slide) -> f64 {
 
 fn plan_finding(body: &PoseBody, limits: &PoseLimits, side: usize) -> PlanFinding {
     let grid = PoseGrid::new(body, limits, side);
-    let plan = pose_plan(body, &grid, limits, PlanGoal::TouchAll);
+    let plan = finer_pose_plan(body, &grid, limits, PlanGoal::TouchAll);
     let path = plan_of_figure_3_14(limits.margin, 1);
     let lowest = stable_poses(body, path[0]).into_iter().min_by(|a, b| a.height.total_cmp(&b.height));
     let round = |rounds: usize| {

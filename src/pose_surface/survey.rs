@@ -3,7 +3,7 @@
 use super::body::PoseBody;
 use super::certify::{SurfaceCertificate, certify_surface};
 use super::contact_chart::{ClosingFold, ContactChart, SurfaceComponent, closing_folds};
-use super::plan::{NoPlan, PlanGoal, PosePlan, pose_plan};
+use super::plan::{NoPlan, PlanGoal, PosePlan, finer_pose_plan};
 use super::potential::PalmPair;
 use super::sheets::{PoseGrid, PoseLimits};
 use super::slide::{Slide, plan_of_figure_3_14, slide};
@@ -26,7 +26,7 @@ pub struct PoseQuestion<'a> {
     pub turn: Option<[f64; 2]>,
     /// How often squares of the certificate are halved.
     pub levels: u32,
-    /// Nodes along a side of the grid of plans and pictures.
+    /// Nodes along a side of the grid of plans and pictures; plans are looked for on finer ones where it has none.
     pub side: usize,
     /// Stop where it is set.
     pub interrupt: &'a AtomicBool,
@@ -68,14 +68,14 @@ pub fn survey_poses(body: PoseBody, question: &PoseQuestion<'_>) -> PoseSurvey {
     let lowest = stable_poses(&body, path[0]).into_iter().min_by(|a, b| a.height.total_cmp(&b.height));
     let turn = question
         .turn
-        .map(|[from, to]| ([from, to], pose_plan(&body, &grid, &limits, PlanGoal::Turn { from, to })));
+        .map(|[from, to]| ([from, to], finer_pose_plan(&body, &grid, &limits, PlanGoal::Turn { from, to })));
     PoseSurvey {
         level: level_poses(&body),
         palms: (question.palms, stable_poses(&body, question.palms)),
         closing_folds: closing_folds(&body),
         components: question.margins.iter().map(|margin| (*margin, chart.components(*margin))).collect(),
         certificate: certify_surface(&body, limits.margin, question.levels, question.interrupt),
-        touch_all: pose_plan(&body, &grid, &limits, PlanGoal::TouchAll),
+        touch_all: finer_pose_plan(&body, &grid, &limits, PlanGoal::TouchAll),
         turn,
         figure_3_14: lowest.map_or_else(Slide::default, |start| slide(&body, &path, start.phi0)),
         limits,
