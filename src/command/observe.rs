@@ -57,7 +57,7 @@ pub(crate) struct Observe {
     /// Run the scene's studies, too.
     #[arg(long)]
     pub(super) studies: bool,
-    /// Write a page with pictures (index.html) and observe.json into this folder.
+    /// Write a page with pictures (index.html) and observe.json into this folder; of a body in space also its surfaces, as PLY and OBJ.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["shard", "missing"])]
     pub(super) out: Option<PathBuf>,
     /// Write the readings to a file, CSV or Parquet by its extension; - is standard output (CSV), and then nothing is observed.

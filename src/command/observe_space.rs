@@ -6,7 +6,10 @@ use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use palmistry::experiment::space::{SpaceExperiment, SpaceScene, SpaceVerdict};
 use palmistry::file::note;
-use palmistry::report::{SpaceObserved, space_ended, space_json, space_page, space_text};
+use palmistry::report::{SpaceObserved, space_ended, space_json, space_page, space_surfaces, space_text};
+
+/// Rings of the smooth surfaces that are written.
+const SURFACE_RINGS: usize = 48;
 
 impl Observe {
     /// What does not go with bodies in space, or not together.
@@ -60,6 +63,10 @@ impl Observe {
         if let Some(folder) = &self.out {
             files.text(&folder.join("index.html"), &space_page(&observed));
             files.json(&folder.join("observe.json"), &json);
+            for one in space_surfaces(&observed, SURFACE_RINGS) {
+                files.text(&folder.join(one.kind.file()).with_extension("ply"), &one.surface.ply());
+                files.text(&folder.join(one.kind.file()).with_extension("obj"), &one.surface.obj());
+            }
             files.announce(&folder.join("index.html"));
         }
         // a window that sees nothing is part of the answer; readings that no body explains are not

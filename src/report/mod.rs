@@ -30,6 +30,7 @@ mod solid_picture;
 mod space;
 mod space_advice;
 mod space_page;
+mod space_surfaces;
 mod stress;
 mod trade;
 mod value;
@@ -77,6 +78,7 @@ pub use space::{SpaceObserved, space_ended, space_json, space_text};
 #[doc(hidden)]
 pub use space_advice::{runs_advice_json, runs_advice_text};
 pub use space_page::space_page;
+pub use space_surfaces::{SpaceSurface, SurfaceKind, space_surfaces};
 #[doc(hidden)]
 pub use stress::{stress_json, stress_pictures, stress_text};
 #[doc(hidden)]

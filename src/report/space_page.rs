@@ -1,59 +1,39 @@
 //! What three palms tell of a body in space: a page with a picture of the shape that can be turned, tables, and curves of errors.
 
-use crate::experiment::space::directions;
 use crate::report::document::document;
 use crate::report::slow_plot::logarithmic;
 use crate::report::solid_picture::{SCRIPT, ShownSurface, turnable_picture};
 use crate::report::space::{SpaceObserved, entries, headline, shape_rows, space_ended};
-use crate::shape::sphere::{OuterBound, SurfaceMesh};
+use crate::report::space_surfaces::{SurfaceKind, space_surfaces};
 use maud::{Markup, PreEscaped, html};
-use nalgebra::Vector3;
 
-/// Rings of the surfaces that are shown.
+/// Rings of the smooth surfaces that are shown.
 const RINGS: usize = 16;
 
 /// More windows than these are in the JSON only.
 const MOST_WINDOWS: usize = 60;
 
-/// A surface by its points at directions: rings of four-sided faces between two caps.
-fn surface(point: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> SurfaceMesh {
-    let rings = directions(RINGS);
-    let around = 2 * RINGS;
-    let corners = rings.iter().flatten().map(point).collect();
-    let mut polygons: Vec<Vec<usize>> = vec![(0..around).collect()];
-    for ring in 1..RINGS {
-        for k in 0..around {
-            let (above, below) = ((ring - 1) * around, ring * around);
-            let next = (k + 1) % around;
-            polygons.push(vec![above + k, below + k, below + next, above + next]);
-        }
-    }
-    polygons.push(((RINGS - 1) * around..RINGS * around).rev().collect());
-    SurfaceMesh { corners, polygons }
-}
-
 fn picture(observed: &SpaceObserved<'_>) -> Markup {
-    let experiment = observed.experiment;
-    let Some(shape) = &observed.answers.shape else { return html! { p { "There is no shape." } } };
-    let truth = experiment.truth.as_ref().map(|_| {
-        surface(|normal| experiment.true_support(normal).map_or(Vector3::zeros(), |(_, point)| point))
-    });
-    let found = shape.estimate.as_ref().map(|found| surface(|normal| found.support.point_and_bend(normal).0));
-    let mut all = Vec::new();
-    if let Some(surface) = &truth {
-        all.push(ShownSurface { name: "the body", colour: "#9a9a9a", surface });
-    } else if let Some(surface) = &found {
-        all.push(ShownSurface { name: "the recovered support function", colour: "#9a9a9a", surface });
-    }
-    if let Ok(hull) = &shape.hull {
-        all.push(ShownSurface { name: "hull of the contacts", colour: "#1f77b4", surface: &hull.surface });
-    }
-    if let Ok(OuterBound::Bounded(region)) = &shape.outer {
-        all.push(ShownSurface { name: "half-spaces", colour: "#ff7f0e", surface: &region.surface });
+    let surfaces = space_surfaces(observed, RINGS);
+    let is_known = surfaces.iter().any(|one| one.kind == SurfaceKind::Body);
+    let mut shown = Vec::new();
+    for one in &surfaces {
+        let colour = match one.kind {
+            SurfaceKind::Body => "#9a9a9a",
+            // beside the body itself it could not be told apart
+            SurfaceKind::Shape if !is_known => "#9a9a9a",
+            SurfaceKind::Hull => "#1f77b4",
+            SurfaceKind::HalfSpaces => "#ff7f0e",
+            _ => continue,
+        };
+        shown.push(ShownSurface { name: one.kind.name(), colour, surface: &one.surface });
     }
     html! {
-        (turnable_picture(&experiment.scene.title, &all))
-        script { (PreEscaped(SCRIPT)) }
+        @if observed.answers.shape.is_none() { p { "There is no shape." } }
+        @else {
+            (turnable_picture(&observed.experiment.scene.title, &shown))
+            script { (PreEscaped(SCRIPT)) }
+        }
     }
 }
 
