@@ -10,6 +10,7 @@ mod channels;
 mod circular;
 mod coefficients;
 mod columns;
+mod control_points;
 mod inherited;
 mod library;
 mod modes;
