@@ -23,6 +23,7 @@ mod observe_modes;
 mod observe_slow;
 mod observe_space;
 mod observe_stream;
+mod observe_studies;
 mod output;
 mod poses;
 mod prove;
@@ -195,7 +196,7 @@ impl Verb {
             Verb::Trade(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Stress(verb) => verb.run(),
             Verb::Eval(verb) => interrupt::watched(move || verb.run(), nothing),
-            Verb::Observe(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Observe(verb) => verb.run(),
             Verb::Advise(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Poses(verb) => verb.run(),
             Verb::Import(verb) => interrupt::watched(move || verb.run(), nothing),

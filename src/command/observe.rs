@@ -1,7 +1,9 @@
 //! `palmistry observe`: a body or another system in motion, and observers that recover its state.
 
-use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
+use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
+use super::observe_slow::KeptSlow;
 use super::observe_stream;
+use super::observe_studies::studies;
 use super::output::{Files, Form, progress};
 use super::shards::{NO_WHOLE, Parts, Shards};
 use super::{Status, Unusable};
@@ -10,8 +12,8 @@ use indicatif::ProgressBar;
 use palmistry::experiment::slow::SlowScene;
 use palmistry::experiment::space::SpaceScene;
 use palmistry::experiment::{
-    Answer, Experiment, Recognition, RecognitionVerdict, Reconstruction, Scene, SceneError, Studied, Studies,
-    StudyPart, basins, curvature_map, noise_study, shown,
+    Answer, Experiment, Recognition, RecognitionVerdict, Reconstruction, Scene, Studied, Studies, StudyPart,
+    shown,
 };
 use palmistry::file::note;
 use palmistry::mechanics::moving::Ended;
@@ -83,12 +85,20 @@ pub(crate) struct Observe {
 }
 
 impl Observe {
+    /// Observes. What a study of slow motion has come to is told where an interrupt does not wait for its body.
     pub fn run(self) -> miette::Result<Status> {
+        let form = Form::of(self.json);
+        let kept: KeptSlow = KeptSlow::default();
+        let filled = kept.clone();
+        watched(move || self.work(&filled), move || kept.tell().unwrap_or_else(|| nothing_found(form)))
+    }
+
+    fn work(self, kept: &KeptSlow) -> miette::Result<Status> {
         if let Some(space) = SpaceScene::read(&self.scene) {
             return self.run_space(space?);
         }
         if let Some(slow) = SlowScene::read(&self.scene) {
-            return self.run_slow(slow?);
+            return self.run_slow(slow?, kept);
         }
         let mut scene = Scene::read(&self.scene)?;
         scene.seed = self.seed.unwrap_or(scene.seed);
@@ -330,28 +340,4 @@ impl Observe {
         }
         Ok(())
     }
-}
-
-fn studies(experiment: &Experiment) -> Result<Studied, SceneError> {
-    let study = &experiment.scene.study;
-    let counted = |length: usize, what: &'static str| -> ProgressBar { progress(length as u64, what) };
-    let mut studied = Studied::default();
-    if let (Some(settings), Some(simulation)) = (&study.noise, experiment.simulated()) {
-        let bar = counted(settings.levels.len() * settings.seeds, "seeds");
-        studied.noise = noise_study(experiment, simulation, settings, &INTERRUPTED, &|| bar.inc(1))?;
-        bar.finish_and_clear();
-    }
-    if let Some(settings) = &study.basin {
-        let guesses = settings.points.pow(2) * experiment.scene.observer.methods.len();
-        let bar = counted(guesses, "first guesses");
-        studied.basins = basins(experiment, settings, &INTERRUPTED, &|| bar.inc(1))?;
-        bar.finish_and_clear();
-    }
-    if let Some(settings) = &study.curvature {
-        let motions = settings.orientations.len() * settings.rates.len();
-        let bar = counted(motions * (1 + settings.points.pow(2)), "bounds");
-        studied.curvature = Some(curvature_map(experiment, settings, &INTERRUPTED, &|| bar.inc(1))?);
-        bar.finish_and_clear();
-    }
-    Ok(studied)
 }

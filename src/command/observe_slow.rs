@@ -4,8 +4,62 @@ use super::interrupt::{begin_to_tell, interrupted};
 use super::observe::Observe;
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
-use palmistry::experiment::slow::{SlowExperiment, SlowScene, slow_study};
+use palmistry::experiment::slow::{SlowAnswers, SlowExperiment, SlowScene, StudyRow, slow_study};
 use palmistry::report::{SlowObserved, slow_json, slow_page, slow_text};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A scene that was observed, and how that is to be told.
+struct SlowTold {
+    experiment: SlowExperiment,
+    answers: SlowAnswers,
+    study: Vec<StudyRow>,
+    out: Option<PathBuf>,
+    form: Form,
+    no_times: bool,
+}
+
+impl SlowTold {
+    fn tell(mut self, mut files: Files) -> miette::Result<Status> {
+        if self.no_times {
+            self.answers.seconds = [f64::NAN; 3];
+            for row in &mut self.study {
+                let ways = row.thesis.iter_mut().chain([&mut row.quadrature, &mut row.together]);
+                ways.for_each(|way| way.seconds = f64::NAN);
+            }
+        }
+        let observed = SlowObserved {
+            experiment: &self.experiment,
+            answers: &self.answers,
+            study: &self.study,
+            interrupted: interrupted(),
+        };
+        let json = slow_json(&observed);
+        if let Some(folder) = &self.out {
+            files.text(&folder.join("index.html"), &slow_page(&observed));
+            files.json(&folder.join("observe.json"), &json);
+            files.announce(&folder.join("index.html"));
+        }
+        // readings that no body explains are not a shape
+        let status = Status::of(self.answers.explained && self.study.iter().all(|row| row.silent == 0));
+        files.print(self.form, json, || slow_text(&observed), status)
+    }
+}
+
+/// What a study has come to: a body of many samples takes longer than an interrupt leaves.
+#[derive(Clone, Default)]
+pub(super) struct KeptSlow(Arc<Mutex<Option<SlowTold>>>);
+
+impl KeptSlow {
+    fn with<T>(&self, act: impl FnOnce(&mut Option<SlowTold>) -> T) -> T {
+        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Tells it; nothing where there is nothing.
+    pub(super) fn tell(&self) -> Option<miette::Result<Status>> {
+        self.with(Option::take).map(|told| told.tell(Files::default()))
+    }
+}
 
 impl Observe {
     /// What does not go with slow motion, or not together.
@@ -44,7 +98,7 @@ impl Observe {
     }
 
     /// Observes a slow scene. Its readings are explained all at once: of standard input, too, the answer comes at the end.
-    pub(super) fn run_slow(self, mut scene: SlowScene) -> miette::Result<Status> {
+    pub(super) fn run_slow(self, mut scene: SlowScene, kept: &KeptSlow) -> miette::Result<Status> {
         scene.seed = self.seed.unwrap_or(scene.seed);
         self.slow_goes_together(&scene)?;
         let bar = progress(4, "simulating");
@@ -62,45 +116,40 @@ impl Observe {
             return Ok(files.status(Status::of(true)));
         }
         bar.set_message("observing");
-        let mut answers = experiment.run(&interrupted, &|step| {
+        let answers = experiment.run(&interrupted, &|step| {
             bar.set_message(step);
             bar.inc(1);
         });
         bar.finish_and_clear();
-        let mut study = Vec::new();
-        if let (true, Some(settings)) = (self.studies, &experiment.scene.study) {
+        let settings = experiment.scene.study.clone().filter(|_| self.studies);
+        let scene = experiment.scene.clone();
+        let told = SlowTold {
+            experiment,
+            answers,
+            study: Vec::new(),
+            out: self.out,
+            form: Form::of(self.json),
+            no_times: self.no_times,
+        };
+        kept.with(|kept| *kept = Some(told));
+        if let Some(settings) = settings {
             let rows = settings.families.len()
                 * settings.samples.len()
                 * settings.resolutions.len()
                 * settings.orders.len().max(1);
             let bar = progress((rows * settings.bodies) as u64, "bodies");
-            study = slow_study(&experiment.scene, &interrupted, &|| bar.inc(1)).map_err(|error| {
-                experiment.scene.error_at("study", error.to_string(), "other families may do")
-            })?;
+            let keep = |rows: &[StudyRow]| {
+                bar.set_position(rows.iter().map(|row| row.bodies as u64).sum());
+                kept.with(|kept| kept.iter_mut().for_each(|told| told.study = rows.to_vec()));
+            };
+            slow_study(&scene, &interrupted, &keep)
+                .map_err(|error| scene.error_at("study", error.to_string(), "other families may do"))?;
             bar.finish_and_clear();
         }
-        if self.no_times {
-            answers.seconds = [f64::NAN; 3];
-            for row in &mut study {
-                let ways = row.thesis.iter_mut().chain([&mut row.quadrature, &mut row.together]);
-                ways.for_each(|way| way.seconds = f64::NAN);
-            }
-        }
         begin_to_tell();
-        let observed = SlowObserved {
-            experiment: &experiment,
-            answers: &answers,
-            study: &study,
-            interrupted: interrupted(),
-        };
-        let json = slow_json(&observed);
-        if let Some(folder) = &self.out {
-            files.text(&folder.join("index.html"), &slow_page(&observed));
-            files.json(&folder.join("observe.json"), &json);
-            files.announce(&folder.join("index.html"));
+        match kept.with(Option::take) {
+            Some(told) => told.tell(files),
+            None => Ok(files.status(Status::of(true))),
         }
-        // readings that no body explains are not a shape
-        let status = Status::of(answers.explained && study.iter().all(|row| row.silent == 0));
-        files.print(Form::of(self.json), json, || slow_text(&observed), status)
     }
 }

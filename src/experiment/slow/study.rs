@@ -127,16 +127,17 @@ fn outline_error(shape: &Shape, found: &SupportSeries) -> f64 {
     off(f64::midpoint(low, high))
 }
 
-/// The study of a scene: a row for each family, number of samples and resolution. Bodies that jump on the plan are counted and drawn anew. `done` is told of each body.
+/// The study of a scene: a row for each family, number of samples and resolution. Bodies that jump on the plan are counted and drawn anew. `found` is told what there is after each body, the row that
+/// is not whole among it, and in the end all.
 ///
 /// # Errors
 /// What is wrong with the bodies.
 pub fn slow_study(
     scene: &SlowScene,
     interrupt: &dyn Fn() -> bool,
-    done: &dyn Fn(),
-) -> Result<Vec<StudyRow>, FormError> {
-    let Some(study) = &scene.study else { return Ok(Vec::new()) };
+    found: &dyn Fn(&[StudyRow]),
+) -> Result<(), FormError> {
+    let Some(study) = &scene.study else { return Ok(()) };
     let orders: Vec<Option<usize>> =
         if study.orders.is_empty() { vec![None] } else { study.orders.iter().copied().map(Some).collect() };
     let mut rows = Vec::new();
@@ -156,7 +157,9 @@ pub fn slow_study(
                             // a search that was cut off is no failure
                             row = before;
                         } else if is_one {
-                            done();
+                            rows.push(row.clone());
+                            found(&rows);
+                            rows.pop();
                         }
                     }
                     rows.push(row);
@@ -164,7 +167,8 @@ pub fn slow_study(
             }
         }
     }
-    Ok(rows)
+    found(&rows);
+    Ok(())
 }
 
 impl StudyRow {

@@ -143,6 +143,38 @@ fn bodies_that_were_looked_at_are_kept() {
     assert_eq!(found["families"], json(&finish(&mut run(bodies)))["families"]);
 }
 
+/// A study of bodies between slow palms tells those that it has come to, as a run over so many does: with many samples one takes longer than an interrupt leaves.
+#[test]
+fn a_slow_study_keeps_its_bodies() {
+    let folder = folder();
+    let run = |bodies: u64| {
+        let scene = format!(
+            "title = \"many\"\nmotion = \"quasistatic\"\nduration = 10\nsamples = 60\n[body]\nshape = {{ kind = \"ellipse\", semi_axes = [1.1, 1.0] }}\n\
+             mass = 1.0\n[palms]\nplan = {{ margin = 0.3, rounds = 1 }}\n[study]\nbodies = {bodies}\nfamilies = [\"harmonics\"]\nsamples = [60]\norders = [6]\n"
+        );
+        let path = write(&folder, &format!("{bodies}.toml"), scene);
+        program(&["observe", path.to_str().unwrap(), "--studies", "--no-times", "--json"])
+    };
+    let output = (5..16).map(|doublings| 1 << doublings).find_map(|ticks| {
+        let child = started_for(&mut run(10_000), ticks);
+        signal("INT", &child.id().to_string());
+        let output = end_of(child);
+        (json(&output)["study"][0]["bodies"].as_u64() > Some(0)).then_some(output)
+    });
+    let output = output.expect("a body is looked at");
+    let mut found = json(&output);
+    assert_eq!((output.status.code(), &found["interrupted"]), (Some(3), &true.into()), "{}", words(&output));
+    let row = &mut found["study"][0];
+    let bodies = row["bodies"].as_u64().expect("how many");
+    assert_eq!(row["asked"].take(), 10_000);
+    // bodies that jumped may have been drawn since the last one that did not
+    let jumped = row["jumped"].take().as_u64();
+    let mut whole = json(&finish(&mut run(bodies)))["study"][0].take();
+    assert_eq!(whole["asked"].take(), bodies);
+    assert!(whole["jumped"].take().as_u64() <= jumped);
+    assert_eq!(*row, whole);
+}
+
 /// Claims for which nobody waits, half a minute in all, and before them one that is decided at once.
 fn slow() -> String {
     let claim = |number: usize| {
