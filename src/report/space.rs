@@ -1,7 +1,7 @@
 //! What three palms tell of a body in space: text and JSON.
 
 use crate::experiment::solid::SolidState;
-use crate::experiment::space::{SpaceAnswers, SpaceExperiment, SpaceShape, SpaceUpdate};
+use crate::experiment::space::{SpaceAnswers, SpaceExperiment, SpaceShape, SpaceUpdate, SpaceVerdict};
 use crate::mechanics::spatial::SpatialEnded;
 use crate::shape::sphere::{BoundedRegion, OuterBound, TouchError};
 use serde_json::{Value, json};
@@ -139,6 +139,28 @@ pub fn space_ended(observed: &SpaceObserved<'_>) -> Option<String> {
     Some(format!("the motion ended early: {told}"))
 }
 
+/// Why a state that explains the readings is not what they tell.
+fn doubt(update: &SpaceUpdate) -> Option<String> {
+    let state = update.state.as_ref()?;
+    match (update.verdict, state.rival) {
+        (SpaceVerdict::Blind, _) if !state.is_minimum => {
+            Some("no least chi-square, other states explain the readings better and better".to_owned())
+        }
+        (SpaceVerdict::Blind, _) if state.is_noise() => {
+            Some(format!("{:.2} of what they seem to tell is left without their noise", state.curved))
+        }
+        (SpaceVerdict::Blind, _) if state.is_bent() => {
+            Some("chi-square is no parabola as far as the bounds reach, these say nothing".to_owned())
+        }
+        (SpaceVerdict::Blind, _) => Some("a bound is as large as what is sought".to_owned()),
+        (SpaceVerdict::Ambiguous, Some(rival)) => Some(format!(
+            "another state {:.0} deviations away leaves chi-square {:.1}",
+            rival.apart, rival.chi_square
+        )),
+        _ => None,
+    }
+}
+
 /// From when to when a window goes, and what is to be said of it.
 pub(super) fn headline(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> String {
     let times = &observed.experiment.readings.times;
@@ -155,6 +177,9 @@ pub(super) fn headline(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> St
             false => format!("; {misfit:.1e} m left of a contact, no noise is stated"),
         };
         out += &left;
+    }
+    if let Some(why) = doubt(update) {
+        let _ = write!(out, "; {why}");
     }
     if update.seconds.is_finite() {
         let _ = write!(out, "; {:.1} s", update.seconds);
@@ -232,6 +257,8 @@ fn update_json(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> Value {
         json!({
             "fits": state.fits(), "chi_square": state.chi_square, "degrees_of_freedom": state.degrees,
             "misfit": state.misfit, "neumann": number(state.ratio), "noise_from": if state.is_stated { "stated" } else { "misfit" },
+            "minimum": state.is_minimum, "left_without_noise": number(state.curved), "bent": number(state.bent),
+            "rival": state.rival.map(|rival| json!({ "apart": number(rival.apart), "chi_square": rival.chi_square })),
         })
     });
     json!({
@@ -239,6 +266,7 @@ fn update_json(observed: &SpaceObserved<'_>, update: &SpaceUpdate) -> Value {
         "to": times[update.rows.end - 1],
         "samples": update.rows.len(),
         "verdict": update.verdict.name(),
+        "why": doubt(update),
         "states": states,
         "fit": fit,
         "poses": poses.collect::<Vec<_>>(),

@@ -146,6 +146,18 @@ pub(super) struct Scale {
     pub rate: f64,
 }
 
+impl Scale {
+    /// Of one of the unknowns.
+    pub fn of(&self, place: usize) -> f64 {
+        match place {
+            0..3 => self.length,
+            3..6 => self.length * self.rate,
+            6..9 => self.rate,
+            _ => 1.0,
+        }
+    }
+}
+
 pub(super) fn shortened(step: &Change, scale: &Scale) -> Change {
     let most = |i: usize| match i {
         0..3 => scale.length,

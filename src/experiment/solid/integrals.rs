@@ -1,7 +1,7 @@
 //! The integrals of the readings that the laws are made of, at samples and between them.
 
 use super::SolidReadings;
-use super::rule::{Piece, piece};
+use super::rule::{POINTS, Piece, piece};
 use super::vector::{Vector, along, cross, dot};
 
 /// One palm at one sample.
@@ -60,7 +60,7 @@ pub(super) struct Integrals {
 
 /// The rules of integration for a choice of samples; they do not change where readings are corrected.
 pub(super) struct Rules {
-    whole: Vec<Piece>,
+    pub whole: Vec<Piece>,
     chosen: Vec<usize>,
     between: Vec<[Piece; 4]>,
     times: Vec<f64>,
@@ -92,6 +92,17 @@ impl Rules {
         let at = |k: usize| self.times[self.chosen[k]];
         let last = self.chosen.len() - 1;
         (0..=last).map(|k| (at((k + 1).min(last)) - at(k.saturating_sub(1))) / 2.0).collect()
+    }
+
+    /// The trapezoidal rule over each interval.
+    pub fn trapezoids(&self) -> Vec<Piece> {
+        let of = |(own, times): (&Piece, &[f64])| {
+            let mut weights = [0.0; POINTS];
+            weights[own.interval - own.first] = (times[1] - times[0]) / 2.0;
+            weights[own.interval + 1 - own.first] = (times[1] - times[0]) / 2.0;
+            Piece { weights, ..*own }
+        };
+        self.whole.iter().zip(self.times.windows(2)).map(of).collect()
     }
 }
 

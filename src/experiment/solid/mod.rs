@@ -20,7 +20,8 @@
 //!
 //! Errors of a contact are in the constraint at that sample, and by force and lever in all integrals after it. `whiten` carries them: they move the initial state as a random walk, so that an
 //! innovations filter with 12 states makes the residuals white; its adjoint tells by how much each contact was off. `refine` corrects readings by that and begins again, which is the maximum of the likelihood over state
-//! and contacts at once (errors in variables), and not of one with readings in the derivatives. `search` finds where to begin, by `regular` steps from what is
+//! and contacts at once (errors in variables), and not of one with readings in the derivatives. Where errors are stated `newton` goes on
+//! with the Hessian and tells what is left of the bound without noise. `search` finds where to begin, by `regular` steps from what is
 //! thought of a body before. `two_stage` is the thesis's own search, beside it.
 //!
 //! Palms' angles, rates and accelerations are taken as exact, contacts and torques with their standard deviations.
@@ -33,6 +34,7 @@ mod constraint;
 mod flow;
 mod integrals;
 mod linear;
+mod newton;
 mod refine;
 mod regular;
 mod rule;
@@ -52,6 +54,11 @@ pub(super) const FEWEST: usize = 24;
 
 /// What the right state leaves of exact readings is no more than this part of the deviation that they are weighed with.
 const EXACT: f64 = 1e-2;
+
+/// Less than this part of what derivatives at noisy readings seem to tell counts as nothing.
+const CURVED: f64 = 0.1;
+/// Chi-square may grow by so many times more or less than its curvature says.
+const BENT: f64 = 5.0;
 
 /// The unknowns.
 pub const UNKNOWNS: usize = 16;
@@ -99,7 +106,7 @@ pub struct SolidState {
     pub inertia_over_mass: Matrix3<f64>,
     /// In kg.
     pub mass: f64,
-    /// Of centre, velocity, rate, the inertia's entries 11, 22, 33, 12, 13, 23, and 1/m: what no unbiased estimate is better than, for the deviations that are stated.
+    /// Of centre, velocity, rate, the inertia's entries 11, 22, 33, 12, 13, 23, and 1/m, for the deviations that are stated: by the Hessian of chi-square and the covariance of its gradient, which is the bound of Cramer and Rao where errors are small.
     pub covariance: SMatrix<f64, 16, 16>,
     /// The sum of the squares of all errors that the readings had to have, in units of their deviations.
     pub chi_square: f64,
@@ -111,10 +118,27 @@ pub struct SolidState {
     pub ratio: f64,
     /// The deviation that contacts were weighed with, in m: where none was stated a millionth of the body.
     pub weighed: f64,
+    /// Whether it is a minimum of chi-square. What explains the readings and is none lies in a valley that goes on.
+    pub is_minimum: bool,
+    /// The least part, over all directions, that is left of what derivatives at noisy readings seem to tell when the noise in them is taken away: 1 where readings are exact.
+    pub curved: f64,
+    /// By how many times chi-square grows otherwise than its curvature says, three deviations along what is told least: 1 where readings are exact.
+    pub bent: f64,
+    /// Another state that explains the readings as well.
+    pub rival: Option<Rival>,
     /// Whether the readings' deviations were stated.
     pub is_stated: bool,
     /// Whether those of contacts were: else they are weighed with more than they are said to err by, and chi-square is too lenient.
     pub contacts_are_stated: bool,
+}
+
+/// Another state that explains the readings as well as the one that is told, and is not where that one's bound says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rival {
+    /// How far it is away: the most of all entries, in deviations of the state that is told.
+    pub apart: f64,
+    /// What it leaves.
+    pub chi_square: f64,
 }
 
 impl SolidState {
@@ -136,12 +160,25 @@ impl SolidState {
         std::array::from_fn(|i| (self.covariance[(i, i)] * left).sqrt())
     }
 
-    /// Whether readings tell too little: the bound of centre, rate, inertia or 1/m is as large as what is sought.
+    /// Whether readings tell too little: what explains them is no minimum, or the bound of centre, rate, inertia or 1/m is as large as what is sought.
     pub fn is_blind(&self) -> bool {
+        if !self.is_minimum || self.is_noise() || self.is_bent() {
+            return true;
+        }
         let (entries, deviations) = (self.entries(), self.deviations());
         let size = |of: &[f64]| of.iter().map(|x| x * x).sum::<f64>();
         let seen = |range: std::ops::Range<usize>| size(&deviations[range.clone()]) < size(&entries[range]);
         ![0..3, 6..9, 9..15, 15..16].into_iter().all(seen)
+    }
+
+    /// Whether what the readings seem to tell is mostly the noise in their derivatives along some direction: what is left of it is a small difference of large numbers, and no bound is to be trusted.
+    pub fn is_noise(&self) -> bool {
+        self.curved < CURVED
+    }
+
+    /// Whether chi-square is no parabola as far as a bound by its curvature reaches: such a bound says nothing.
+    pub fn is_bent(&self) -> bool {
+        self.bent > BENT
     }
 
     /// Whether what is left is explained. Where deviations are stated: below five deviations of the sum of as many squares. Where none is, it has to be what numbers and the rule of integration leave, `EXACT` of what

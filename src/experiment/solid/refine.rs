@@ -4,10 +4,11 @@ use super::change::{Change, Normal, Positive, Scale, shortened};
 use super::constraint::expanded;
 use super::flow::Start;
 use super::integrals::{Integrals, Rules};
-use super::linear::{backward, cholesky, forward};
-use super::vector::{PLACES, symmetric};
+use super::linear::cholesky;
+use super::newton::{About, Settled, Square};
+use super::vector::{PLACES, dot, symmetric};
 use super::whiten::{Deviations, ERRORS, Whitener};
-use super::{SolidReadings, SolidState, UNKNOWNS};
+use super::{Rival, SolidReadings, SolidState, UNKNOWNS};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// What refinement ends with.
@@ -17,8 +18,16 @@ pub(super) struct Refined {
     /// The readings without the errors that they likely have.
     pub corrected: SolidReadings,
     pub chi_square: f64,
-    /// The inverse of the covariance of changes.
-    information: [[f64; UNKNOWNS]; UNKNOWNS],
+    /// What derivatives at the corrected readings tell: the covariance of the gradient.
+    information: Square,
+    /// Half the Hessian of chi-square.
+    curvature: Square,
+    /// Whether it is a minimum, and not a place on a slope that goes on.
+    pub is_minimum: bool,
+    /// See [`Settled::bent`].
+    bent: f64,
+    /// Another end of the search that explains the readings as well.
+    pub rival: Option<Rival>,
     misfit: f64,
     /// J. von Neumann's ratio of the white residuals: about 2 where these are noise.
     pub ratio: f64,
@@ -45,12 +54,12 @@ const GAINED: [f64; 2] = [1e-8, 1e-2];
 const EXACT_GAINED: f64 = 1e-18;
 
 /// All constraints about a start and errors of the readings.
-struct Linear {
+pub(super) struct Linear {
     whitener: Whitener,
     /// The constraints as they would be without errors that are taken away.
     column: Vec<[f64; 3]>,
     rows: Vec<[Change; 3]>,
-    normal: Normal,
+    pub normal: Normal,
     ratio: f64,
 }
 
@@ -63,21 +72,23 @@ fn neumann(white: &[[f64; 3]]) -> f64 {
 }
 
 impl Linear {
-    fn about(
+    pub fn about(
         readings: &SolidReadings,
         rules: &Rules,
-        spacing: &[f64],
         deviations: &Deviations,
         start: &Start,
         errors: &[[f64; ERRORS]],
     ) -> Option<Linear> {
+        let none = vec![[0.0; ERRORS]; readings.rows()];
+        let errors = if errors.is_empty() { &none } else { errors };
         let own = corrected(readings, errors, deviations);
         if !own.is_whole() {
             return None;
         }
         let all = Integrals::of(&own, rules);
         let samples = expanded(start, &all);
-        let whitener = Whitener::of(start, &all, &samples, spacing, deviations)?;
+        let whitener =
+            Whitener::of(start, &all, &samples, rules, deviations, readings.contact_deviation > 0.0)?;
         let made = whitener.made_by(errors);
         let column: Vec<[f64; 3]> = samples
             .iter()
@@ -98,19 +109,34 @@ impl Linear {
             }
         }
         let ratio = neumann(&white);
+        let multipliers = whitener.multipliers(&column);
+        normal.cost = 0.0;
+        normal.gradient = [0.0; UNKNOWNS];
+        for ((value, rows), by) in column.iter().zip(&rows).zip(&multipliers) {
+            normal.cost += dot(value, by);
+            for i in 0..3 {
+                for j in 0..UNKNOWNS {
+                    normal.gradient[j] += rows[i][j] * by[i];
+                }
+            }
+        }
         normal.cost.is_finite().then_some(Linear { whitener, column, rows, normal, ratio })
     }
 
     /// The likeliest errors after a step.
-    fn errors(&self, step: &Change) -> Vec<[f64; ERRORS]> {
+    pub fn errors(&self, step: &Change) -> Vec<[f64; ERRORS]> {
         let left = |(value, rows): (&[f64; 3], &[Change; 3])| {
             std::array::from_fn(|i| value[i] + rows[i].iter().zip(step).map(|(a, b)| a * b).sum::<f64>())
         };
-        self.whitener.errors(&self.column.iter().zip(&self.rows).map(left).collect::<Vec<_>>())
+        let column: Vec<_> = self.column.iter().zip(&self.rows).map(left).collect();
+        self.whitener.likely(&self.whitener.multipliers(&column))
     }
 }
 
-/// From a start; none where the method does not come to an end: with whole steps, and where these lead nowhere with damped ones.
+/// Above so many times as many squares as there are constraints nothing is explained, and no minimum is looked for more closely.
+const HOPELESS: f64 = 3.0;
+
+/// From a start; none where the method does not come to an end: with whole steps, and where these lead nowhere with damped ones. Where errors are stated Newton's method goes on from there, from what is no end too.
 pub(super) fn refine(
     readings: &SolidReadings,
     rules: &Rules,
@@ -118,34 +144,47 @@ pub(super) fn refine(
     scale: &Scale,
     deviations: &Deviations,
 ) -> Option<Refined> {
-    let by = |growth: f64, most: usize| stepped(readings, rules, from, scale, deviations, (growth, most));
-    by(f64::INFINITY, 15).or_else(|| by(GROWTH, 25))
+    let about =
+        |start: &Start, errors: &[[f64; ERRORS]]| Linear::about(readings, rules, deviations, start, errors);
+    let exact = readings.contact_deviation == 0.0;
+    let by = |growth: f64, most: usize| stepped(&about, from, scale, exact, (growth, most));
+    let mut ended = by(f64::INFINITY, 15).filter(|(_, is_end)| *is_end);
+    if ended.is_none() {
+        ended = by(GROWTH, 25);
+    }
+    let (settled, is_end) = ended?;
+    let few = HOPELESS * (3 * readings.rows()) as f64;
+    let is_close = settled.chi_square() < few;
+    if exact || !is_close {
+        return is_end.then(|| Refined::of(readings, deviations, settled, None));
+    }
+    let (settled, curvature, is_minimum) = settled.descended(&about, scale)?;
+    let spread = sandwiched(&settled.linear.normal.matrix, &curvature);
+    let bent = match &spread {
+        Some((spread, _)) if is_minimum => settled.bent(&about, scale, spread, &curvature),
+        _ => f64::INFINITY,
+    };
+    Some(Refined { bent, ..Refined::of(readings, deviations, settled, Some((curvature, is_minimum))) })
 }
 
-/// By how much the sum of the squares may grow in a damped step. The filter's rule is not the one by which readings are integrated, so that errors which are taken away leave a few percent of what they make.
+/// By how much the sum of the squares may grow in a damped step.
 const GROWTH: f64 = 1.05;
 
-/// The method with steps after which the sum of the squares is no more than so many times as large, and so many of them.
+/// The method with steps after which the sum of the squares is no more than so many times as large, and so many of them; and whether it came to an end.
 fn stepped(
-    readings: &SolidReadings,
-    rules: &Rules,
+    about: &About<'_>,
     from: Start,
     scale: &Scale,
-    deviations: &Deviations,
+    exact: bool,
     (growth, most): (f64, usize),
-) -> Option<Refined> {
-    let spacing = rules.spacing();
-    let about = |start: &Start, errors: &[[f64; ERRORS]]| {
-        Linear::about(readings, rules, &spacing, deviations, start, errors)
-    };
-    let mut start = from;
-    let mut here = about(&start, &vec![[0.0; ERRORS]; readings.rows()])?;
+) -> Option<(Settled, bool)> {
+    let mut here = Settled::begun(about, from)?;
     let mut damping = if growth.is_finite() { 1e-4 } else { 0.0 };
-    let least = if readings.contact_deviation > 0.0 { GAINED[0] } else { EXACT_GAINED };
+    let least = if exact { EXACT_GAINED } else { GAINED[0] };
     let (mut gain, mut last) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..most {
-        let whole = here.normal.step(0.0)?;
-        gain = -whole.iter().zip(&here.normal.gradient).map(|(a, b)| a * b).sum::<f64>();
+        let whole = here.linear.normal.step(0.0)?;
+        gain = -whole.iter().zip(&here.linear.normal.gradient).map(|(a, b)| a * b).sum::<f64>();
         // where rounding alone is left, steps gain no less than those before
         if gain < least || (gain >= last && gain < GAINED[1] / 10.0) {
             break;
@@ -154,47 +193,74 @@ fn stepped(
         let mut next = None;
         for _ in 0..8 {
             let by = if gain < GAINED[1] { 0.0 } else { damping };
-            let step = shortened(&here.normal.step(by)?, scale);
-            if let Some(there) = start.changed(&step) {
-                let its_errors = here.errors(&step);
-                let found = about(&there, &its_errors);
-                next =
-                    found.filter(|found| found.normal.cost <= growth * here.normal.cost).map(|f| (there, f));
-            }
+            let step = shortened(&here.linear.normal.step(by)?, scale);
+            next = here.next(about, &step).filter(|found| found.chi_square() <= growth * here.chi_square());
             if next.is_some() || by == 0.0 {
                 break;
             }
             damping *= 10.0;
         }
         let Some(next) = next else { break };
-        (start, here) = next;
+        here = next;
         damping *= 0.03;
     }
-    if gain.is_nan() || gain > GAINED[1] {
-        return None;
+    let is_end = gain <= GAINED[1];
+    Some((here, is_end))
+}
+
+impl Refined {
+    fn of(
+        readings: &SolidReadings,
+        deviations: &Deviations,
+        settled: Settled,
+        bent: Option<(Square, bool)>,
+    ) -> Refined {
+        let errors = settled.linear.errors(&[0.0; UNKNOWNS]);
+        let contacts: f64 = errors.iter().flat_map(|error| &error[..6]).map(|e| e * e).sum();
+        let Linear { normal, ratio, .. } = settled.linear;
+        Refined {
+            start: settled.start,
+            corrected: corrected(readings, &errors, deviations),
+            chi_square: normal.cost,
+            information: normal.matrix,
+            curvature: bent.map_or(normal.matrix, |(curvature, _)| curvature),
+            rival: None,
+            bent: 1.0,
+            is_minimum: bent.is_none_or(|(_, is_minimum)| is_minimum),
+            misfit: deviations.contact * (contacts / (6 * errors.len()) as f64).sqrt(),
+            ratio,
+            weighed: deviations.contact,
+        }
     }
-    let errors = here.errors(&[0.0; UNKNOWNS]);
-    let contacts: f64 = errors.iter().flat_map(|error| &error[..6]).map(|e| e * e).sum();
-    let misfit = deviations.contact * (contacts / (6 * errors.len()) as f64).sqrt();
-    let corrected = corrected(readings, &errors, deviations);
-    let Linear { normal, ratio, .. } = here;
-    let weighed = deviations.contact;
-    Some(Refined {
-        start,
-        corrected,
-        chi_square: normal.cost,
-        information: normal.matrix,
-        misfit,
-        ratio,
-        weighed,
-    })
+}
+
+/// An eigenvalue of the curvature below this part of what it is without errors counts as so much: what lies along it is not told.
+const FLAT: f64 = 1e-6;
+
+/// `H^-1 G H^-1` for the curvature `H` and the covariance `G` of the gradient: the covariance of what makes the gradient zero (P. J. Huber, Proceedings of the Fifth Berkeley Symposium, 1967). Both are one where readings are exact.
+/// With `G = L L^T` it is the inverse of the square of `L^-1 H L^-T`, between `L^-T` and `L^-1`.
+fn sandwiched(information: &Square, curvature: &Square) -> Option<(SMatrix<f64, UNKNOWNS, UNKNOWNS>, f64)> {
+    let full = |of: &Square| {
+        SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, j| if i > j { of[i][j] } else { of[j][i] })
+    };
+    // the lower triangle that is not scaled loses what is told a million times less
+    let triangle = cholesky(information, UNKNOWNS)?;
+    let lower = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|i, j| triangle[i][j]);
+    let inverse = lower.solve_lower_triangular(&SMatrix::identity())?;
+    let relative = inverse * full(curvature) * inverse.transpose();
+    let eigen = ((relative + relative.transpose()) / 2.0).symmetric_eigen();
+    let mut spread = eigen.eigenvectors;
+    for (mut column, value) in spread.column_iter_mut().zip(eigen.eigenvalues.iter()) {
+        column /= value.max(FLAT);
+    }
+    let half = inverse.transpose() * spread;
+    Some((half * half.transpose(), eigen.eigenvalues.min()))
 }
 
 impl Refined {
     /// What is told of it.
     pub fn state(&self) -> Option<SolidState> {
         let k = Positive::of(&self.start.inverse)?;
-        let triangle = cholesky(&self.information, UNKNOWNS)?;
         let inertia = Matrix3::from_fn(|i, j| k.inverse[i][j]);
         // what the sought numbers change by in each change
         let c = Matrix3::from_fn(|i, j| k.triangle[i][j]);
@@ -210,15 +276,8 @@ impl Refined {
             }
         }
         by[(15, 15)] = self.start.mu;
-        let mut inverse = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
-        for j in 0..UNKNOWNS {
-            let mut unit = [0.0; UNKNOWNS];
-            unit[j] = 1.0;
-            let column = backward(&triangle, UNKNOWNS, &forward(&triangle, UNKNOWNS, &unit));
-            for (i, value) in column.iter().enumerate() {
-                inverse[(i, j)] = *value;
-            }
-        }
+        let (spread, curved) = sandwiched(&self.information, &self.curvature)?;
+        let covariance = by * spread * by.transpose();
         let degrees = 3 * self.corrected.rows() - UNKNOWNS;
         Some(SolidState {
             centre: Vector3::from(self.start.centre),
@@ -226,7 +285,11 @@ impl Refined {
             rate: Vector3::from(self.start.rate),
             inertia_over_mass: inertia,
             mass: 1.0 / self.start.mu,
-            covariance: by * inverse * by.transpose(),
+            covariance,
+            curved,
+            bent: self.bent,
+            is_minimum: self.is_minimum,
+            rival: None,
             chi_square: self.chi_square,
             degrees,
             misfit: self.misfit,

@@ -1,7 +1,7 @@
 //! Where to begin, from readings alone: drawn thoughts of how a body like a ball lies and turns, each followed (`regular`) while readings take over.
 //!
 //! It does not always arrive: with noise of a thousandth of the body a wrong minimum may be met first. One that does not explain the readings says so
-//! (`SolidState::fits`), and the search goes on; with noise, readings that are nearly blind may be explained by more than one state.
+//! (`SolidState::fits`), and the search goes on. With noise, readings that are nearly blind may be explained by more than one state: another end is looked for, and one that explains them as well is told (`Rival`).
 
 use super::change::Scale;
 use super::flow::Start;
@@ -10,7 +10,7 @@ use super::refine::{Refined, refine};
 use super::regular::{Ended, Prior};
 use super::vector::{Vector, along};
 use super::whiten::Deviations;
-use super::{FEWEST, SolidReadings, UNKNOWNS};
+use super::{FEWEST, Rival, SolidReadings, UNKNOWNS};
 use crate::experiment::simulation::normal;
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
@@ -136,7 +136,7 @@ pub(super) fn found(readings: &SolidReadings, interrupt: &dyn Fn() -> bool) -> O
     let mut stalled: Vec<Ended> = Vec::new();
     for k in 0..DRAWS {
         if interrupt() {
-            return search.best;
+            return search.told();
         }
         let prior = search.likely.drawn(&mut random, f64::from(u8::from(k > 0)));
         let error = readings.contact_deviation / search.likely.length;
@@ -145,20 +145,28 @@ pub(super) fn found(readings: &SolidReadings, interrupt: &dyn Fn() -> bool) -> O
             Some(end) => stalled.push(end),
             None => {}
         }
-        if (k + 1) % ROUND == 0 && !search.fits {
+        if (k + 1) % ROUND == 0 && !search.is_done() {
             stalled.sort_by(|a, b| a.cost.total_cmp(&b.cost));
             for end in stalled.drain(..).take(STALLED) {
-                if !search.fits && !interrupt() {
+                if !search.is_done() && !interrupt() {
                     search.refine(end.start);
                 }
             }
         }
-        if search.fits {
+        if search.is_done() {
             break;
         }
     }
-    search.best
+    search.told()
 }
+
+/// Where readings have errors, so many ends that explain them are compared before one is told.
+const ENDS: usize = 2;
+/// After so many that do not fit, or are no body, it is given up: what is nearly blind leads all starts along its valleys.
+const ASTRAY: usize = 6;
+/// A state is a rival where it leaves no more than this over the least, and an entry of it is more than so many deviations away: were the likelihood what the bound says, it would leave as much as the square of that.
+const LEAVES: f64 = 25.0;
+const APART: f64 = 5.0;
 
 /// What was found until now.
 struct Search<'a> {
@@ -166,13 +174,16 @@ struct Search<'a> {
     likely: Likely,
     whole: Rules,
     best: Option<Refined>,
-    fits: bool,
+    /// All that fit: what they leave, and what they say.
+    ends: Vec<(f64, [f64; UNKNOWNS])>,
+    /// How many ends are none of those.
+    astray: usize,
 }
 
 impl Search<'_> {
     fn of(readings: &SolidReadings, likely: Likely) -> Search<'_> {
         let whole = Rules::of(&readings.times, (0..readings.rows()).collect());
-        Search { readings, likely, whole, best: None, fits: false }
+        Search { readings, likely, whole, best: None, ends: Vec::new(), astray: 0 }
     }
 
     fn refine(&mut self, start: Start) {
@@ -180,11 +191,39 @@ impl Search<'_> {
         let Some(refined) = refine(self.readings, &self.whole, start, &scale, &self.likely.deviations) else {
             return;
         };
-        let is_better = self.best.as_ref().is_none_or(|best| refined.chi_square < best.chi_square);
-        if is_body(&refined) && is_better {
-            self.fits = refined.state().is_some_and(|state| state.fits());
+        self.astray += 1;
+        let Some(state) = refined.state().filter(|_| is_body(&refined)) else { return };
+        if state.fits() {
+            self.ends.push((state.chi_square, state.entries()));
+            self.astray -= 1;
+        }
+        if self.best.as_ref().is_none_or(|best| refined.chi_square < best.chi_square) {
             self.best = Some(refined);
         }
+    }
+
+    /// Exact readings are explained by one state, and what is astray there has cost little.
+    fn is_done(&self) -> bool {
+        match self.readings.contact_deviation > 0.0 {
+            true => self.ends.len() >= ENDS || self.astray >= ASTRAY,
+            false => !self.ends.is_empty(),
+        }
+    }
+
+    /// The best, with the one that is furthest from it among those that explain the readings as well.
+    fn told(self) -> Option<Refined> {
+        let mut best = self.best?;
+        let state = best.state()?;
+        let (own, deviations) = (state.entries(), state.deviations());
+        let rival = |(chi_square, entries): &(f64, [f64; UNKNOWNS])| {
+            let apart =
+                (0..UNKNOWNS).map(|i| ((entries[i] - own[i]) / deviations[i]).abs()).fold(0.0, f64::max);
+            Rival { apart, chi_square: *chi_square }
+        };
+        best.rival = (self.ends.iter().map(rival))
+            .filter(|rival| rival.apart > APART && rival.chi_square <= best.chi_square + LEAVES)
+            .max_by(|a, b| a.apart.total_cmp(&b.apart));
+        Some(best)
     }
 }
 

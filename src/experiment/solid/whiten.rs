@@ -2,18 +2,24 @@
 //!
 //! An error at a sample gives the body an impulse `mu dF` and its angular momentum over mass one of `mu (dG - c x dF)`, each for the time that the sample stands for (the trapezoidal rule); what comes of it later is what would come
 //! of another initial state, turn included. So the constraints are `y_k = J_k z_k + D_k e_k`, `z_{k+1} = z_k + B_k e_k`, with the derivatives `J_k` by 12 numbers of that state. The innovations of this
-//! are white (Kalman's filter where the noise of readings is that of the state); `e = D^T eta + B^T lambda` is the likeliest error, by the adjoint.
+//! are white (Kalman's filter where the noise of readings is that of the state); `e = D^T eta + B^T lambda` is the likeliest error, by the adjoint. So far by the trapezoidal rule; readings are integrated by a better one (`rule`), and
+//! errors are the likeliest, and what is left stationary where they are, only where both agree: what the filter's rule leaves is filtered again.
 
 use super::constraint::Constrained;
 use super::flow::{Start, TURN};
-use super::integrals::{Integrals, Node, PalmSample};
+use super::integrals::{Integrals, Node, PalmSample, Rules};
 use super::linear::{backward, cholesky, forward};
+use super::rule::Piece;
 use super::vector::{Vector, along, cross, dot, scaled};
 
 /// Errors at a sample: of both coordinates of each contact, and of each torque.
 pub(super) const ERRORS: usize = 9;
 /// The numbers of the initial state that errors move.
 const MOVED: usize = 12;
+
+/// The filter takes integrals by the trapezoidal rule. So many times at most what the rule of integration leaves of that is taken away, and until this part of the first sum of squares is left.
+const CORRECTED: usize = 20;
+const SOLVED: f64 = 1e-14;
 
 /// How large errors are, and what rates count at least.
 #[derive(Clone, Copy, Debug)]
@@ -29,8 +35,10 @@ pub(super) struct Deviations {
 /// One sample of the filter.
 struct Stage {
     by: [[f64; MOVED]; 3],
-    direct: [[f64; ERRORS]; 3],
+    /// By how much errors of contacts change their own constraints, besides what they carry on.
+    slopes: [f64; 6],
     impulse: [[f64; ERRORS]; MOVED],
+    spacing: f64,
     /// The triangle of the innovations' covariance, and the gain.
     triangle: [[f64; 3]; 3],
     gain: [[f64; 3]; MOVED],
@@ -39,6 +47,10 @@ struct Stage {
 /// The filter over all samples.
 pub(super) struct Whitener {
     stages: Vec<Stage>,
+    /// The rule of integration, interval by interval.
+    pieces: Vec<Piece>,
+    /// The variance that is added to each constraint.
+    softened: f64,
 }
 
 /// What errors of unit size do to the initial state: a column an error.
@@ -102,9 +114,14 @@ impl Whitener {
         start: &Start,
         all: &Integrals,
         samples: &[Constrained],
-        spacing: &[f64],
+        rules: &Rules,
         deviations: &Deviations,
+        is_stated: bool,
     ) -> Option<Whitener> {
+        // readings that are exact have errors of the rule alone, alike from sample to sample, and rounding counts for more
+        let pieces = if is_stated { rules.whole.clone() } else { rules.trapezoids() };
+        let spacing = rules.spacing();
+        let softened = (deviations.contact * deviations.softened).powi(2);
         let mut spread = [[0.0; MOVED]; MOVED];
         let mut stages = Vec::with_capacity(samples.len());
         for (k, sample) in samples.iter().enumerate() {
@@ -116,7 +133,7 @@ impl Whitener {
                 _ if k + 1 == samples.len() => 1.0,
                 _ => 0.5,
             };
-            let mut direct = [[0.0; ERRORS]; 3];
+            let (mut direct, mut slopes) = ([[0.0; ERRORS]; 3], [0.0; 6]);
             for i in 0..3 {
                 for e in 0..ERRORS {
                     let mut value = 0.0;
@@ -126,7 +143,8 @@ impl Whitener {
                     direct[i][e] = value;
                 }
                 for side in 0..2 {
-                    direct[i][2 * i + side] += deviations.contact * sample.slopes[i][side];
+                    slopes[2 * i + side] = deviations.contact * sample.slopes[i][side];
+                    direct[i][2 * i + side] += slopes[2 * i + side];
                 }
             }
             // spread times the transpose of `by`
@@ -145,7 +163,7 @@ impl Whitener {
                     }
                     covariance[i][j] = value;
                 }
-                covariance[i][i] += (deviations.contact * deviations.softened).powi(2);
+                covariance[i][i] += softened;
             }
             let triangle = cholesky(&covariance, 3)?;
             let mut gain = [[0.0; 3]; MOVED];
@@ -164,9 +182,9 @@ impl Whitener {
                     spread[m][n] += own - dot(&towards[m], &towards[n]);
                 }
             }
-            stages.push(Stage { by, direct, impulse, triangle, gain });
+            stages.push(Stage { by, slopes, impulse, spacing: spacing[k], triangle, gain });
         }
-        Some(Whitener { stages })
+        Some(Whitener { stages, pieces, softened })
     }
 
     /// White residuals of a column of constraints.
@@ -189,47 +207,111 @@ impl Whitener {
         all
     }
 
-    /// The likeliest errors that make a column of constraints, in units of their deviations.
-    pub fn errors(&self, column: &[[f64; 3]]) -> Vec<[f64; ERRORS]> {
-        let innovations = self.innovations(column);
+    /// What a column of constraints is multiplied with in the sum of the squares of the likeliest errors that make it, by the filter's own rule.
+    fn filtered(&self, column: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut all = self.innovations(column);
         let mut ahead = [0.0; MOVED];
-        let mut all = vec![[0.0; ERRORS]; column.len()];
-        for (k, stage) in self.stages.iter().enumerate().rev() {
-            let mut eta = backward(&stage.triangle, 3, &forward(&stage.triangle, 3, &innovations[k]));
+        for (stage, value) in self.stages.iter().zip(&mut all).rev() {
+            let mut eta = backward(&stage.triangle, 3, &forward(&stage.triangle, 3, value));
             for (gain, value) in stage.gain.iter().zip(&ahead) {
                 eta = along(&eta, -value, gain);
-            }
-            for e in 0..ERRORS {
-                let mut value = 0.0;
-                for i in 0..3 {
-                    value += stage.direct[i][e] * eta[i];
-                }
-                for m in 0..MOVED {
-                    value += stage.impulse[m][e] * ahead[m];
-                }
-                all[k][e] = value;
             }
             for m in 0..MOVED {
                 for i in 0..3 {
                     ahead[m] += stage.by[i][m] * eta[i];
                 }
             }
+            *value = eta;
         }
         all
     }
 
-    /// The constraints that errors make.
+    /// The same by the rule of integration: conjugate gradients, for which the filter is the preconditioner.
+    pub fn multipliers(&self, column: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let sum = |a: &[[f64; 3]], b: &[[f64; 3]]| -> f64 { a.iter().zip(b).map(|(a, b)| dot(a, b)).sum() };
+        let add = |to: &mut [[f64; 3]], by: f64, what: &[[f64; 3]]| {
+            for (to, what) in to.iter_mut().zip(what) {
+                *to = along(to, by, what);
+            }
+        };
+        let mut found = vec![[0.0; 3]; column.len()];
+        let mut left = column.to_vec();
+        let mut direction = self.filtered(&left);
+        let first = sum(&left, &direction);
+        let mut size = first;
+        for _ in 0..CORRECTED {
+            if size.is_nan() || size <= SOLVED * first {
+                break;
+            }
+            let mut made = self.made_by(&self.likely(&direction));
+            add(&mut made, self.softened, &direction);
+            let by = size / sum(&direction, &made);
+            add(&mut found, by, &direction);
+            add(&mut left, -by, &made);
+            let next = self.filtered(&left);
+            let before = size;
+            size = sum(&left, &next);
+            for (direction, next) in direction.iter_mut().zip(next) {
+                *direction = along(&next, size / before, direction);
+            }
+        }
+        found
+    }
+
+    /// The likeliest errors, in units of their deviations, from multipliers.
+    pub fn likely(&self, multipliers: &[[f64; 3]]) -> Vec<[f64; ERRORS]> {
+        // by interval: what all samples after it say of the state there
+        let mut after = vec![[0.0; MOVED]; self.pieces.len()];
+        let mut sum = [0.0; MOVED];
+        for (k, stage) in self.stages.iter().enumerate().skip(1).rev() {
+            for m in 0..MOVED {
+                for i in 0..3 {
+                    sum[m] += stage.by[i][m] * multipliers[k][i];
+                }
+            }
+            after[k - 1] = sum;
+        }
+        let mut states = vec![[0.0; MOVED]; self.stages.len()];
+        for (piece, after) in self.pieces.iter().zip(&after) {
+            for (state, weight) in states[piece.first..].iter_mut().zip(piece.weights) {
+                for m in 0..MOVED {
+                    state[m] += weight * after[m];
+                }
+            }
+        }
+        let of = |((stage, state), eta): ((&Stage, &[f64; MOVED]), &[f64; 3])| {
+            std::array::from_fn(|e| {
+                let carried: f64 = stage.impulse.iter().zip(state).map(|(row, value)| row[e] * value).sum();
+                let own = if e < 6 { stage.slopes[e] * eta[e / 2] } else { 0.0 };
+                own + carried / stage.spacing
+            })
+        };
+        self.stages.iter().zip(&states).zip(multipliers).map(of).collect()
+    }
+
+    /// The constraints that errors make, by the rule of integration.
     pub fn made_by(&self, errors: &[[f64; ERRORS]]) -> Vec<[f64; 3]> {
+        let moved = |(stage, error): (&Stage, &[f64; ERRORS])| -> [f64; MOVED] {
+            std::array::from_fn(|m| {
+                stage.impulse[m].iter().zip(error).map(|(a, b)| a * b).sum::<f64>() / stage.spacing
+            })
+        };
+        let rates: Vec<[f64; MOVED]> = self.stages.iter().zip(errors).map(moved).collect();
         let mut state = [0.0; MOVED];
         let mut all = Vec::with_capacity(errors.len());
-        for (stage, error) in self.stages.iter().zip(errors) {
+        for (k, (stage, error)) in self.stages.iter().zip(errors).enumerate() {
+            if k > 0 {
+                let piece = &self.pieces[k - 1];
+                for (weight, rate) in piece.weights.iter().zip(&rates[piece.first..]) {
+                    for m in 0..MOVED {
+                        state[m] += weight * rate[m];
+                    }
+                }
+            }
             all.push(std::array::from_fn(|i| {
                 let carried: f64 = stage.by[i].iter().zip(&state).map(|(a, b)| a * b).sum();
-                carried + stage.direct[i].iter().zip(error).map(|(a, b)| a * b).sum::<f64>()
+                carried + (0..2).map(|side| stage.slopes[2 * i + side] * error[2 * i + side]).sum::<f64>()
             }));
-            for (value, row) in state.iter_mut().zip(&stage.impulse) {
-                *value += row.iter().zip(error).map(|(a, b)| a * b).sum::<f64>();
-            }
         }
         all
     }

@@ -10,8 +10,10 @@ pub enum SpaceVerdict {
     Fits,
     /// The best that was found does not explain them.
     DoesNotFit,
-    /// The readings do not tell it: a bound is as large as what is sought, or nothing moves.
+    /// The readings do not tell it: a bound is as large as what is sought, what seems to be told is mostly noise, or nothing moves.
     Blind,
+    /// Another state, far away by the bound, explains them as well.
+    Ambiguous,
     /// No start led to a body.
     Lost,
 }
@@ -23,6 +25,7 @@ impl SpaceVerdict {
             SpaceVerdict::Fits => "converged, fits",
             SpaceVerdict::DoesNotFit => "converged, does not fit",
             SpaceVerdict::Blind => "blind",
+            SpaceVerdict::Ambiguous => "ambiguous",
             SpaceVerdict::Lost => "lost",
         }
     }

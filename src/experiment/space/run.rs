@@ -119,6 +119,7 @@ impl SpaceExperiment {
                 None => SpaceVerdict::Lost,
                 Some((state, _)) if !state.fits() => SpaceVerdict::DoesNotFit,
                 Some((state, _)) if state.is_blind() => SpaceVerdict::Blind,
+                Some((state, _)) if state.rival.is_some() => SpaceVerdict::Ambiguous,
                 Some(_) => SpaceVerdict::Fits,
             };
             let (state, poses) = found.map_or((None, Vec::new()), |(state, poses)| (Some(state), poses));
