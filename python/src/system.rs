@@ -266,7 +266,7 @@ impl System {
         let found = keeping(py, move |interrupt| {
             let mut region = Region::new(&mut system, rows, &ranges, map)?;
             region.run(limits, interrupt, &|_| ());
-            Ok::<_, String>(region.answer())
+            Ok::<_, String>(region.answer_until(interrupt))
         });
         let made = |answer, interrupted| CertificateFound { answer, units: units.clone(), interrupted };
         let kept = |found: Result<_, String>| found.ok().map(|answer| made(answer, true));

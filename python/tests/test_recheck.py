@@ -9,8 +9,8 @@ import tempfile
 import unittest
 from fractions import Fraction
 
-from palmistry import recheck
-from palmistry.graph import Derivation, Enclosure, Interval, Modulo, Node, call, image, number, symbol
+from palmistry import graph, proof_file, recheck
+from palmistry.graph import Interval, Map, Modulo, Node, call, derivation, enclosed, image, number, symbol
 from palmistry.recheck import check
 
 PENDULUM = """
@@ -146,7 +146,7 @@ class Recheck(Folder):
         self.assertEqual(self.word("full rank", "boxes", **box), "not checked")
 
     def test_intervals_hold_what_they_enclose(self):
-        pi = Enclosure()[symbol("pi")]
+        pi = Map(enclosed)[symbol("pi")]
         machin = [[sum(Fraction((-1) ** k, (2 * k + 1) * x ** (2 * k + 1)) for k in range(n)) for n in (70, 71)] for x in (5, 239)]
         self.assertTrue(pi.low <= 16 * machin[0][0] - 4 * machin[1][1] + Fraction(1, 10**90))
         self.assertTrue(pi.high >= 16 * machin[0][1] - 4 * machin[1][0] - Fraction(1, 10**90))
@@ -159,15 +159,15 @@ class Recheck(Folder):
             self.assertTrue(one.low <= 1 <= one.high and one.high - one.low < Fraction(1, 10**60))
             root = image("sqrt", abs(x))
             self.assertTrue((root * root).low <= abs(x) <= (root * root).high)
-        wide = Enclosure({symbol("x"): Interval(Fraction(1), Fraction(2))})[Node("sin", symbol("x"))]
+        wide = Map(enclosed, {symbol("x"): Interval(Fraction(1), Fraction(2))})[Node("sin", symbol("x"))]
         self.assertTrue(wide.low <= image("sin", Fraction(1)).low and wide.high >= 1)
         angle = {Node("sin", symbol("a")): Interval(Fraction(3, 5)), Node("cos", symbol("a")): Interval(Fraction(4, 5))}
-        turned = Enclosure(angle)[call("sin", number(2) * (symbol("a") + symbol("pi") / number(4)))]
+        turned = Map(enclosed, angle)[call("sin", number(2) * (symbol("a") + symbol("pi") / number(4)))]
         self.assertEqual((turned.low, turned.high), (Fraction(7, 25), Fraction(7, 25)))
 
     def test_derivatives_are_those_by_hand(self):
         x, prime = symbol("x"), recheck.PRIMES[0]
-        along = Derivation(lambda name: number(name == "x"))
+        along = derivation(lambda name: number(name == "x"))
         for of, slope in ((x**3, number(3) * x**2), (call("sin", number(2) * x), number(2) * call("cos", number(2) * x)),
                           (call("sqrt", x), number("1/2") / call("sqrt", x)), (call("log", x * x), number(2) / x),
                           (call("atan", x), number(1) / (number(1) + x**2)), (number(1) / x, -(x**-2))):
@@ -175,6 +175,24 @@ class Recheck(Folder):
             point[x] = 25
             self.assertEqual(point[along[of] - slope], 0)
             self.assertEqual(point.gradient(of, ["x"]), [point[slope]])
+
+    def test_what_python_reads_otherwise_is_refused(self):
+        """Texts become Python's: chains, words side by side, attributes and Python's own words are no statements, and a power binds first."""
+        (self.system,) = [proof_file.System(os.path.join(self.folder.name, "pendulum.proof"))]
+        for text in ("0 <= x <= 1", "x x", "2 x", "x.real", "[x][0]", "x if x else x", "lambda: x", "x := 1", "().at", "(x, x)", "__import__(x)",
+                     "x ** 2", "x // 2", "x % 2", "x @ x", "~x", "x | x", "'x'", "x and x", "x^omega", "x^(1/2)", "x at {2*x = 1}", "d(x, 2*x)", "a.b"):
+            with self.assertRaises(Exception, msg=text):
+                of = self.system.read(text)
+                entries = [entry for value in of for row in value for entry in row]
+                self.assertTrue(entries and all(isinstance(entry, graph.Expression) for entry in entries), text)
+                self.assertEqual(len(of), 1)
+        value = lambda text: self.system.read(text)[0][0][0]
+        x, two = symbol("x"), number(2)
+        for text, meant in (("-x^2", -(x**2)), ("2*x^-2", two * x**-2), ("2 - x - x", two - x - x), ("2/x/x", two / x / x), ("-x*x", -(x * x)),
+                            ("2*x at {x = 3*x}", number(6) * x), ("x^2 + omega at {omega = 2}", x**2 + two), ("-x at {x = 2}", number(-2)),
+                            ("0.1 + 2.50e-1", number("7/20")), ("x - -2", x + two), (".5*x", number("1/2") * x), ("2*(x + 1)", two * (x + number(1)))):
+            point = Modulo(recheck.PRIMES[0], 5)
+            self.assertEqual(point[value(text) - meant], 0, text)
 
     def test_half_an_angle_is_not_told(self):
         """A witness tells the sine and the cosine of an angle, from which those of its half do not follow."""
@@ -284,13 +302,24 @@ class Damage(Folder):
         self.assertEqual(self.answer(GOOD[0]), "not checked")
         self.assertEqual(self.answer({**GOOD[0], "file": "nowhere.proof"}), "not checked")
 
+    def test_work_is_bounded(self):
+        """By a count that is the same on every machine: what takes more is given up, and says so."""
+        most, graph.WORK = graph.WORK, 30_000
+        self.addCleanup(setattr, graph, "WORK", most)
+        long = "L(" + "f, " * 100 + "exp(phi*x*omega)) = 0"
+        self.write(PENDULUM + f"claim 0: {long}\n")
+        for entry, word, told in ((record(long, "proved", {}), "not checked", "more work than 30000 nodes"), (GOOD[0], "consistent", "4 points")):
+            found = check(entry, self.folder.name, {}, 1)
+            self.assertEqual(found[0], word)
+            self.assertIn(told, found[1])
+
     def test_size(self):
         """It is meant to be read in one sitting."""
         lines = 0
         for module in ("recheck", "proof_file", "graph"):
             with open(os.path.join(os.path.dirname(recheck.__file__), module + ".py"), encoding="utf-8") as file:
                 lines += sum(1 for _ in file)
-        self.assertLessEqual(lines, 680)
+        self.assertLessEqual(lines, 583)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ use super::tape::Tape;
 use super::workspace::{BoxAtWork, Workspace};
 use crate::observability::AVOIDED;
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why nothing is proved on a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,13 +67,16 @@ const JUST_AVOIDED: f64 = AVOIDED * (1.0 - 1e-9);
 /// And a little more is surely not.
 const NOT_AVOIDED: f64 = AVOIDED * (1.0 + 1e-9);
 
-/// A lower bound of the volume in which states are sampled.
-pub(super) fn sampled_volume(part: &Part) -> Volume {
+/// A lower bound of the volume in which states are sampled; an interrupt makes it a coarser one.
+pub(super) fn sampled_volume(part: &Part, interrupt: &AtomicBool) -> Volume {
     let mut sampled = Volume::default();
     let mut queue = VecDeque::from([Cell::whole(part)]);
     let mut workspace = Workspace::default();
     let mut room = Default::default();
-    for _ in 0..MOST_PAVED {
+    for paved in 0..MOST_PAVED {
+        if paved >= PAVED_AT_LEAST && interrupt.load(Ordering::Relaxed) {
+            break;
+        }
         let Some(cell) = queue.pop_front() else { break };
         let at = workspace.begin(&part.chart, &cell.sides);
         let all = at.at(Place::All);
@@ -97,3 +101,5 @@ pub(super) fn sampled_volume(part: &Part) -> Volume {
 
 /// So many boxes are looked at to find out which part of the volume is avoided.
 const MOST_PAVED: usize = 20_000;
+/// And so many after an interrupt too.
+const PAVED_AT_LEAST: usize = 2000;

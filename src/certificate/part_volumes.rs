@@ -9,9 +9,12 @@ use crate::system::CoordinateRange;
 use dashu::rational::RBig;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Open boxes that are listed.
 const LISTED: usize = 5;
+/// So many open boxes are explained after an interrupt too, the largest: some ten milliseconds.
+const EXPLAINED_AT_LEAST: usize = 2000;
 /// What is known of a part.
 pub(super) struct PartVolumes {
     /// By why a box is open, and whether it is avoided.
@@ -23,11 +26,18 @@ pub(super) struct PartVolumes {
 }
 
 impl PartVolumes {
-    pub fn new(part: &Part, search: &Search) -> PartVolumes {
+    /// What is known, after an interrupt of the largest boxes alone: of the others it is that nothing is proved on them.
+    pub fn new(part: &Part, search: &Search, interrupt: &AtomicBool) -> PartVolumes {
         let cells = search.unproved();
         let whys: Vec<(Why, bool)> = cells
             .par_iter()
-            .map_init(Default::default, |workspace, cell| explain(part, cell, workspace))
+            .enumerate()
+            .map_init(Default::default, |workspace, (place, cell)| {
+                if place >= EXPLAINED_AT_LEAST && interrupt.load(Ordering::Relaxed) {
+                    return (Why::Undecided, false);
+                }
+                explain(part, cell, workspace)
+            })
             .collect();
         let mut open: BTreeMap<(Why, bool), Volume> = BTreeMap::new();
         let mut sections = Vec::new();
@@ -58,7 +68,12 @@ impl PartVolumes {
         let mut order: Vec<usize> = (0..cells.len()).collect();
         order.sort_by_key(|place| (whys[*place].1, cells[*place].depth()));
         let largest = order.into_iter().take(LISTED).map(|place| describe((&cells[place], &whys[place])));
-        PartVolumes { largest: largest.collect(), open, sampled: sampled_volume(part).exact(), sections }
+        PartVolumes {
+            largest: largest.collect(),
+            open,
+            sampled: sampled_volume(part, interrupt).exact(),
+            sections,
+        }
     }
 
     pub fn sum(&self, of: impl Fn(Why, bool) -> bool) -> RBig {

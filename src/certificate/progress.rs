@@ -97,8 +97,9 @@ impl Searches {
         turns.reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, next)| next)
     }
 
-    /// Goes on until a limit is reached, nothing is left to do, or an interrupt comes. `progress` is called after every
-    /// block of boxes. What comes out for a number of boxes depends neither on threads nor on interruptions.
+    /// Goes on until a limit is reached, nothing is left to do, or an interrupt comes, which ends it before the next box; the block of boxes
+    /// that it falls into is open again as a whole. `progress` is called after every block of boxes. What comes out for a number of boxes
+    /// depends neither on threads nor on interruptions.
     pub fn run(
         &mut self,
         parts: &[Part],
@@ -151,7 +152,9 @@ impl Searches {
             let next = self.turn.or_else(|| self.next(halvings.unwrap_or(usize::MAX)));
             let Some((place, turn)) = next else { break };
             let search = &mut self.searches[place];
-            let rest = search.step(&parts[place], turn, left, halvings.is_some());
+            let Ok(rest) = search.step(&parts[place], turn, left, halvings.is_some(), interrupt) else {
+                break;
+            };
             if search.kept.len() > MOST_UNSORTED + search.most_kept {
                 search.keep_largest();
             }

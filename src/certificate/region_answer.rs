@@ -9,8 +9,10 @@ use super::region::Region;
 use super::search::Search;
 use crate::expression::Symbol;
 use crate::number::{Interval, RealNumber};
+use crate::sweep::UNINTERRUPTED;
 use crate::system::CoordinateRange;
 use dashu::rational::RBig;
+use std::sync::atomic::AtomicBool;
 
 /// A map has no more rectangles.
 const MOST_PATCHES: usize = 40_000;
@@ -26,12 +28,18 @@ fn up(value: &RBig) -> f64 {
 impl Region {
     /// What is known so far. Takes a few microseconds for each open box.
     pub fn answer(&self) -> RegionAnswer {
+        self.answer_until(&UNINTERRUPTED)
+    }
+
+    /// The same within some ten milliseconds from an interrupt on: only the largest open boxes are explained then, and the volume of the
+    /// others counts as undecided. What is proved is the same.
+    pub fn answer_until(&self, interrupt: &AtomicBool) -> RegionAnswer {
         let (problem, searches) = (&self.problem, &self.searches);
         let volumes: Vec<PartVolumes> = problem
             .parts
             .iter()
             .zip(&searches.searches)
-            .map(|(part, search)| PartVolumes::new(part, search))
+            .map(|(part, search)| PartVolumes::new(part, search, interrupt))
             .collect();
         // a state is the product of what it is in each part
         let nothing = problem.parts.is_empty();

@@ -7,6 +7,7 @@ use super::part::{Alternative, Part};
 use super::workspace::{BoxAtWork, Workspace};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A box, and the factors that are known to be zero nowhere in it (the first 128 of them).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,6 +88,10 @@ pub(super) struct Turn {
     /// How many of them.
     pub boxes: usize,
 }
+
+/// The boxes of a turn were not all looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Interrupted;
 
 /// A proved box, and the minor by which it was, where there are several to choose from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -170,20 +175,39 @@ impl Search {
 
     /// Looks at the boxes of a turn, the oldest first, at most so many. Returns what is left of the turn. Where `keep_all`, whoever calls
     /// it sorts and forgets proved boxes beyond those that are kept.
-    pub fn step(&mut self, part: &Part, turn: Turn, most: u64, keep_all: bool) -> Option<Turn> {
-        let queue = self.open.get_mut(&turn.depth)?;
+    ///
+    /// # Errors
+    /// An interrupt came before the last of these boxes was begun: all of them are open as they were, and nothing is counted.
+    pub fn step(
+        &mut self,
+        part: &Part,
+        turn: Turn,
+        most: u64,
+        keep_all: bool,
+        interrupt: &AtomicBool,
+    ) -> Result<Option<Turn>, Interrupted> {
+        let Some(queue) = self.open.get_mut(&turn.depth) else { return Ok(None) };
         let count = turn.boxes.min(queue.len()).min(usize::try_from(most).unwrap_or(usize::MAX));
         let block: Vec<Cell> = queue.drain(..count).collect();
+        let judged: Vec<(Cell, u128, Option<BoxJudgement>)> = block
+            .into_par_iter()
+            .map_init(Workspace::default, |workspace, mut cell| {
+                let known = cell.known;
+                let is_cut = interrupt.load(Ordering::Relaxed);
+                let judged = (!is_cut).then(|| judge(part, &mut cell, workspace));
+                (cell, known, judged)
+            })
+            .collect();
+        if judged.iter().any(|(_, _, judged)| judged.is_none()) {
+            // which boxes were looked at depends on threads and on time, so that none of it counts
+            let before = judged.into_iter().rev().map(|(cell, known, _)| Cell { known, ..cell });
+            before.for_each(|cell| queue.push_front(cell));
+            return Err(Interrupted);
+        }
         if queue.is_empty() {
             self.open.remove(&turn.depth);
         }
-        let found: Vec<(Cell, BoxJudgement)> = block
-            .into_par_iter()
-            .map_init(Workspace::default, |workspace, mut cell| {
-                let judged = judge(part, &mut cell, workspace);
-                (cell, judged)
-            })
-            .collect();
+        let found = judged.into_iter().filter_map(|(cell, _, judged)| Some((cell, judged?)));
         for (cell, judged) in found {
             match judged {
                 BoxJudgement::Proved(minor) => {
@@ -201,7 +225,7 @@ impl Search {
         }
         self.boxes += count as u64;
         let rest = Turn { boxes: turn.boxes - count, ..turn };
-        (rest.boxes > 0 && count > 0).then_some(rest)
+        Ok((rest.boxes > 0 && count > 0).then_some(rest))
     }
 
     /// All boxes on which nothing is proved, the largest first.

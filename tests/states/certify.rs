@@ -11,9 +11,11 @@ use palmistry::number::{Interval, Rationals, RealNumber};
 use palmistry::observability::{Branch, Codistribution, Coordinate, Length, Locus, rank};
 use palmistry::system::Assignment;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 const SAME_RATE: &str = "proofs/moll2002/same_rate.proof";
 const ONE_PALM_FIXED: &str = "proofs/moll2002/one_palm_fixed.proof";
@@ -497,4 +499,52 @@ fn an_interrupted_search_keeps_what_it_had() {
     assert_eq!(again.boxes(), region.boxes());
     again.run(Limits { seconds: None, boxes: Some(1) }, &false.into(), &|_| ());
     assert_eq!(again.boxes(), region.boxes() + 1);
+}
+
+/// Interrupts that fall anywhere, into blocks of boxes as well: what was begun is not counted, and the search goes on as if nothing had been.
+/// Oracle: a search without an interrupt.
+#[test]
+fn interrupts_at_any_box_change_nothing() {
+    const BOXES: u64 = 6000;
+    let begun = || {
+        Region::new(&mut System::read(Path::new(ONE_PALM_FIXED)).unwrap(), ALL, &BTreeMap::new(), None)
+            .unwrap()
+    };
+    let told = |region: &Region| -> Vec<String> {
+        let of_time = |line: &&str| ["seconds", "curve", "end"].iter().any(|word| line.starts_with(word));
+        region.saved().lines().filter(|line| !of_time(line)).map(str::to_owned).collect()
+    };
+    let blocks = Mutex::new(BTreeSet::from([0]));
+    let mut whole = begun();
+    let tell = |now: Progress| {
+        blocks.lock().unwrap().insert(now.boxes);
+    };
+    whole.run(Limits { seconds: None, boxes: Some(BOXES) }, &false.into(), &tell);
+    assert_eq!(whole.boxes(), BOXES);
+    let (mut region, mut runs) = (begun(), 0);
+    while region.boxes() < BOXES {
+        runs += 1;
+        let interrupt = AtomicBool::new(false);
+        let limits = Limits { seconds: None, boxes: Some(BOXES - region.boxes()) };
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(Duration::from_micros(200 * runs));
+                interrupt.store(true, Ordering::Relaxed);
+            });
+            region.run(limits, &interrupt, &|_| ());
+        });
+        assert!(
+            blocks.lock().unwrap().contains(&region.boxes()),
+            "{} boxes are no whole blocks",
+            region.boxes()
+        );
+    }
+    assert!(runs > 2, "{runs} runs");
+    assert_eq!(told(&region), told(&whole));
+    // an interrupt leaves the answer what is proved, and explains the largest boxes alone
+    let (all, some) = (region.answer(), region.answer_until(&true.into()));
+    assert_eq!((some.proved, some.boxes, some.open_boxes), (all.proved, all.boxes, all.open_boxes));
+    assert!(some.minor_vanishes <= all.minor_vanishes && some.rest >= all.rest);
+    assert!(some.proved_of_sampled <= all.proved_of_sampled);
+    assert_eq!(some.largest, all.largest);
 }
