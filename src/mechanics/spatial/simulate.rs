@@ -14,7 +14,7 @@ pub struct SpatialPalmMoment {
     pub acceleration: f64,
     /// Where the contact is on the palm: along the hinge and up the palm, from the hinge's point. What the sensor reads.
     pub sensed: [f64; 2],
-    /// The palm's normal in the world, towards the body.
+    /// The palm's normal at the contact in the world, towards the body.
     pub normal: Vector3<f64>,
     /// The contact in the world.
     pub contact: Vector3<f64>,
@@ -54,7 +54,7 @@ impl SpatialMoment {
         let at = state.situation(scene);
         let back = state.orientation.matrix().transpose();
         let palm = |i: usize| {
-            let normal = at.frames[i].column(2).into_owned();
+            let normal = at.normals[i];
             SpatialPalmMoment {
                 angle: at.angles[i],
                 rate: at.rates[i],
@@ -99,6 +99,8 @@ pub enum SpatialEnded {
     ContactLost { palm: usize, time: f64 },
     /// The palms' normals came to lie in one plane.
     Flat { time: f64 },
+    /// There was no place any more where the body touches all palms, each on the half of its sphere that faces the plane's normal.
+    NoContact { time: f64 },
     /// The integrator gave up, for instance because the tolerance cannot be met.
     Failed { time: f64, why: String },
 }
@@ -177,12 +179,19 @@ pub fn simulate_solid(scene: &SpatialScene, times: &[f64]) -> Result<SpatialTraj
 #[derive(Clone, Copy)]
 enum Breach {
     Flat,
+    NoContact,
     Pulls(usize),
 }
 
 fn breach(at: &TimedState, scene: &SpatialScene) -> Option<Breach> {
     let situation = at.situation(scene);
-    if situation.is_flat() { Some(Breach::Flat) } else { situation.pulling().map(Breach::Pulls) }
+    if !situation.is_found {
+        Some(Breach::NoContact)
+    } else if situation.is_flat() {
+        Some(Breach::Flat)
+    } else {
+        situation.pulling().map(Breach::Pulls)
+    }
 }
 
 /// The state at time `end`; or an end before it, with the last state in contact unless the integrator gave up.
@@ -199,6 +208,7 @@ fn advance(
             let (at, last) = locate(scene, held, step.time, first);
             let ended = match last {
                 Breach::Flat => SpatialEnded::Flat { time: at.time },
+                Breach::NoContact => SpatialEnded::NoContact { time: at.time },
                 Breach::Pulls(palm) => SpatialEnded::ContactLost { palm, time: at.time },
             };
             return Err(Box::new((Some(at), ended)));
