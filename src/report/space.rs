@@ -85,6 +85,9 @@ pub(super) fn bounds(shape: &SpaceShape) -> Vec<(String, Result<f64, String>)> {
     if let Some(balls) = &shape.balls {
         all.push(("balls of the greatest radius of curvature".to_owned(), region(balls, high)));
     }
+    if let Some(hollow) = &shape.hollow {
+        all.push(("balls of the hollow palms, from outside".to_owned(), region(hollow, high)));
+    }
     all
 }
 

@@ -126,7 +126,11 @@ impl SpaceExperiment {
             done();
         }
         let touched = chained(&updates, all.contact_deviation);
-        let shape = touched.map(|touched| SpaceShape::of(touched, &self.scene.observer));
+        let radii = self.scene.palms.map(|palm| match palm.curvature < 0.0 {
+            true => -1.0 / palm.curvature,
+            false => f64::INFINITY,
+        });
+        let shape = touched.map(|touched| SpaceShape::of(touched, &self.scene.observer, radii));
         SpaceAnswers { updates, shape }
     }
 
