@@ -124,7 +124,7 @@ fn hollow_palms_tell_balls() {
         }
         if k == 0 {
             // one palm of three: its balls and the half-spaces of the others
-            let radius = |k: usize| if k % 3 == 0 { 20.0 } else { f64::INFINITY };
+            let radius = |k: usize| [20.0, f64::INFINITY, f64::INFINITY][k % 3];
             let radii: Vec<f64> = (0..touches.len()).map(radius).collect();
             let some = balls_and_half_spaces(&touches, &radii).unwrap().volume;
             assert!(told[0].1 < some.high() && some.high() < half_spaces, "{some} {told:?}");
