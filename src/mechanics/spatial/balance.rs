@@ -16,7 +16,7 @@ fn potential(scene: &SpatialScene, orientation: &Orientation) -> (f64, Vector3<f
     let turn = orientation.matrix();
     let angles = scene.start_of_palms().map(|palm| palm[0]);
     // contact forces do no work, and so it does not count that a contact moves on its sphere
-    let Contacts { normals, supports, reaches, .. } = Contacts::of(scene, angles, &turn);
+    let Contacts { normals, supports, reaches, .. } = Contacts::of(scene, angles, &turn, None);
     let by_columns = Matrix3::from_columns(&normals);
     let back = by_columns.try_inverse().unwrap_or_else(|| Matrix3::repeat(f64::NAN));
     let gravity = Vector3::from(scene.gravity);

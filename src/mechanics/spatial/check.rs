@@ -100,8 +100,9 @@ impl SpatialScene {
             &self.orientation.matrix(),
             &Vector3::from(self.rate),
             &self.start_of_palms(),
+            None,
         );
-        if !start.is_found {
+        if start.touched.is_none() {
             return Err(SpatialSceneError::NoContact);
         }
         if start.is_flat() {

@@ -17,7 +17,7 @@
 //! ```
 //!
 //! with the tangents `a'` and `b'` of the sphere, whose parts along `a` and `b` are one. For planes the first step is the solution. It begins where planes touch, and
-//! where that leads nowhere spheres are bent step by step: what is found depends on how body and palms are turned, and not on what was found before.
+//! where that leads nowhere spheres are bent step by step. In a motion it begins at the contacts a short time before: spheres have more than one place for a body, and a motion stays at its own.
 
 use super::form::Support;
 use super::scene::{SpatialPalm, SpatialScene};
@@ -49,9 +49,13 @@ pub(super) struct Contacts {
     pub arms: [Vector3<f64>; 3],
     /// What `N . c` is.
     pub reaches: [f64; 3],
-    /// Whether contacts were found, each on the half of its sphere that the palm's coordinates tell.
-    pub is_found: bool,
+    /// Where the contacts are from where spheres touch their planes, along the hinges and up the palms; zero where all palms are flat. None where no contacts were found, each on the half of its
+    /// sphere that the palm's coordinates tell.
+    pub places: Option<Places>,
 }
+
+/// For each palm along the hinge and up the palm, in metres.
+pub(super) type Places = [[f64; 2]; 3];
 
 /// Axis, direction up and normal of a palm, as columns.
 pub(super) fn palm_frame(azimuth: f64, angle: f64) -> Matrix3<f64> {
@@ -87,12 +91,17 @@ impl Sphere {
 }
 
 impl Contacts {
-    pub fn of(scene: &SpatialScene, angles: [f64; 3], turn: &Matrix3<f64>) -> Contacts {
+    /// Contacts next to those at some places, or where nothing is known of these those that are found from flat palms.
+    pub fn of(scene: &SpatialScene, angles: [f64; 3], turn: &Matrix3<f64>, near: Option<Places>) -> Contacts {
         let frames: [Matrix3<f64>; 3] =
             std::array::from_fn(|i| palm_frame(scene.palms[i].azimuth, angles[i]));
         let spheres: [Sphere; 3] = std::array::from_fn(|i| Sphere::of(&scene.palms[i], frames[i]));
         let is_flat = spheres.iter().all(|sphere| sphere.curvature == 0.0);
-        let places = if is_flat { Some([[0.0; 2]; 3]) } else { touched(scene, &spheres, turn) };
+        let places = match (is_flat, near) {
+            (true, _) => Some([[0.0; 2]; 3]),
+            (false, Some(near)) => newton(scene, &spheres, turn, 1.0, near),
+            (false, None) => touched(scene, &spheres, turn),
+        };
         let normals: [Vector3<f64>; 3] = std::array::from_fn(|i| match (&places, scene.palms[i].is_flat()) {
             (None, _) => Vector3::repeat(f64::NAN),
             (_, true) => frames[i].column(2).into_owned(),
@@ -111,16 +120,16 @@ impl Contacts {
                 _ => plane,
             }
         });
-        Contacts { frames, normals, supports, arms, reaches, is_found: places.is_some() }
+        Contacts { frames, normals, supports, arms, reaches, places }
     }
 }
 
 /// Where the body touches the spheres, from where these touch their planes; none where it does not.
-fn touched(scene: &SpatialScene, spheres: &[Sphere; 3], turn: &Matrix3<f64>) -> Option<[[f64; 2]; 3]> {
+fn touched(scene: &SpatialScene, spheres: &[Sphere; 3], turn: &Matrix3<f64>) -> Option<Places> {
     let volume = |normals: &[Vector3<f64>; 3]| Matrix3::from_columns(normals).determinant();
     let flat = volume(&spheres.each_ref().map(|sphere| sphere.frame.column(2).into_owned()));
     // spheres have a second place, from the other side of the plane through their centres
-    let is_near = |places: &[[f64; 2]; 3]| {
+    let is_near = |places: &Places| {
         let bent = std::array::from_fn(|i| spheres[i].at(places[i]).0);
         flat.abs() <= FLAT || volume(&bent) * flat > 0.0
     };
@@ -152,8 +161,8 @@ fn newton(
     spheres: &[Sphere; 3],
     turn: &Matrix3<f64>,
     bent: f64,
-    from: [[f64; 2]; 3],
-) -> Option<[[f64; 2]; 3]> {
+    from: Places,
+) -> Option<Places> {
     let spheres = spheres.each_ref().map(|s| Sphere { curvature: bent * s.curvature, ..*s });
     let mut places = from;
     let mut centre = Vector3::zeros();

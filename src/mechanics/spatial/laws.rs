@@ -29,7 +29,7 @@
 //! Into this go Newton's and Euler's laws, `m c'' = m g + sum f n` and `J omega' + omega x J omega = sum f X x n`, and that of a palm
 //! which is pushed, `I w' = torque - f a . ((X + c - o) x n)` about its hinge `a`. They are linear in the forces `f`: three equations.
 
-use super::contact::{Contacts, FLAT};
+use super::contact::{Contacts, FLAT, Places};
 use super::scene::{SpatialDrive, SpatialScene};
 use nalgebra::{Matrix3, Vector3};
 
@@ -56,26 +56,27 @@ pub(super) struct Situation {
     pub torques: [f64; 3],
     /// The volume that the three normals span.
     opening: f64,
-    /// Whether there is a place where the body touches all palms.
-    pub is_found: bool,
+    /// Where contacts were found on spheres; none where there is no place where the body touches all palms.
+    pub touched: Option<Places>,
 }
 
 impl Situation {
     /// What holds where the body is turned so, turns at a rate, and pushed palms have these angles and rates. Not finite where the
-    /// palms' normals lie in one plane.
+    /// palms' normals lie in one plane. On spheres contacts are sought near some places, if they are known.
     pub fn at(
         scene: &SpatialScene,
         time: f64,
         turn: &Matrix3<f64>,
         omega: &Vector3<f64>,
         pushed: &[[f64; 2]; 3],
+        near: Option<Places>,
     ) -> Situation {
         let told = scene.palms_at(time, pushed);
         let each = |k: usize| told.map(|palm| palm[k]);
         let (angles, rates) = (each(0), each(1));
         let hinges = scene.palms.map(|palm| Vector3::from(palm.hinge));
-        let Contacts { frames, normals, supports, arms, reaches, is_found } =
-            Contacts::of(scene, angles, turn);
+        let Contacts { frames, normals, supports, arms, reaches, places: touched } =
+            Contacts::of(scene, angles, turn, near);
 
         let by_normals = Matrix3::from_columns(&normals).transpose();
         let back = by_normals.try_inverse().unwrap_or_else(|| Matrix3::repeat(f64::NAN));
@@ -168,7 +169,7 @@ impl Situation {
             forces,
             torques,
             opening: by_normals.determinant(),
-            is_found,
+            touched,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::integrate::{TimedState, steps};
 use super::orientation::Orientation;
-use super::scene::{SpatialScene, SpatialSceneError};
+use super::scene::{SpatialPalm, SpatialScene, SpatialSceneError};
 use nalgebra::Vector3;
 
 /// One palm at one moment. SI units, angles in radians.
@@ -154,6 +154,7 @@ pub fn simulate_solid(scene: &SpatialScene, times: &[f64]) -> Result<SpatialTraj
         rate: Vector3::from(scene.rate),
         pushed: scene.start_of_palms(),
         work: 0.0,
+        near: None,
     };
     let mut moments = Vec::with_capacity(times.len());
     let start_energy = SpatialMoment::of(scene, &now).energy();
@@ -185,13 +186,22 @@ enum Breach {
 
 fn breach(at: &TimedState, scene: &SpatialScene) -> Option<Breach> {
     let situation = at.situation(scene);
-    if !situation.is_found {
+    if situation.touched.is_none() {
         Some(Breach::NoContact)
     } else if situation.is_flat() {
         Some(Breach::Flat)
     } else {
         situation.pulling().map(Breach::Pulls)
     }
+}
+
+/// A contact this part of a radius from the axis of its sphere is about to leave the half that it may be on.
+const AT_RIM: f64 = 0.999_99;
+
+fn is_at_rim(at: &TimedState, scene: &SpatialScene) -> bool {
+    let places = at.situation(scene).touched.unwrap_or_default();
+    let out = |(palm, [along, up]): (&SpatialPalm, [f64; 2])| palm.curvature.abs() * along.hypot(up);
+    scene.palms.iter().zip(places).any(|pair| out(pair) > AT_RIM)
 }
 
 /// The state at time `end`; or an end before it, with the last state in contact unless the integrator gave up.
@@ -217,6 +227,11 @@ fn advance(
     }
     match failure {
         None => Ok(held),
+        // the integrator cannot step over the rim, and stops before it
+        Some(_) if is_at_rim(&held, scene) => {
+            let ended = SpatialEnded::NoContact { time: held.time };
+            Err(Box::new((Some(held), ended)))
+        }
         Some(why) => Err(Box::new((None, SpatialEnded::Failed { time: held.time, why }))),
     }
 }

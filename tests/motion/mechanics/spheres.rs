@@ -250,3 +250,26 @@ fn a_palm_that_is_too_hollow_is_refused() {
     }
     assert_eq!(simulate_solid(&scene, &[0.0]).map(|_| ()), Err(SpatialSceneError::NoContact));
 }
+
+/// A ball on three small balls that turn under it, until it would touch their other halves. By hand: the centre of the ball of 1 m is over the middle, `s` is `(0.8 + 0.1 sin phi) a - 0.1 cos phi e_z` with
+/// the palms' direction `a`, so that the angle of the contact's normal is `sin alpha = (0.8 + 0.1 sin phi)/1.1`; it is at a right angle to the plane's where `phi = alpha + pi/2`.
+#[test]
+fn a_contact_that_leaves_its_half_of_a_sphere_is_told() {
+    let mut scene = scene(SolidForm::Ellipsoid { semi_axes: [1.0; 3] }, Orientation::upright(), [0.0; 3]);
+    for palm in &mut scene.palms {
+        let (s, c) = palm.azimuth.sin_cos();
+        (palm.curvature, palm.hinge) = (10.0, [0.8 * c, 0.8 * s, 0.0]);
+    }
+    scene.drive = SpatialDrive::Prescribed([(); 3].map(|()| Course { rate: 1.0, ..resting(PI / 3.0) }));
+    let found = simulate_solid(&scene, &every(0.1, 2.0)).unwrap();
+    let alpha = (0.8 / 1.1f64.hypot(0.1)).asin() + (0.1f64 / 1.1).atan();
+    let expected = alpha + PI / 2.0 - PI / 3.0;
+    let SpatialEnded::NoContact { time } = found.ended else { panic!("{:?}", found.ended) };
+    // contacts are followed to a millionth of the radius from the rim, 1.4e-3 rad
+    assert!((0.0..2e-3).contains(&(expected - time)), "{time} {expected}");
+    assert_eq!(found.moments.last().unwrap().time, time);
+    // the last one is at the rim, where a contact's coordinates tell its normal badly
+    let before = SpatialTrajectory { moments: found.moments[..15].to_vec(), ..found.clone() };
+    println!("energy {:e}, with the last moment {:e}", before.energy_drift(), found.energy_drift());
+    assert!(before.energy_drift() < 1e-9 * found.start_energy.abs(), "{}", before.energy_drift());
+}
