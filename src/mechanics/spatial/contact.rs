@@ -30,7 +30,7 @@ const SETTLED: [f64; 2] = [1e-14, 1e-9];
 /// In so many steps palms are bent where it does not arrive at once.
 const BENDINGS: [u32; 4] = [1, 4, 16, 64];
 /// No step goes beyond this part of a sphere's radius from the axis through its point of contact with the plane.
-const RIM: f64 = 0.999_999;
+const RIM: f64 = 0.999_9;
 /// Where planes have no point in common contacts are sought first at this part of the radius, towards the middle of the palms.
 const LEANING: f64 = 0.7;
 

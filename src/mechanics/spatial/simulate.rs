@@ -196,7 +196,7 @@ fn breach(at: &TimedState, scene: &SpatialScene) -> Option<Breach> {
 }
 
 /// A contact this part of a radius from the axis of its sphere is about to leave the half that it may be on.
-const AT_RIM: f64 = 0.999_99;
+const AT_RIM: f64 = 0.999_8;
 
 fn is_at_rim(at: &TimedState, scene: &SpatialScene) -> bool {
     let places = at.situation(scene).touched.unwrap_or_default();
@@ -227,10 +227,9 @@ fn advance(
     }
     match failure {
         None => Ok(held),
-        // the integrator cannot step over the rim, and stops before it
+        // the integrator cannot step over the rim, and its last steps before it lose digits
         Some(_) if is_at_rim(&held, scene) => {
-            let ended = SpatialEnded::NoContact { time: held.time };
-            Err(Box::new((Some(held), ended)))
+            Err(Box::new((None, SpatialEnded::NoContact { time: held.time })))
         }
         Some(why) => Err(Box::new((None, SpatialEnded::Failed { time: held.time, why }))),
     }
