@@ -15,7 +15,7 @@
 //! particular it does not know that `r' = -d`, nor how `s` moves, nor Euler's equation.
 //!
 //! A [`Palm`] says what a sensor's value means: the contact, tangent, normal and curvature there. Flat ones and circular
-//! ones there are in the plane, flat ones in space.
+//! ones there are in the plane; in space a [`PalmSphere`] makes one of a flat palm.
 //!
 //! Left out here: friction (`moving` has it), contact that breaks (the sign of a contact force is reported, not enforced), and time: a motion is known at one moment, with its first two derivatives there. Through time
 //! and in double precision bodies are moved by [`moving`] in the plane and by [`spatial`] in space, for which this is the witness.
@@ -38,6 +38,7 @@ mod rest;
 pub mod resting;
 mod solid;
 pub mod spatial;
+mod spheres;
 pub mod terrain;
 mod tumbling;
 
@@ -66,6 +67,8 @@ pub use quasistatics::{follow, lowest_pose};
 pub use rest::resting_pose;
 #[doc(hidden)]
 pub use solid::{Solid, SolidShape};
+#[doc(hidden)]
+pub use spheres::PalmSphere;
 #[doc(hidden)]
 pub use tumbling::{
     MovingVector, SolidDynamics, SolidInertia, SolidMotion, Tumbling, angular_acceleration, angular_velocity,

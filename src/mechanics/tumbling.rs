@@ -1,8 +1,11 @@
 //! A body in space that tumbles on three palms under gravity, seen by differences.
 
 use super::grip::{Grip, grip, palm_frame, rotation};
-use super::linear::{Square, Vector, axial, cross, difference, dot, product, scaled, solve, transposed};
+use super::linear::{
+    Square, Vector, apply, axial, cross, difference, dot, product, scaled, solve, transposed,
+};
 use super::motion::Swing;
+use super::spheres::{PalmSphere, grip_on};
 use super::{Derivatives, Real, Solid, differentiate};
 
 /// A vector with its first and its second time derivative.
@@ -21,6 +24,8 @@ pub struct SolidMotion {
     pub azimuths: [Real; 3],
     /// How steeply they rise.
     pub palms: [Swing; 3],
+    /// Palms without a sphere are planes.
+    pub spheres: [Option<PalmSphere>; 3],
 }
 
 /// What moves at one contact.
@@ -50,6 +55,13 @@ pub struct Tumbling {
     pub error: Real,
 }
 
+impl Tumbling {
+    /// The palm's normal at a contact, in the world: against the body's own.
+    fn normal(&self, i: usize) -> Vector<3> {
+        apply(&self.turn[0], &self.contacts[i].outward[0]).map(|x| -x)
+    }
+}
+
 fn square(found: &Derivatives, begin: usize) -> MovingSquare {
     let rows: [MovingVector; 3] = std::array::from_fn(|row| found.vector(begin + 3 * row));
     std::array::from_fn(|order| rows.each_ref().map(|row| row[order].clone()))
@@ -76,14 +88,21 @@ impl SolidMotion {
     /// How the body lies at a time.
     pub fn grip(&self, time: &Real) -> Grip {
         let (turn, palms) = self.frames(time);
-        grip(&self.solid, &turn, &palms)
+        self.laid(&turn, &palms)
+    }
+
+    fn laid(&self, turn: &Square<3>, palms: &[Square<3>; 3]) -> Grip {
+        match self.spheres.iter().all(Option::is_none) {
+            true => grip(&self.solid, turn, palms),
+            false => grip_on(&self.solid, turn, palms, &self.spheres),
+        }
     }
 
     /// Differentiates the motion.
     pub fn observe(&self) -> Tumbling {
         let quantities = |time: &Real| {
             let (turn, palms) = self.frames(time);
-            let Grip { centre, contacts } = grip(&self.solid, &turn, &palms);
+            let Grip { centre, contacts } = self.laid(&turn, &palms);
             let mut all: Vec<Real> = centre.into_iter().chain(turn.into_iter().flatten()).collect();
             for (contact, palm) in contacts.into_iter().zip(palms) {
                 let vectors = [contact.world, contact.body, contact.outward, contact.sensed];
@@ -170,7 +189,7 @@ pub fn solid_dynamics(motion: &SolidMotion, inertia: &SolidInertia) -> SolidDyna
     // for each palm, the force and the moment about the centre of mass that a unit contact force exerts
     let wrench = |i: usize| -> Vector<6> {
         let contact = &coasting.contacts[i];
-        let normal = contact.palm[0][2].clone();
+        let normal = coasting.normal(i);
         let moment = cross(&difference(&contact.world[0], &coasting.centre[0]), &normal);
         let mut both = normal.into_iter().chain(moment);
         std::array::from_fn(|_| both.next().unwrap_or(Real::UNDEFINED))
@@ -186,7 +205,7 @@ pub fn solid_dynamics(motion: &SolidMotion, inertia: &SolidInertia) -> SolidDyna
     let forces = [f1, f2, f3];
     let torques = std::array::from_fn(|i| {
         let contact = &tumbling.contacts[i];
-        let reaction = scaled(&-&forces[i], &contact.palm[0][2]);
+        let reaction = scaled(&-&forces[i], &tumbling.normal(i));
         let moment = dot(&contact.palm[0][0], &cross(&contact.world[0], &reaction));
         &inertia.palms[i] * &motion.palms[i].acceleration - moment
     });

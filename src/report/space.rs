@@ -85,6 +85,9 @@ pub(super) fn bounds(shape: &SpaceShape) -> Vec<(String, Result<f64, String>)> {
     if let Some(balls) = &shape.balls {
         all.push(("balls of the greatest radius of curvature".to_owned(), region(balls, high)));
     }
+    if let Some(hollow) = &shape.hollow {
+        all.push(("balls of the hollow palms, from outside".to_owned(), region(hollow, high)));
+    }
     all
 }
 
@@ -134,6 +137,9 @@ pub fn space_ended(observed: &SpaceObserved<'_>) -> Option<String> {
         SpatialEnded::Completed => return None,
         SpatialEnded::ContactLost { palm, time } => format!("palm {palm} would have to pull at {time:.4} s"),
         SpatialEnded::Flat { time } => format!("the palms' normals lie in one plane at {time:.4} s"),
+        SpatialEnded::NoContact { time } => {
+            format!("the body leaves the halves of the palms' spheres that face it at {time:.4} s")
+        }
         SpatialEnded::Failed { time, why } => format!("the integrator gave up at {time:.4} s: {why}"),
     };
     Some(format!("the motion ended early: {told}"))

@@ -12,6 +12,8 @@ use std::path::Path;
 
 const SHIPPED: &str = "proofs/moll2002/scenes/figure_5_3.toml";
 
+const HOLLOW: &str = "proofs/moll2002/scenes/figure_5_3_hollow.toml";
+
 const BODY: &str = "shape = { kind = \"ellipsoid\", semi_axes = [2.5, 2, 1] }\nmass = 1.3\norientation = [0.2, -0.3, 0.4]\nbalanced = true\nrate = [0, 0.3, 0.3]";
 const PALMS: &str =
     "azimuth = [0, 2.1, 4.2]\ninertia = [0.5, 0.5, 0.5]\nhinge = [[0.1, 0, 0], [0, 0, 0.05], [0, 0, 0]]";
@@ -64,6 +66,61 @@ fn the_scene_of_figure_5_3_is_observed_with_nothing_known() {
             assert!(shape.touches.iter().all(|touch| touch.normal.dot(direction) < 1e-9));
         }
     }
+}
+
+/// The same on hollow palms: each contact is inside of its palm's ball, so that what one run leaves unbounded by tangent planes is bounded by balls.
+#[test]
+fn hollow_palms_bound_what_they_touch() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let shipped = root.join(HOLLOW);
+    let experiment = SpaceExperiment::new(SpaceScene::read(&shipped).unwrap().unwrap(), None).unwrap();
+    let answers = experiment.run(&|| false, &|| ());
+    let update = &answers.updates[0];
+    assert_eq!(update.verdict, SpaceVerdict::Fits);
+    let state = update.state.as_ref().unwrap();
+    let error = relative_error(&state.entries(), &experiment.true_entries(update).unwrap());
+    assert!(error < 1e-7, "{error:e}");
+    let mut moments = state.inertia_over_mass.symmetric_eigenvalues();
+    moments.as_mut_slice().sort_by(f64::total_cmp);
+    for (found, by_hand) in moments.iter().zip([5.0 / 5.0, 7.25 / 5.0, 10.25 / 5.0]) {
+        assert!((found - by_hand).abs() < 1e-7, "{moments}");
+    }
+    for error in experiment.errors(update) {
+        assert!(error.centre < 1e-7 && error.turn < 1e-7 && error.radius < 1e-7, "{error:?}");
+    }
+    let shape = answers.shape.as_ref().unwrap();
+    let volume = 20.0 / 3.0 * PI;
+    assert!(matches!(shape.outer.as_ref().unwrap(), OuterBound::Unbounded { .. }));
+    let balls = shape.hollow.as_ref().unwrap().as_ref().unwrap().volume;
+    assert!(volume < balls.low() && balls.high() < 300.0, "{balls}");
+    assert!(shape.balls.is_none());
+}
+
+/// Readings of spherical palms go through a file bit by bit; one that is beyond its sphere is no contact.
+#[test]
+fn spheres_are_recorded() {
+    let bent = format!("{PALMS}\ncurvature = [-0.1, 0.2, 0]\ntouch_point = [[0, 2], [0.1, 1.8], [0, 0]]");
+    let experiment = experiment(&text(89, BODY, &format!("{bent}\n{MOVED}"), "[sensor]\nnoise = 1e-4\n"));
+    let folder = folder();
+    let file = folder.path().join("run.csv");
+    experiment.readings.record().unwrap().write(&file).unwrap();
+    assert_eq!(SpaceReadings::recorded(&experiment.scene, &file).unwrap(), experiment.readings);
+    // the forces that torques and levers tell are those of the simulation, but for the noise of levers
+    let truth = &experiment.truth.as_ref().unwrap().trajectory.moments;
+    let solid = experiment.solid();
+    for (palms, moment) in solid.palms.iter().zip(truth) {
+        for (i, (palm, told)) in palms.iter().zip(&moment.palms).enumerate() {
+            let force = palm.torque / solid.surfaces[i].lever(palm.place);
+            assert!((force - told.force).abs() < 1e-3 * told.force.abs(), "{force} {}", told.force);
+        }
+    }
+    let scene = format!(
+        "title = \"recorded\"\nmotion = \"spatial\"\n[palms]\n{}\n[data]\nrecord = \"run.csv\"\n",
+        bent.replace("-0.1, 0.2", "-0.1, 2.0")
+    );
+    let scene = SpaceScene::parse(folder.path().join("scene.toml").to_str().unwrap(), &scene).unwrap();
+    let why = format!("{:?}", miette::Report::new(SpaceExperiment::new(scene, None).unwrap_err()));
+    assert!(why.contains("the contact with palm 2 is beyond the sphere at 0 s"), "{why}");
 }
 
 /// A recording holds what was read bit by bit, so that the answer is the same; without the palms' rates these are those of a polynomial.
@@ -268,6 +325,14 @@ fn mistakes_are_marked() {
         ("prescribed =", "torques =", "unknown key 'start'"),
         ("[sensor]", "[data]\nrecord = \"run.csv\"\n[sensor]", "both simulated and recorded"),
         ("azimuth = [0, 2.1, 4.2]", "azimuth = [0, 0, 0]", "no pose of balance"),
+        ("inertia = [0.5", "curvature = [0, -1, 0]\ninertia = [0.5", "palm 2 is hollow with a radius of 1 m"),
+        ("inertia = [0.5", "curvature = [0, inf, 0]\ninertia = [0.5", "a curvature is inf"),
+        ("inertia = [0.5", "touch_point = [[0, 0], [0, 2], [0, 0]]\ninertia = [0.5", "palm 2 is flat"),
+        (
+            "inertia = [0.5",
+            "curvature = [1, 1, 1]\ntouch_point = [[0, 40], [0, 40], [0, 40]]\ninertia = [0.5",
+            "no pose of balance",
+        ),
         ("motion = \"spatial\"", "motion = \"spatial\"\ngravity = [0, 0, 0]", "nothing holds a body"),
     ];
     for (from, to, expected) in mistakes {

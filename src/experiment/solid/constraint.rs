@@ -1,7 +1,8 @@
 //! The constraint at every sample, with its derivatives in all directions.
 
 use super::flow::{DIRECTIONS, Start, Turned, own_rate, turned};
-use super::integrals::{Integrals, Node, PalmSample};
+use super::integrals::{Integrals, Node};
+use super::surface::PalmSample;
 use super::vector::{Vector, along, cross, dot, scaled, times, unit};
 
 /// One sample: the three constraints and what they depend on.
@@ -32,7 +33,7 @@ pub(super) fn values(start: &Start, all: &Integrals) -> Vec<[f64; 3]> {
         let centre = start.centre_at(node, &all.gravity);
         let velocity = start.velocity_at(node, &all.gravity);
         let palms = &all.palms[k];
-        // n . (w axis x (p axis + q up)) = w q
+        // n . (w axis x (contact - hinge)) = w lever
         let value = |i: usize| approach(&palms[i], palms[i].lever, &centre, &velocity, &omega);
         std::array::from_fn(value)
     };
@@ -56,7 +57,10 @@ fn sample(start: &Start, all: &Integrals, k: usize, here: &Turned<DIRECTIONS>) -
     let mut found = Constrained {
         value: std::array::from_fn(|i| approach(&palms[i], palms[i].lever, &centre, &velocity, &omega)),
         by: [[0.0; DIRECTIONS]; 3],
-        slopes: std::array::from_fn(|i| palms[i].slopes(&omega)),
+        slopes: std::array::from_fn(|i| {
+            let arm = along(&palms[i].contact, -1.0, &centre);
+            palms[i].slopes(&omega, &along(&velocity, 1.0, &cross(&omega, &arm)))
+        }),
         centre,
         at: *here,
     };

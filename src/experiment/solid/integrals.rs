@@ -2,21 +2,8 @@
 
 use super::SolidReadings;
 use super::rule::{POINTS, Piece, piece};
-use super::vector::{Vector, along, cross, dot};
-
-/// One palm at one sample.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PalmSample {
-    pub axis: Vector,
-    pub up: Vector,
-    pub normal: Vector,
-    /// The contact in the world.
-    pub contact: Vector,
-    pub rate: f64,
-    pub force: f64,
-    /// `q`, the lever of the force about the hinge.
-    pub lever: f64,
-}
+use super::surface::PalmSample;
+use super::vector::{Vector, along, cross};
 
 /// What the motion at a time is made of.
 #[derive(Clone, Copy, Debug, Default)]
@@ -176,20 +163,5 @@ impl Integrals {
 }
 
 fn palms_at(readings: &SolidReadings, row: usize) -> [PalmSample; 3] {
-    std::array::from_fn(|i| {
-        let palm = &readings.palms[row][i];
-        let [axis, up, normal] =
-            [0, 1, 2].map(|k: usize| -> Vector { palm.frame.column(k).into_owned().into() });
-        let [p, q] = palm.place;
-        let hinge: Vector = readings.hinges[i].into();
-        let contact = along(&along(&hinge, p, &axis), q, &up);
-        PalmSample { axis, up, normal, contact, rate: palm.rate, force: palm.torque / q, lever: q }
-    })
-}
-
-impl PalmSample {
-    /// By how much the constraint changes with the contact's two coordinates, where the body turns at a rate.
-    pub fn slopes(&self, omega: &Vector) -> [f64; 2] {
-        [-dot(omega, &self.up), dot(omega, &self.axis) - self.rate]
-    }
+    std::array::from_fn(|i| PalmSample::of(readings, row, i))
 }

@@ -1,4 +1,4 @@
-//! The state of a body in space on three flat palms, from their readings, without a first guess and without its shape.
+//! The state of a body in space on three palms, flat or spherical, from their readings, without a first guess and without its shape.
 //!
 //! What palm `i` tells of a body of unknown shape is
 //!
@@ -7,7 +7,8 @@
 //! ```
 //!
 //! with the contact `c_i`, the normal `n_i`, the hinge `o_i` and the palm's rate `w_i` as they are read. A contact lies `p` along the hinge and `q` up the palm, and the
-//! force along the normal follows from the motor's torque: `f q = torque - I w'`. With the sums `F` and `G` of forces and of their moments about the origin, Newton's and Euler's
+//! force along the normal follows from the motor's torque: `f q = torque - I w'`. On a sphere that is fixed to a palm these two tell height and normal as well (`surface`), and the lever
+//! `a . ((c_i - o_i) x n_i)` about the hinge's axis stands in the place of `q`. With the sums `F` and `G` of forces and of their moments about the origin, Newton's and Euler's
 //! laws are integrals of readings, polynomial in the centre `c0`, its velocity `v0`, the angular momentum over mass `l0` and `mu = 1/m`,
 //!
 //! ```text
@@ -39,11 +40,13 @@ mod refine;
 mod regular;
 mod rule;
 mod search;
+mod surface;
 mod touches;
 mod two_stage;
 mod vector;
 mod whiten;
 
+pub use surface::PalmSurface;
 pub use touches::{SolidPose, SolidTouch};
 pub use two_stage::{KnownSolid, TwoStages};
 
@@ -68,7 +71,7 @@ pub const UNKNOWNS: usize = 16;
 pub struct PalmReading {
     /// Where the contact is: along the hinge and up the palm, from the point of the hinge.
     pub place: [f64; 2],
-    /// The axis of the hinge, the direction up the palm and the normal towards the body, as columns, in the world.
+    /// The axis of the hinge, the direction up the palm and the plane's normal towards the body, as columns, in the world.
     pub frame: Matrix3<f64>,
     /// The palm's rate about its hinge.
     pub rate: f64,
@@ -85,6 +88,8 @@ pub struct SolidReadings {
     pub palms: Vec<[PalmReading; 3]>,
     /// A point of each hinge.
     pub hinges: [Vector3<f64>; 3],
+    /// Planes, unless they are said to be spheres.
+    pub surfaces: [PalmSurface; 3],
     /// The acceleration of gravity, any vector.
     pub gravity: Vector3<f64>,
     /// The standard deviation of each coordinate of a contact, in m; zero where they are exact.
@@ -227,7 +232,12 @@ impl SolidReadings {
             && increase
             && finite
             && self.times.iter().all(|time| time.is_finite())
-            && palms.clone().all(|palm| palm.place[1] != 0.0)
+            && self.palms.iter().all(|palms| {
+                (0..3).all(|i| {
+                    let lever = self.lever(palms, i);
+                    lever != 0.0 && lever.is_finite()
+                })
+            })
     }
 
     /// The state at the first sample that explains the readings best among those that were found; none where there are too few

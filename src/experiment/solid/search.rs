@@ -48,14 +48,13 @@ impl Likely {
         let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
         let mut force = Vector3::zeros();
         for palms in &readings.palms {
-            for palm in palms {
-                force += palm.frame.column(2) * (palm.torque / palm.place[1]);
+            for (i, palm) in palms.iter().enumerate() {
+                force += readings.normal(palms, i) * (palm.torque / readings.lever(palms, i));
             }
         }
         for palms in &readings.palms[..few] {
-            for (palm, hinge) in palms.iter().zip(&readings.hinges) {
-                let contact = hinge + palm.frame * Vector3::new(palm.place[0], palm.place[1], 0.0);
-                let n = palm.frame.column(2);
+            for i in 0..3 {
+                let (contact, n) = (readings.contact(palms, i), readings.normal(palms, i));
                 let across = Matrix3::identity() - n * n.transpose();
                 matrix += across;
                 right += across * contact;
@@ -64,9 +63,8 @@ impl Likely {
         let meeting = matrix.try_inverse()? * right;
         let mut spread = 0.0;
         for palms in &readings.palms {
-            for (palm, hinge) in palms.iter().zip(&readings.hinges) {
-                let contact = hinge + palm.frame * Vector3::new(palm.place[0], palm.place[1], 0.0);
-                spread += (contact - meeting).norm_squared();
+            for i in 0..3 {
+                spread += (readings.contact(palms, i) - meeting).norm_squared();
             }
         }
         let count = (3 * readings.rows()) as f64;
@@ -233,10 +231,8 @@ fn is_body(found: &Refined) -> bool {
     let mut moments = state.inertia_over_mass.symmetric_eigenvalues();
     moments.as_mut_slice().sort_by(f64::total_cmp);
     let [a, b, c] = moments.into();
-    let first = &found.corrected.palms[0];
-    let outside = first.iter().zip(&found.corrected.hinges).all(|(palm, hinge)| {
-        let contact = hinge + palm.frame * Vector3::new(palm.place[0], palm.place[1], 0.0);
-        palm.frame.column(2).dot(&(state.centre - contact)) > 0.0
-    });
+    let (readings, first) = (&found.corrected, &found.corrected.palms[0]);
+    let outside =
+        (0..3).all(|i| readings.normal(first, i).dot(&(state.centre - readings.contact(first, i))) > 0.0);
     a > 0.0 && c < 1.5 * (a + b) && outside
 }

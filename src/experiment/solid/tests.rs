@@ -71,6 +71,11 @@ fn the_true_state_leaves_nothing() {
 
 /// The scene of figure 5.3 of the thesis, balanced at first.
 fn figure_5_3(samples: usize, duration: f64) -> (SpatialScene, Vec<SpatialMoment>) {
+    figure_5_3_on([0.0; 3], samples, duration)
+}
+
+/// The same on palms of these curvatures.
+fn figure_5_3_on(curvatures: [f64; 3], samples: usize, duration: f64) -> (SpatialScene, Vec<SpatialMoment>) {
     let solid = ConvexSolid::new(SolidForm::Ellipsoid { semi_axes: [2.5, 2.0, 1.0] }, None).unwrap();
     let mut scene = SpatialScene {
         mass: 1.0,
@@ -79,9 +84,11 @@ fn figure_5_3(samples: usize, duration: f64) -> (SpatialScene, Vec<SpatialMoment
         orientation: Orientation::by(&Vector3::new(0.2, -0.3, 0.4)),
         rate: [0.0, 0.3, 0.3],
         gravity: [0.0, 0.0, -9.81],
-        palms: [0.0, 1.0, 2.0].map(|k| SpatialPalm {
-            azimuth: k * TAU / 3.0,
+        palms: std::array::from_fn(|k| SpatialPalm {
+            azimuth: k as f64 * TAU / 3.0,
             inertia: 0.5,
+            curvature: curvatures[k],
+            touch: [0.1, 2.5],
             ..SpatialPalm::default()
         }),
         drive: SpatialDrive::Prescribed([(); 3].map(|()| Course { start: FRAC_PI_3, ..Course::default() })),
@@ -224,6 +231,77 @@ fn errors_are_those_of_the_bound() {
     let slack = 0.1 + 1.42 / (seeds as f64).sqrt();
     assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < slack.max(0.2)), "{ratios:.2?}");
     assert!((chi - 1.0).abs() < 0.05, "{chi}");
+}
+
+/// On spheres errors of a contact move its normal, its height and its lever as well.
+#[test]
+fn errors_on_spheres_are_those_of_the_bound() {
+    let seeds = many(200, 20);
+    let slack = 0.1 + 1.42 / (seeds as f64).sqrt();
+    for curvatures in [[-0.05, -0.1, -0.05], [0.4, -0.1, 0.0]] {
+        let (scene, moments) = figure_5_3_on(curvatures, 89, 3.52);
+        let (ratios, chi) = ratios(&scene, &moments, 1e-3, seeds as u64);
+        assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < slack.max(0.2)), "{ratios:.2?}");
+        assert!((chi - 1.0).abs() < 0.05, "{chi}");
+    }
+}
+
+/// Constraint, force and moment by the coordinates of a contact and by the torque, against differences.
+#[test]
+fn what_a_contact_changes_on_a_sphere_is_what_differences_say() {
+    let (scene, moments) = figure_5_3_on([-0.05, 0.3, 0.0], 89, 1.76);
+    let mut exact = readings(&scene, &moments, 0.0, 1);
+    for (k, palm) in exact.palms[40].iter_mut().enumerate() {
+        palm.rate = 0.3 - 0.2 * k as f64;
+    }
+    let (omega, speed, centre) = ([0.3, -0.5, 0.7], [0.2, 0.1, -0.4], [-0.4, -0.7, 3.5]);
+    let of = |readings: &SolidReadings, i: usize| {
+        let palm = surface::PalmSample::of(readings, 40, i);
+        let velocity =
+            vector::along(&speed, 1.0, &vector::cross(&omega, &vector::along(&palm.contact, -1.0, &centre)));
+        let constraint = vector::dot(&palm.normal, &velocity) - palm.rate * palm.lever;
+        let force = vector::scaled(palm.force, &palm.normal);
+        let all = [vec![constraint], force.to_vec(), vector::cross(&palm.contact, &force).to_vec()];
+        (all.concat(), palm.slopes(&omega, &velocity), palm.wrenches())
+    };
+    for i in 0..3 {
+        let (_, slopes, wrenches) = of(&exact, i);
+        for error in 0..3 {
+            let moved = |by: f64| {
+                let mut readings = exact.clone();
+                match error {
+                    2 => readings.palms[40][i].torque += by,
+                    side => readings.palms[40][i].place[side] += by,
+                }
+                of(&readings, i).0
+            };
+            let (above, below) = (moved(1e-5), moved(-1e-5));
+            let slope = if error < 2 { slopes[error] } else { 0.0 };
+            let (force, moment) = wrenches[error];
+            let told = [vec![slope], force.to_vec(), moment.to_vec()].concat();
+            for (k, told) in told.iter().enumerate() {
+                let difference = (above[k] - below[k]) / 2e-5;
+                assert!((difference - told).abs() < 1e-8, "{i} {error} {k}: {told} {difference}");
+            }
+        }
+    }
+}
+
+/// Bodies of the three kinds on palms that bulge, are hollow and are flat, without a guess.
+#[test]
+fn bodies_on_spheres_are_found_without_a_guess() {
+    for (place, (mut scene, _)) in held(many(9, 3), 177).into_iter().enumerate() {
+        for (palm, curvature) in scene.palms.iter_mut().zip([0.2, -0.1, [0.0, -0.08, 0.3][place % 3]]) {
+            (palm.curvature, palm.touch) = (curvature, [0.0, 2.0]);
+        }
+        scene.orientation = balanced_orientation(&scene).unwrap().unwrap();
+        let times: Vec<f64> = (0..177).map(|k| 0.01 * f64::from(k)).collect();
+        let found = simulate_solid(&scene, &times).unwrap();
+        assert_eq!(found.ended, SpatialEnded::Completed);
+        let state = readings(&scene, &found.moments, 0.0, 1).first_state().unwrap();
+        let error = relative_error(&state.entries(), &true_entries(&scene, &found.moments[0]));
+        assert!(error < 1e-8 && state.fits(), "{place}: {error:e}");
+    }
 }
 
 /// The contacts in the body's frame are on the body's surface.

@@ -61,17 +61,14 @@ impl Sought<'_> {
         let k = self.known.inertia_over_mass.try_inverse()?;
         let k = turn.matrix() * k * turn.matrix().transpose();
         let palms = &self.readings.palms[0];
-        let contacts: [Vector3<f64>; 3] = std::array::from_fn(|i| {
-            let [p, q] = palms[i].place;
-            self.readings.hinges[i] + palms[i].frame * Vector3::new(p, q, 0.0)
-        });
-        let normals = palms.map(|palm| palm.frame.column(2).into_owned());
+        let contacts: [Vector3<f64>; 3] = std::array::from_fn(|i| self.readings.contact(palms, i));
+        let normals: [Vector3<f64>; 3] = std::array::from_fn(|i| self.readings.normal(palms, i));
         let solve = Matrix3::from_fn(|i, j| normals[i][j]).try_inverse()?;
         let centre = solve * Vector3::from_fn(|i, _| normals[i].dot(&contacts[i]) + six[3 + i]);
         let velocity = solve
             * Vector3::from_fn(|i, _| {
                 let moved = self.known.rate.cross(&(contacts[i] - centre));
-                palms[i].rate * palms[i].place[1] - normals[i].dot(&moved)
+                palms[i].rate * self.readings.lever(palms, i) - normals[i].dot(&moved)
             });
         let (rate, mu) = (self.known.rate.into(), 1.0 / self.known.mass);
         Start::new(centre.into(), velocity.into(), rate, PLACES.map(|place| k[place]), mu)

@@ -7,9 +7,10 @@
 
 use super::constraint::Constrained;
 use super::flow::{Start, TURN};
-use super::integrals::{Integrals, Node, PalmSample, Rules};
+use super::integrals::{Integrals, Node, Rules};
 use super::linear::{backward, cholesky, forward};
 use super::rule::Piece;
+use super::surface::PalmSample;
 use super::vector::{Vector, along, cross, dot, scaled};
 
 /// Errors at a sample: of both coordinates of each contact, and of each torque.
@@ -72,17 +73,11 @@ fn impulses(
     }
     let [bc, ca, ab] = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
     for (i, palm) in palms.iter().enumerate() {
-        let lever = cross(&palm.contact, &palm.normal);
-        let fall = -palm.force / palm.lever;
-        let along_hinge = ([0.0; 3], scaled(-palm.force, &palm.up), deviations.contact);
-        let up = (
-            scaled(fall, &palm.normal),
-            along(&scaled(fall, &lever), palm.force, &palm.axis),
-            deviations.contact,
-        );
-        let torque =
-            (scaled(1.0 / palm.lever, &palm.normal), scaled(1.0 / palm.lever, &lever), deviations.torque);
-        for (column, (force, moment, size)) in [(2 * i, along_hinge), (2 * i + 1, up), (6 + i, torque)] {
+        let [along_hinge, up, torque] = palm.wrenches();
+        let (contact, of_torque) = (deviations.contact, deviations.torque);
+        for (column, (force, moment), size) in
+            [(2 * i, along_hinge, contact), (2 * i + 1, up, contact), (6 + i, torque, of_torque)]
+        {
             let t = start.mu * spacing * size;
             let velocity: Vector = scaled(t, &force);
             let centre = scaled(-node.time, &velocity);

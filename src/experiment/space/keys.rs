@@ -76,6 +76,10 @@ struct PalmKeys {
     hinge: [[f64; 3]; 3],
     #[serde(default)]
     inertia: [f64; 3],
+    #[serde(default)]
+    curvature: [f64; 3],
+    #[serde(default)]
+    touch_point: [[f64; 2]; 3],
     prescribed: Option<[Course; 3]>,
     torques: Option<[PushedPalm; 3]>,
 }
@@ -173,6 +177,8 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SpaceS
         azimuth: keys.palms.azimuth[i],
         hinge: keys.palms.hinge[i],
         inertia: keys.palms.inertia[i],
+        curvature: keys.palms.curvature[i],
+        touch: keys.palms.touch_point[i],
     });
     for (i, palm) in geometry.iter().enumerate() {
         if !palm.azimuth.is_finite() || palm.hinge.iter().any(|x| !x.is_finite()) {
@@ -182,6 +188,20 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SpaceS
         if !(palm.inertia >= 0.0 && palm.inertia.is_finite()) {
             let message = format!("a moment of inertia is {}", palm.inertia);
             return Err(wrong.at(&format!("palms.inertia[{i}]"), message, "give zero or more, in kg m^2"));
+        }
+        if !palm.curvature.is_finite() {
+            let help = "give 1/m: 0 for a flat palm, above 0 for a sphere that bulges towards the body, below 0 for a hollow one";
+            let message = format!("a curvature is {}", palm.curvature);
+            return Err(wrong.at(&format!("palms.curvature[{i}]"), message, help));
+        }
+        let place = format!("palms.touch_point[{i}]");
+        if palm.touch.iter().any(|x| !x.is_finite()) {
+            let help = "give m along the hinge and up the palm";
+            return Err(wrong.at(&place, "a sphere touches its plane at no finite place", help));
+        }
+        if palm.curvature == 0.0 && palm.touch != [0.0; 2] {
+            let message = format!("palm {} is flat, and nothing touches its plane there", i + 1);
+            return Err(wrong.at(&place, message, "give it a curvature, or [0, 0] here"));
         }
     }
     let observer = checked_observer(&keys.observer, &wrong)?;

@@ -1,7 +1,7 @@
 //! What three palms tell, as sensors and motors tell it: angles of the palms, places of the contacts, torques.
 
 use crate::experiment::simulation::normal;
-use crate::experiment::solid::{PalmReading, SolidReadings};
+use crate::experiment::solid::{PalmReading, PalmSurface, SolidReadings};
 use crate::mechanics::spatial::{SpatialMoment, SpatialPalm};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
@@ -81,9 +81,15 @@ impl SpaceReadings {
             times: self.times.clone(),
             palms: self.palms.iter().map(|told| std::array::from_fn(|i| read(&palms[i], &told[i]))).collect(),
             hinges: palms.map(|palm| Vector3::from(palm.hinge)),
+            surfaces: palms.map(|palm| surface(&palm)),
             gravity: Vector3::from(gravity),
             contact_deviation: crate::experiment::simulation::deviation(sensor.noise, sensor.resolution),
             torque_deviation: sensor.torque_noise,
         }
     }
+}
+
+/// How the estimator has a palm's surface.
+pub(super) fn surface(palm: &SpatialPalm) -> PalmSurface {
+    PalmSurface { curvature: palm.curvature, touch: palm.touch }
 }

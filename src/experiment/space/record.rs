@@ -1,6 +1,6 @@
 //! Readings as a table, for other programs and from them.
 
-use super::readings::{PalmTold, SpaceReadings};
+use super::readings::{PalmTold, SpaceReadings, surface};
 use super::scene::SpaceScene;
 use crate::experiment::slow::derivative;
 use crate::experiment::solid::FEWEST;
@@ -104,7 +104,19 @@ impl SpaceReadings {
                 torque: value(5),
             }
         };
-        let palms = (0..times.len()).map(|row| std::array::from_fn(|i| palm(row, i))).collect();
+        let palms: Vec<[PalmTold; 3]> =
+            (0..times.len()).map(|row| std::array::from_fn(|i| palm(row, i))).collect();
+        for (time, told) in times.iter().zip(&palms) {
+            if let Some(i) = (0..3).find(|i| !surface(&scene.palms[*i]).has(told[*i].place)) {
+                let message = format!("the contact with palm {} is beyond the sphere at {time} s", i + 1);
+                let help = format!(
+                    "{} and {} have to be within the radius from touch_point; mend the recording, or curvature and touch_point",
+                    name(OF_A_PALM * i + 3),
+                    name(OF_A_PALM * i + 4)
+                );
+                return Err(scene.error_at("data", message, help));
+            }
+        }
         Ok(SpaceReadings { times, palms })
     }
 }

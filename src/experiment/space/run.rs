@@ -7,8 +7,8 @@ use super::scene::SpaceScene;
 use super::touched::{SpaceShape, chained};
 use crate::experiment::solid::{FEWEST, SolidPose, SolidReadings};
 use crate::mechanics::spatial::{
-    ConvexSolid, Orientation, SpatialMoment, SpatialScene, SpatialTrajectory, balanced_orientation,
-    simulate_solid,
+    ConvexSolid, Orientation, SpatialMoment, SpatialScene, SpatialSceneError, SpatialTrajectory,
+    balanced_orientation, simulate_solid,
 };
 use crate::system::ReadError;
 use nalgebra::{Matrix3, Vector3};
@@ -127,7 +127,11 @@ impl SpaceExperiment {
             done();
         }
         let touched = chained(&updates, all.contact_deviation);
-        let shape = touched.map(|touched| SpaceShape::of(touched, &self.scene.observer));
+        let radii = self.scene.palms.map(|palm| match palm.curvature < 0.0 {
+            true => -1.0 / palm.curvature,
+            false => f64::INFINITY,
+        });
+        let shape = touched.map(|touched| SpaceShape::of(touched, &self.scene.observer, radii));
         SpaceAnswers { updates, shape }
     }
 
@@ -198,9 +202,21 @@ pub(super) fn simulated(scene: &SpaceScene) -> Result<SpaceTruth, ReadError> {
         drive: drive.clone(),
         tolerance: TOLERANCE,
     };
-    let refused = |error: crate::mechanics::spatial::SpatialSceneError| {
-        let help = "all three palms have to push, their normals spread, the values be those of a body";
-        scene.error_at("body", error.to_string(), help)
+    let refused = |error: SpatialSceneError| {
+        let (place, help) = match &error {
+            SpatialSceneError::Hollow { palm, .. } => {
+                (format!("palms.curvature[{}]", palm - 1), "bend the palm less, or give another body")
+            }
+            SpatialSceneError::NoContact => {
+                ("palms.curvature".to_owned(), "bend the palms less, or move touch_point")
+            }
+            _ => {
+                let help =
+                    "all three palms have to push, their normals spread, the values be those of a body";
+                ("body".to_owned(), help)
+            }
+        };
+        scene.error_at(&place, error.to_string(), help)
     };
     if body.balanced {
         moved.orientation = balanced_orientation(&moved).map_err(refused)?.ok_or_else(|| {

@@ -50,7 +50,7 @@ pub struct SpaceScene {
     pub gravity: [f64; 3],
     /// `[body]`; none where readings are recorded.
     pub body: Option<SpaceBody>,
-    /// `azimuth`, `hinge`, `inertia` of `[palms]`.
+    /// `azimuth`, `hinge`, `inertia`, `curvature`, `touch_point` of `[palms]`.
     pub palms: [SpatialPalm; 3],
     /// `prescribed` or `torques` of `[palms]`; none where readings are recorded.
     pub drive: Option<SpatialDrive>,

@@ -4,7 +4,7 @@ use super::answers::{SpaceUpdate, SpaceVerdict};
 use super::scene::SpaceObserver;
 use crate::shape::sphere::{
     BoundedRegion, OuterBound, SolidEstimate, SolidSample, SurfaceTouch, TouchError, ball_intersection,
-    contact_hull, fit_solid, half_space_intersection, rounded_hull,
+    balls_and_half_spaces, contact_hull, fit_solid, half_space_intersection, rounded_hull,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -28,6 +28,8 @@ pub struct SpaceShape {
     pub rounded: Option<Result<BoundedRegion, TouchError>>,
     /// What it lies in where none is above the one that the scene says.
     pub balls: Option<Result<BoundedRegion, TouchError>>,
+    /// What it lies in where palms are hollow: each contact with one is inside of its ball, which contains the body.
+    pub hollow: Option<Result<BoundedRegion, TouchError>>,
 }
 
 /// The contacts of windows up to the first that does not fit, in the frame of the first, and their deviation. Each window begins with the last sample of the one before.
@@ -57,16 +59,25 @@ pub(super) fn chained(updates: &[SpaceUpdate], stated: f64) -> Option<(Vec<Surfa
 }
 
 impl SpaceShape {
-    pub(super) fn of((touches, deviation): (Vec<SurfaceTouch>, f64), asked: &SpaceObserver) -> SpaceShape {
+    /// `radii` are those of hollow palms in m, infinite for others.
+    pub(super) fn of(
+        (touches, deviation): (Vec<SurfaceTouch>, f64),
+        asked: &SpaceObserver,
+        radii: [f64; 3],
+    ) -> SpaceShape {
         let weight = 1.0 / (deviation * deviation);
         let samples: Vec<SolidSample> = touches.iter().map(|touch| SolidSample::of(touch, weight)).collect();
         let [least, greatest] = asked.radii;
+        // contacts come by threes, a palm each
+        let by_contact: Vec<f64> = radii.into_iter().cycle().take(touches.len()).collect();
+        let is_hollow = radii.iter().any(|radius| radius.is_finite());
         SpaceShape {
             estimate: fit_solid(&samples, asked.degree),
             hull: contact_hull(&touches),
             outer: half_space_intersection(&touches),
             rounded: least.map(|radius| rounded_hull(&touches, radius)),
             balls: greatest.map(|radius| ball_intersection(&touches, radius)),
+            hollow: is_hollow.then(|| balls_and_half_spaces(&touches, &by_contact)),
             deviation,
             touches,
         }

@@ -1,6 +1,6 @@
 //! The pose in which a body lies still on palms at rest: where its centre of mass is lowest among all poses near by.
 
-use super::laws::palm_frame;
+use super::contact::Contacts;
 use super::orientation::Orientation;
 use super::scene::{SpatialScene, SpatialSceneError};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
@@ -15,15 +15,13 @@ const STEP: f64 = 1e-5;
 fn potential(scene: &SpatialScene, orientation: &Orientation) -> (f64, Vector3<f64>) {
     let turn = orientation.matrix();
     let angles = scene.start_of_palms().map(|palm| palm[0]);
-    let normals: [Vector3<f64>; 3] =
-        std::array::from_fn(|i| palm_frame(scene.palms[i].azimuth, angles[i]).column(2).into_owned());
-    let supports = normals.map(|n| scene.solid.support(&-(turn.transpose() * n)));
+    // contact forces do no work, and so it does not count that a contact moves on its sphere
+    let Contacts { normals, supports, reaches, .. } = Contacts::of(scene, angles, &turn, None);
     let by_columns = Matrix3::from_columns(&normals);
     let back = by_columns.try_inverse().unwrap_or_else(|| Matrix3::repeat(f64::NAN));
     let gravity = Vector3::from(scene.gravity);
     let carrying = -(back * gravity);
-    let reach = |i: usize| supports[i].extent + normals[i].dot(&Vector3::from(scene.palms[i].hinge));
-    let centre = back.transpose() * Vector3::from_fn(|i, _| reach(i));
+    let centre = back.transpose() * Vector3::from(reaches);
     let moment = (0..3).fold(Vector3::zeros(), |sum: Vector3<f64>, i| {
         sum + (turn * supports[i].point).cross(&normals[i]) * carrying[i]
     });

@@ -27,8 +27,11 @@ impl SpatialScene {
         self.check_inertia()?;
         for i in 0..3 {
             let of = |what: &str| format!("palm {}'s {what}", i + 1);
-            let SpatialPalm { azimuth, hinge, inertia } = self.palms[i];
+            let SpatialPalm { azimuth, hinge, inertia, curvature, touch } = self.palms[i];
             finite(&of("azimuth"), azimuth)?;
+            finite(&of("curvature"), curvature)?;
+            touch.iter().try_for_each(|x| finite(&of("point of contact with its plane"), *x))?;
+            self.check_hollow(i)?;
             hinge.iter().try_for_each(|x| finite(&of("hinge"), *x))?;
             let swings: &[Oscillation] = match &self.drive {
                 SpatialDrive::Prescribed(courses) => {
@@ -56,6 +59,24 @@ impl SpatialScene {
         Ok(())
     }
 
+    /// A body that is everywhere more curved than a hollow palm rolls in it and touches it at one point (W. Blaschke, Kreis und Kugel, 1916, section 24).
+    fn check_hollow(&self, i: usize) -> Result<(), SpatialSceneError> {
+        let curvature = self.palms[i].curvature;
+        if curvature >= 0.0 {
+            return Ok(());
+        }
+        let radius = -1.0 / curvature;
+        self.solid.rolls_in(radius).map_err(|(normal, own)| SpatialSceneError::Hollow {
+            palm: i + 1,
+            radius,
+            x: normal.x,
+            y: normal.y,
+            z: normal.z,
+            own,
+            least: -1.0 / own,
+        })
+    }
+
     fn check_inertia(&self) -> Result<(), SpatialSceneError> {
         let inertia = &self.inertia_over_mass;
         let size = inertia.amax();
@@ -79,7 +100,11 @@ impl SpatialScene {
             &self.orientation.matrix(),
             &Vector3::from(self.rate),
             &self.start_of_palms(),
+            None,
         );
+        if start.touched.is_none() {
+            return Err(SpatialSceneError::NoContact);
+        }
         if start.is_flat() {
             return Err(SpatialSceneError::Flat);
         }

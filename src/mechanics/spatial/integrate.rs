@@ -4,9 +4,10 @@
 //! all else and so is under the same control of errors (H. Munthe-Kaas, Runge-Kutta methods on Lie groups, BIT 38, 1998). The time
 //! goes along as a coordinate: version 0.6.2 of the crate has a wrong node for rates that depend on it.
 
+use super::contact::Places;
 use super::laws::Situation;
 use super::orientation::{Orientation, rotation_vector_rate};
-use super::scene::{SpatialDrive, SpatialScene};
+use super::scene::{SpatialDrive, SpatialPalm, SpatialScene};
 use nalgebra::Vector3;
 use ode_solvers::{Dop853, OutputType, SVector, System};
 
@@ -18,6 +19,8 @@ pub(super) struct TimedState {
     pub rate: Vector3<f64>,
     pub pushed: [[f64; 2]; 3],
     pub work: f64,
+    /// Where contacts on spheres were a short time before.
+    pub near: Option<Places>,
 }
 
 /// A rotation vector, the rate, angles and rates of the palms, work, the time since the beginning.
@@ -27,12 +30,14 @@ type Vector = SVector<f64, 14>;
 const MOST_STEPS: u32 = 20_000;
 /// A piece is as long as the body takes to turn by this, in radians, at the rate at its beginning.
 const TURN_OF_A_PIECE: f64 = 0.5;
+/// And on spheres no longer than so many of the longest steps.
+const STEPS_ON_SPHERES: f64 = 8.0;
 /// More pieces between two samples are not taken.
 const MOST_PIECES: usize = 1_000_000;
 
 impl TimedState {
     pub fn situation(&self, scene: &SpatialScene) -> Situation {
-        Situation::at(scene, self.time, &self.orientation.matrix(), &self.rate, &self.pushed)
+        Situation::at(scene, self.time, &self.orientation.matrix(), &self.rate, &self.pushed, self.near)
     }
 
     fn vector(&self) -> Vector {
@@ -55,6 +60,7 @@ impl TimedState {
             rate: Vector3::new(y[3], y[4], y[5]),
             pushed: std::array::from_fn(|i| [y[6 + i], y[9 + i]]),
             work: y[12],
+            near: self.near,
         };
         (state, turn)
     }
@@ -69,7 +75,7 @@ impl System<f64, Vector> for Laws<'_> {
     fn system(&self, _: f64, y: &Vector, rates: &mut Vector) {
         let (state, turn) = self.begin.after(y);
         let matrix = state.orientation.matrix();
-        let at = Situation::at(self.scene, state.time, &matrix, &state.rate, &state.pushed);
+        let at = Situation::at(self.scene, state.time, &matrix, &state.rate, &state.pushed, state.near);
         let turning = rotation_vector_rate(&turn, &(matrix.transpose() * state.rate));
         let pushed = matches!(self.scene.drive, SpatialDrive::Torques(_));
         let power: f64 = (0..3).map(|i| at.torques[i] * at.rates[i]).sum();
@@ -95,12 +101,18 @@ pub(super) fn steps(
 ) -> (Vec<TimedState>, Option<String>) {
     let mut all = vec![from];
     let mut here = from;
+    let is_flat = scene.palms.iter().all(SpatialPalm::is_flat);
     for _ in 0..MOST_PIECES {
         if here.time >= end {
             return (all, None);
         }
         let turning = here.rate.norm();
-        let most = TURN_OF_A_PIECE / turning;
+        let mut most = TURN_OF_A_PIECE / turning;
+        if !is_flat {
+            // contacts are sought from those at the beginning of a piece
+            here.near = here.situation(scene).touched;
+            most = most.min(STEPS_ON_SPHERES * longest);
+        }
         let until = if most < end - here.time { here.time + most } else { end };
         if until <= here.time {
             return (all, Some("the body turns too fast for its time to be told".to_owned()));

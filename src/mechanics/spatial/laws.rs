@@ -1,8 +1,9 @@
 //! The laws of motion at one moment.
 //!
 //! The body touches palm `i` with the boundary point `X_i`, as seen from the centre of mass `c`, whose outward normal is minus the
-//! palm's `n`. Contact is `n . (c - o) = h(u)`, with a point `o` of the hinge, the support function `h` and `u = -R^T n` in the body's
-//! frame. These three linear equations are where `c` comes from, so that no contact drifts. The palm turns at `w`, the body at
+//! palm's `n`. On flat palms contact is `n . (c - o) = h(u)`, with a point `o` of the hinge, the support function `h` and `u = -R^T n` in the body's
+//! frame. These three linear equations are where `c` comes from, so that no contact drifts (`contact` solves them for spheres, where
+//! `n` depends on `c`). The palm turns at `w`, the body at
 //! `omega`, so that `R u' = -(w - omega) x n`. Differentiated once, with the gradient of `h`,
 //!
 //! ```text
@@ -15,14 +16,22 @@
 //! n . c'' + 2 n' . c' + n'' . (c - o) = u' . H u' - X . (w' x n - omega' x n + (w - omega) x (w x n) - omega x ((w - omega) x n))
 //! ```
 //!
+//! On a palm with the curvature `k` the normal is `N`, whose rate in the palm is `k` times that of the contact, `tau`: `N' = w x N + k tau`. What is
+//! left of `N . (c' + omega x X - w x (c + X - o)) = 0`, whose bracket is how the body slides, `g`, is its derivative
+//!
+//! ```text
+//! N . c'' + N . (omega' x X) = N . (w' x (c + X - o)) + N . (w x (w x (c + X - o))) - N . (omega x X') - g . N' - tau . (w x N),
+//! (1 + k H) tau = g - H (w - omega) x N,      X' = omega x X - H ((w - omega) x N + k tau),
+//! ```
+//!
+//! `H` in the world; the radius itself, which a plane has not, is in none of these.
+//!
 //! Into this go Newton's and Euler's laws, `m c'' = m g + sum f n` and `J omega' + omega x J omega = sum f X x n`, and that of a palm
 //! which is pushed, `I w' = torque - f a . ((X + c - o) x n)` about its hinge `a`. They are linear in the forces `f`: three equations.
 
+use super::contact::{Contacts, FLAT, Places};
 use super::scene::{SpatialDrive, SpatialScene};
 use nalgebra::{Matrix3, Vector3};
-
-/// A volume of three unit normals below which their palms are taken to have a line in common.
-const FLAT: f64 = 1e-6;
 
 /// What holds at one moment, in the world. SI units.
 #[derive(Clone, Debug)]
@@ -36,8 +45,8 @@ pub(super) struct Situation {
     pub spin: Vector3<f64>,
     /// From the centre of mass to the contacts.
     pub arms: [Vector3<f64>; 3],
-    /// Axis, direction up the palm and normal of each palm.
-    pub frames: [Matrix3<f64>; 3],
+    /// The palms' normals at the contacts.
+    pub normals: [Vector3<f64>; 3],
     /// The contacts on their palms: along the hinge and up the palm, from the point of the hinge.
     pub sensed: [[f64; 2]; 3],
     pub angles: [f64; 3],
@@ -47,38 +56,31 @@ pub(super) struct Situation {
     pub torques: [f64; 3],
     /// The volume that the three normals span.
     opening: f64,
-}
-
-/// Axis, direction up and normal of a palm, as columns.
-pub(super) fn palm_frame(azimuth: f64, angle: f64) -> Matrix3<f64> {
-    let ((sa, ca), (s, c)) = (azimuth.sin_cos(), angle.sin_cos());
-    Matrix3::new(sa, c * ca, -s * ca, -ca, c * sa, -s * sa, 0.0, s, c)
+    /// Where contacts were found on spheres; none where there is no place where the body touches all palms.
+    pub touched: Option<Places>,
 }
 
 impl Situation {
     /// What holds where the body is turned so, turns at a rate, and pushed palms have these angles and rates. Not finite where the
-    /// palms' normals lie in one plane.
+    /// palms' normals lie in one plane. On spheres contacts are sought near some places, if they are known.
     pub fn at(
         scene: &SpatialScene,
         time: f64,
         turn: &Matrix3<f64>,
         omega: &Vector3<f64>,
         pushed: &[[f64; 2]; 3],
+        near: Option<Places>,
     ) -> Situation {
         let told = scene.palms_at(time, pushed);
         let each = |k: usize| told.map(|palm| palm[k]);
         let (angles, rates) = (each(0), each(1));
-        let frames: [Matrix3<f64>; 3] =
-            std::array::from_fn(|i| palm_frame(scene.palms[i].azimuth, angles[i]));
-        let normals = frames.map(|frame| frame.column(2).into_owned());
         let hinges = scene.palms.map(|palm| Vector3::from(palm.hinge));
-        let supports = normals.map(|n| scene.solid.support(&-(turn.transpose() * n)));
-        let arms = supports.map(|support| turn * support.point);
+        let Contacts { frames, normals, supports, arms, reaches, places: touched } =
+            Contacts::of(scene, angles, turn, near);
 
         let by_normals = Matrix3::from_columns(&normals).transpose();
         let back = by_normals.try_inverse().unwrap_or_else(|| Matrix3::repeat(f64::NAN));
-        let reach = |i: usize| supports[i].extent + normals[i].dot(&hinges[i]);
-        let centre = back * Vector3::from_fn(|i, _| reach(i));
+        let centre = back * Vector3::from(reaches);
         let axes = frames.map(|frame| frame.column(0).into_owned());
         let palm_rates: [Vector3<f64>; 3] = std::array::from_fn(|i| axes[i] * rates[i]);
         let normal_rates: [Vector3<f64>; 3] = std::array::from_fn(|i| palm_rates[i].cross(&normals[i]));
@@ -100,6 +102,20 @@ impl Situation {
         // n . c'' + moment . omega' = wanted + lever w'
         let wanted = |i: usize| {
             let (w, n) = (palm_rates[i], normals[i]);
+            if !scene.palms[i].is_flat() {
+                let bend = turn * supports[i].bend * turn.transpose();
+                let k = scene.palms[i].curvature;
+                let sliding = velocity + omega.cross(&arms[i]) - w.cross(&places[i]);
+                let back = (Matrix3::identity() + bend * k).try_inverse();
+                let back = back.unwrap_or_else(|| Matrix3::repeat(f64::NAN));
+                // how fast the contact moves on the palm, and on the body
+                let along = back * (sliding - bend * passing[i]);
+                let arm_rate = omega.cross(&arms[i]) - bend * (passing[i] + along * k);
+                return n.dot(&w.cross(&w.cross(&places[i])))
+                    - n.dot(&omega.cross(&arm_rate))
+                    - sliding.dot(&(normal_rates[i] + along * k))
+                    - along.dot(&normal_rates[i]);
+            }
             let turned = turn.transpose() * passing[i];
             let bend = turned.dot(&(supports[i].bend * turned));
             let fictitious = (w - omega).cross(&normal_rates[i]) - omega.cross(&passing[i]);
@@ -146,13 +162,14 @@ impl Situation {
             spin,
             sensed: std::array::from_fn(|i| [0, 1].map(|k: usize| frames[i].column(k).dot(&places[i]))),
             arms,
-            frames,
+            normals,
             angles,
             rates,
             accelerations,
             forces,
             torques,
             opening: by_normals.determinant(),
+            touched,
         }
     }
 

@@ -5,7 +5,8 @@ use super::solid::ConvexSolid;
 use crate::mechanics::moving::{Course, PushedPalm};
 use nalgebra::Matrix3;
 
-/// A plane palm that turns about a horizontal hinge, and rises from there in a direction that stays.
+/// A palm that turns about a horizontal hinge, and rises from there in a direction that stays: a plane, or a sphere that is fixed to
+/// it and touches that plane at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpatialPalm {
     /// The direction in which it rises, an angle from the X axis in radians.
@@ -14,6 +15,17 @@ pub struct SpatialPalm {
     pub hinge: [f64; 3],
     /// The moment of inertia about the hinge.
     pub inertia: f64,
+    /// In 1/m: 0 for a plane, above it for a sphere that bulges towards the body, below it for a hollow one.
+    pub curvature: f64,
+    /// Where a sphere touches the plane: along the hinge and up the palm, from the point of the hinge, in metres. Its centre is on the plane's normal there.
+    pub touch: [f64; 2],
+}
+
+impl SpatialPalm {
+    /// Whether it is a plane.
+    pub fn is_flat(&self) -> bool {
+        self.curvature == 0.0
+    }
 }
 
 /// What moves the palms. Angles are those from the horizontal to the palm, positive where it rises.
@@ -57,6 +69,13 @@ pub enum SpatialSceneError {
          other two together"
     )]
     Inertia,
+    /// A sphere in which the body cannot be seen to roll.
+    #[error(
+        "palm {palm} is hollow with a radius of {radius} m, in which the body cannot be seen to roll: where its outward normal is \
+         ({x:.4}, {y:.4}, {z:.4}) it may have a radius of curvature of {own:.4} m; a hollow palm has to be flatter than all of the \
+         body, its curvature be above {least:.4} 1/m"
+    )]
+    Hollow { palm: usize, radius: f64, x: f64, y: f64, z: f64, own: f64, least: f64 },
     /// No times were asked for.
     #[error("there are no sample times; give at least one")]
     NoTimes,
@@ -72,6 +91,12 @@ pub enum SpatialSceneError {
     /// Three contacts do not hold the body.
     #[error("the palms' normals lie in one plane at the start; give other azimuths or angles")]
     Flat,
+    /// There is no pose.
+    #[error(
+        "at the start there is no place where the body touches all three palms, each on the half of its sphere that faces the plane's \
+         normal; make curvatures smaller, or move the points where spheres touch their planes"
+    )]
+    NoContact,
 }
 
 impl SpatialScene {

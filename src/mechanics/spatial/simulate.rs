@@ -2,7 +2,7 @@
 
 use super::integrate::{TimedState, steps};
 use super::orientation::Orientation;
-use super::scene::{SpatialScene, SpatialSceneError};
+use super::scene::{SpatialPalm, SpatialScene, SpatialSceneError};
 use nalgebra::Vector3;
 
 /// One palm at one moment. SI units, angles in radians.
@@ -14,7 +14,7 @@ pub struct SpatialPalmMoment {
     pub acceleration: f64,
     /// Where the contact is on the palm: along the hinge and up the palm, from the hinge's point. What the sensor reads.
     pub sensed: [f64; 2],
-    /// The palm's normal in the world, towards the body.
+    /// The palm's normal at the contact in the world, towards the body.
     pub normal: Vector3<f64>,
     /// The contact in the world.
     pub contact: Vector3<f64>,
@@ -54,7 +54,7 @@ impl SpatialMoment {
         let at = state.situation(scene);
         let back = state.orientation.matrix().transpose();
         let palm = |i: usize| {
-            let normal = at.frames[i].column(2).into_owned();
+            let normal = at.normals[i];
             SpatialPalmMoment {
                 angle: at.angles[i],
                 rate: at.rates[i],
@@ -99,6 +99,8 @@ pub enum SpatialEnded {
     ContactLost { palm: usize, time: f64 },
     /// The palms' normals came to lie in one plane.
     Flat { time: f64 },
+    /// There was no place any more where the body touches all palms, each on the half of its sphere that faces the plane's normal.
+    NoContact { time: f64 },
     /// The integrator gave up, for instance because the tolerance cannot be met.
     Failed { time: f64, why: String },
 }
@@ -152,6 +154,7 @@ pub fn simulate_solid(scene: &SpatialScene, times: &[f64]) -> Result<SpatialTraj
         rate: Vector3::from(scene.rate),
         pushed: scene.start_of_palms(),
         work: 0.0,
+        near: None,
     };
     let mut moments = Vec::with_capacity(times.len());
     let start_energy = SpatialMoment::of(scene, &now).energy();
@@ -177,12 +180,28 @@ pub fn simulate_solid(scene: &SpatialScene, times: &[f64]) -> Result<SpatialTraj
 #[derive(Clone, Copy)]
 enum Breach {
     Flat,
+    NoContact,
     Pulls(usize),
 }
 
 fn breach(at: &TimedState, scene: &SpatialScene) -> Option<Breach> {
     let situation = at.situation(scene);
-    if situation.is_flat() { Some(Breach::Flat) } else { situation.pulling().map(Breach::Pulls) }
+    if situation.touched.is_none() {
+        Some(Breach::NoContact)
+    } else if situation.is_flat() {
+        Some(Breach::Flat)
+    } else {
+        situation.pulling().map(Breach::Pulls)
+    }
+}
+
+/// A contact this part of a radius from the axis of its sphere is about to leave the half that it may be on.
+const AT_RIM: f64 = 0.999_8;
+
+fn is_at_rim(at: &TimedState, scene: &SpatialScene) -> bool {
+    let places = at.situation(scene).touched.unwrap_or_default();
+    let out = |(palm, [along, up]): (&SpatialPalm, [f64; 2])| palm.curvature.abs() * along.hypot(up);
+    scene.palms.iter().zip(places).any(|pair| out(pair) > AT_RIM)
 }
 
 /// The state at time `end`; or an end before it, with the last state in contact unless the integrator gave up.
@@ -199,6 +218,7 @@ fn advance(
             let (at, last) = locate(scene, held, step.time, first);
             let ended = match last {
                 Breach::Flat => SpatialEnded::Flat { time: at.time },
+                Breach::NoContact => SpatialEnded::NoContact { time: at.time },
                 Breach::Pulls(palm) => SpatialEnded::ContactLost { palm, time: at.time },
             };
             return Err(Box::new((Some(at), ended)));
@@ -207,6 +227,10 @@ fn advance(
     }
     match failure {
         None => Ok(held),
+        // the integrator cannot step over the rim, and its last steps before it lose digits
+        Some(_) if is_at_rim(&held, scene) => {
+            Err(Box::new((None, SpatialEnded::NoContact { time: held.time })))
+        }
         Some(why) => Err(Box::new((None, SpatialEnded::Failed { time: held.time, why }))),
     }
 }

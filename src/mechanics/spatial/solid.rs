@@ -1,5 +1,6 @@
 //! A convex body in space that has been seen to be one, about its centre of mass.
 
+use super::curvature::{greater_tangential, greatest_radius};
 use super::form::{SolidForm, Support};
 use super::sphere::{Doubt, over_all_directions, positive_everywhere};
 use nalgebra::{Matrix3, Vector3};
@@ -96,6 +97,19 @@ impl ConvexSolid {
     pub fn support(&self, n: &Vector3<f64>) -> Support {
         let Support { extent, point, bend } = self.form.support(n);
         Support { extent: extent - self.centre.dot(n), point: point - self.centre, bend }
+    }
+
+    /// Whether the body rolls inside a sphere of a radius in metres: all of its radii of curvature are smaller for certain.
+    ///
+    /// # Errors
+    /// An outward normal in the body's frame, and how large a radius of curvature may be there.
+    pub fn rolls_in(&self, radius: f64) -> Result<(), (Vector3<f64>, f64)> {
+        let [_, slope, size] = bounds(&self.form, 1.0);
+        let own = |n: &Vector3<f64>| {
+            greatest_radius(&self.form, 1.0) + greater_tangential(&polynomial_part(&self.form, n), n)
+        };
+        positive_everywhere(|n| radius - own(n), slope, 1e-13 * (size + radius))
+            .map_err(|doubt| (doubt.direction, radius - doubt.value))
     }
 
     /// In cubic metres.

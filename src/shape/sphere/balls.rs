@@ -1,7 +1,8 @@
-//! What a convex body lies in where none of its radii of curvature is larger than a bound: the intersection of balls of that radius.
+//! What a convex body lies in where none of its radii of curvature is larger than a bound: the intersection of balls of that radius; and that of balls of several radii with
+//! half-spaces.
 //!
 //! The region is convex and is seen from a point inside. Over a triangle of directions it contains the tetrahedron whose corners are points inside of all balls, and it lies
-//! within the cone up to a tangent plane of any of the balls; both volumes are intervals rounded outward. The triangle with the largest difference is
+//! within the cone up to a tangent plane of any of them; both volumes are intervals rounded outward. The triangle with the largest difference is
 //! divided until what is left is small.
 
 use super::bounds::{BoundedRegion, SurfaceTouch, TouchError, check, middle};
@@ -26,19 +27,37 @@ pub fn ball_intersection(touches: &[SurfaceTouch], radius: f64) -> Result<Bounde
     if !(radius > 0.0 && radius.is_finite()) {
         return Err(TouchError::Radius(radius));
     }
+    balls_and_half_spaces(touches, &vec![radius; touches.len()])
+}
+
+/// The same with a radius for each contact; where that is infinite there is a half-space. The body lies in it where each contact is on the inside of a sphere of that radius
+/// that the body does not cross.
+///
+/// # Errors
+/// Where a contact or a radius cannot be used, no radius is finite, or the middle of all contacts is not inside of a ball or a half-space.
+///
+/// # Panics
+/// Where there are not as many radii as contacts.
+pub fn balls_and_half_spaces(touches: &[SurfaceTouch], radii: &[f64]) -> Result<BoundedRegion, TouchError> {
+    assert_eq!(touches.len(), radii.len(), "a radius for each contact");
+    check(touches)?;
+    if let Some(radius) = radii.iter().find(|radius| radius.is_nan() || **radius <= 0.0) {
+        return Err(TouchError::Radius(*radius));
+    }
+    if radii.iter().all(|radius| radius.is_infinite()) {
+        return Err(TouchError::Radius(f64::INFINITY));
+    }
     let inside = middle(touches);
     let mut balls = Vec::with_capacity(touches.len());
-    for (index, touch) in (1..).zip(touches) {
-        let centre = touch.point - touch.normal * radius - inside;
-        // larger by what rounding moves a centre, and by what a normal is off one
-        let off = radius * (1.0 - touch.normal.norm()).abs();
-        let rounded = 8.0 * f64::EPSILON * (radius + touch.point.norm() + inside.norm());
-        let ball = Ball { centre, radius: (radius + off + rounded).next_up() };
-        let room = ball.radius - centre.norm();
+    for ((index, touch), radius) in (1..).zip(touches).zip(radii) {
+        let (bound, room) = match radius.is_finite() {
+            true => Ball::at(touch, *radius, &inside),
+            false => Ball::half_space(touch, &inside),
+        };
         if room <= 0.0 || room.is_nan() {
             return Err(TouchError::Inconsistent { index, by: -room });
         }
-        balls.push(ball);
+        balls.push(bound);
     }
     let mut seen = Seen { balls, corners: Vec::new(), middles: HashMap::new() };
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
@@ -75,26 +94,83 @@ pub fn ball_intersection(touches: &[SurfaceTouch], radius: f64) -> Result<Bounde
     Ok(BoundedRegion { volume, surface })
 }
 
-/// A ball, its centre from the point inside.
-struct Ball {
-    centre: Vector3<f64>,
-    radius: f64,
+/// A ball or a half-space, about the point inside.
+enum Ball {
+    Round {
+        centre: Vector3<f64>,
+        radius: f64,
+    },
+    /// `normal . x <= offset`.
+    HalfSpace {
+        normal: Vector3<f64>,
+        offset: f64,
+    },
+}
+
+fn points(vector: &Vector3<f64>) -> [Interval; 3] {
+    <[f64; 3]>::from(*vector).map(Interval::point)
+}
+
+fn product(a: &[Interval; 3], b: &[Interval; 3]) -> Interval {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 impl Ball {
+    /// That of a radius which touches at a contact, and how far the point inside is from its surface.
+    fn at(touch: &SurfaceTouch, radius: f64, inside: &Vector3<f64>) -> (Ball, f64) {
+        let centre = touch.point - touch.normal * radius - inside;
+        // larger by what rounding moves a centre, and by what a normal is off one
+        let off = radius * (1.0 - touch.normal.norm()).abs();
+        let rounded = 8.0 * f64::EPSILON * (radius + touch.point.norm() + inside.norm());
+        let radius = (radius + off + rounded).next_up();
+        (Ball::Round { centre, radius }, radius - centre.norm())
+    }
+
+    fn half_space(touch: &SurfaceTouch, inside: &Vector3<f64>) -> (Ball, f64) {
+        let from_inside =
+            std::array::from_fn(|i| Interval::point(touch.point[i]) - Interval::point(inside[i]));
+        let reach = product(&points(&touch.normal), &from_inside);
+        (Ball::HalfSpace { normal: touch.normal, offset: reach.high() }, reach.low())
+    }
+
     /// How far one comes in a direction.
     fn exit(&self, direction: &Vector3<f64>) -> f64 {
-        let along = self.centre.dot(direction) / direction.norm_squared();
-        let room = (self.radius * self.radius - self.centre.norm_squared()) / direction.norm_squared();
-        along + (along * along + room).max(0.0).sqrt()
+        match self {
+            Ball::Round { centre, radius } => {
+                let along = centre.dot(direction) / direction.norm_squared();
+                let room = (radius * radius - centre.norm_squared()) / direction.norm_squared();
+                along + (along * along + room).max(0.0).sqrt()
+            }
+            Ball::HalfSpace { normal, offset } => match normal.dot(direction) {
+                along if along > 0.0 => offset / along,
+                _ => f64::INFINITY,
+            },
+        }
     }
 
     /// Whether a place is inside for certain.
     fn contains(&self, place: &Vector3<f64>) -> bool {
-        let square = (0..3).fold(Interval::ZERO, |sum, i| {
-            sum + (Interval::point(place[i]) - Interval::point(self.centre[i])).sqr()
-        });
-        square.high() <= Interval::point(self.radius).sqr().low()
+        match self {
+            Ball::Round { centre, radius } => {
+                let square = (0..3).fold(Interval::ZERO, |sum, i| {
+                    sum + (Interval::point(place[i]) - Interval::point(centre[i])).sqr()
+                });
+                square.high() <= Interval::point(*radius).sqr().low()
+            }
+            Ball::HalfSpace { normal, offset } => product(&points(normal), &points(place)).high() <= *offset,
+        }
+    }
+
+    /// The tangent plane at a place near its surface: a normal, not of length one, and how far along it the plane is, no nearer than it is.
+    fn tangent(&self, place: &Vector3<f64>) -> Option<([Interval; 3], Interval)> {
+        match self {
+            Ball::Round { centre, radius } => {
+                let normal = points(&(place - centre));
+                let long = (normal[0].sqr() + normal[1].sqr() + normal[2].sqr()).image(Function::Sqrt)?;
+                Some((normal, Interval::point(*radius) * long + product(&normal, &points(centre))))
+            }
+            Ball::HalfSpace { normal, offset } => Some((points(normal), Interval::point(*offset))),
+        }
     }
 }
 
@@ -200,12 +276,7 @@ impl Seen {
         let nearest =
             self.balls.iter().map(|ball| (ball.exit(&middle), ball)).min_by(|a, b| a.0.total_cmp(&b.0));
         let high = nearest.map_or(f64::INFINITY, |(exit, ball)| {
-            let normal = <[f64; 3]>::from(middle * exit - ball.centre).map(Interval::point);
-            let centre = <[f64; 3]>::from(ball.centre).map(Interval::point);
-            let product = |a: &[Interval; 3], b: &[Interval; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-            let long = (normal[0].sqr() + normal[1].sqr() + normal[2].sqr()).image(Function::Sqrt);
-            let Some(long) = long else { return f64::INFINITY };
-            let offset = Interval::point(ball.radius) * long + product(&normal, &centre);
+            let Some((normal, offset)) = ball.tangent(&(middle * exit)) else { return f64::INFINITY };
             let mut over = cone;
             for direction in &enclosed {
                 let along = product(&normal, direction);

@@ -143,6 +143,24 @@ fn balls_leave_less_than_half_spaces() {
     assert!(found.contains(volume) && found.width() < 1.1e-3 * volume, "{found} {volume}");
 }
 
+/// A ball that a plane cuts: a cap by Archimedes, `pi h^2 (3 r - h)/3`; and a half-space alone leaves what is unbounded.
+#[test]
+fn a_ball_and_a_half_space_leave_a_cap() {
+    let at = |z: f64, side: f64| SurfaceTouch { point: Vector3::z() * z, normal: Vector3::z() * side };
+    let touches = [at(0.5, 1.0), at(-0.3, -1.0)];
+    // the ball of 2 m whose top is at 0.5, above -0.3
+    let found = balls_and_half_spaces(&touches, &[2.0, f64::INFINITY]).unwrap();
+    let (r, h) = (2.0f64, 0.8f64);
+    let volume = PI * h * h * (3.0 * r - h) / 3.0;
+    assert!(found.volume.contains(volume) && found.volume.width() < 1.1e-3 * volume, "{}", found.volume);
+    assert!(found.volume.low() <= found.surface.volume() + 1e-9);
+    let same = balls_and_half_spaces(&touches, &[2.0, 2.0]).unwrap();
+    assert_eq!(same, ball_intersection(&touches, 2.0).unwrap());
+    for radii in [[f64::INFINITY; 2], [1.0, -1.0], [f64::NAN, 1.0]] {
+        assert!(matches!(balls_and_half_spaces(&touches, &radii), Err(TouchError::Radius(_))));
+    }
+}
+
 /// By Steiner's formula for a cube: `s^3 + 6 s^2 r + 3 pi s r^2 + 4/3 pi r^3`.
 #[test]
 fn a_rounded_cube_is_steiners() {

@@ -67,6 +67,7 @@ impl Dice {
             turn: [self.swing(0, 6000), self.swing(500, 2600), self.swing(0, 6000)],
             azimuths: [self.real(-300, 300), self.real(1800, 2400), self.real(3900, 4500)],
             palms: [0; 3].map(|_| self.swing(600, 1200)),
+            spheres: [None, None, None],
         }
     }
 }

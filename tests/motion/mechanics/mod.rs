@@ -14,4 +14,5 @@ mod drawn;
 mod quaternions;
 mod sheet;
 mod spatial;
+mod spheres;
 mod terrain;
