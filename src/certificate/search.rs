@@ -296,3 +296,34 @@ fn judge(part: &Part, cell: &mut Cell, workspace: &mut Workspace) -> BoxJudgemen
     });
     coordinate.map_or(BoxJudgement::Left, |coordinate| BoxJudgement::Halved(cell.halves(coordinate)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::region::Region;
+    use super::super::rows::RegionRows;
+    use super::Interrupted;
+    use crate::system::System;
+    use std::path::Path;
+
+    /// Boxes at which an interrupt comes are open as they were, and what comes of them later is the same. Oracle: a search without one.
+    #[test]
+    fn boxes_that_are_cut_short_are_open_again() {
+        let text = "system \"A saddle\"\nstate x, y\ndrift f\n  x' = 0\n  y' = 0\noutput x^3/3 - x/8 + x*y, y\n\
+                    sample\n  x in [-1, 1]\n  y in [-1, 1]\nclaim 1: x = x\n";
+        let mut system = System::parse("saddle.proof", text, Path::new(".")).unwrap();
+        let mut region = Region::new(&mut system, RegionRows::default(), &Default::default(), None).unwrap();
+        let part = &region.problem.parts[0];
+        let mut turns = 0;
+        while let (Some(turn), true) = (region.searches.searches[0].turn(), turns < 12) {
+            let search = &mut region.searches.searches[0];
+            let mut other = search.clone();
+            assert_eq!(search.step(part, turn, u64::MAX, false, &true.into()), Err(Interrupted));
+            assert_eq!(*search, other);
+            let whole = other.step(part, turn, u64::MAX, false, &false.into());
+            assert_eq!(search.step(part, turn, u64::MAX, false, &false.into()), whole);
+            assert_eq!(*search, other);
+            turns += 1;
+        }
+        assert!(turns > 5 && region.boxes() > 20, "{turns} turns, {} boxes", region.boxes());
+    }
+}

@@ -528,7 +528,7 @@ fn interrupts_at_any_box_change_nothing() {
         let limits = Limits { seconds: None, boxes: Some(BOXES - region.boxes()) };
         std::thread::scope(|scope| {
             scope.spawn(|| {
-                std::thread::sleep(Duration::from_micros(200 * runs));
+                std::thread::sleep(Duration::from_micros(100 << (runs / 2)));
                 interrupt.store(true, Ordering::Relaxed);
             });
             region.run(limits, &interrupt, &|_| ());
