@@ -193,6 +193,9 @@ def check(record, folder, systems, seed):
 
 def main(arguments):
     """The command; returns its exit status."""
+    if not arguments or arguments[0].startswith("-"):
+        print(__doc__)
+        return 0 if arguments[:1] in (["-h"], ["--help"]) else 2
     (path, _, folder), counts, systems = [*arguments, "--proofs", "."][:3], Counter(), {}
     try:
         with open(path, encoding="utf-8") as file:

@@ -319,7 +319,7 @@ class Damage(Folder):
         for module in ("recheck", "proof_file", "graph"):
             with open(os.path.join(os.path.dirname(recheck.__file__), module + ".py"), encoding="utf-8") as file:
                 lines += sum(1 for _ in file)
-        self.assertLessEqual(lines, 583)
+        self.assertLessEqual(lines, 586)
 
 
 if __name__ == "__main__":
