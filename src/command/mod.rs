@@ -31,6 +31,7 @@ mod rank;
 mod recheck;
 mod reparametrise;
 mod shards;
+mod slow_told;
 mod stress;
 mod terminal;
 mod threads;

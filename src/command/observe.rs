@@ -1,11 +1,11 @@
 //! `palmistry observe`: a body or another system in motion, and observers that recover its state.
 
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
-use super::observe_slow::KeptSlow;
 use super::observe_stream;
 use super::observe_studies::studies;
 use super::output::{Files, Form, progress};
 use super::shards::{NO_WHOLE, Parts, Shards};
+use super::slow_told::KeptSlow;
 use super::{Status, Unusable};
 use clap::Args;
 use indicatif::ProgressBar;

@@ -3,63 +3,9 @@
 use super::interrupt::{begin_to_tell, interrupted};
 use super::observe::Observe;
 use super::output::{Files, Form, progress};
+use super::slow_told::{KeptSlow, SlowTold};
 use super::{Status, Unusable};
-use palmistry::experiment::slow::{SlowAnswers, SlowExperiment, SlowScene, StudyRow, slow_study};
-use palmistry::report::{SlowObserved, slow_json, slow_page, slow_text};
-use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
-
-/// A scene that was observed, and how that is to be told.
-struct SlowTold {
-    experiment: SlowExperiment,
-    answers: SlowAnswers,
-    study: Vec<StudyRow>,
-    out: Option<PathBuf>,
-    form: Form,
-    no_times: bool,
-}
-
-impl SlowTold {
-    fn tell(mut self, mut files: Files) -> miette::Result<Status> {
-        if self.no_times {
-            self.answers.seconds = [f64::NAN; 3];
-            for row in &mut self.study {
-                let ways = row.thesis.iter_mut().chain([&mut row.quadrature, &mut row.together]);
-                ways.for_each(|way| way.seconds = f64::NAN);
-            }
-        }
-        let observed = SlowObserved {
-            experiment: &self.experiment,
-            answers: &self.answers,
-            study: &self.study,
-            interrupted: interrupted(),
-        };
-        let json = slow_json(&observed);
-        if let Some(folder) = &self.out {
-            files.text(&folder.join("index.html"), &slow_page(&observed));
-            files.json(&folder.join("observe.json"), &json);
-            files.announce(&folder.join("index.html"));
-        }
-        // readings that no body explains are not a shape
-        let status = Status::of(self.answers.explained && self.study.iter().all(|row| row.silent == 0));
-        files.print(self.form, json, || slow_text(&observed), status)
-    }
-}
-
-/// What a study has come to: a body of many samples takes longer than an interrupt leaves.
-#[derive(Clone, Default)]
-pub(super) struct KeptSlow(Arc<Mutex<Option<SlowTold>>>);
-
-impl KeptSlow {
-    fn with<T>(&self, act: impl FnOnce(&mut Option<SlowTold>) -> T) -> T {
-        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
-    }
-
-    /// Tells it; nothing where there is nothing.
-    pub(super) fn tell(&self) -> Option<miette::Result<Status>> {
-        self.with(Option::take).map(|told| told.tell(Files::default()))
-    }
-}
+use palmistry::experiment::slow::{SlowExperiment, SlowScene, StudyRow, slow_study};
 
 impl Observe {
     /// What does not go with slow motion, or not together.

@@ -35,6 +35,7 @@ mod constraint;
 mod flow;
 mod integrals;
 mod linear;
+mod linearised;
 mod newton;
 mod refine;
 mod regular;

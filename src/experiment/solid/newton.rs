@@ -9,7 +9,7 @@ use super::UNKNOWNS;
 use super::change::{Change, Normal, Scale, shortened};
 use super::flow::Start;
 use super::linear::solved;
-use super::refine::Linear;
+use super::linearised::Linear;
 use super::whiten::ERRORS;
 use nalgebra::SMatrix;
 

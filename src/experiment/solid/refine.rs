@@ -1,13 +1,13 @@
 //! The likeliest state and errors of the readings at once: Gauss and Newton's method on both, errors eliminated by the filter.
 
-use super::change::{Change, Normal, Positive, Scale, shortened};
-use super::constraint::expanded;
+use super::change::{Positive, Scale, shortened};
 use super::flow::Start;
-use super::integrals::{Integrals, Rules};
+use super::integrals::Rules;
 use super::linear::cholesky;
+use super::linearised::{Linear, corrected};
 use super::newton::{About, Settled, Square};
-use super::vector::{PLACES, dot, symmetric};
-use super::whiten::{Deviations, ERRORS, Whitener};
+use super::vector::{PLACES, symmetric};
+use super::whiten::{Deviations, ERRORS};
 use super::{Rival, SolidReadings, SolidState, UNKNOWNS};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
@@ -35,103 +35,10 @@ pub(super) struct Refined {
     weighed: f64,
 }
 
-/// The readings less errors in units of their deviations.
-fn corrected(readings: &SolidReadings, errors: &[[f64; ERRORS]], deviations: &Deviations) -> SolidReadings {
-    let mut own = readings.clone();
-    for (palms, error) in own.palms.iter_mut().zip(errors) {
-        for (i, palm) in palms.iter_mut().enumerate() {
-            palm.place[0] -= deviations.contact * error[2 * i];
-            palm.place[1] -= deviations.contact * error[2 * i + 1];
-            palm.torque -= deviations.torque * error[6 + i];
-        }
-    }
-    own
-}
-
 /// What a whole step would gain, in units of the deviations squared, below which no other one is taken; and below which what was found counts where none gains anything. Contacts that are said to be exact are weighed with
 /// deviations that they have not, so that what is told a million times less than the rest still gains by far less.
 const GAINED: [f64; 2] = [1e-8, 1e-2];
 const EXACT_GAINED: f64 = 1e-18;
-
-/// All constraints about a start and errors of the readings.
-pub(super) struct Linear {
-    whitener: Whitener,
-    /// The constraints as they would be without errors that are taken away.
-    column: Vec<[f64; 3]>,
-    rows: Vec<[Change; 3]>,
-    pub normal: Normal,
-    ratio: f64,
-}
-
-/// The mean square of what follows on each other less each other, over the mean square.
-fn neumann(white: &[[f64; 3]]) -> f64 {
-    let squares: f64 = white.iter().flatten().map(|value| value * value).sum();
-    let steps: f64 =
-        white.windows(2).flat_map(|pair| (0..3).map(|i| (pair[1][i] - pair[0][i]).powi(2))).sum();
-    steps / squares * white.len() as f64 / (white.len() - 1) as f64
-}
-
-impl Linear {
-    pub fn about(
-        readings: &SolidReadings,
-        rules: &Rules,
-        deviations: &Deviations,
-        start: &Start,
-        errors: &[[f64; ERRORS]],
-    ) -> Option<Linear> {
-        let none = vec![[0.0; ERRORS]; readings.rows()];
-        let errors = if errors.is_empty() { &none } else { errors };
-        let own = corrected(readings, errors, deviations);
-        if !own.is_whole() {
-            return None;
-        }
-        let all = Integrals::of(&own, rules);
-        let samples = expanded(start, &all);
-        let whitener =
-            Whitener::of(start, &all, &samples, rules, deviations, readings.contact_deviation > 0.0)?;
-        let made = whitener.made_by(errors);
-        let column: Vec<[f64; 3]> = samples
-            .iter()
-            .zip(&made)
-            .map(|(at, made)| std::array::from_fn(|i| at.value[i] + made[i]))
-            .collect();
-        let chain = start.chain()?;
-        let rows: Vec<[Change; 3]> = samples.iter().map(|at| at.by.map(|row| chain.row(&row))).collect();
-        let white = whitener.white(&column);
-        let columns: Vec<Vec<[f64; 3]>> = (0..UNKNOWNS)
-            .map(|j| whitener.white(&rows.iter().map(|at| at.map(|row| row[j])).collect::<Vec<_>>()))
-            .collect();
-        let mut normal = Normal::none();
-        for (k, residual) in white.iter().enumerate() {
-            for i in 0..3 {
-                let row: Change = std::array::from_fn(|j| columns[j][k][i]);
-                normal.add(residual[i], &row);
-            }
-        }
-        let ratio = neumann(&white);
-        let multipliers = whitener.multipliers(&column);
-        normal.cost = 0.0;
-        normal.gradient = [0.0; UNKNOWNS];
-        for ((value, rows), by) in column.iter().zip(&rows).zip(&multipliers) {
-            normal.cost += dot(value, by);
-            for i in 0..3 {
-                for j in 0..UNKNOWNS {
-                    normal.gradient[j] += rows[i][j] * by[i];
-                }
-            }
-        }
-        normal.cost.is_finite().then_some(Linear { whitener, column, rows, normal, ratio })
-    }
-
-    /// The likeliest errors after a step.
-    pub fn errors(&self, step: &Change) -> Vec<[f64; ERRORS]> {
-        let left = |(value, rows): (&[f64; 3], &[Change; 3])| {
-            std::array::from_fn(|i| value[i] + rows[i].iter().zip(step).map(|(a, b)| a * b).sum::<f64>())
-        };
-        let column: Vec<_> = self.column.iter().zip(&self.rows).map(left).collect();
-        self.whitener.likely(&self.whitener.multipliers(&column))
-    }
-}
 
 /// Above so many times as many squares as there are constraints nothing is explained, and no minimum is looked for more closely.
 const HOPELESS: f64 = 3.0;
