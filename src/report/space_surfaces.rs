@@ -18,6 +18,8 @@ pub enum SurfaceKind {
     HalfSpaces,
     /// What balls leave where the greatest radius of curvature is known.
     Balls,
+    /// What the balls of hollow palms leave.
+    HollowPalms,
 }
 
 impl SurfaceKind {
@@ -29,6 +31,7 @@ impl SurfaceKind {
             SurfaceKind::Hull => "hull of the contacts",
             SurfaceKind::HalfSpaces => "half-spaces",
             SurfaceKind::Balls => "balls of the greatest radius of curvature",
+            SurfaceKind::HollowPalms => "balls of the hollow palms",
         }
     }
 
@@ -40,6 +43,7 @@ impl SurfaceKind {
             SurfaceKind::Hull => "hull",
             SurfaceKind::HalfSpaces => "half_spaces",
             SurfaceKind::Balls => "balls",
+            SurfaceKind::HollowPalms => "hollow_palms",
         }
     }
 }
@@ -89,6 +93,7 @@ pub fn space_surfaces(observed: &SpaceObserved<'_>, rings: usize) -> Vec<SpaceSu
         (SurfaceKind::Hull, region(&shape.hull)),
         (SurfaceKind::HalfSpaces, planes),
         (SurfaceKind::Balls, shape.balls.as_ref().and_then(region)),
+        (SurfaceKind::HollowPalms, shape.hollow.as_ref().and_then(region)),
     ];
     all.into_iter()
         .filter_map(|(kind, surface)| Some(SpaceSurface { kind, surface: surface? }))
