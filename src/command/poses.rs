@@ -59,7 +59,7 @@ pub(crate) struct Poses {
     /// Poses of plans have to stand it that either palm is off by this, rad.
     #[arg(long, value_name = "RAD", default_value_t = 0.0)]
     tolerance: f64,
-    /// Nodes along a side of the grid of palm angles for plans and pictures; two and four times as many are tried where it has no plan.
+    /// Nodes along a side of the grid of palm angles for plans and pictures; two and four times as many are tried where it has no plan, up to 200.
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(4..=200))]
     grid: u64,
     /// How often the certificate halves its squares.

@@ -60,11 +60,24 @@ pub fn grip(solid: &Solid, turn: &Square<3>, palms: &[Square<3>; 3]) -> Grip {
     let normals = palms.each_ref().map(|palm| palm[2].clone());
     let outward = normals.each_ref().map(|n| apply(&back, &n.each_ref().map(|x| -x)));
     let centre = solve(normals, outward.each_ref().map(|n| solid.support(n)));
-    let contacts = std::array::from_fn(|i| {
-        let body = solid.point(&outward[i]);
-        let world = sum(&centre, &apply(turn, &body));
-        let sensed = palms[i].each_ref().map(|axis| dot(axis, &world));
-        SolidContact { world, body, outward: outward[i].clone(), sensed }
-    });
-    Grip { centre, contacts }
+    Grip::about(solid, turn, palms, centre, outward)
+}
+
+impl Grip {
+    /// With the centre of mass in its place and the outward normals at the contacts, in the body's frame.
+    pub(super) fn about(
+        solid: &Solid,
+        turn: &Square<3>,
+        palms: &[Square<3>; 3],
+        centre: Vector<3>,
+        outward: [Vector<3>; 3],
+    ) -> Grip {
+        let contacts = std::array::from_fn(|i| {
+            let body = solid.point(&outward[i]);
+            let world = sum(&centre, &apply(turn, &body));
+            let sensed = palms[i].each_ref().map(|axis| dot(axis, &world));
+            SolidContact { world, body, outward: outward[i].clone(), sensed }
+        });
+        Grip { centre, contacts }
+    }
 }

@@ -4,7 +4,7 @@
 //! `c + R X(u) = s - rho R u`. With a plane instead it is `m . (c + R X(-R^T m)) = 0`. These are solved for the centre of mass and the normals by Newton's method with
 //! differences for derivatives, so that no second derivative of the support function is needed.
 
-use super::grip::{Grip, SolidContact};
+use super::grip::Grip;
 use super::linear::{Square, Vector, apply, cross, difference, dot, scaled, solve, sum, transposed};
 use super::{Real, Solid};
 
@@ -116,13 +116,7 @@ pub fn grip_on(
     if !is_there {
         centre = [0; 3].map(|_| Real::UNDEFINED);
     }
-    let contacts = std::array::from_fn(|i| {
-        let body = solid.point(&outward[i]);
-        let world = sum(&centre, &apply(turn, &body));
-        let sensed = palms[i].each_ref().map(|axis| dot(axis, &world));
-        SolidContact { world, body, outward: outward[i].clone(), sensed }
-    });
-    Grip { centre, contacts }
+    Grip::about(solid, turn, palms, centre, outward)
 }
 
 #[cfg(test)]

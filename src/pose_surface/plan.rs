@@ -242,8 +242,9 @@ pub fn pose_plan(
     Err(NoPlan::NotConfirmed)
 }
 
-/// So many times as many nodes along a side are tried where a grid gives no plan.
+/// So many times as many nodes along a side are tried where a grid gives no plan, but no more than the second number: work grows with the square.
 const FINER: [usize; 2] = [2, 4];
+const MOST_NODES: usize = 200;
 
 /// The same on finer grids, one after the other, where this one gives no plan: between its nodes a fold may be nearer than a step. What the finest says is told.
 ///
@@ -256,7 +257,8 @@ pub fn finer_pose_plan(
     goal: PlanGoal,
 ) -> Result<PosePlan, NoPlan> {
     let finer = |by: usize| pose_plan(body, &PoseGrid::new(body, limits, by * grid.side), limits, goal);
-    FINER.into_iter().fold(pose_plan(body, grid, limits, goal), |found, by| found.or_else(|_| finer(by)))
+    let sides = FINER.into_iter().filter(|by| by * grid.side <= MOST_NODES);
+    sides.fold(pose_plan(body, grid, limits, goal), |found, by| found.or_else(|_| finer(by)))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 
 use crate::common::{folder, json, palmistry, without_times, write};
 use palmistry::experiment::space::{
-    SpaceExperiment, SpaceReadings, SpaceScene, SpaceVerdict, relative_error,
+    SpaceExperiment, SpaceReadings, SpaceScene, SpaceUpdate, SpaceVerdict, relative_error,
 };
 use palmistry::shape::sphere::OuterBound;
 use std::f64::consts::PI;
@@ -33,6 +33,22 @@ fn experiment(text: &str) -> SpaceExperiment {
     SpaceExperiment::new(scene(text), None).unwrap_or_else(|why| panic!("{:?}", miette::Report::new(why)))
 }
 
+/// That a window of figure 5.3's ellipsoid has the state, the three moments and every pose.
+fn arrives(experiment: &SpaceExperiment, update: &SpaceUpdate) {
+    assert_eq!(update.verdict, SpaceVerdict::Fits);
+    let state = update.state.as_ref().unwrap();
+    let error = relative_error(&state.entries(), &experiment.true_entries(update).unwrap());
+    assert!(error < 1e-7, "{error:e}");
+    let mut moments = state.inertia_over_mass.symmetric_eigenvalues();
+    moments.as_mut_slice().sort_by(f64::total_cmp);
+    for (found, by_hand) in moments.iter().zip([1.0, 7.25 / 5.0, 10.25 / 5.0]) {
+        assert!((found - by_hand).abs() < 1e-7, "{moments}");
+    }
+    for error in experiment.errors(update) {
+        assert!(error.centre < 1e-7 && error.turn < 1e-7 && error.radius < 1e-7, "{error:?}");
+    }
+}
+
 /// The scene of figure 5.3: the state, the three moments of an ellipsoid, every pose, what was touched, and bounds about the volume of an ellipsoid.
 #[test]
 fn the_scene_of_figure_5_3_is_observed_with_nothing_known() {
@@ -41,18 +57,7 @@ fn the_scene_of_figure_5_3_is_observed_with_nothing_known() {
         SpaceExperiment::new(SpaceScene::read(&root.join(SHIPPED)).unwrap().unwrap(), None).unwrap();
     let answers = experiment.run(&|| false, &|| ());
     let [update] = answers.updates.as_slice() else { panic!("{}", answers.updates.len()) };
-    assert_eq!(update.verdict, SpaceVerdict::Fits);
-    let state = update.state.as_ref().unwrap();
-    let error = relative_error(&state.entries(), &experiment.true_entries(update).unwrap());
-    assert!(error < 1e-7, "{error:e}");
-    let mut moments = state.inertia_over_mass.symmetric_eigenvalues();
-    moments.as_mut_slice().sort_by(f64::total_cmp);
-    for (found, by_hand) in moments.iter().zip([5.0 / 5.0, 7.25 / 5.0, 10.25 / 5.0]) {
-        assert!((found - by_hand).abs() < 1e-7, "{moments}");
-    }
-    for error in experiment.errors(update) {
-        assert!(error.centre < 1e-7 && error.turn < 1e-7 && error.radius < 1e-7, "{error:?}");
-    }
+    arrives(&experiment, update);
     let shape = answers.shape.as_ref().unwrap();
     assert_eq!(shape.touches.len(), 531);
     let truth = |normal: &_| experiment.true_support(normal).unwrap().0;
@@ -76,18 +81,7 @@ fn hollow_palms_bound_what_they_touch() {
     let experiment = SpaceExperiment::new(SpaceScene::read(&shipped).unwrap().unwrap(), None).unwrap();
     let answers = experiment.run(&|| false, &|| ());
     let update = &answers.updates[0];
-    assert_eq!(update.verdict, SpaceVerdict::Fits);
-    let state = update.state.as_ref().unwrap();
-    let error = relative_error(&state.entries(), &experiment.true_entries(update).unwrap());
-    assert!(error < 1e-7, "{error:e}");
-    let mut moments = state.inertia_over_mass.symmetric_eigenvalues();
-    moments.as_mut_slice().sort_by(f64::total_cmp);
-    for (found, by_hand) in moments.iter().zip([5.0 / 5.0, 7.25 / 5.0, 10.25 / 5.0]) {
-        assert!((found - by_hand).abs() < 1e-7, "{moments}");
-    }
-    for error in experiment.errors(update) {
-        assert!(error.centre < 1e-7 && error.turn < 1e-7 && error.radius < 1e-7, "{error:?}");
-    }
+    arrives(&experiment, update);
     let shape = answers.shape.as_ref().unwrap();
     let volume = 20.0 / 3.0 * PI;
     assert!(matches!(shape.outer.as_ref().unwrap(), OuterBound::Unbounded { .. }));
