@@ -20,6 +20,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 import workbench  # noqa: F401, pictures that are the same each time
+from matplotlib.colors import LogNorm
 from palmistry import System
 
 ROBOT = """
@@ -128,8 +129,8 @@ claim.statement, claim.verdict
 # %% [markdown]
 # ## A second beacon
 #
-# With two all three states are seen, and without any longer derivative than the rates of the distances. How well they are seen differs from place to place:
-# the smallest singular value of the matrix of differentials says how far the readings change, at the least, for a unit change of the state.
+# With two all three states are observable, and without any longer derivative than the rates of the distances. How well differs from place to place: where each of
+# these is measured up to its own range, a state is known up to a standard deviation, in parts of what is known of it before. Drawn is that of the worst of the three.
 
 # %%
 two = System.parse(ROBOT.replace("OUTPUTS", "q1, q2"))
@@ -138,23 +139,25 @@ assert found.generic == 3 and found.histogram == {3: 1000} and found.certified =
 
 x, y = np.meshgrid(np.linspace(-3, 5, 161), np.linspace(-2.975, 2.975, 120))
 verdicts = two.verdicts({"x": x.ravel(), "y": y.ravel(), "theta": np.full(x.size, 0.5)})
-smallest = verdicts.smallest_singular_value.reshape(x.shape)
 assert (verdicts.rank == 3).all() and verdicts.certified.all()
+deviations = two.standard_deviations({"x": x.ravel(), "y": y.ravel(), "theta": np.full(x.size, 0.5)}, order=1)
+worst = np.max([deviations[name] for name in ("x", "y", "theta")], axis=0).reshape(x.shape)
 
 figure, axes = plt.subplots()
-drawn = axes.imshow(smallest, origin="lower", extent=(-3, 5, -3, 3), interpolation="nearest")
+drawn = axes.imshow(worst, origin="lower", extent=(-3, 5, -3, 3), interpolation="nearest", norm=LogNorm(), cmap="magma_r")
 axes.plot([0, 2], [0, 0], "w^", markeredgecolor="k")
-axes.set(title="How well two beacons tell the robot's state, at heading 0.5", xlabel="x", ylabel="y")
-figure.colorbar(drawn, label="smallest singular value")
+axes.set(title="How well the worst state is observable, at heading 0.5", xlabel="x", ylabel="y")
+figure.colorbar(drawn, label="standard deviation / prior (light: well observable)")
 plt.show()
 
 # %% [markdown]
-# Best between the beacons, less the farther one is to their left or right. At each of these 19320 states the rank is certified. That it is full at *all*
+# Best beside the beacons, poorly on their line, and the more so the farther out. It is the map that `palmistry verify` draws of this file. At each of these 19320 states the rank is certified. That it is full at *all*
 # states of a box, and not at those that one looks at, takes another engine, which covers the box with boxes on which a minor keeps its sign:
 
 # %%
-row = smallest[60]
-assert 0 <= x[0][np.argmax(row)] <= 2 and row[0] < 0.3 * row.max() and row[-1] < 0.3 * row.max()
+line, beside = worst[60], worst[110]
+assert 0 <= x[0][np.argmin(line)] <= 2 and line[0] > 2 * line.min() and line[-1] > 2 * line.min()
+assert beside[80] < 0.5 * line.min()
 certificate = two.certify(boxes=1000)
 assert certificate.proved_fraction == 1
 print(f"proved on {100 * certificate.proved_fraction:.0f} % of the box, by {certificate.json['boxes']} boxes")

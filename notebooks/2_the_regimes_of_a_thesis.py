@@ -52,9 +52,8 @@ for found in ranks.values():
 # %% [markdown]
 # ## Where it is seen well
 #
-# Full rank says nothing of how well. The smallest singular value of the matrix that remains tells it: in its valleys two states read nearly the same. All coordinates are held
-# but two; at every point of the maps the rank is full, and certified. A valley belongs to the words that were taken, the fewest that suffice at almost all states: longer ones may see
-# through it.
+# Full rank says nothing of how well. The standard deviation of a state over its prior one does, where each Lie derivative is measured up to its own range: on the ridges two states read
+# nearly the same. Drawn is the worst state, by all derivatives that were taken. All coordinates are held but two; at every point of the maps the rank is full, and certified.
 
 # %%
 HELD = {"r1": 1.5, "r2": 1.5, "omega0": 1, "s1": 1, "s2": 2, "phi1": 0.5, "omega1": 2, "phi2": 2, "omega2": 1.5, "rho": 0.5, "alpha1": 0, "alpha2": 0}
@@ -73,23 +72,23 @@ def middles(low, high):
 
 
 figure, all_axes = plt.subplots(2, 2, figsize=(8, 6))
-smallest = {}
+worst = {}
 for axes, (name, ((first, *across), (second, *up))) in zip(all_axes.flat, MAPS.items()):
     grid = dict(zip((first, second), np.meshgrid(middles(*across), middles(*up))))
     system = systems[name]
     states = {state: grid[state].ravel() if state in grid else np.full(POINTS**2, float(HELD[state])) for state in system.coordinates()}
     verdicts = system.verdicts(states)
     assert (verdicts.rank == ranks[name].dimension).all() and verdicts.certified.all(), name
-    smallest[name] = verdicts.smallest_singular_value.reshape(POINTS, POINTS)
-    drawn = axes.imshow(smallest[name], origin="lower", extent=(*across, *up), aspect="auto", norm=LogNorm(), interpolation="nearest")
+    deviations = system.standard_deviations(states)
+    worst[name] = np.max([deviations[unknown] for unknown in deviations], axis=0).reshape(POINTS, POINTS)
+    drawn = axes.imshow(worst[name], origin="lower", extent=(*across, *up), aspect="auto", norm=LogNorm(), cmap="magma_r", interpolation="nearest")
     axes.set(title=REGIMES[name], xlabel=first, ylabel=second)
     figure.colorbar(drawn, ax=axes)
-figure.suptitle("Smallest singular value of what the palms do not tell by themselves")
+figure.suptitle("Standard deviation of the worst state over its prior one (light: well observable)")
 plt.show()
 
 # %% [markdown]
-# Rows and columns are scaled to one size first, so that units do not matter; a column that fades as a whole does not show there. It shows in how well each state is seen for itself: a
-# body that does not turn tells nothing of its radii, and the slower it turns the less.
+# The number does not depend on units. A body that does not turn tells nothing of its radii, and the slower it turns the less:
 
 # %%
 same_rate = systems["same_rate"]

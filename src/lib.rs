@@ -61,6 +61,10 @@
 
 // Each module is a floor and imports only from those above it here.
 
+// what strangers wrote: how it is shown, how much of it is taken in
+#[doc(hidden)]
+pub mod foreign;
+
 // files: read within bounds, written whole or not at all
 #[doc(hidden)]
 pub mod file;
@@ -83,6 +87,9 @@ pub mod import;
 // what was found, evaluated again by code that shares nothing with what found it
 pub mod checker;
 
+// inequalities: signs, sums of squares, boxes
+pub(crate) mod inequality;
+
 // Lie derivatives, codistribution, conditions
 pub mod observability;
 
@@ -91,9 +98,6 @@ pub mod sweep;
 
 // full rank on boxes
 pub mod certificate;
-
-// inequalities: signs, sums of squares, boxes
-pub(crate) mod inequality;
 
 // the exact sets on which a rank drops
 #[doc(hidden)]

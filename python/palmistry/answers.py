@@ -261,7 +261,8 @@ class Verdicts(NamedTuple):
     rank: numpy.ndarray
     #: bool. Whether it is proved for this very state.
     certified: numpy.ndarray
-    #: float64. Of the matrix that remains without unit rows, after equilibration; NaN where nothing remains.
+    #: float64. Of the matrix that remains without unit rows, after equilibration: how hard the rank is to decide, and not how well a state is
+    #: observable (`System.standard_deviations`); NaN where nothing remains.
     smallest_singular_value: numpy.ndarray
     #: float64. The largest singular value over the smallest, good to some percent.
     condition: numpy.ndarray

@@ -53,11 +53,15 @@ class Expression:
 def spend(work):
     Expression.work += work
     if Expression.work > WORK:
-        refuse(f"more work than {WORK} nodes")
+        refuse(f"too much work: more than {WORK} nodes")
 
 Node = cache(Expression)
 def refuse(why): raise NotImplementedError(why)
-def short(x): return x if (x.numerator * x.denominator).bit_length() < LONGEST else refuse("numbers of great length")
+def short(x):
+    """A fraction, and the work of an operation on it: as the square of its length."""
+    length = x.numerator.bit_length() + x.denominator.bit_length()
+    spend((length // 64) ** 2 // 64)
+    return x if length < LONGEST else refuse("numbers of great length")
 def number(value): return Node("number", short(Fraction(value)))
 def symbol(name): return Node("symbol", name)
 def call(kind, x): return turned(x)[kind == "cos"] if kind in ("sin", "cos") else Node(kind, x)

@@ -1,27 +1,19 @@
-"""Proof files as matrices of expressions: a text becomes one of Python, token by token. What is not read is refused."""
+"""Proof files as matrices of expressions. What is not read is refused."""
 
 import os
 import re
+import stat
 from collections import defaultdict
 from functools import cache, reduce
-from operator import add, eq, ge, gt, le, lt, ne, neg, sub
+from operator import add, neg, sub
 
-from .graph import SLOPES, Map, call, derivation, number, put_in, refuse, symbol
+from .graph import Map, call, derivation, number, put_in, refuse, spend, symbol
+from .proof_parser import HOLDS, NAME, Parser, texts, without_comments
 
-NAME = r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*'*"
-TOKEN = re.compile(rf"(?P<at>\bat\s*\{{)|(?P<call>{NAME})\s*\(|(?P<name>{NAME})|(?P<mark>[<>!]=|[-+*/^()\[\],;=<>}}])"
-                   r"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:e-?\d{1,3}\b)?)|(?P<other>\S)")
-ENTRY = re.compile(r"^\s*(?=(?:system|use|state|param|angle|known|unknown|initial|experiments|let|drift|input|field"
+ENTRY = re.compile(r"^[ \t]*(?=(?:system|use|state|param|angle|known|unknown|initial|experiments|let|drift|input|field"
                    r"|output|sample|claim|erratum|damaged|scan|convention|loose|definition|undecided|set|pole|map|line"
                    r"|reduction)\b)", re.M)
-MARKS = {"^": "**", "=": "==", "[": "M([[", ";": "], [", "]": "]])", "}": ")"}
-HOLDS = {"=": eq, "!=": ne, "<": lt, "<=": le, ">": gt, ">=": ge}  # of two sides, or of a sign and zero
-
-def python(token):
-    """A token as Python has it: `M` makes a matrix, `N` has the names, `F` the functions and `Q` the numbers."""
-    kind, text = token.lastgroup, token[token.lastgroup]
-    return {"call": f'F["{text}"](', "name": f'N["{text}"]', "number": f'Q("{text}")', "at": ".at(",
-            "mark": f" {MARKS.get(text, text)} "}.get(kind) or refuse(f"'{text}'")
+LARGEST, MOST_CLAIMS = 16 << 20, 100_000  # bytes of a proof file; entries of one
 
 def each(do, *of): return Matrix(tuple(do(*x) for x in zip(*rows, strict=True)) for rows in zip(*of, strict=True))
 def entries(x): return [entry for row in x for entry in row]
@@ -31,8 +23,7 @@ def named(x): return single(x) if single(x).kind == "symbol" else refuse("an exp
 def dot(a, b): return sum((x * y for x, y in zip(a, b, strict=True)), number(0))
 
 class Relation(tuple):
-    """Two sides, and what stands between them; of the first of a chain Python asks whether it holds."""
-    def __bool__(self): return refuse("a chain of relations")
+    """Two sides, and what stands between them."""
 
 class Matrix(tuple):
     """Rows of expressions; a number is one of a single entry."""
@@ -40,7 +31,6 @@ class Matrix(tuple):
     def __add__(self, other): return each(add, self, other)
     def __sub__(self, other): return each(sub, self, other)
     def __truediv__(self, other): return self * one(single(other) ** -1)
-    def at(self, *given): return each(Map(put_in, [(named(x), single(y)) for x, _, y in given]).__getitem__, self)
 
     def __mul__(self, other):
         if len(self[0]) == len(other):
@@ -52,12 +42,10 @@ class Matrix(tuple):
         n = single(n).args[0]
         return one(single(self) ** int(n)) if n in range(-99, 100) else refuse("a power")
 
-for sign, relation in HOLDS.items():
-    setattr(Matrix, f"__{relation.__name__}__", lambda a, b, sign=sign: Relation((a, sign, b)))
-
 @cache
 def determinant(rows):
     """By the first of the rows, and the minors of the others."""
+    spend(len(rows) ** 3)
     terms = (number((-1) ** i) * x * determinant(tuple(row[:i] + row[i + 1:] for row in rows[1:]))
              for row in rows[:1] for i, x in enumerate(row) if x is not number(0))
     return sum(terms, number(0)) if rows else number(1)
@@ -81,23 +69,42 @@ FUNCTIONS = {
     "tan": lambda x: one(call("sin", single(x)) / call("cos", single(x))),
     "cot": lambda x: one(call("cos", single(x)) / call("sin", single(x))),
     "L": lambda *of: reduce(lambda x, field: each(field.along.__getitem__, x), reversed(of)),
-    **{name: lambda x, name=name: one(call(name, single(x))) for name in SLOPES if name.isalpha()}}
+    **{name: lambda x, name=name: one(call(name, single(x))) for name in ("sin", "cos", "exp", "log", "sqrt", "atan")}}
 
 class Field(Matrix):
     """The column of its rates, or what else has its name; and what is differentiated `along`."""
     along = None
 
+def read_text(path, most):
+    """The text of a plain file, of at most so many bytes: no pipe, and nothing without an end."""
+    if not stat.S_ISREG(os.stat(path).st_mode):
+        raise ValueError("it is no plain file")
+    with open(path, encoding="utf-8") as file:
+        text = file.read(most + 1)
+    if len(text) > most:
+        raise ValueError(f"it is longer than {most} bytes")
+    return text
+
+def digest(text):
+    """That of Fowler, Noll and Vo (variant 1a, 64 bits): it notices that a file was changed, and is no signature."""
+    found = 0xcbf29ce484222325
+    for byte in text.encode():
+        found = (found ^ byte) * 0x100000001b3 & 0xffffffffffffffff
+    return f"{found:016x}"
+
 class System:
     """A proof file: its states, fields, outputs and definitions, which are computed when they are asked for."""
 
     def __init__(self, path, depth=0):
-        with open(path, encoding="utf-8") as file:
-            text = re.sub(r'"[^"]*"|#[^\n]*', lambda x: " ".join(x[0].split()) * (x[0][0] == '"'), file.read())
-        self.source, self.names = "".join(text.split()), defaultdict(list)
+        whole = read_text(path, LARGEST)
+        text = re.sub(r'"[^"]*"|#[^\n]*', lambda x: " ".join(x[0].split()) * (x[0][0] == '"'), whole)
+        self.digest, self.names, self.claims = digest(whole) if depth == 0 else "", defaultdict(list), {}
         self.lets, self.rates, self.known = {}, {}, {}
-        self.space = {"__builtins__": {}, "M": blocks, "N": self, "Q": lambda text: one(number(text)),
-                      "F": {**FUNCTIONS, "d": self.differentials, "bracket": self.bracket}}
-        for entry in ENTRY.split(text if re.search(r"^\s*drift\b", text, re.M) else text + "\ndrift signals"):
+        self.functions = {**FUNCTIONS, "d": self.differentials, "bracket": self.bracket}
+        found = ENTRY.split(text if re.search(r"^[ \t]*drift\b", text, re.M) else text + "\ndrift signals")
+        if len(found) > MOST_CLAIMS:
+            refuse(f"more than {MOST_CLAIMS} entries")
+        for entry in found:
             kind, rest = (*entry.split(None, 1), "", "")[:2]
             if kind == "use":
                 name, other = re.fullmatch(r'(\w+) = "(.*)"\s*', rest).groups()
@@ -112,6 +119,9 @@ class System:
                 self.names["moving"] += [name.strip()] * (kind != "field")
             elif kind == "output":
                 self.names["output"].append(re.sub(":[^,]*", "", rest))
+            elif kind in ("claim", "erratum", "damaged", "scan", "convention", "loose"):
+                for name, said in texts(without_comments(entry)).items():
+                    self.claims.setdefault(name, said)
             elif kind in ("state", "param", "known", "initial", "unknown", "experiments"):
                 self.declare(kind, rest)
 
@@ -126,9 +136,12 @@ class System:
             self.names["unknown"] += waiting if rest[-1:] == ["unknown"] else []
             waiting = [] if "=" in rest or rest[-1:] in (["known"], ["unknown"]) else waiting
 
-    def read(self, text):
-        """The values between the commas of a text; Python computes what `python` made of it, where nothing else is at hand."""
-        return eval(f"[{TOKEN.sub(python, text)}]", self.space)
+    def read(self, text): return Parser(text, self).whole()
+    def number(self, text): return one(number(text))
+    def matrix(self, rows): return blocks(rows)
+    def relation(self, left, sign, right): return Relation((left, sign, right))
+    def call(self, name, of): return (self.functions.get(name) or refuse(f"'{name}'"))(*of)
+    def at(self, of, given): return each(Map(put_in, [(named(self[x]), single(y)) for x, y in given]).__getitem__, of)
 
     def __getitem__(self, name):
         first, _, rest = name.partition(".")
@@ -179,13 +192,19 @@ class System:
         return found if found in self.seen() else refuse(f"'{text}' is no output")
 
     def statement(self, text):
-        """What is asked, of what, the answer, and the conditions, of a statement that stands in the file."""
-        if "".join(text.split()) not in self.source:
-            refuse("the statement does not stand in the file")
-        claim, *where = re.split(r"\bwhere\b", re.split(r"\b(?:everywhere|except)\b", text)[0])
+        """What a claim asks, of what, the answer, and the conditions."""
+        claim, *where = re.split(r"\bwhere\b", re.split(r"\b(?:everywhere|except|on)\b", text)[0])
         conditions = [x for text in where for x in self.read(text)]
-        if found := re.fullmatch(r"\s*rank\s*(?:\((.*)\)\s*)?=\s*(\d+)\s*", claim, re.S):
-            return "rank", found[1] and self.read(found[1])[0], int(found[2]), conditions
-        if found := re.fullmatch(r"\s*((?:un)?(?:observable|identifiable))\s*\((.*)\)\s*", claim, re.S):
-            return found[1], [x for of in self.read(found[2]) for x in entries(of)], None, conditions
-        return "=", *self.read(claim), None, conditions
+        if found := re.fullmatch(r"rank(?:\((.*)\))?=(\d{1,4})", "".join(claim.split())):
+            of = claim[claim.index("(") + 1:claim.rindex(")")] if found[1] else None
+            return "rank", self.read(of)[0] if of else None, int(found[2]), conditions
+        if found := re.match(r"\s*(un)?(?:observable|identifiable)\s*\(", claim):
+            inside = claim[found.end():claim.rindex(")")]
+            return f"{found[1] or ''}observable", [x for of in self.read(inside) for x in entries(of)], None, conditions
+        of = self.read(claim)
+        return "=", of[0] if len(of) == 1 else refuse("several statements"), None, conditions
+
+    def left_out(self, text):
+        """The sets behind `except where`, each as its relations."""
+        sets = re.split(r"\bor\b", re.split(r"\bexcept\s+where\b", text)[1]) if re.search(r"\bexcept\b", text) else []
+        return [self.read(one) for one in sets]

@@ -1,15 +1,17 @@
 """A second checker of verdict files, which shares no line with the program that wrote them.
 
-    python -m palmistry.recheck VERDICTS.json [--proofs FOLDER]
+    python -m palmistry.recheck VERDICTS.json [--proofs FOLDER] [--quiet]
 
-From a verdict file (`palmistry prove proofs/ --verdicts FILE`) only witnesses, minors and boxes are taken; what they
-are about is read anew from the proof file (`proof_file`), into a graph of expressions (`graph`). `confirmed` is so;
-`consistent`: nothing speaks against it at random points modulo primes; what is not read is `not checked`, and why.
+From a verdict file (`palmistry prove proofs/ --verdicts FILE`) only witnesses, minors and boxes are taken; the claims that
+they are about are read anew from the proof files (`proof_file`), into a graph of expressions (`graph`). `confirmed`: the
+evidence implies the verdict. `half confirmed`: one half of it, such as that a rank is no less. `consistent`: nothing speaks
+against it at random points modulo primes. What is not read, or takes too much work, is `not checked`, and why.
 The exit status is 1 where something is not confirmed, and 2 for what is no verdict file.
 """
 
 import json
 import os
+import re
 import sys
 from collections import Counter
 from contextlib import suppress
@@ -18,14 +20,25 @@ from math import prod
 from operator import sub
 
 from .graph import Expression, Interval, Map, Modulo, Node, call, enclosed, number, put_in, refuse, symbol
-from .proof_file import HOLDS, System, determinant, each, entries
+from .proof_file import HOLDS, System, determinant, each, entries, read_text
+from .proof_parser import compact, parts
 
 PRIMES = (1 << 61) - 1, (1 << 89) - 1, (1 << 107) - 1
 POINTS, TRIES, WORDS, PIECES, MOST = 4, 40, 200, 500, 100_000  # compared; drawn; words; pieces of a box; nodes kept
+LARGEST = 1 << 28  # bytes of a verdict file
+KINDS = "refuted", "proved", "rank", "claimed_rank", "boxes", "unchecked"
+WORDS_OF_FINDINGS = "confirmed", "half confirmed", "consistent", "not checked", "not confirmed"
+
+def fraction(text):
+    """A number of a verdict file: digits, and no exponent that a few letters make long."""
+    return Fraction(text) if re.fullmatch(r"-?\d{1,4000}(?:/\d{1,4000})?", text) else doubt("no number")
 
 def gaps(relation): return entries(each(sub, relation[0], relation[2]))
 def holds(point, relation): return all(HOLDS[relation[1]](point[gap].sign(), 0) for gap in gaps(relation))
-def doubt(why): raise ArithmeticError(why)
+class Doubt(Exception):
+    """That something is not so."""
+
+def doubt(why): raise Doubt(why)
 
 def adds(row, basis, prime):
     """Whether a row is independent of a basis, to which it is added then, with a one in a column."""
@@ -76,82 +89,181 @@ def codistribution(system, point, patience):
     return rows
 
 def is_so(system, point, asked, of, claimed, conditions):
-    """Whether an identity, a rank at almost all states, or what is observable there is so at a point."""
+    """Whether an identity, a rank at almost all states, or what is observable there is so at a point; and the rank."""
     if asked == "=":
-        return all(point[gap] == 0 for gap in gaps(of)) if of[1] == "=" else refuse("an inequality")
+        return all(point[gap] == 0 for gap in gaps(of)) if of[1] == "=" else refuse("an inequality"), 0
     patience, basis = len(conditions) + 1 if conditions else 0, {}
     rows = each(point.__getitem__, of) if asked == "rank" and of else codistribution(system, point, patience)
     rank = sum(adds(row, basis, point.prime) for row in rows)
     if asked == "rank":
-        return rank == claimed
-    return all(adds(point.gradient(x, system.columns()), {**basis}, point.prime) == asked.startswith("un") for x in of)
+        return rank == claimed, rank
+    return all(adds(point.gradient(x, system.columns()), {**basis}, point.prime) == asked.startswith("un") for x in of), rank
 
-def at_random(system, record, evidence, seed):
+def at_random(system, record, _, seed):
     """An identity, or what is claimed of almost all states, at random points."""
-    statement, found, is_proved = system.statement(record["statement"]), 0, evidence.get("word", "proved") == "proved"
-    for point in points(system, statement[3], seed):
+    (asked, of, claimed, conditions), found, least = system.statement(system.claims[record["id"]]), 0, None
+    is_proved, sense = record["verdict"] == "proved", record["asked"]["sense"]
+    for point in points(system, conditions, seed):
         with suppress(ZeroDivisionError):
-            if is_so(system, point, *statement) != is_proved:
+            so, rank = is_so(system, point, asked, of, claimed, conditions)
+            if asked == "rank" and sense != "generic" and so and not is_proved:
+                refuse("a rank that is another at some states alone")
+            if so != is_proved:
                 why = "functions that were taken for unknowns"
                 refuse(why) if point.guessed else doubt("it is not so at a random point modulo a prime")
-            found += 1
+            found, least = found + 1, rank if least is None else min(least, rank)
+            if point.guessed or conditions or asked != "rank" or sense != "generic":
+                least = 0
         if found == POINTS:
-            return "consistent", f"{found} points modulo primes"
+            return of_a_rank(system, of, claimed, least, is_proved, f"{found} points modulo primes")
     return refuse(f"it has values at {found} of {TRIES} random points")
 
-def witness(state):
-    """The point of a state; what it does not name does not matter, and may have any value."""
-    point = Map(enclosed)
+def of_a_rank(system, of, claimed, least, is_proved, where):
+    """What a minor that is not zero at a point implies: at almost all states the rank is no less."""
+    if not least:
+        return "consistent", where
+    if not is_proved:
+        return ("confirmed", f"the rank is no less than {least}") if least > claimed else ("consistent", where)
+    most = min(len(of), len(of[0])) if of else len(system.columns())
+    return ("confirmed", "the rank is full") if least == most else ("half confirmed", f"the rank is no less; no greater at {where}")
+
+def witness(state, *nodes):
+    """The point of a state, which gives a value to all that some nodes mention."""
+    point, named = Map(enclosed), {symbol("pi")}
     for name, value in state.items():
         of = symbol(name)
+        named.add(of)
         if "angle" in value:
-            sine, cosine = (Fraction(value["angle"][key]) for key in ("sin", "cos"))
+            sine, cosine = (fraction(value["angle"][key]) for key in ("sin", "cos"))
             point[of] = None if sine**2 + cosine**2 == 1 else doubt(f"{name} is no angle")
             point.update({Node("sin", of): Interval(sine), Node("cos", of): Interval(cosine)})
         else:
-            point[of] = Interval(Fraction(value["number"])) if "number" in value else refuse("a value by an operation")
+            point[of] = Interval(fraction(value["number"])) if "number" in value else refuse("a value by an operation")
+    if any(node.kind == "symbol" and node not in named for root in nodes for node in root.below()):
+        refuse("a state that does not give all values")
     return point
 
+def all_gaps(*relations): return [gap for relation in relations for gap in gaps(relation)]
+
 def refuted(system, record, evidence, _):
-    asked, of, _, conditions = system.statement(record["statement"])
-    point = witness(evidence["state"]) if asked == "=" else refuse("a rank without a minor")
+    asked, of, _, conditions = system.statement(system.claims[record["id"]])
+    if asked != "=" or record["verdict"] != "refuted":
+        doubt("a witness for what is no equation, or is proved")
+    point = witness(evidence["state"], *all_gaps(of, *conditions))
     if not all(holds(point, condition) for condition in conditions) or holds(point, of):
         doubt("a condition does not hold at the witness, or what was refuted does")
     return "confirmed", "at its witness"
 
-def minor(system, record, evidence, rows, columns):
-    """The determinant of some rows and columns: of differentials of words, or of a matrix of the file's own."""
-    if len(rows) != len(columns) or min([0, *rows, *columns]) < 0:
+def chosen(rows, columns, height, width):
+    """Whether these are as many different rows as columns, all of which there are."""
+    fits = len(rows) == len(columns) == len({*rows}) == len({*columns})
+    if not fits or not all(type(x) is int and 0 <= x < most for of, most in ((rows, height), (columns, width)) for x in of):
         doubt("it has no such minor")
-    if evidence["columns"][0] == "column 1":
-        of = system.statement(record["statement"])[1]
-        return determinant(tuple(tuple(of[row][column] for column in columns) for row in rows))
-    names = [system.unit(evidence["columns"][column]) for column in columns]
-    return determinant(tuple(tuple(unit[system.word(evidence["words"][row])] for unit in names) for row in rows))
 
-def ranks(system, record, evidence, _):
-    for state in evidence["states"]:
-        of = minor(system, record, evidence, state["minor"]["rows"], state["minor"]["columns"])
-        if len(state["minor"]["rows"]) != state["rank"] or witness(state["state"])[of].sign() == 0:
+def named_rows(system, words, of=None):
+    """Rows by their names: those of a matrix, or the differentials of words."""
+    if of:
+        places = [int(re.fullmatch(r"row (\d{1,6})", word)[1]) - 1 for word in words]
+        return [of[place] if place >= 0 else doubt("no such row") for place in places]
+    units = [system.unit(name) for name in system.columns()]
+    return [tuple(unit[word] for unit in units) for word in map(system.word, words)]
+
+def minor(rows, evidence, places, columns):
+    chosen(places, columns, len(rows), len(evidence["columns"]))
+    return determinant(tuple(tuple(rows[row][column] for column in columns) for row in places))
+
+def exact_rank(rows, point):
+    """The rank at a state of a matrix that has exact values there."""
+    found, basis = [[point[x] for x in row] for row in rows], []
+    if any(x.low != x.high for row in found for x in row):
+        refuse("a rank of values that are not exact")
+    for row in ([x.low for x in row] for row in found):
+        for column, other in basis:
+            row = [x - row[column] * y for x, y in zip(row, other)]
+        column = next((column for column, x in enumerate(row) if x), None)
+        if column is not None:
+            basis.append((column, [x / row[column] for x in row]))
+    return len(basis)
+
+def further_rows(system, words):
+    """The differentials of all Lie derivatives of one order more than those of some words."""
+    last, found = system.seen(), []
+    for _ in range(2 + max((len(word.split(" L")) - (not word.startswith("L")) for word in words), default=0)):
+        found, last = found + last, [system[field].along[x] for field in system.names["moving"] for x in last]
+        if len(found) > WORDS:
+            refuse(f"more than {WORDS} words")
+    units = [system.unit(name) for name in system.columns()]
+    return [tuple(unit[x] for unit in units) for x in found]
+
+def at_states(system, record, evidence, seed):
+    """Ranks at states: of a claim, or of nothing that is claimed."""
+    states, is_listed = evidence["states"] or refuse("no states"), record["verdict"] == "found"
+    if is_listed:
+        of = system["rows"] if record["asked"]["what"] == "rows_at_states" else None
+        conditions, sets, claimed = system.read(record["asked"]["where"]) if record["asked"]["where"] else [], [], None
+    else:
+        text = system.claims[record["id"]]
+        asked, of, claimed, conditions = system.statement(text)
+        if asked != "rank" or record["verdict"] == "proved":
+            return at_random(system, record, evidence, seed)
+        sets = system.left_out(text)
+    if not of and list(evidence["columns"]) != system.columns():
+        doubt("columns that are others")
+    if of and len(evidence["columns"]) != len(of[0]):
+        doubt("columns that are others")
+    rows, ranks = named_rows(system, evidence["words"], of), []
+    for state in states:
+        root = minor(rows, evidence, state["minor"]["rows"], state["minor"]["columns"])
+        mentioned = [x for row in of or [] for x in row]
+        point = witness(state["state"], root, *mentioned, *all_gaps(*conditions, *(x for one in sets for x in one)))
+        rank = len(state["minor"]["rows"])
+        if not all(holds(point, condition) for condition in conditions):
+            doubt("a condition does not hold at the state")
+        if any(all(holds(point, relation) for relation in one) for one in sets):
+            doubt("a state that the claim leaves out")
+        if rank != state["rank"] or rank and point[root].sign() == 0:
             doubt("a minor is zero, or of another size")
-    return "confirmed", f"the rank is no less at {len(evidence['states'])} states"
+        is_whole = bool(of) and (is_listed or record["asked"]["sense"] != "generic") and rank < len(of[0])
+        if is_whole and exact_rank(of, point) != rank:
+            doubt("the rank is greater")
+        if not is_listed and (rank > claimed or is_whole and rank < claimed):
+            return "confirmed", "at its state"
+        if rank == claimed:
+            doubt("it is the rank that is claimed")
+        if not of and rank < len(evidence["columns"]):
+            with suppress(NotImplementedError):
+                further = further_rows(system, evidence["words"])
+                if exact_rank(further, witness(state["state"], *(x for row in further for x in row))) > rank:
+                    doubt("a Lie derivative was left out, with which the rank is greater")
+        ranks.append((rank, is_whole or rank == len(evidence["columns"])))
+    if not is_listed or not any(rank for rank, _ in ranks):
+        return "consistent", "the rank of what was written down"
+    word = "confirmed" if all(is_known for _, is_known in ranks) else "half confirmed"
+    return word, f"the rank is {'' if word == 'confirmed' else 'no less '}at {len(ranks)} states"
 
 def boxes(system, record, evidence, _):
-    whole = {symbol(side["symbol"]): (Fraction(side["low"]), Fraction(side["high"])) for side in evidence["ranges"]}
+    ranges = evidence["ranges"]
+    whole = {symbol(side["symbol"]): (fraction(side["low"]), fraction(side["high"])) for side in ranges}
+    if len(whole) != len(ranges) or any(low > high for low, high in whole.values()):
+        doubt("a symbol with two ranges, or an empty one")
+    of = system["rows"] if record["asked"]["what"] == "rows_on_boxes" else None
+    if list(evidence["columns"]) != system.columns() or not evidence["boxes"]:
+        doubt("other columns, or no boxes")
+    rows = named_rows(system, evidence["words"], of)
     free, volume, seen = {name: ends for name, ends in whole.items() if ends[0] < ends[1]}, Fraction(0), []
     for box in evidence["boxes"]:
-        sides = [(Fraction(low), Fraction(high)) for low, high in box["sides"]]
+        sides = [(fraction(low), fraction(high)) for low, high in box["sides"]]
         if any(all(a < d and c < b for (a, b), (c, d) in zip(sides, other)) for other in seen):
             doubt("boxes have a part in common")
         parts = [(high - low) / (most - least) if least <= low < high <= most else doubt("a box lies outside")
                  for (least, most), (low, high) in zip(free.values(), sides, strict=True)]
         volume, seen = volume + prod(parts), [*seen, sides]
-        of = minor(system, record, evidence, box["rows"], range(len(evidence["columns"])))
-        if any(node.kind == "symbol" and node not in (*whole, symbol("pi")) for node in of.below()):
+        root = minor(rows, evidence, box["rows"], [*range(len(evidence["columns"]))])
+        if any(node.kind == "symbol" and node not in (*whole, symbol("pi")) for node in root.below()):
             refuse("a symbol without a range")
-        if not is_nowhere_zero(system, of, {**whole, **dict(zip(free, sides))}):
+        if not is_nowhere_zero(system, root, {**whole, **dict(zip(free, sides))}):
             refuse(f"a box that is not shown by {PIECES} pieces")
-    return ("confirmed", f"{len(seen)} boxes") if volume == Fraction(evidence["volume"]) else doubt("another volume")
+    return ("confirmed", f"{len(seen)} boxes") if volume == fraction(evidence["volume"]) else doubt("another volume")
 
 def is_nowhere_zero(system, of, box):
     """Whether an expression is so in a box: from the middle by slopes, on pieces, halved where it varies most."""
@@ -173,10 +285,41 @@ def is_nowhere_zero(system, of, box):
             return True
     return False
 
+def listed_statement(what, given):
+    of = "the file's own rows" if what.startswith("rows") else "the observability codistribution"
+    begin, end = ("full rank of ", " on these boxes") if what.endswith("boxes") else ("the rank of ", " at these states")
+    return begin + of + end + (f", where {given}" if given else "")
+
+def bound(system, record, kind):
+    """Whether a verdict is on a claim of its file, in the words of that claim, with evidence of a kind that may be."""
+    asked, word = record["asked"], record["verdict"]
+    if not all(isinstance(text, str) for text in asked.values()):
+        doubt("parts of a claim that are no texts")
+    if record["digest"] != system.digest:
+        refuse("the proof file is another one than when the verdict was found")
+    if word == "found":
+        ids = {"system_at_states": "rank", "rows_at_states": "rows", "system_on_boxes": "certify", "rows_on_boxes": "certify"}
+        own = {**asked, "claimed": "", "sense": "listed", "except": ""}
+        said = listed_statement(asked["what"], asked["where"]) if asked["what"] in ids else None
+        fits = asked["what"].endswith("boxes") == (kind == "boxes") and kind in ("boxes", "rank") and asked == own
+        if record["id"] != ids.get(asked["what"]) or record["statement"] != said or not fits:
+            doubt("it is filed under another name")
+        return
+    text = system.claims.get(record["id"]) or doubt("the proof file has no such claim")
+    if compact(text) != "".join(record["statement"].split()) or parts(text) != asked:
+        doubt("the claim of this id says something else")
+    if asked["where"].startswith("onsample"):
+        refuse("a claim on the sample box")
+    fits = {"refuted": word == "refuted", "proved": word == "proved", "boxes": False, "rank": True}
+    if word not in ("proved", "refuted") or not fits.get(kind, True):
+        doubt("evidence of another kind than the verdict")
+
 def check(record, folder, systems, seed):
     """What comes of one verdict: a word, and why."""
     try:
         ((kind, evidence),), Expression.work = record["evidence"].items(), 0
+        if kind not in KINDS:
+            refuse("evidence of a kind that does not exist")
         if kind == "unchecked":
             return "not checked", str(evidence)
         path = os.path.join(folder, record["file"])
@@ -185,32 +328,46 @@ def check(record, folder, systems, seed):
             Node.cache_clear()
             determinant.cache_clear()
             systems[path] = System(path)
-        checks = {"refuted": refuted, "rank": ranks, "boxes": boxes}
-        return checks.get(kind, at_random)(systems[path], record, evidence, seed)
+        system = systems[path]
+        bound(system, record, kind)
+        if kind == "claimed_rank" and evidence["word"] != record["verdict"]:
+            doubt("evidence of another verdict")
+        checks = {"refuted": refuted, "rank": at_states, "boxes": boxes}
+        return checks.get(kind, at_random)(system, record, evidence, seed)
     except Exception as why:  # whatever a damaged record or file leads to
-        word = "not confirmed" if isinstance(why, ArithmeticError) else "not checked"
-        return word, str(why) if type(why) in (NotImplementedError, ArithmeticError) else repr(why)
+        word = "not confirmed" if isinstance(why, Doubt) else "not checked"
+        return word, str(why) if type(why) in (NotImplementedError, Doubt) else repr(why)
+
+def plain(text):
+    """A text of a stranger's file in one line: what cannot be printed is written as an escape, so that no line is forged."""
+    return "".join(x if x.isprintable() else x.encode("unicode_escape", "surrogatepass").decode() for x in str(text))
 
 def main(arguments):
     """The command; returns its exit status."""
+    is_quiet = "--quiet" in arguments
+    arguments = [x for x in arguments if x != "--quiet"]
     if not arguments or arguments[0].startswith("-"):
         print(__doc__)
         return 0 if arguments[:1] in (["-h"], ["--help"]) else 2
     (path, _, folder), counts, systems = [*arguments, "--proofs", "."][:3], Counter(), {}
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
-        with open(path, encoding="utf-8") as file:
-            verdicts = json.load(file)
-        if verdicts["schema"] != "palmistry-verdicts" or verdicts["version"] not in (1, 2):
+        verdicts = json.loads(read_text(path, LARGEST))
+        if verdicts["schema"] != "palmistry-verdicts":
             raise ValueError("another schema")
+        if verdicts["version"] != 3:
+            raise ValueError(f"version {verdicts['version']!r} and not 3: before it verdicts were bound to no claims; write it anew")
         records = [(f"{record['file']} {record['id']}", record) for record in verdicts["verdicts"]]
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as why:
-        print(f"{path} is no verdict file: {why!r}\n{__doc__}", file=sys.stderr)
+        print(f"{plain(path)} is no verdict file: {plain(repr(why))}\n{__doc__}", file=sys.stderr)
         return 2
     for seed, (name, record) in enumerate(records):
         word, why = check(record, folder, systems, seed)
         counts[word] += 1
-        print(f"{word:14}{name}: {why}", flush=True)
-    print(", ".join(f"{count} {word}" for word, count in sorted(counts.items())))
+        if not is_quiet or word == "not confirmed":
+            print(f"{word:15}{plain(name)}: {plain(why)}", flush=True)
+    print(f"{len(records)} verdicts: " + ", ".join(f"{counts[word]} {word}" for word in WORDS_OF_FINDINGS if counts[word]))
     return 1 if counts["not confirmed"] else 0
 
 if __name__ == "__main__":

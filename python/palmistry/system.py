@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Union
 
 from .answers import Certificate, Claims, Observation, Page, Rank, Value, Verdicts
 from .errors import Error
+from .tables import Table
 
 try:
     from . import _native
@@ -211,18 +212,24 @@ class System:
         state needs them. A rank that is short is certified where the state is rational, that is where no sine of a double stands in the rows.
         at, order: as in `rank`. Whether a state lies in the sample box is not asked.
         """
-        import numpy
-
         decider = self._decider(at, order, _wanted(verdict))
-        names = decider.coordinates
-        if not names:
-            raise Error("every coordinate has one value, and there are no states to look at", "ask rank()")
-        found = _columns(states, names)
-        columns = [numpy.ascontiguousarray(column, dtype=numpy.float64) for column in found]
-        for name, column in zip(names, columns):
-            if column.ndim != 1:
-                raise Error(f"the values of '{name}' have shape {column.shape}", "one value a state is needed: shape (states,)")
-        return Verdicts(**decider.verdicts(columns))
+        return Verdicts(**decider.verdicts(_arrays(states, decider.coordinates)))
+
+    def standard_deviations(
+        self,
+        states: numpy.ndarray | Mapping[str, Any] | Sequence[Any],
+        *,
+        at: At = None,
+        order: int | None = None,
+    ) -> Table:
+        """How well each unknown is observable at states of one's own: its standard deviation, normalised by its prior one over the sample box.
+
+        A column an unknown, of shape (states,); infinite where it is not observable, or not to be told from it; NaN at a pole. These are the
+        numbers of the maps: every Lie derivative of up to `order` fields is measured up to the standard deviation of its values over the sample
+        box. states, at: as in `verdicts`. Computed in doubles, and not certified.
+        """
+        names = self.coordinates(at, order)
+        return Table(self._native.standard_deviations(_pairs(at), order, names, _arrays(states, names)))
 
     def certify(
         self,
@@ -251,6 +258,21 @@ class System:
 
     def __repr__(self) -> str:
         return f"<system '{self.title}': {len(self.states)} states, {len(self.outputs)} outputs, {len(self.claims)} claims>"
+
+
+def _arrays(states: Any, names: list[str]) -> list[Any]:
+    """The columns of some states, as contiguous doubles of one length."""
+    import numpy
+
+    if not names:
+        raise Error("every coordinate has one value, and there are no states to look at", "ask rank()")
+    columns = [numpy.ascontiguousarray(column, dtype=numpy.float64) for column in _columns(states, names)]
+    for name, column in zip(names, columns):
+        if column.ndim != 1:
+            raise Error(f"the values of '{name}' have shape {column.shape}", "one value a state is needed: shape (states,)")
+        if column.shape != columns[0].shape:
+            raise Error(f"there are {len(column)} values of '{name}' and {len(columns[0])} of '{names[0]}'", "one value a state is needed")
+    return columns
 
 
 def _columns(states: Any, names: list[str]) -> list[Any]:

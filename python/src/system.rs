@@ -3,14 +3,17 @@
 use crate::answers::{CertificateFound, ClaimsFound, RankFound, printed};
 use crate::errors::{given, no_value, unreadable, unusable};
 use crate::states::StatesDecider;
-use crate::work::{Cut, interruptible, keeping};
+use crate::work::{Cut, interruptible, interruptible_here, keeping};
+use numpy::{PyArray1, PyReadonlyArray1};
 use palmistry::certificate::{Limits, Region, RegionRows};
 use palmistry::claim::{Selection, decide_all, evaluate};
 use palmistry::report::{ValueAsked, unit_of, value_json};
 use palmistry::sweep::{Certainty, RankError, RankPreparation, StateRow, StateTable};
 use palmistry::system::Role;
+use palmistry::tradeoff::standard_deviations_at;
 use palmistry::{Outcome, RankAnswer, RankQuestion, System as Read};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -238,6 +241,39 @@ impl System {
             Ok::<_, RankError>(StatesDecider::new(&system, states))
         })?;
         found.map_err(|why| unusable(py, &why.to_string(), None))
+    }
+
+    /// The standard deviation of each unknown over its prior one at states that are handed over, an array a coordinate: infinite where it is
+    /// not observable, not a number at a pole.
+    fn standard_deviations<'py>(
+        &self,
+        py: Python<'py>,
+        at: Vec<String>,
+        order: Option<usize>,
+        names: Vec<String>,
+        states: Vec<PyReadonlyArray1<'py, f64>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let fixed = self.system.given_values(&at).map_err(|error| given(py, &error))?;
+        let fixed: Vec<_> = fixed
+            .into_iter()
+            .map(|(symbol, value)| (self.system.symbol_name(symbol).to_owned(), value))
+            .collect();
+        let slices: Vec<&[f64]> = states.iter().map(|array| array.as_slice()).collect::<Result<_, _>>()?;
+        let count = slices.iter().map(|column| column.len()).min().unwrap_or(0);
+        let rows: Vec<Vec<f64>> =
+            (0..count).map(|row| slices.iter().map(|column| column[row]).collect()).collect();
+        let found = interruptible_here(py, |_| {
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+            standard_deviations_at(&self.system, order, &fixed, &names, &rows)
+        })?;
+        let (unknowns, found) = found.map_err(|why| unusable(py, &why, None))?;
+        let columns = PyDict::new(py);
+        for (place, name) in unknowns.iter().enumerate() {
+            let column = found.iter().map(|point| point.as_ref().map_or(f64::NAN, |all| all[place]));
+            columns.set_item(name, PyArray1::from_vec(py, column.collect()))?;
+        }
+        Ok(columns)
     }
 
     /// On which part of the sample box the rank is full, proved.

@@ -294,6 +294,18 @@ class Verdicts(unittest.TestCase):
         self.assertEqual((found.rank.tolist(), found.certified.tolist()), ([2] * 3, [True] * 3))
         self.assertTrue(numpy.isnan(found.smallest_singular_value).all())
 
+    def test_standard_deviations_are_those_of_the_covariance(self):
+        """By hand: S^2 is measured up to its deviation over the box, its slope is 2 S."""
+        system = palmistry.System.parse("system \"s\" state S, k drift f S' = 0 k' = 0 output S^2 sample S in [0, 2] k in [1, 3]")
+        found = system.standard_deviations({"S": numpy.array([0.5, 1.0, 2.0, -1.0, 0.0]), "k": numpy.ones(5)})
+        self.assertEqual(list(found), ["S", "k"])
+        self.assertTrue(numpy.isinf(found["k"]).all() and numpy.isinf(found["S"][4]))
+        numpy.testing.assert_allclose(found["S"][:4] / found["S"][1], [2, 1, 0.5, 1], rtol=1e-12)
+        # the variance of S^2 over [0, 2] is 16/5 - 16/9; two hundred draws
+        self.assertAlmostEqual(found["S"][1], (16 / 5 - 16 / 9) ** 0.5 / 2 * 3**0.5, delta=0.1)
+        with self.assertRaises(Error):
+            system.standard_deviations({"S": numpy.ones(2), "k": numpy.ones(3)})
+
     def test_poles(self):
         text = 'system "a pole"\nstate x, y\ndrift f  x\' = y/x  y\' = 0\noutput x\nsample x in [1, 2] y in [1, 2]\n'
         found = palmistry.System.parse(text).verdicts([[0.0, 1.0], [-1.0, 1.0]])

@@ -30,12 +30,9 @@ impl Region {
         &self.problem.written.rows
     }
 
-    /// Which rows these are, in words.
-    pub fn rows_in_words(&self) -> String {
-        match self.problem.order {
-            Some(order) => format!("the differentials of all words of up to {order} fields"),
-            None => "the file's own rows".to_owned(),
-        }
+    /// Whether these are the file's own rows, and not the differentials of Lie derivatives.
+    pub fn is_of_own_rows(&self) -> bool {
+        self.problem.order.is_none()
     }
 
     /// Where the rows and their system exist, as it was written.

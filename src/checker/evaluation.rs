@@ -67,7 +67,11 @@ impl<'c> Evaluation<'c> {
                 }
             })
         };
-        self.listing.run(&Exact::new(circle), Expense { effort: self.effort, each: 1 }, symbol)
+        self.listing.run(
+            &Exact::new(circle),
+            Expense { effort: self.effort, of: Form::work, each: 1 },
+            symbol,
+        )
     }
 
     /// The exact value of an operation.
@@ -121,7 +125,11 @@ impl<'c> Evaluation<'c> {
                 }
             })
         };
-        self.listing.run(&arithmetic, Expense { effort: self.effort, each: bits as u64 / 8 }, known)
+        self.listing.run(
+            &arithmetic,
+            Expense { effort: self.effort, of: |_| 0, each: bits as u64 / 8 },
+            known,
+        )
     }
 
     /// The sine or cosine of a symbol that is given by them.

@@ -66,6 +66,11 @@ impl Form {
         self.rest.is_empty() && self.rational.is_zero()
     }
 
+    /// The work of an operation that makes it: the square of its length in words.
+    pub fn work(&self) -> u64 {
+        std::iter::once(&self.rational).chain(self.rest.values()).map(work_on).sum()
+    }
+
     fn scaled(&self, factor: &RBig) -> Form {
         let rest = self.rest.iter().map(|(product, value)| (product.clone(), value * factor)).collect();
         Form { rational: &self.rational * factor, rest }
@@ -78,6 +83,12 @@ impl Form {
         };
         self.rest.keys().flat_map(BTreeMap::keys).map(of).max().unwrap_or(0)
     }
+}
+
+/// The work of an operation on fractions that makes this one.
+pub fn work_on(value: &RBig) -> u64 {
+    let words = (value.numerator().bit_len() + value.denominator().bit_len()) as u64 / 64;
+    words * words
 }
 
 impl From<RBig> for Form {

@@ -1,52 +1,18 @@
-//! The verdict file: what was found, and what it rests on, in one JSON object that is checked without any other file.
+//! The verdict file: what was found, of which claim, and what it rests on, in one JSON object.
 
-use super::boxes::CertifiedBoxes;
-use super::claimed_rank::{ClaimedRank, ClaimedWord};
-use super::doubt::{Doubt, Effort, Finding};
-use super::identity::StatedIdentity;
-use super::minor::CertifiedRank;
-use super::witness::Refutation;
+use super::bound;
+use super::checking::Checking;
+use super::doubt::{Doubt, Finding};
+use super::record::VerdictRecord;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
-/// The name of the schema, and the version that is written. Version 1, which knows equations only, is read as well.
+/// The name of the schema, and its version. Verdicts of versions 1 and 2 are bound to no claim, and are not read.
 const SCHEMA: &str = "palmistry-verdicts";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// No verdict file is longer, in bytes.
 pub const LARGEST_FILE: u64 = 1 << 28;
-
-/// What a verdict rests on.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Evidence {
-    /// A witness.
-    Refuted(Refutation),
-    /// An exact argument, which evaluation can try and not repeat.
-    Proved(StatedIdentity),
-    /// Minors and kernels at states.
-    Rank(CertifiedRank),
-    /// A minor, of a claim about almost all states.
-    ClaimedRank(ClaimedRank),
-    /// Boxes, each with its minor.
-    Boxes(CertifiedBoxes),
-    /// Nothing that evaluation could check; in words, why.
-    Unchecked(String),
-}
-
-/// One verdict.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct VerdictRecord {
-    /// The proof file.
-    pub file: String,
-    /// The claim's number or name, or what was asked.
-    pub id: String,
-    /// The statement as it stands in the file.
-    pub statement: String,
-    /// What the verdict rests on.
-    pub evidence: Evidence,
-}
 
 /// Verdicts, and what they rest on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,7 +45,11 @@ pub enum Unreadable {
     Damaged(#[from] serde_json::Error),
     #[error("it is no verdict file: its schema is '{0}' and not '{SCHEMA}'")]
     OtherSchema(String),
-    #[error("its version is {0}, and this program reads versions up to {VERSION}")]
+    #[error(
+        "its version is {0}, in which verdicts were not bound to their claims: write it anew with this program"
+    )]
+    OlderVersion(u32),
+    #[error("its version is {0}, and this program reads version {VERSION}")]
     OtherVersion(u32),
 }
 
@@ -111,7 +81,10 @@ impl VerdictFile {
         if header.schema != SCHEMA {
             return Err(Unreadable::OtherSchema(header.schema));
         }
-        if !(1..=VERSION).contains(&header.version) {
+        if (1..VERSION).contains(&header.version) {
+            return Err(Unreadable::OlderVersion(header.version));
+        }
+        if header.version != VERSION {
             return Err(Unreadable::OtherVersion(header.version));
         }
         Ok(serde_json::from_str(text)?)
@@ -125,43 +98,19 @@ impl VerdictFile {
         Ok(serde_json::to_string(self)?)
     }
 
-    /// Checks every verdict. `seed` is that of the states which the checker chooses.
-    pub fn check<'f>(
-        &'f self,
-        seed: u64,
-        effort: &Effort,
-        interrupt: &AtomicBool,
-        done: &(dyn Fn() + Sync),
-    ) -> Vec<CheckedVerdict<'f>> {
+    /// Checks every verdict against its proof file.
+    pub fn check<'f>(&'f self, with: Checking<'_>, done: &(dyn Fn() + Sync)) -> Vec<CheckedVerdict<'f>> {
+        let count = self.verdicts.len();
         let check = |(index, record): (usize, &'f VerdictRecord)| {
-            let seed = seed.wrapping_add(index as u64);
-            let finding = match &record.evidence {
-                _ if interrupt.load(Ordering::Relaxed) => Finding::NotConfirmed(Doubt::Interrupted),
-                Evidence::Refuted(refutation) => refutation.check(effort),
-                Evidence::Proved(identity) => identity.check(seed, effort),
-                Evidence::Rank(rank) => rank.check(effort, interrupt),
-                Evidence::ClaimedRank(rank) => rank.check(seed, effort),
-                Evidence::Boxes(boxes) => boxes.check(effort, interrupt),
-                Evidence::Unchecked(_) => Finding::NotChecked,
+            let effort = with.effort.part(count);
+            let seed = with.seed.wrapping_add(index as u64);
+            let finding = match with.interrupt.load(Ordering::Relaxed) {
+                true => Finding::NotConfirmed(Doubt::Interrupted),
+                false => bound::check(record, Checking { seed, effort: &effort, ..with }),
             };
             done();
             CheckedVerdict { record, finding }
         };
         self.verdicts.par_iter().enumerate().map(check).collect()
-    }
-}
-
-impl Evidence {
-    /// The verdict in a word.
-    pub fn word(&self) -> &'static str {
-        match self {
-            Evidence::Refuted(_) => "refuted",
-            Evidence::Proved(_) => "proved",
-            Evidence::Rank(_) => "rank",
-            Evidence::ClaimedRank(rank) if rank.word == ClaimedWord::Proved => "proved",
-            Evidence::ClaimedRank(_) => "refuted",
-            Evidence::Boxes(_) => "boxes",
-            Evidence::Unchecked(_) => "unchecked",
-        }
     }
 }

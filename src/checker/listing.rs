@@ -13,10 +13,10 @@ pub const MOST_STEPS: usize = 1 << 20;
 /// No symbol's name is longer, in bytes.
 const LONGEST_NAME: usize = 256;
 
-/// From what work is taken, and how much for each operation.
-#[derive(Clone, Copy, Debug)]
-pub struct Expense<'e> {
+/// From what work is taken, and how much for each value.
+pub struct Expense<'e, N> {
     pub effort: &'e Effort,
+    pub of: fn(&N) -> u64,
     pub each: u64,
 }
 
@@ -81,7 +81,7 @@ impl Listing {
     pub fn run<A: Arithmetic>(
         &self,
         arithmetic: &A,
-        expense: Expense<'_>,
+        expense: Expense<'_, A::Number>,
         known: impl Fn(usize, &Step, &[Result<A::Number, Missing>]) -> Option<Result<A::Number, Missing>>,
     ) -> Vec<Result<A::Number, Missing>> {
         let mut values: Vec<Result<A::Number, Missing>> = Vec::with_capacity(self.steps.len());
@@ -92,7 +92,12 @@ impl Listing {
                 }
                 Err(exhausted) => Err(exhausted),
             };
-            values.push(value);
+            // what is long takes longer: as the square of its length
+            let paid = |value| match expense.effort.spend((expense.of)(&value)) {
+                Ok(()) => Ok(value),
+                Err(exhausted) => Err(exhausted),
+            };
+            values.push(value.and_then(paid));
         }
         values
     }

@@ -2,7 +2,7 @@
 
 use super::doubt::{Doubt, Effort, Finding, Missing};
 use super::evaluation::{Evaluation, PRECISIONS};
-use super::exact::{Exact, Form};
+use super::exact::{Exact, Form, work_on};
 use super::listing::Listing;
 use super::state::{ExactState, Ratio};
 use super::witness::{Requirement, Sides, holds};
@@ -81,6 +81,7 @@ impl CertifiedRank {
             || !(1..=MOST_COLUMNS).contains(&width);
         match self.states.is_empty() {
             _ if ragged => Err(Doubt::Ragged),
+            _ if self.rows.is_empty() => Err(Doubt::NoRows),
             true => Err(Doubt::Empty),
             false => Ok(()),
         }
@@ -118,12 +119,12 @@ impl CertifiedRank {
         let exact: Option<Vec<Vec<RBig>>> =
             self.rows.iter().map(|row| row.iter().map(rational).collect()).collect();
         if let Some(rows) = exact {
-            return Ok(rank(&NUMBERS, rows).map_err(refused)?);
+            return Ok(rank(&NUMBERS, rows, paid_from(effort)).map_err(refused)?);
         }
         let enclosed = |place: &usize| values.enclosed(*place, 1).cloned();
         let rows: Vec<Vec<Enclosure>> =
             self.rows.iter().map(|row| row.iter().map(enclosed).collect()).collect::<Result<_, _>>()?;
-        Ok(rank(&Enclosures::new(PRECISIONS[1]), rows).map_err(refused)?)
+        Ok(rank(&Enclosures::new(PRECISIONS[1]), rows, |_| Ok(())).map_err(refused)?)
     }
 
     fn check_state(&self, state: usize, found: &RankedState, effort: &Effort) -> Result<(), Doubt> {
@@ -137,7 +138,7 @@ impl CertifiedRank {
         let square: Vec<Vec<RBig>> =
             kernel.iter().map(|vector| vector.iter().map(|part| part.0.clone()).collect()).collect();
         effort.spend((wanted * wanted * width) as u64)?;
-        if !has_full_rank(&NUMBERS, square).map_err(|_| Doubt::KernelDependent(state))? {
+        if !has_full_rank(&NUMBERS, square, paid_from(effort)).map_err(|_| Doubt::KernelDependent(state))? {
             return Err(Doubt::KernelDependent(state));
         }
         for (row, entries) in self.rows.iter().enumerate() {
@@ -175,7 +176,7 @@ impl CertifiedRank {
                 .iter()
                 .map(|row| row.iter().map(|place| values.enclosed(*place, precision).cloned()).collect())
                 .collect::<Result<_, _>>()?;
-            let full = has_full_rank(&Enclosures::new(bits), rows);
+            let full = has_full_rank(&Enclosures::new(bits), rows, |_| Ok(()));
             Ok(full.ok().filter(|full| *full))
         };
         if values.at_first_sight(enclosed) == Some(true) {
@@ -185,7 +186,7 @@ impl CertifiedRank {
         let exact: Option<Vec<Vec<RBig>>> =
             places.iter().map(|row| row.iter().map(rational).collect()).collect();
         // fractions may grow too long to be eliminated; enclosures then still may tell
-        if let Some(full) = exact.and_then(|rows| has_full_rank(&NUMBERS, rows).ok()) {
+        if let Some(full) = exact.and_then(|rows| has_full_rank(&NUMBERS, rows, paid_from(effort)).ok()) {
             return if full { Ok(()) } else { Err(Doubt::MinorVanishes(state)) };
         }
         if values.climb(enclosed)? == Some(true) { Ok(()) } else { Err(Doubt::MinorNotTold(state)) }
@@ -193,14 +194,27 @@ impl CertifiedRank {
 }
 
 /// Whether the rows of a matrix are independent; see [`rank`].
-fn has_full_rank<A: Arithmetic>(arithmetic: &A, rows: Vec<Vec<A::Number>>) -> Result<bool, Refusal> {
+fn has_full_rank<A: Arithmetic>(
+    arithmetic: &A,
+    rows: Vec<Vec<A::Number>>,
+    pay: impl Fn(&A::Number) -> Result<(), Refusal>,
+) -> Result<bool, Refusal> {
     let height = rows.len();
-    Ok(rank(arithmetic, rows)? == height)
+    Ok(rank(arithmetic, rows, pay)? == height)
+}
+
+/// Takes the work on fractions, which grow as they are eliminated.
+fn paid_from(effort: &Effort) -> impl Fn(&RBig) -> Result<(), Refusal> {
+    |value| effort.spend(work_on(value)).map_err(|_| Refusal::TooLarge)
 }
 
 /// The rank of a matrix by elimination that takes a pivot only where it is certainly not zero. Over numbers that are always
 /// told from zero it is the rank; over others it is no more than the rank.
-fn rank<A: Arithmetic>(arithmetic: &A, mut rows: Vec<Vec<A::Number>>) -> Result<usize, Refusal> {
+fn rank<A: Arithmetic>(
+    arithmetic: &A,
+    mut rows: Vec<Vec<A::Number>>,
+    pay: impl Fn(&A::Number) -> Result<(), Refusal>,
+) -> Result<usize, Refusal> {
     for step in 0..rows.len() {
         // any entry will do, of any row and any column: those of earlier pivots are zero
         let nonzero = |entry: &A::Number| arithmetic.is_zero(entry) == Some(false);
@@ -222,6 +236,7 @@ fn rank<A: Arithmetic>(arithmetic: &A, mut rows: Vec<Vec<A::Number>>) -> Result<
                 } else {
                     arithmetic.sub(entry, &arithmetic.mul(&factor, above)?)?
                 };
+                pay(entry)?;
             }
         }
     }

@@ -1,14 +1,20 @@
-//! A small checker of what the engines found, which shares nothing with them.
+//! A small checker of what the engines found, which shares none of their code.
 //!
 //! An engine that refutes, certifies or proves writes down what its verdict rests on: a `Listing` of operations as plain
-//! data, a state in exact numbers, the two sides, a minor. The checker reads that and evaluates it again, naively, one
-//! operation after the other: a `Refutation` at its witness, a `CertifiedRank` by its minor and its kernel, a
-//! `StatedIdentity` and a `ClaimedRank` at states of its own choice. It cannot check the step from a file's text to expressions and their
-//! derivatives; what it can and cannot check is told in `book/src/verdicts.md`.
+//! data, a state in exact numbers, the two sides, a minor. The checker reads the claim from the proof file, builds its sides and
+//! rows anew, and evaluates them naively, one operation after the other: a `Refutation` at its witness, a `CertifiedRank` by its
+//! minor and its kernel, a `StatedIdentity` and a `ClaimedRank` at states of its own choice. What each word means that it says is told in
+//! `book/src/verdicts.md`.
 //!
-//! This floor knows exact numbers ([`crate::number`]) and none of the engines: no graph, no program, no system.
+//! This floor knows exact numbers ([`crate::number`]), expressions with their derivatives, and the reader of proof files
+//! ([`crate::system`]); none of the engines.
 
+mod binding;
+mod bound;
+mod bound_rank;
 mod boxes;
+mod checking;
+mod claim;
 mod claimed_rank;
 mod doubt;
 mod evaluation;
@@ -16,24 +22,35 @@ mod exact;
 mod file;
 mod identity;
 mod listing;
+mod lowering;
 mod minor;
 mod piece;
+mod record;
+mod sources;
 mod state;
 mod witness;
 
+pub(crate) use binding::listed_statement;
+pub use binding::{ClaimKind, ClaimParts, ClaimSense, RecordedWord};
 #[doc(hidden)]
 pub use boxes::CertifiedBoxes;
 pub(crate) use boxes::{CertifiedBox, SymbolRange};
+pub use checking::Checking;
 pub(crate) use claimed_rank::{ClaimedRank, ClaimedWord};
 pub(crate) use doubt::Missing;
-pub use doubt::{Doubt, Effort, Finding};
-pub use file::{CheckedVerdict, Unreadable, VerdictFile, VerdictRecord};
+pub use doubt::{Doubt, Effort, Finding, Half, Unchecked};
 #[doc(hidden)]
-pub use file::{Evidence, LARGEST_FILE};
+pub use file::LARGEST_FILE;
+pub use file::{CheckedVerdict, Unreadable, VerdictFile};
 pub(crate) use identity::StatedIdentity;
-pub(crate) use listing::{Listing, Step};
+pub(crate) use listing::Listing;
+pub(crate) use lowering::Lowering;
 pub(crate) use minor::{CertifiedRank, Minor, RankedState};
+#[doc(hidden)]
+pub use record::Evidence;
+pub use record::VerdictRecord;
+pub use sources::{ProofSources, source_digest};
 #[doc(hidden)]
 pub use state::Ratio;
 pub(crate) use state::{ExactCoordinate, ExactState};
-pub(crate) use witness::{PrintedSides, Refutation, Requirement, RequirementKind, Sides, SidesRelation};
+pub(crate) use witness::{PrintedSides, Refutation, Requirement, Sides};

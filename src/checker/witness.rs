@@ -144,7 +144,9 @@ impl Refutation {
                 None => return Err(Doubt::ToleranceNotTold),
             },
         }
-        if self.printed.left == self.printed.right && self.sides.relation.is_equality() {
+        // what is not within a negative tolerance may be equal
+        let must_differ = self.sides.relation.is_equality() && self.within.is_none();
+        if must_differ && self.printed.left == self.printed.right {
             return Err(Doubt::PrintedAlike);
         }
         let sides =
@@ -268,8 +270,10 @@ struct Decimal {
 
 /// Integers of more digits than this are rounded when they are printed, so that their last zeros say nothing.
 const PRINTED_DIGITS: usize = 20;
-/// Printed numbers are no longer, and their exponents no greater.
+/// Printed numbers are no longer.
 const LONGEST_PRINT: usize = 4096;
+/// Nor are their exponents greater: numbers of as many digits are written down in a moment.
+const LARGEST_PRINTED_EXPONENT: u64 = 100_000;
 
 impl Decimal {
     /// Reads an integer, a fraction, or a decimal with or without an exponent.
@@ -284,7 +288,8 @@ impl Decimal {
             return Some(Decimal { value, slack });
         }
         let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
-        let exponent = exponent.parse::<i64>().ok().filter(|e| e.unsigned_abs() <= LONGEST_PRINT as u64)?;
+        let exponent =
+            exponent.parse::<i64>().ok().filter(|e| e.unsigned_abs() <= LARGEST_PRINTED_EXPONENT)?;
         let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
         let Ratio(digits) =
             Ratio::parse(&format!("{whole}{fraction}")).filter(|_| !fraction.contains(['-', '/']))?;

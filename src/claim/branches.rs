@@ -5,6 +5,7 @@ use super::evidence::Kept;
 use super::existence::Existence;
 use super::identity::{OnOneBranch, decide_identity};
 use super::inequality::decide_relations;
+use super::multiple::follows;
 use super::question::Question;
 use super::ranks::{decide_codistribution, decide_rank};
 use super::terms::{OnBranch, Terms};
@@ -12,7 +13,7 @@ use super::verdict::Verdict;
 use super::visible::decide_visible;
 use crate::checker::Evidence;
 use crate::expression::{Guard, NodeId, add_guard};
-use crate::observability::{Branch, Edges, SignCell, in_sign_cell};
+use crate::observability::{Branch, Edges, SignCell, UnsolvedBranch, in_sign_cell, vanishes};
 use crate::system::System;
 use rand_chacha::ChaCha8Rng;
 
@@ -24,6 +25,8 @@ pub(super) struct Asked<'a> {
     pub conditions: &'a [NodeId],
     pub unsolved: &'a [NodeId],
     pub one_thing_twice: bool,
+    /// Whether a proof was found on all parts of the largest dimension, which are as many dimensions smaller as there are conditions.
+    pub parts_are_proved: bool,
 }
 
 /// A branch, or a part of one, with its verdict and what that rests on.
@@ -89,7 +92,51 @@ impl Asked<'_> {
         Ok(if found.is_empty() { None } else { Some(found) })
     }
 
-    fn all_guards(&self, system: &System, branch: &Branch) -> Vec<Guard> {
+    /// Whether an equation holds wherever what was solved does, or follows from the conditions as a whole.
+    fn follows(
+        &self,
+        system: &mut System,
+        part: &UnsolvedBranch,
+        entries: &[NodeId],
+    ) -> Result<bool, String> {
+        let (left, right) = entries.split_at(entries.len() / 2);
+        let differences: Vec<NodeId> =
+            left.iter().zip(right).map(|(left, right)| system.graph.sub(*left, *right)).collect();
+        let there = part.branch.put_in(system, &differences)?;
+        if there.iter().all(|difference| vanishes(system, *difference)) {
+            return Ok(true);
+        }
+        Ok(self.parts_are_proved && follows(system, &differences, self.conditions, self.guards))
+    }
+
+    /// What a part of the set comes to some conditions of which could not be solved: a claim about all states is proved there where it holds
+    /// wherever those hold that were solved.
+    pub fn on_unsolved(
+        &self,
+        system: &mut System,
+        part: &UnsolvedBranch,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Vec<(Size, Branch, OnOneBranch)>, String> {
+        let holds = match self.question {
+            Question::Identity { entries, .. } => self.follows(system, part, entries)?,
+            _ => {
+                let asked = Asked { unsolved: &part.open, ..*self };
+                let decided = asked.on_branch(system, &part.branch, Kept::Verdicts, rng);
+                let proved = |verdict: &OnOneBranch| {
+                    matches!(verdict, OnOneBranch::Empty(_) | OnOneBranch::Verdict(Verdict::Proved { .. }, _))
+                };
+                decided.is_ok_and(|decided| decided.iter().all(|(_, verdict, _)| proved(verdict)))
+            }
+        };
+        if holds {
+            return Ok(Vec::new());
+        }
+        let why = format!("a part of the set, thinner than the rest, was not looked at: {}", part.text);
+        let verdict = OnOneBranch::Verdict(Verdict::undecided(why), Existence::Shown);
+        Ok(vec![(Size::Thinner, Branch::default(), verdict)])
+    }
+
+    pub fn all_guards(&self, system: &System, branch: &Branch) -> Vec<Guard> {
         let mut all = branch.guards.clone();
         self.sampled.iter().chain(self.guards).for_each(|guard| add_guard(&system.graph, &mut all, *guard));
         all
@@ -149,18 +196,18 @@ pub(super) enum Size {
     Part,
     /// It has fewer dimensions, and may be a part of its own.
     Smaller,
-    /// It is an edge of others.
+    /// It has too few dimensions for that over the complex numbers: an edge of others, or a part of its own of the real states.
     Thinner,
+    /// There an inequality holds with equality.
+    Edge,
 }
 
 /// What the verdicts on all branches come to together.
-pub(super) fn together(
-    question: &Question,
-    found: Vec<(Size, Branch, OnOneBranch)>,
-    unsolved: &[String],
-) -> Verdict {
+pub(super) fn together(question: &Question, found: Vec<(Size, Branch, OnOneBranch)>) -> Verdict {
     let of_rank = question.is_of_a_rank();
     let several = found.len() > 1;
+    // where all others are empty one piece is the whole set
+    let is_alone = found.iter().filter(|(.., on_one)| !matches!(on_one, OnOneBranch::Empty(_))).count() == 1;
     let (mut verdicts, mut shown, mut needs) = (Vec::new(), false, Vec::new());
     for (size, branch, on_one) in found {
         let place = if several && !branch.steps.is_empty() {
@@ -179,7 +226,7 @@ pub(super) fn together(
                 }
                 verdicts.push(match verdict {
                     // of a rank at almost all states this is no counterexample
-                    Verdict::Refuted { witness, .. } if size == Size::Smaller && of_rank => {
+                    Verdict::Refuted { witness, .. } if size != Size::Part && of_rank && !is_alone => {
                         let the_rank =
                             if matches!(question, Question::Visible { .. }) { "it" } else { "the rank" };
                         Verdict::undecided(format!(
@@ -203,11 +250,5 @@ pub(super) fn together(
             format!("no state was found at which all of it exists: it needs {needs}")
         });
     }
-    match Verdict::all(verdicts) {
-        Verdict::Proved { engine, log2_error } if !unsolved.is_empty() => Verdict::Proved {
-            engine: format!("{engine}; not looked at, thinner than the set: {}", unsolved.join("; ")),
-            log2_error,
-        },
-        verdict => verdict,
-    }
+    Verdict::all(verdicts)
 }

@@ -4,14 +4,15 @@ use super::branches::{Asked, Size, together};
 use super::defaults::at_the_files_values;
 use super::evidence::{Kept, Nearness, nearness};
 use super::existence::{Existence, existence};
-use super::identity::decide_nearness;
+use super::identity::{OnOneBranch, decide_nearness};
+use super::isolated::{isolated, lost};
 use super::pole::decide_pole;
 use super::question::{Question, claimed_integer, guards_of_conditions, sample_box};
 use super::solutions::{Asking, decide_solutions};
 use super::terms::{OnBranch, Terms};
 use super::verdict::{Outcome, Verdict, Witness};
 use super::visible::smooth;
-use crate::checker::{Evidence, VerdictRecord};
+use crate::checker::{ClaimParts, Evidence, RecordedWord, VerdictRecord, source_digest};
 use crate::expression::syntax::{Equation, Expr, Relation};
 use crate::expression::{Symbol, add_guard};
 use crate::observability::{Branch, solve};
@@ -65,10 +66,12 @@ pub fn decide_all_keeping(
                 return None;
             }
             let spare = copies().pop();
-            let mut copy = spare.unwrap_or_else(|| system.clone());
-            let outcome = decide_in(&mut copy, claim, seed, kept);
-            copy.shrink_to(&extent);
-            copies().push(copy);
+            let copy = spare.unwrap_or_else(|| system.clone());
+            let (outcome, copy) = decide_apart(copy, (system, claim), seed, kept);
+            if let Some(mut copy) = copy {
+                copy.shrink_to(&extent);
+                copies().push(copy);
+            }
             done(&outcome);
             Some(outcome)
         })
@@ -77,17 +80,39 @@ pub fn decide_all_keeping(
 
 /// Decides one claim. The system is left as it was.
 pub fn decide(system: &System, claim: &ClaimSyntax, seed: u64) -> Outcome {
-    decide_in(&mut system.clone(), claim, seed, Kept::Verdicts)
+    decide_apart(system.clone(), (system, claim), seed, Kept::Verdicts).0
+}
+
+/// Decides one claim in a copy of its system, which is given back unless the decision has panicked: nobody knows what is left of it then.
+fn decide_apart(
+    mut copy: System,
+    (system, claim): (&System, &ClaimSyntax),
+    seed: u64,
+    kept: Kept,
+) -> (Outcome, Option<System>) {
+    let begin = Instant::now();
+    let decided = isolated(move || {
+        let outcome = decide_in(&mut copy, claim, seed, kept);
+        (outcome, copy)
+    });
+    match decided {
+        Ok((outcome, copy)) => (outcome, Some(copy)),
+        Err(why) => (lost(system, claim, why, begin.elapsed().as_secs_f64()), None),
+    }
 }
 
 /// Decides one claim in a system that may be added to.
 fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) -> Outcome {
+    #[cfg(test)]
+    assert!(claim.id != super::isolated::PANICS, "as a test asks");
     let begin = Instant::now();
-    let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id));
+    // of what is said and not of its name: a claim that is renamed or moved keeps its verdict
+    let own = fingerprint(&said(system, claim));
+    let mut rng = ChaCha8Rng::seed_from_u64(seed ^ own);
     let system_name = system.name.clone();
     let text = |system: &System, statement: &Statement| in_one_line(&system.source, &statement.span);
     // other random numbers than those of the verdict: that one stays what it is whatever the file's values are
-    let mut again = ChaCha8Rng::seed_from_u64(seed ^ fingerprint(&claim.id) ^ 1);
+    let mut again = ChaCha8Rng::seed_from_u64(seed ^ own ^ 1);
     let mut special = |system: &mut System, statement: &Statement, verdict: &Verdict| {
         at_the_files_values(system, statement, verdict, |system, special| {
             decide_statement(system, special, Kept::Verdicts, &mut again).verdict
@@ -96,15 +121,21 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
     let mut at_files_values = None;
     let mut printed_at_files_values = None;
     let mut printed = None;
-    let (mut domain, mut beside) = (Vec::new(), Vec::new());
+    let (mut domain, mut beside, mut not_looked_at) = (Vec::new(), Vec::new(), Vec::new());
     let mut evidence = Vec::new();
+    let digest = if kept == Kept::Evidence { source_digest(&system.source) } else { String::new() };
     let mut known = |decided: Decided, text: &str, suffix: &str| {
         domain = decided.domain;
         beside = decided.beside;
+        let refuted = matches!(decided.verdict, Verdict::Refuted { .. });
+        not_looked_at = decided.not_looked_at;
         let records = decided.evidence.into_iter().map(|evidence| VerdictRecord {
             file: system_name.clone(),
+            digest: digest.clone(),
             id: format!("{}{suffix}", claim.id),
             statement: text.to_owned(),
+            asked: ClaimParts::of(text),
+            verdict: if refuted { RecordedWord::Refuted } else { RecordedWord::Proved },
             evidence,
         });
         evidence.extend(records);
@@ -173,6 +204,7 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
         verdict,
         domain,
         beside,
+        not_looked_at,
         evidence,
         expected,
         remark: claim.remark.clone(),
@@ -183,7 +215,25 @@ fn decide_in(system: &mut System, claim: &ClaimSyntax, seed: u64, kept: Kept) ->
     }
 }
 
-/// A number from a name (Fowler, Noll and Vo's hash), so that each claim has random numbers of its own.
+/// The statements of a claim, without blanks and comments, conditions in an order of their own: in which one they are written changes nothing.
+fn said(system: &System, claim: &ClaimSyntax) -> String {
+    let statements: Vec<&Statement> = match &claim.body {
+        ClaimBody::Claim { statement, .. } => vec![statement],
+        ClaimBody::Erratum { printed, corrected, .. } => vec![printed, corrected],
+        ClaimBody::Scan { repaired, .. } => vec![repaired],
+        ClaimBody::Definition { .. } | ClaimBody::Open { .. } => Vec::new(),
+    };
+    let text = |statement: &Statement| -> String {
+        let text: String = in_one_line(&system.source, &statement.span).split_whitespace().collect();
+        let Some((claimed, conditions)) = text.split_once("where") else { return text };
+        let mut conditions: Vec<&str> = conditions.split(',').collect();
+        conditions.sort_unstable();
+        format!("{claimed}where{}", conditions.join(","))
+    };
+    statements.into_iter().map(text).collect::<Vec<_>>().join(";")
+}
+
+/// A number from a text (Fowler, Noll and Vo's hash), so that each claim has random numbers of its own.
 fn fingerprint(text: &str) -> u64 {
     text.bytes()
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
@@ -193,6 +243,7 @@ fn fingerprint(text: &str) -> u64 {
 struct Decided {
     verdict: Verdict,
     beside: Vec<String>,
+    not_looked_at: Vec<String>,
     domain: Vec<String>,
     evidence: Vec<Evidence>,
 }
@@ -201,15 +252,23 @@ struct Decided {
 struct Notes {
     domain: Vec<String>,
     beside: Vec<String>,
+    /// Thin parts of the set that a proof does not speak of.
+    not_looked_at: Vec<String>,
     /// Of all branches, whatever the verdict on them.
     evidence: Vec<Evidence>,
     kept: Kept,
 }
 
 fn decide_statement(system: &mut System, statement: &Statement, kept: Kept, rng: &mut ChaCha8Rng) -> Decided {
-    let mut notes = Notes { domain: Vec::new(), beside: Vec::new(), evidence: Vec::new(), kept };
+    let mut notes = Notes {
+        domain: Vec::new(),
+        beside: Vec::new(),
+        not_looked_at: Vec::new(),
+        evidence: Vec::new(),
+        kept,
+    };
     let verdict = attempt(system, statement, rng, &mut notes).unwrap_or_else(Verdict::undecided);
-    let Notes { domain, beside, mut evidence, .. } = notes;
+    let Notes { domain, beside, not_looked_at, mut evidence, .. } = notes;
     let word = verdict.word();
     // at a state where a rank is lower than claimed it is certified, and at states of all cases where it is proved everywhere
     let is_of_it = |evidence: &Evidence| {
@@ -228,7 +287,7 @@ fn decide_statement(system: &mut System, statement: &Statement, kept: Kept, rng:
         Verdict::Proved { .. } | Verdict::Refuted { .. } => {}
         Verdict::Definition { .. } | Verdict::Undecided { .. } => evidence.clear(),
     }
-    Decided { verdict, domain, beside, evidence }
+    Decided { verdict, domain, beside, not_looked_at, evidence }
 }
 
 fn attempt(
@@ -326,13 +385,13 @@ fn attempt(
     }
     let sampled =
         if statement.on_sample { sample_box(system, question.sides(), &conditions) } else { Vec::new() };
-    let (solution, unsolved) = match solve(system, &statement.conditions) {
+    let (solution, unsolved) = match solve(system, &statement.conditions, &guards) {
         Ok(solution) => (solution, Vec::new()),
         // what cannot be solved can still be looked at, box by box
         Err(why) if matches!(question, Question::Relations { .. }) && why.may_be_met() => {
             let is_inequality = |condition: &&Equation| condition.relation != Relation::Equal;
             let others: Vec<Equation> = statement.conditions.iter().filter(is_inequality).cloned().collect();
-            let mut solution = solve(system, &others).map_err(|why| why.to_string())?;
+            let mut solution = solve(system, &others, &guards).map_err(|why| why.to_string())?;
             let exists = guards_of_conditions(system, statement)?;
             solution.parts.iter_mut().for_each(|part| part.guards.extend(&exists));
             (solution, conditions.clone())
@@ -347,7 +406,25 @@ fn attempt(
         }
         conditions.extend(system.zero_outputs());
     }
-    let one_thing_twice = system.says_one_thing_twice(statement);
+    let asked = Asked {
+        question: &question,
+        guards: &guards,
+        sampled: &sampled,
+        conditions: &conditions,
+        unsolved: &unsolved,
+        one_thing_twice: system.says_one_thing_twice(statement),
+        parts_are_proved: false,
+    };
+    if question.is_of_a_rank() {
+        let decided = asked.on_pieces(system, solution, notes.kept, rng)?;
+        notes.evidence.extend(decided.evidence);
+        let verdict = together(&question, decided.found);
+        if matches!(verdict, Verdict::Proved { .. }) {
+            let left_out = decided.unsolved.iter();
+            notes.not_looked_at.extend(left_out.cloned());
+        }
+        return Ok(verdict);
+    }
     let mut found = Vec::new();
     let lists = [
         (Size::Part, &solution.parts),
@@ -356,24 +433,21 @@ fn attempt(
     ];
     for (size, branches) in lists {
         for branch in branches {
-            if size == Size::Thinner && question.is_of_a_rank() {
-                continue; // a rank is that at almost all states of the set
-            }
-            let asked = Asked {
-                question: &question,
-                guards: &guards,
-                sampled: &sampled,
-                conditions: &conditions,
-                unsolved: &unsolved,
-                one_thing_twice,
-            };
-            for (branch, verdict, evidence) in asked.on_branch(system, branch, notes.kept, rng)? {
+            for (branch, verdict, evidence) in asked.on_whole_branch(system, branch, notes.kept, rng)? {
                 notes.evidence.extend(evidence);
                 found.push((size, branch, verdict));
             }
         }
     }
-    Ok(together(&question, found, &solution.unsolved))
+    let parts_are_proved = solution.parts.iter().all(|part| part.values.len() == conditions.len())
+        && found.iter().all(|(.., on_one)| {
+            matches!(on_one, OnOneBranch::Verdict(Verdict::Proved { .. }, Existence::Shown))
+        });
+    let asked = Asked { parts_are_proved, ..asked };
+    for part in &solution.unsolved {
+        found.extend(asked.on_unsolved(system, part, rng)?);
+    }
+    Ok(together(&question, found))
 }
 
 /// For an order of a pole the conditions are a point: `name = number`, at which the others are generic.

@@ -4,7 +4,8 @@ use super::question::{Question, guards_of_conditions};
 use super::verdict::{Verdict, Witness};
 use crate::checker::{CertifiedRank, Effort, Evidence, Finding, Missing, RankedState, Ratio, StatedIdentity};
 use crate::drops::{
-    ClaimedEverywhere, Everywhere, MinorIdentity, StatesOfCases, decide_everywhere, share_of_the_box,
+    ClaimedEverywhere, Everywhere, MinorIdentity, NamedSet, StatesOfCases, decide_everywhere,
+    share_of_the_box,
 };
 use crate::evidence::{Lowering, StatementAt, exact_state, largest_minor};
 use crate::expression::syntax::{Equation, Expr, Relation};
@@ -60,24 +61,27 @@ pub(super) fn read(
             add_guard(&system.graph, &mut guards, guard);
         }
     }
-    let (mut sets, mut written) = (Vec::new(), Vec::new());
-    for set in except {
-        let ends = set.first().zip(set.last()).map(|(first, last)| first.span.start..last.span.end);
-        written.push(in_one_line(&system.source, &ends.unwrap_or_default()));
-        let mut vanishing = Vec::new();
-        for equation in set {
-            let mut side = |expr: &Expr| -> Result<NodeId, String> {
-                let (value, needed) = system.elaborate_guarded(expr).map_err(|problem| problem.message)?;
-                needed.into_iter().for_each(|guard| add_guard(&system.graph, &mut guards, guard));
-                value.as_number().ok_or_else(|| "what is left out is said by numbers".to_owned())
-            };
-            let (left, right) = (side(&equation.left)?, side(&equation.right)?);
-            vanishing.push(system.graph.sub(left, right));
-        }
-        sets.push(vanishing);
-    }
     guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
-    Ok(ClaimedEverywhere { matrix, rank, guards, conditions, except: sets, written, with_examples: false })
+    let sets = except.iter().map(|set| left_out(system, set, &guards)).collect::<Result<_, _>>()?;
+    Ok(ClaimedEverywhere { matrix, rank, guards, conditions, except: sets, with_examples: false })
+}
+
+/// A set that is left out. What its equations need to exist is needed of its own states, and not of those that the claim is about.
+fn left_out(system: &mut System, set: &[Equation], known: &[Guard]) -> Result<NamedSet, String> {
+    let ends = set.first().zip(set.last()).map(|(first, last)| first.span.start..last.span.end);
+    let written = in_one_line(&system.source, &ends.unwrap_or_default());
+    let (mut vanishing, mut guards) = (Vec::new(), Vec::new());
+    for equation in set {
+        let mut side = |expr: &Expr| -> Result<NodeId, String> {
+            let (value, needed) = system.elaborate_guarded(expr).map_err(|problem| problem.message)?;
+            needed.into_iter().for_each(|guard| add_guard(&system.graph, &mut guards, guard));
+            value.as_number().ok_or_else(|| "what is left out is said by numbers".to_owned())
+        };
+        let (left, right) = (side(&equation.left)?, side(&equation.right)?);
+        vanishing.push(system.graph.sub(left, right));
+    }
+    guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true) && !known.contains(guard));
+    Ok(NamedSet { vanishing, guards, written })
 }
 
 /// Decides a claim about a rank at all states, and notes what the verdict rests on.

@@ -15,6 +15,9 @@ mod evidence;
 mod existence;
 mod identity;
 mod inequality;
+mod isolated;
+mod multiple;
+mod pieces;
 mod point;
 mod pole;
 mod question;
@@ -32,6 +35,7 @@ mod witness;
 
 pub use decide::{decide, decide_all, decide_all_keeping, prove};
 pub use evidence::Kept;
+pub(crate) use isolated::isolated;
 pub use point::{EvaluationError, ValueAtPoint, evaluate};
 #[doc(hidden)]
 pub use selection::{Selection, UnmetPattern};

@@ -58,15 +58,14 @@ pub(super) fn by_bounds(
         _ if upper < rows.columns => limits.log2_error,
         _ => f64::NEG_INFINITY,
     };
-    let refuted = |left: String| Verdict::Refuted {
-        engine: BOUNDS.to_owned(),
-        witness: Witness {
-            state: witness.clone().unwrap_or_default(),
-            left,
-            right: claimed.to_string(),
-            entry: None,
-            refutation: None,
-        },
+    let refuted = |left: String| {
+        let Some(state) = witness.clone() else {
+            return Verdict::undecided(format!(
+                "the rank is {left} at all states, and no state in exact numbers was found at which all of it exists"
+            ));
+        };
+        let witness = Witness { state, left, right: claimed.to_string(), entry: None, refutation: None };
+        Verdict::Refuted { engine: BOUNDS.to_owned(), witness }
     };
     let word = |bound: &str, rank: usize| match lower == upper {
         true => rank.to_string(),

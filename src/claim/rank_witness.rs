@@ -1,10 +1,11 @@
 //! A state in exact numbers at which a matrix has not the rank that was claimed.
 
 use super::terms::{OnBranch, Point, Values};
-use super::verdict::Witness;
-use crate::number::{Enclosure, Enclosures, Rationals, rational_to_f64};
-use crate::observability::{StateInWords, certain_rank, rank};
+use super::verdict::{Verdict, Witness};
+use crate::number::{Enclosure, Enclosures, PrimeField, Rationals, rational_to_f64};
+use crate::observability::{Coordinate, Defined, Probe, StateInWords, certain_rank, rank};
 use crate::system::System;
+use dashu::rational::RBig;
 use rand::Rng;
 
 /// The bits of the elimination in enclosures.
@@ -20,16 +21,60 @@ pub(crate) struct Ranks {
 }
 
 impl Ranks {
-    /// The two, where no state was drawn that shows it.
-    pub fn nowhere(self) -> Witness {
+    /// The verdict at a state that shows it; without one nothing is refuted.
+    pub fn refuted(self, engine: String, witness: Option<Witness>) -> Verdict {
+        match witness {
+            Some(witness) => Verdict::Refuted { engine, witness },
+            None => Verdict::undecided(format!(
+                "the rank is {} at almost all states around, but no state in exact numbers was found that shows that it is not {}",
+                self.generic, self.claimed
+            )),
+        }
+    }
+
+    fn at(self, state: StateInWords) -> Witness {
         Witness {
-            state: Vec::new(),
+            state,
             left: self.generic.to_string(),
             right: self.claimed.to_string(),
             entry: None,
             refutation: None,
         }
     }
+}
+
+/// A state of the branch at which the codistribution has its generic rank, by power series that begin there.
+pub(super) fn series_witness(
+    system: &mut System,
+    on: &OnBranch,
+    ranks: Ranks,
+    rng: &mut impl Rng,
+) -> Option<Witness> {
+    let probe = Probe::new(system, &on.branch.values);
+    let field = PrimeField::random(rng);
+    let unknowns = system.unknown_count();
+    let guards = system.smooth_guards(&system.moving_fields());
+    let defined = Defined::new(system, &guards);
+    for attempt in 0..ATTEMPTS {
+        let point = on.draw(system, attempt, rng);
+        // what no row mentions is met in the series
+        let mut state = point.state.clone();
+        for symbol in system.states.clone() {
+            let any = match system.is_angle(symbol) {
+                true => Coordinate::from_half_tangent(&RBig::from_parts(1.into(), 3u8.into())),
+                false => Coordinate::Number(RBig::from(attempt as i64 % 7 + 1)),
+            };
+            state.values.entry(symbol).or_insert(any);
+        }
+        if on.sides(&point).is_none() || !point.terms.is_empty() || !defined.holds(&state) {
+            continue;
+        }
+        // modulo a prime it is no more than the rank there, which is nowhere more than at almost all states
+        if probe.rank_at(&state, field, attempt as u64, unknowns) == Some(ranks.generic) {
+            return Some(ranks.at(state.describe(system)));
+        }
+    }
+    None
 }
 
 /// The state of the branch, of those that are drawn, at which the rows have the greatest rank for certain, and that rank; the first
@@ -83,13 +128,7 @@ pub(crate) fn rank_witness(
         // no state has a higher rank than almost all have, and enclosures show that it is not lower
         let found = rank_at(on, &point, columns);
         if found == Some(ranks.generic) {
-            return Some(Witness {
-                state: on.describe(system, &point),
-                left: ranks.generic.to_string(),
-                right: ranks.claimed.to_string(),
-                entry: None,
-                refutation: None,
-            });
+            return Some(ranks.at(on.describe(system, &point)));
         }
     }
     None

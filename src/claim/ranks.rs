@@ -3,7 +3,7 @@
 use super::existence::{Existence, existence};
 use super::identity::{OnOneBranch, RANDOM_PRIMES};
 use super::rank_bounds::{Limits, Rows, by_bounds};
-use super::rank_witness::{Ranks, rank_witness};
+use super::rank_witness::{Ranks, rank_witness, series_witness};
 use super::terms::{OnBranch, Terms};
 use super::verdict::{Verdict, Witness};
 use crate::observability::{Branch, Codistribution, Frame, GenericRank, Length, Stop, generic_rank};
@@ -57,8 +57,9 @@ pub(crate) fn decide_codistribution(
         && !frame.words_are_short(system)
     {
         let log2_error = frame.generic.log2_error;
-        // the words are too long for a state of its own to be looked at
-        return Ok(on_one_branch(exists, || by_series(rank, claimed, log2_error, |_| None)));
+        // the words are too long to be written down
+        let witness = |ranks| series_witness(system, on, ranks, rng);
+        return Ok(on_one_branch(exists, || by_series(rank, claimed, log2_error, witness)));
     }
     let words = Codistribution::within(system, &branch.values, Length::UntilItStops, frame)?;
     let found = words.generic_rank();
@@ -71,7 +72,10 @@ pub(crate) fn decide_codistribution(
     {
         // no words were written down that show it, or it is not known of them: the series are
         let log2_error = words.generic.log2_error;
-        let witness = |ranks| rank_witness(system, &needed, columns, ranks, rng);
+        let witness = |ranks| {
+            let found = rank_witness(system, &needed, columns, ranks, rng);
+            found.or_else(|| series_witness(system, on, ranks, rng))
+        };
         return Ok(on_one_branch(exists, || by_series(rank, claimed, log2_error, witness)));
     }
     let entries = system.graph.substitute(&words.entries(), &branch.values);
@@ -118,7 +122,7 @@ fn by_series(
         return Verdict::Proved { engine, log2_error };
     }
     let ranks = Ranks { generic: rank, claimed };
-    Verdict::Refuted { engine, witness: witness(ranks).unwrap_or_else(|| ranks.nowhere()) }
+    ranks.refuted(engine, witness(ranks))
 }
 
 /// Decides a rank of rows on a branch.
@@ -138,8 +142,7 @@ pub(super) fn decide(
         GenericRank::Rank { rank, .. } => {
             let ranks = Ranks { generic: rank, claimed };
             let witness = rank_witness(system, rows.on, rows.columns, ranks, rng);
-            let witness = witness.unwrap_or_else(|| ranks.nowhere());
-            Verdict::Refuted { engine: format!("{RANDOM_PRIMES}{}", rows.scope), witness }
+            ranks.refuted(format!("{RANDOM_PRIMES}{}", rows.scope), witness)
         }
         GenericRank::Pole(divisor) => {
             let text = system.graph.text(divisor);

@@ -153,6 +153,8 @@ pub struct Outcome {
     pub fields: Vec<FieldRole>,
     /// Of a rank at all states: what it is on each of the sets that are left out, in words.
     pub beside: Vec<String>,
+    /// Thin parts of the set that a proof does not speak of, in words.
+    pub not_looked_at: Vec<String>,
     /// How long it took.
     pub seconds: f64,
 }

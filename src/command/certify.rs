@@ -11,6 +11,7 @@ use palmistry::certificate::{Limits, Progress, Region, RegionAnswer, RegionPart,
 use palmistry::evidence::{WrittenBoxes, certificate_file};
 use palmistry::expression::Symbol;
 use palmistry::file::{note, read_text};
+use palmistry::foreign::shown_path;
 use palmistry::report::{percent, region_curve, region_json, region_map, region_text, unit_of};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -127,7 +128,7 @@ impl Certify {
         }
         if let Some(file) = &self.state {
             if file.exists() && !file.is_file() {
-                let message = format!("{} is no file that a state could be kept in", file.display());
+                let message = format!("{} is no file that a state could be kept in", shown_path(file));
                 return Err(Unusable::report(message, "name a file with --state"));
             }
             resume(&mut region, file)?;
@@ -157,7 +158,7 @@ impl Certify {
             match (&self.verdicts, &written) {
                 (Some(file), Some(written)) => format!(
                     "{text}\n{}: {} of {} proved boxes; {} more are not shown by plain interval arithmetic and left out",
-                    file.display(),
+                    shown_path(file),
                     written.boxes,
                     region.proved_box_count(),
                     written.left_out
@@ -298,14 +299,17 @@ fn resume(region: &mut Region, file: &Path) -> miette::Result<()> {
         return Ok(());
     }
     let text = read_text(file, LONGEST_STATE).map_err(|why| {
-        Unusable::report(format!("cannot read {}: {why}", file.display()), "the state of a search is a file")
+        Unusable::report(
+            format!("cannot read {}: {why}", shown_path(file)),
+            "the state of a search is a file",
+        )
     })?;
     region.resume(&text).map_err(|why| {
-        let message = format!("{} cannot be taken up: {why}", file.display());
+        let message = format!("{} cannot be taken up: {why}", shown_path(file));
         Unusable::report(message, "name another file with --state, or delete this one to begin anew")
     })?;
     if region.is_finished() {
-        note(&format!("{} is finished: no box in it is open any more", file.display()));
+        note(&format!("{} is finished: no box in it is open any more", shown_path(file)));
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ use super::output::{Files, Form, proof_files};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::file;
+use palmistry::foreign::{name_of, shown_path};
 use palmistry::system::format_text;
 use serde_json::json;
 use std::path::PathBuf;
@@ -37,7 +38,7 @@ impl Fmt {
         // all are read before any is written: a mistake in one leaves all as they are
         let mut changed: Vec<(PathBuf, String)> = Vec::new();
         for path in proof_files(&self.paths)? {
-            let shown = path.display().to_string();
+            let shown = name_of(&path);
             let text = file::read_text(&path, LONGEST_FILE)
                 .map_err(|why| Unusable::report(format!("cannot read {shown}: {why}"), ""))?;
             let formatted = format_text(&shown, &text)?;
@@ -64,15 +65,19 @@ impl Fmt {
                     false if files.has_written(path) => "changed",
                     false => "left as it is",
                 };
-                format!("{what}: {}", path.display())
+                format!("{what}: {}", shown_path(path))
             };
             match changed.is_empty() {
                 true => "all files are in normal form".to_owned(),
                 false => changed.iter().map(line).collect::<Vec<_>>().join("\n"),
             }
         };
-        let paths: Vec<&PathBuf> =
-            changed.iter().map(|(path, _)| path).filter(|path| files.has_written(path)).collect();
+        let paths: Vec<String> = changed
+            .iter()
+            .map(|(path, _)| path)
+            .filter(|path| files.has_written(path))
+            .map(|path| name_of(path))
+            .collect();
         let (object, words) = (json!({ "ok": ok, "changed": paths }), words());
         files.print(form, object, || words, status)
     }

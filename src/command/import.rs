@@ -4,6 +4,7 @@ use super::output::{Files, Form};
 use super::{Status, Unusable};
 use clap::{Args, ValueEnum};
 use palmistry::file;
+use palmistry::foreign::name_of;
 use palmistry::import::{ForeignFormat, ForeignUnknowns, ImportQuestion, ImportedModel, import};
 use serde_json::json;
 use std::path::PathBuf;
@@ -92,7 +93,7 @@ impl From {
 
 impl Import {
     pub fn run(self) -> miette::Result<Status> {
-        let shown = self.file.display().to_string();
+        let shown = name_of(&self.file);
         let text = file::read_text(&self.file, LONGEST_FILE)
             .map_err(|why| Unusable::report(format!("cannot read {shown}: {why}"), ""))?;
         let imported = import(&shown, &text, &self.question())?;
@@ -111,7 +112,7 @@ impl Import {
         let object = json!({
             "file": shown,
             "format": imported.format.name(),
-            "written": written,
+            "written": written.map(|out| name_of(out)),
             "proof": imported.text,
             "title": imported.model.title,
             "source": imported.model.source,

@@ -44,14 +44,15 @@ fn asked_to_stop(status: i32) {
 
 #[cfg(unix)]
 fn listen() -> std::io::Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    let mut signals = vec![SIGINT, SIGTERM];
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU, SIGXFSZ};
+    // a file that becomes too long is then a write that fails, and is cleaned up after like any other
+    let mut signals = vec![SIGINT, SIGTERM, SIGXCPU, SIGXFSZ];
     if !is_ignored(SIGHUP) {
         signals.push(SIGHUP); // who starts a program with 'nohup' wants it to outlive the terminal
     }
     let mut signals = signal_hook::iterator::Signals::new(signals)?;
     std::thread::Builder::new().spawn(move || {
-        for signal in signals.forever() {
+        for signal in signals.forever().filter(|signal| *signal != SIGXFSZ) {
             asked_to_stop(128 + signal);
         }
     })?;

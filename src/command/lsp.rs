@@ -3,7 +3,7 @@
 use super::interrupt::{STACK, interrupted};
 use super::{Status, Unusable};
 use clap::Args;
-use palmistry::lsp::{Connection, SessionEnd, serve};
+use palmistry::lsp::{SessionEnd, serve, standard_streams};
 
 /// Serves an editor over standard input and output, by the Language Server Protocol.
 ///
@@ -21,10 +21,11 @@ pub(crate) struct Lsp {
 
 impl Lsp {
     pub fn run(self) -> miette::Result<Status> {
-        let (connection, threads) = Connection::stdio();
-        let served =
-            std::thread::Builder::new().stack_size(STACK).spawn(move || serve(&connection, &interrupted));
-        let served = served.map_err(|error| {
+        let begun = standard_streams().and_then(|(connection, channel)| {
+            let thread = std::thread::Builder::new().stack_size(STACK);
+            Ok((thread.spawn(move || serve(&connection, &interrupted))?, channel))
+        });
+        let (served, channel) = begun.map_err(|error| {
             Unusable::report(
                 format!("the system gives no thread to work on: {error}"),
                 "end other programs first",
@@ -35,7 +36,7 @@ impl Lsp {
             // the thread that reads waits for an input that may never come
             return Ok(Status::NotAsExpected);
         }
-        threads.join().map_err(|error| {
+        channel.join().map_err(|error| {
             Unusable::report(
                 format!("the channel to the editor broke: {error}"),
                 "'palmistry lsp' is started by an editor",

@@ -3,6 +3,7 @@
 use super::output::{Files, Form, print_text};
 use super::{Cli, Status, Unusable};
 use clap::{Args, CommandFactory};
+use palmistry::foreign::shown_path;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -51,7 +52,7 @@ impl Man {
             files.text(&folder.join(name), text);
         }
         let written = pages.iter().filter(|(name, _)| files.has_written(&folder.join(name))).count();
-        let words = || format!("{written} pages in {}", folder.display());
+        let words = || format!("{written} pages in {}", shown_path(&folder));
         files.print(Form::Text, json!({}), words, Status::AsExpected)
     }
 }

@@ -144,6 +144,9 @@ pub fn run() -> ExitCode {
     };
     interrupt::stop_on_interrupt();
     let form = verb.form();
+    if verb.is_a_stream() {
+        output::print_in_lines();
+    }
     let result = threads::prepare().and_then(|()| verb.run());
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,
@@ -183,6 +186,15 @@ impl Verb {
         })
     }
 
+    /// Whether the command line asks for a stream of answers.
+    fn is_a_stream(&self) -> bool {
+        match self {
+            Verb::Prove(verb) => verb.watch,
+            Verb::Observe(verb) => verb.reads_a_stream(),
+            _ => false,
+        }
+    }
+
     /// Does what is asked for, on a thread of its own: see [`interrupt`].
     fn run(self) -> miette::Result<Status> {
         let form = self.form();
@@ -191,7 +203,7 @@ impl Verb {
             Verb::Verify(verb) => verb.run(),
             Verb::Prove(verb) => verb.run(),
             Verb::Check(verb) => interrupt::watched(move || verb.run(), nothing),
-            Verb::Rank(verb) => interrupt::watched(move || verb.run(), nothing),
+            Verb::Rank(verb) => verb.run(),
             Verb::Recheck(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Certify(verb) => interrupt::watched(move || verb.run(), nothing),
             Verb::Trade(verb) => interrupt::watched(move || verb.run(), nothing),
@@ -217,11 +229,13 @@ fn not_understood(error: &clap::Error) -> ExitCode {
         return asked_for(text.trim_end_matches('\n'));
     }
     // the arguments are not understood, so what they ask for has to be looked for by hand
-    if std::env::args_os()
-        .skip(1)
-        .take_while(|argument| argument != "--")
-        .any(|argument| argument == "--json")
-    {
+    let arguments: Vec<_> = std::env::args_os().skip(1).take_while(|argument| argument != "--").collect();
+    let said = |word: &str| arguments.iter().any(|argument| argument == word);
+    if said("--json") {
+        let from_a_stream = arguments.windows(2).any(|pair| pair[0] == "--data" && pair[1] == "-");
+        if said("--watch") || said("--data=-") || from_a_stream {
+            output::print_in_lines();
+        }
         let _ = output::print_json(&output::usage_json(&text));
     }
     file::note(text.trim_end_matches('\n'));

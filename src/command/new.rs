@@ -3,6 +3,7 @@
 use super::output::{Files, Form};
 use super::{Status, Unusable};
 use clap::Args;
+use palmistry::foreign::{name_of, shown_path};
 use palmistry::paper::MANIFEST;
 use serde_json::json;
 use std::io::ErrorKind;
@@ -35,12 +36,12 @@ impl New {
         let folder = &self.folder;
         refuse_taken(folder)?;
         self.fill(folder).map_err(|error| {
-            Unusable::report(format!("cannot make {}: {error}", folder.display()), "choose another place")
+            Unusable::report(format!("cannot make {}: {error}", shown_path(folder)), "choose another place")
         })?;
         let paths: Vec<PathBuf> = TEMPLATE.iter().map(|(name, _)| folder.join(name)).collect();
-        let shown = folder.display();
+        let shown = shown_path(folder);
         let words = || format!("{shown} is a paper that proves; next: palmistry verify {shown}");
-        let object = json!({ "folder": folder, "files": paths });
+        let object = json!({ "folder": name_of(folder), "files": paths.iter().map(|path| name_of(path)).collect::<Vec<_>>() });
         Files::default().print(Form::of(self.json), object, words, Status::AsExpected)
     }
 
@@ -76,7 +77,7 @@ impl New {
 /// Refuses a place at which something is.
 fn refuse_taken(folder: &Path) -> miette::Result<()> {
     let taken = |what: &str| {
-        let message = format!("{} {what}", folder.display());
+        let message = format!("{} {what}", shown_path(folder));
         Err(Unusable::report(message, "name a folder that is not there yet; nothing was written"))
     };
     match std::fs::read_dir(folder) {

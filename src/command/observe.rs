@@ -3,7 +3,7 @@
 use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted, nothing_found, watched};
 use super::observe_stream;
 use super::observe_studies::studies;
-use super::output::{Files, Form, progress};
+use super::output::{Files, Form, print_in_lines, progress};
 use super::shards::{NO_WHOLE, Parts, Shards};
 use super::slow_told::KeptSlow;
 use super::{Status, Unusable};
@@ -93,6 +93,11 @@ impl Observe {
         watched(move || self.work(&filled), move || kept.tell().unwrap_or_else(|| nothing_found(form)))
     }
 
+    /// Whether the command line says that readings come from standard input; a scene may say so too.
+    pub fn reads_a_stream(&self) -> bool {
+        self.data.as_deref() == Some(Path::new("-"))
+    }
+
     fn work(self, kept: &KeptSlow) -> miette::Result<Status> {
         if let Some(space) = SpaceScene::read(&self.scene) {
             return self.run_space(space?);
@@ -104,6 +109,9 @@ impl Observe {
         scene.seed = self.seed.unwrap_or(scene.seed);
         let from = self.data.as_deref().or(scene.data.record.as_deref());
         let is_stream = from == Some(Path::new("-"));
+        if is_stream {
+            print_in_lines();
+        }
         self.goes_together(&scene, is_stream)?;
         if is_stream {
             return observe_stream::observe(scene, Form::of(self.json), self.no_times);

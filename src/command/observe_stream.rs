@@ -47,7 +47,7 @@ pub(super) fn observe(scene: Scene, form: Form, no_times: bool) -> miette::Resul
         if no_times {
             forget_seconds(&mut object);
         }
-        format!("{}\n", versioned(object))
+        format!("{}\n", palmistry::foreign::json_text(&versioned(object), false))
     };
     let end = observe_stream(scene, &INTERRUPTED, &mut next, &mut |report| {
         tell(&match form {

@@ -3,16 +3,27 @@
 use super::{Status, Unusable};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::Report;
+use palmistry::foreign::{json_text, name_of, shown_path};
 use palmistry::observer::Record;
 use palmistry::report::{read_error_json, versioned};
 use palmistry::{ReadError, file};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Prints an object to standard output, indented, with its version.
+/// Whether what is printed is a stream of objects, of which each has a line.
+static IN_LINES: AtomicBool = AtomicBool::new(false);
+
+/// From now on every object that is printed is one line: results, errors, and what an interrupt leaves.
+pub(crate) fn print_in_lines() {
+    IN_LINES.store(true, Ordering::Relaxed);
+}
+
+/// Prints an object to standard output with its version, indented, or as one line of a stream.
 pub(crate) fn print_json(object: &Value) -> miette::Result<()> {
-    print_text(&serde_json::to_string_pretty(&versioned(object.clone())).unwrap_or_default())
+    let in_lines = IN_LINES.load(Ordering::Relaxed);
+    print_text(&json_text(&versioned(object.clone()), !in_lines))
 }
 
 /// Prints a text and the end of its line to standard output. A reader that has gone away is no error of ours.
@@ -44,7 +55,7 @@ impl Files {
     /// Writes a text.
     pub fn text(&mut self, path: &Path, text: &str) {
         let written = file::write_whole(path, |file| file.write_all(text.as_bytes()));
-        self.note(path, written.map_err(|error| format!("cannot write {}: {error}", path.display())));
+        self.note(path, written.map_err(|error| format!("cannot write {}: {error}", shown_path(path))));
     }
 
     /// Writes a text that may have failed to come about: then there is nothing to write, and that is noted.
@@ -52,7 +63,7 @@ impl Files {
         match text {
             Ok(text) => self.text(path, &text),
             Err(why) => {
-                let why = format!("{} is not written: {why}", path.display());
+                let why = format!("{} is not written: {why}", shown_path(path));
                 self.failures.push(Failure { file: path.to_owned(), why, help: "the results are printed" });
             }
         }
@@ -61,7 +72,7 @@ impl Files {
     /// Writes an object as JSON, indented, with its version.
     pub fn json(&mut self, path: &Path, object: &Value) {
         let object = versioned(object.clone());
-        self.text(path, &format!("{}\n", serde_json::to_string_pretty(&object).unwrap_or_default()));
+        self.text(path, &format!("{}\n", json_text(&object, true)));
     }
 
     /// Writes a record, CSV or Parquet by the extension.
@@ -76,7 +87,7 @@ impl Files {
         fill: impl FnOnce(&mut (dyn Write + Send)) -> std::io::Result<()>,
     ) {
         let written = file::write_whole(path, fill);
-        self.note(path, written.map_err(|error| format!("cannot write {}: {error}", path.display())));
+        self.note(path, written.map_err(|error| format!("cannot write {}: {error}", shown_path(path))));
     }
 
     fn note(&mut self, path: &Path, written: Result<(), String>) {
@@ -93,7 +104,7 @@ impl Files {
     /// Says on standard error that a file was written, if it was.
     pub fn announce(&self, path: &Path) {
         if path != Path::new("-") && self.has_written(path) {
-            file::note(&format!("written: {}", path.display()));
+            file::note(&format!("written: {}", shown_path(path)));
         }
     }
 
@@ -131,7 +142,7 @@ impl Files {
             object["unwritten"] = self
                 .failures
                 .iter()
-                .map(|failure| json!({ "file": failure.file.display().to_string(), "why": failure.why }))
+                .map(|failure| json!({ "file": name_of(&failure.file), "why": failure.why }))
                 .collect();
         }
     }
@@ -206,9 +217,9 @@ pub(crate) fn proof_files(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
         if path.is_dir() {
             let before = files.len();
             collect(path, &mut files)
-                .map_err(|e| Unusable::report(format!("cannot read {}: {e}", path.display()), ""))?;
+                .map_err(|e| Unusable::report(format!("cannot read {}: {e}", shown_path(path)), ""))?;
             if files.len() == before {
-                let message = format!("there is no .proof file below {}", path.display());
+                let message = format!("there is no .proof file below {}", shown_path(path));
                 return Err(Unusable::report(message, "name a file, or a folder that has some"));
             }
         } else {

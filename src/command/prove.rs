@@ -32,7 +32,7 @@ pub(crate) struct Prove {
     /// Decide again whenever a file is changed, or one that it imports, until it is interrupted. Only files that are changed,
     /// or import what is changed, are decided again. With --json each report is one line.
     #[arg(long)]
-    watch: bool,
+    pub watch: bool,
 }
 
 /// What is decided so far.

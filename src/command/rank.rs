@@ -1,7 +1,7 @@
 //! `palmistry rank`: is the state seen in the outputs?
 
 use super::arguments::Wanted;
-use super::interrupt::{INTERRUPTED, begin_to_tell};
+use super::interrupt::{INTERRUPTED, begin_to_tell, nothing_found, watched};
 use super::output::{Files, Form, progress};
 use super::reparametrise::reparametrisation;
 use super::shards::{NO_WHOLE, Parts, Shards};
@@ -13,14 +13,18 @@ use palmistry::evidence::rank_records;
 use palmistry::observability::SOLUTIONS_WORK;
 use palmistry::report::{
     StateTableWriter, TableForm, accessibility_json, accessibility_text, drops_json, drops_page, drops_text,
-    global_json, global_text, rank_json, rank_text,
+    global_json, global_text, rank_json, rank_so_far_json, rank_so_far_text, rank_text,
 };
-use palmistry::sweep::{MOST_DIGITS, RankError, RankPart, RankPreparation, StateRow, StateTable, shard_of};
-use palmistry::{RankQuestion, System, answer_accessibility, answer_solutions};
+use palmistry::sweep::{
+    GenericOnBranch, GlobalAnswer, MOST_DIGITS, RankError, RankPart, RankPreparation, StateRow, StateTable,
+    answer_solutions_telling, shard_of,
+};
+use palmistry::{RankQuestion, System, answer_accessibility};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Decides the rank of the observability codistribution at sampled states.
 ///
@@ -65,7 +69,7 @@ pub(crate) struct Rank {
     /// cheapest numbers that suffice are taken, and better ones where a state needs them.
     #[arg(long, value_enum, default_value_t = Wanted::Certified, value_name = "HOW")]
     verdict: Wanted,
-    /// Give the singular values of the worst conditioned state, and its condition, to N significant digits (at most 200);
+    /// Give the singular values of the state whose rank is hardest to decide, and its condition, to N significant digits (at most 200);
     /// by doubles they have about three. The digits are what '--verdict' says: all of them certain, or agreed on by
     /// doubles and double-doubles. The cheapest numbers that suffice are taken; 'climbed' says how many were tried
     /// before. Which state is worst is decided by doubles.
@@ -119,14 +123,52 @@ pub(crate) struct Rank {
     pub json: bool,
 }
 
+/// What is known before the end.
+#[derive(Clone)]
+enum SoFar {
+    Nothing,
+    /// Of each branch of the conditions of a file, in their order, what holds at almost all of its states.
+    Rank(String, Vec<GenericOnBranch>),
+    Values(Box<GlobalAnswer>),
+}
+
+impl SoFar {
+    /// Tells it where the work is not waited for.
+    fn tell(&self, form: Form) -> miette::Result<Status> {
+        let files = Files::default();
+        match self {
+            SoFar::Nothing => nothing_found(form),
+            SoFar::Rank(file, branches) => files.print(
+                form,
+                rank_so_far_json(file, branches),
+                || rank_so_far_text(file, branches),
+                Status::CutOff,
+            ),
+            SoFar::Values(answer) => {
+                files.print(form, global_json(answer), || global_text(answer), Status::CutOff)
+            }
+        }
+    }
+}
+
 impl Rank {
+    /// Finds out. What an interrupt does not wait for is told without it.
     pub fn run(self) -> miette::Result<Status> {
+        let form = Form::of(self.json);
+        let known = Arc::new(Mutex::new(SoFar::Nothing));
+        let kept = known.clone();
+        let put = move |so_far| *kept.lock().unwrap_or_else(PoisonError::into_inner) = so_far;
+        let left = move || known.lock().unwrap_or_else(PoisonError::into_inner).clone().tell(form);
+        watched(move || self.work(&put), left)
+    }
+
+    fn work(self, known: &dyn Fn(SoFar)) -> miette::Result<Status> {
         let mut system = System::read(&self.file)?;
         if self.where_it_drops {
             return self.tell_where(&mut system);
         }
         if self.global {
-            return self.tell_values(&mut system);
+            return self.tell_values(&mut system, known);
         }
         let fixed: BTreeMap<_, _> = system.given_values(&self.at)?.into_iter().collect();
         let samples = self.samples.unwrap_or(RankQuestion::default().samples);
@@ -160,10 +202,12 @@ impl Rank {
             return parts.tell_missing(missing, form);
         }
         let prepare = |system: &mut System| {
-            let prepared = match nothing_asked {
-                true => RankPreparation::at_once(system, question),
-                false => RankPreparation::new(system, question),
+            let (file, mut branches) = (system.name.clone(), Vec::new());
+            let mut tell = |branch| {
+                branches.push(branch);
+                known(SoFar::Rank(file.clone(), branches.clone()));
             };
+            let prepared = RankPreparation::telling(system, question, nothing_asked, &mut tell);
             prepared.map_err(|why| Unusable::report(why.to_string(), ""))
         };
         if let (Some(shard), Some(folder)) = (self.shards.shard, &self.shards.part) {
@@ -257,8 +301,9 @@ impl Rank {
     }
 
     /// How many values of each unknown give the same outputs.
-    fn tell_values(&self, system: &mut System) -> miette::Result<Status> {
-        let answer = answer_solutions(system, self.work, &INTERRUPTED)
+    fn tell_values(&self, system: &mut System, known: &dyn Fn(SoFar)) -> miette::Result<Status> {
+        let mut tell = |answer| known(SoFar::Values(Box::new(answer)));
+        let answer = answer_solutions_telling(system, self.work, &INTERRUPTED, &mut tell)
             .map_err(|why| Unusable::report(why.to_string(), ""))?;
         begin_to_tell();
         let status =

@@ -4,15 +4,18 @@ use super::interrupt::{INTERRUPTED, begin_to_tell, interrupted};
 use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
-use palmistry::checker::{CheckedVerdict, Effort, Evidence, Finding, LARGEST_FILE, VerdictFile};
+use palmistry::checker::{
+    CheckedVerdict, Checking, Effort, Evidence, Finding, LARGEST_FILE, ProofSources, VerdictFile,
+};
 use palmistry::file::read_text;
+use palmistry::foreign::{shown, shown_path};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Checks a file of verdicts that 'prove', 'rank' or 'certify' wrote with '--verdicts', and needs no other file.
+/// Checks a file of verdicts that 'prove', 'rank' or 'certify' wrote with '--verdicts', against the proof files that it names.
 ///
-/// A refutation is evaluated again at its witness, a certified rank by its minor and its kernel, a certificate box by box:
-/// these are confirmed or not.
+/// Each claim is read from its proof file. A refutation is evaluated again at its witness, a certified rank by its minor and its
+/// kernel, a certificate box by box: these are confirmed or not. Of a rank that is not full, one half: that it is no less.
 /// A proof cannot be repeated by evaluation: it is consistent where both sides agree at further states. Exit status 0 only
 /// when nothing failed.
 #[derive(Args)]
@@ -22,6 +25,9 @@ use std::path::PathBuf;
 pub(crate) struct Recheck {
     /// The verdict file.
     file: PathBuf,
+    /// The folder from which the names of proof files are read.
+    #[arg(long, default_value = ".", value_name = "FOLDER")]
+    proofs: PathBuf,
     /// Seed of the states at which proofs are tried.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
@@ -32,15 +38,18 @@ pub(crate) struct Recheck {
 
 impl Recheck {
     pub fn run(self) -> miette::Result<Status> {
-        let unusable = |why: String| Unusable::report(format!("{}: {why}", self.file.display()), "");
+        let unusable = |why: String| Unusable::report(format!("{}: {why}", shown_path(&self.file)), "");
         let text = read_text(&self.file, LARGEST_FILE).map_err(|why| unusable(why.to_string()))?;
         let file = VerdictFile::read(&text).map_err(|why| unusable(why.to_string()))?;
         drop(text);
         let bar = progress(file.verdicts.len() as u64, "checking verdicts");
-        let checked = file.check(self.seed, &Effort::default(), &INTERRUPTED, &|| bar.inc(1));
+        let sources = ProofSources::below(self.proofs.clone());
+        let effort = Effort::default();
+        let with = Checking { sources: &sources, seed: self.seed, effort: &effort, interrupt: &INTERRUPTED };
+        let checked = file.check(with, &|| bar.inc(1));
         bar.finish_and_clear();
         begin_to_tell();
-        let words = ["confirmed", "consistent", "not checked", "NOT CONFIRMED"];
+        let words = ["confirmed", "half confirmed", "consistent", "not checked", "NOT CONFIRMED"];
         let count = |word: &str| checked.iter().filter(|verdict| verdict.finding.word() == word).count();
         let failed = count("NOT CONFIRMED");
         let object = json!({
@@ -48,6 +57,7 @@ impl Recheck {
             "interrupted": interrupted(),
             "tool": file.tool,
             "confirmed": count("confirmed"),
+            "half_confirmed": count("half confirmed"),
             "consistent": count("consistent"),
             "not_checked": count("not checked"),
             "not_confirmed": failed,
@@ -73,10 +83,11 @@ fn finding_text(finding: &Finding) -> String {
         Finding::Confirmed { times: 1 } => "evaluated again".to_owned(),
         Finding::Confirmed { times } => format!("evaluated again at {times} states"),
         Finding::Consistent { states: 0 } => {
-            "both sides agree at its own state, and no other was found".to_owned()
+            "it agrees with its own state, and no other was found".to_owned()
         }
-        Finding::Consistent { states } => format!("both sides agree at its own state and at {states} others"),
-        Finding::NotChecked => "evaluation says nothing of it".to_owned(),
+        Finding::Consistent { states } => format!("it agrees with its own state and with {states} others"),
+        Finding::HalfConfirmed(half) => half.to_string(),
+        Finding::NotChecked(why) => why.to_string(),
         Finding::NotConfirmed(doubt) => doubt.to_string(),
     }
 }
@@ -103,11 +114,11 @@ fn reason(verdict: &CheckedVerdict<'_>) -> String {
 fn verdict_line(verdict: &CheckedVerdict<'_>) -> String {
     let record = verdict.record;
     format!(
-        "  {:<13} {:<9} {} {}: {}",
+        "  {:<14} {:<9} {} {}: {}",
         verdict.finding.word(),
         record.evidence.word(),
-        record.file,
-        record.id,
-        reason(verdict)
+        shown(&record.file),
+        shown(&record.id),
+        shown(&reason(verdict))
     )
 }

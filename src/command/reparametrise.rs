@@ -1,5 +1,6 @@
 //! `palmistry rank --reparametrise`: a system without what is not seen, as a proof file, and whether its claims are proved.
 
+use palmistry::foreign::name_of;
 use palmistry::observability::reparametrise;
 use palmistry::{RankAnswer, System, prove};
 use std::path::{Component, Path, PathBuf};
@@ -45,8 +46,8 @@ pub(crate) fn reparametrisation(
     let text = reparametrise(system, found, &import).map_err(|why| why.to_string())?;
     // the folder that the import is named from may not be there yet
     let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-    let there = text.replacen(&format!("\"{import}\""), &format!("\"{}\"", whole.display()), 1);
-    let read = System::parse(&out.display().to_string(), &there, Path::new(""));
+    let there = text.replacen(&format!("\"{import}\""), &format!("\"{}\"", name_of(&whole)), 1);
+    let read = System::parse(&name_of(out), &there, Path::new(""));
     let reduced = read.map_err(|error| format!("it cannot be read back: {error}"))?;
     let outcomes = prove(&reduced);
     let proved = outcomes.iter().filter(|outcome| outcome.ok).count();

@@ -5,7 +5,8 @@ use super::output::{Files, Form, print_json, print_text};
 use super::{Status, interrupt::interrupted};
 use clap::Args;
 use miette::Report;
-use palmistry::file::{note, read_text};
+use palmistry::file::{note, read_head, read_text};
+use palmistry::foreign::{name_of, shown_path};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -14,7 +15,10 @@ use std::str::FromStr;
 const MOST: u64 = 1_000_000;
 
 /// A part of more bytes than this is not read.
-const LONGEST_PART: u64 = 4 << 30;
+const LONGEST_PART: u64 = 512 << 20;
+
+/// So much of a part says whether it is one.
+const HEAD: u64 = 256;
 
 /// The options of commands whose work can be cut.
 #[derive(Args, Clone)]
@@ -104,6 +108,14 @@ impl<T> Parts<'_, T> {
         if !path.exists() {
             return PartStanding::Missing;
         }
+        // what is no part is not read whole to find that out
+        let head = match read_head(path, HEAD) {
+            Ok(head) => String::from_utf8_lossy(&head).into_owned(),
+            Err(why) => return PartStanding::Damaged(why.to_string()),
+        };
+        if !["palmistry ", " part "].iter().all(|word| head.contains(word)) {
+            return PartStanding::Damaged("it does not begin as a part does".to_owned());
+        }
         let text = match read_text(path, LONGEST_PART) {
             Ok(text) => text,
             Err(why) => return PartStanding::Damaged(why.to_string()),
@@ -121,7 +133,7 @@ impl<T> Parts<'_, T> {
             PartStanding::Whole(_) => Ok(true),
             PartStanding::Missing => Ok(false),
             PartStanding::Damaged(why) => {
-                note(&format!("{} counts as missing: {why}", path.display()));
+                note(&format!("{} counts as missing: {why}", shown_path(path)));
                 Ok(false)
             }
             PartStanding::OfAnother => Err(of_another(path)),
@@ -177,13 +189,13 @@ impl<T> Parts<'_, T> {
         let object = json!({
             "shard": number,
             "of": of,
-            "part": path.display().to_string(),
+            "part": name_of(&path),
             "was_there": was_there,
             "whole": is_whole,
         });
         let in_words = || match (was_there, is_whole) {
-            (true, _) => format!("{} is there", path.display()),
-            (false, true) => format!("written: {}", path.display()),
+            (true, _) => format!("{} is there", shown_path(&path)),
+            (false, true) => format!("written: {}", shown_path(&path)),
             (false, false) => format!("shard {number}/{of} is not done: nothing was written"),
         };
         files.print(form, object, in_words, if is_whole { Status::AsExpected } else { Status::CutOff })
@@ -192,7 +204,7 @@ impl<T> Parts<'_, T> {
     /// All parts of a folder, by their names.
     pub fn all(&self, folder: &Path) -> miette::Result<Vec<(String, T)>> {
         let cannot = |why: std::io::Error| {
-            let message = format!("cannot read {}: {why}", folder.display());
+            let message = format!("cannot read {}: {why}", shown_path(folder));
             Unusable::report(message, "name the folder into which '--part' wrote")
         };
         let mut paths = Vec::new();
@@ -210,18 +222,22 @@ impl<T> Parts<'_, T> {
         let mut parts = Vec::new();
         for path in paths {
             match self.standing(&path) {
-                PartStanding::Whole(part) => parts.push((path.display().to_string(), part)),
+                PartStanding::Whole(part) => parts.push((name_of(&path), part)),
                 PartStanding::OfAnother => return Err(of_another(&path)),
                 PartStanding::Missing => {}
                 PartStanding::Damaged(why) => {
-                    let message = format!("{}: {why}", path.display());
+                    let message = format!("{}: {why}", shown_path(&path));
                     return Err(Unusable::report(message, "do its shard again, which writes it anew"));
                 }
             }
         }
         if parts.is_empty() {
-            let message =
-                format!("there is no part '{}-K-of-N{}' in {}", self.kind, self.extension, folder.display());
+            let message = format!(
+                "there is no part '{}-K-of-N{}' in {}",
+                self.kind,
+                self.extension,
+                shown_path(folder)
+            );
             return Err(Unusable::report(message, "do the shards first, with --shard and --part"));
         }
         Ok(parts)
@@ -231,7 +247,7 @@ impl<T> Parts<'_, T> {
 fn of_another(path: &Path) -> Report {
     let message = format!(
         "{} belongs to another question: another file, other options, or another version of this program",
-        path.display()
+        shown_path(path)
     );
     Unusable::report(message, ANOTHER)
 }

@@ -5,6 +5,7 @@ use super::output::{Files, Form, progress};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::file;
+use palmistry::foreign::shown;
 use palmistry::paper::{Findings, Paper, VerifyOptions, verify_into};
 use palmistry::report::{
     errata_markdown, findings_json, findings_text, forget_seconds, forget_times, page, versioned,
@@ -71,7 +72,7 @@ impl Verify {
             progress: &|what, done, all| {
                 bar.set_length(all);
                 bar.set_position(done);
-                bar.set_message(what.chars().take(28).collect::<String>());
+                bar.set_message(shown(what).chars().take(28).collect::<String>());
             },
         };
         let result = verify_into(&paper, &options, found);

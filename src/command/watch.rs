@@ -11,6 +11,7 @@ use super::interrupt::{INTERRUPTED, interrupted};
 use super::output::{Form, print_text, progress, proof_files};
 use super::terminal::is_terminal;
 use palmistry::claim::decide_all_keeping;
+use palmistry::foreign::{json_text, name_of, shown_path};
 use palmistry::report::{ClaimsSummary, versioned};
 use palmistry::system::{Examination, MOST_PROBLEMS};
 use palmistry::{Outcome, System, file};
@@ -142,20 +143,20 @@ impl Watch {
             Form::Json => {
                 let mut object = self.asked.object(&outcomes, summary.seconds);
                 object["ok"] = json!(ok);
-                object["decided_again"] =
-                    again.iter().map(|path| json!(path.display().to_string())).collect();
+                object["decided_again"] = again.iter().map(|path| json!(name_of(path))).collect();
                 object["errors"] =
                     wrong.iter().flat_map(|file| errors_json(file)).collect::<Vec<Value>>().into();
                 written.note_in(&mut object);
-                print_text(&versioned(object).to_string())?;
+                print_text(&json_text(&versioned(object), false))?;
             }
             Form::Text => {
-                let names: Vec<String> = again.iter().map(|path| path.display().to_string()).collect();
-                // a terminal is cleared, together with what has left it
-                let begin = if is_terminal() { "\u{1b}[2J\u{1b}[3J\u{1b}[H" } else { "" };
+                let names: Vec<String> = again.iter().map(|path| shown_path(path)).collect();
+                if is_terminal() {
+                    file::clear_terminal();
+                }
                 let mut text = match names.is_empty() {
-                    true => format!("{begin}a file is gone\n"),
-                    false => format!("{begin}decided: {}\n", names.join(", ")),
+                    true => "a file is gone\n".to_owned(),
+                    false => format!("decided: {}\n", names.join(", ")),
                 };
                 wrong.iter().for_each(|file| text.push_str(&problems_text(file)));
                 text.push_str(&self.asked.in_words(&outcomes, summary));

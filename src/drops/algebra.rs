@@ -7,6 +7,7 @@ use crate::number::polynomial::{Polynomial, Ring};
 use crate::number::{Fraction, Function, primitive};
 use crate::system::{Assignment, System};
 use dashu::integer::IBig;
+use dashu::rational::RBig;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::coordinates::Coordinates;
@@ -22,6 +23,21 @@ pub(super) type Reach<T> = Result<T, String>;
 pub(super) struct Ratio {
     pub top: Vec<(Polynomial, u32)>,
     pub bottom: Vec<(Polynomial, u32)>,
+}
+
+impl Ratio {
+    /// A polynomial with the sign of the fraction; `None` where it becomes too long.
+    pub fn signed(&self) -> Option<Polynomial> {
+        let odd = self.bottom.iter().filter(|(_, n)| n % 2 == 1).map(|(factor, _)| (factor.clone(), 1));
+        let all: Vec<_> = self.top.iter().cloned().chain(odd).collect();
+        expanded(&all)
+    }
+
+    /// A polynomial with the sign of one less the square of the fraction; `None` where it becomes too long.
+    pub fn below_one(&self) -> Option<Polynomial> {
+        let (top, bottom) = (expanded(&self.top)?, expanded(&self.bottom)?);
+        Some(bottom.mul(&bottom)?.add(&top.mul(&top)?.neg()))
+    }
 }
 
 /// A system's expressions as polynomials.
@@ -149,7 +165,7 @@ impl<'s> Algebra<'s> {
     }
 
     /// The places of variables that are values of functions and mention a symbol.
-    fn functions_of(&self, symbol: Symbol) -> Vec<usize> {
+    pub fn functions_of(&self, symbol: Symbol) -> Vec<usize> {
         let mentions = |variable: &Variable| match variable {
             Variable::Unknown(node) => self.system.graph.symbols_of([*node]).contains(&symbol),
             _ => false,
@@ -184,7 +200,17 @@ impl<'s> Algebra<'s> {
             },
             _ => variable,
         });
-        products.node(&mut self.system.graph, polynomial)
+        let graph = &mut self.system.graph;
+        let node = products.node(graph, polynomial);
+        // functions of an angle have its half's tangent inside
+        let mut tangents = Assignment::new();
+        for (tangent, angle) in of_tangent {
+            let (angle, half) = (graph.symbol(angle), graph.rational(RBig::ONE / RBig::from(2)));
+            let half = graph.mul(angle, half);
+            let (sine, cosine) = (graph.apply(Function::Sin, half), graph.apply(Function::Cos, half));
+            tangents.insert(tangent, graph.div(sine, cosine));
+        }
+        graph.substitute(&[node], &tangents)[0]
     }
 
     /// A polynomial with `bottom x + top = 0` solved for a symbol put in, multiplied by an even power of `bottom`.

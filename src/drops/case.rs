@@ -41,6 +41,8 @@ pub(super) struct Case {
     /// Primitive, as far as they are factored.
     pub nonzero: Vec<Polynomial>,
     pub positive: Vec<Polynomial>,
+    /// What is not negative, as far as it did not become too long: a case may be larger than the set that it stands for.
+    pub not_negative: Vec<Polynomial>,
     /// The equations that were met on the way, in the symbols that were left at the time.
     pub equations: Vec<Polynomial>,
     /// What was divided by, and may vanish elsewhere.
@@ -68,6 +70,11 @@ impl Case {
         let mut next = self.clone();
         next.pending.push_back(Pending { polynomial: normal(polynomial), touched: false });
         next
+    }
+
+    /// Whether all of its equations are met by its values and relations.
+    pub fn is_met(&self) -> bool {
+        self.pending.is_empty()
     }
 
     /// Notes that something does not vanish. Whether that is possible is seen by [`Case::step`].
@@ -153,7 +160,29 @@ impl Case {
             semidefinite(&positive.neg(), &|place| self.is_positive(place)) == Some(Sign::Positive)
                 || self.positive.contains(&positive.neg())
         };
-        Ok(self.positive.iter().any(impossible))
+        let negative = |value: &Polynomial| {
+            semidefinite(&value.neg(), &|place| self.is_positive(place)) == Some(Sign::Positive)
+                && !value.is_zero()
+                && self.doubtful(value).is_empty()
+        };
+        Ok(self.positive.iter().any(impossible) || self.not_negative.iter().any(negative))
+    }
+
+    /// The cases that it is the union of, with all equations met; those that are found empty are left out.
+    ///
+    /// # Errors
+    /// Where an equation is out of reach, or they are too many.
+    pub fn all_ready(self, algebra: &mut Algebra<'_>) -> Reach<Vec<Case>> {
+        let (mut open, mut found) = (vec![self], Vec::new());
+        for _ in 0..MOST_STEPS {
+            let Some(case) = open.pop() else { return Ok(found) };
+            match case.step(algebra)? {
+                Step::Empty => {}
+                Step::Split(cases) => open.extend(cases),
+                Step::Ready(case) => found.push(*case),
+            }
+        }
+        Err(TOO_LONG.to_owned())
     }
 
     /// Meets one more equation.
@@ -312,6 +341,9 @@ impl Case {
             let there = algebra.put_in(&polynomial, &solved)?;
             self.positive.push(there);
         }
+        for polynomial in std::mem::take(&mut self.not_negative) {
+            self.not_negative.extend(algebra.put_in(&polynomial, &solved).ok());
+        }
         Ok(self)
     }
 }
@@ -319,6 +351,8 @@ impl Case {
 /// Equations that cannot be solved are calculated with up to this length and this total degree.
 const LONGEST_RELATION: usize = 60;
 const HIGHEST_RELATION: u32 = 12;
+/// A case is taken apart in so many steps where all that it comes to is asked for at once.
+const MOST_STEPS: usize = 60;
 /// Relations are used in turn so often.
 const MOST_ROUNDS: usize = 8;
 

@@ -1,17 +1,21 @@
 //! That a rank is what is claimed at all states, but for some sets that are named.
 
-use super::algebra::{Algebra, Chart, Reach, with_angles};
+use super::algebra::{Algebra, Reach, with_angles};
 use super::case::Case;
+use super::cover::{NamedSet, off_sets};
 use super::explore::{Explored, FullCase, Search};
-use super::merge::{Shown, merged};
+use super::merge::merged;
 use super::real::{exact_values, state_on};
 use super::rows::Rows;
-use super::sets::{Asked, mentioned_in_words, prepared};
+use super::sets::{Asked, initial_values, mentioned_in_words, prepared};
+use super::shown::Shown;
 use crate::expression::{Guard, Need, NodeId};
 use crate::number::Rationals;
-use crate::observability::{Codistribution, Length, State, rank};
+use crate::observability::{Codistribution, GenericRank, Length, State, generic_rank, rank};
 use crate::system::{Matrix, System, determinant};
 use dashu::rational::RBig;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
@@ -25,10 +29,8 @@ pub(crate) struct ClaimedEverywhere {
     pub guards: Vec<Guard>,
     /// What vanishes at all states that are spoken of.
     pub conditions: Vec<NodeId>,
-    /// The sets that are left out, each by what vanishes on it.
-    pub except: Vec<Vec<NodeId>>,
-    /// The same as they are written.
-    pub written: Vec<String>,
+    /// The sets that are left out.
+    pub except: Vec<NamedSet>,
     /// Whether states of all cases are asked for.
     pub with_examples: bool,
 }
@@ -86,7 +88,8 @@ pub(crate) fn decide_everywhere(
         None => mentioned_in_words(system),
     };
     mentioned.extend(claim.guards.iter().map(|guard| guard.node));
-    mentioned.extend(claim.conditions.iter().chain(claim.except.iter().flatten()));
+    mentioned
+        .extend(claim.conditions.iter().copied().chain(claim.except.iter().flat_map(NamedSet::mentioned)));
     with_angles(system, &mentioned, |system| decided(system, claim, seed, interrupt))
 }
 
@@ -109,45 +112,19 @@ fn decided(
     }
     if claim.rank < greatest {
         // no state has a higher rank than almost all have
-        greatest = match &claim.matrix {
-            None => {
-                let words = Codistribution::new(system, &Default::default(), Length::UntilItStops)?;
-                if !words.is_final() {
-                    return Err("it is not known that longer words do not raise the rank".to_owned());
-                }
-                log2_error = words.generic.log2_error;
-                words.generic_rank()
-            }
-            Some((entries, columns)) => {
-                use crate::observability::{GenericRank, generic_rank};
-                use rand::SeedableRng;
-                let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
-                let is_angle = system.angle_test();
-                match generic_rank(&mut system.graph, entries, *columns, is_angle, &mut rng) {
-                    GenericRank::Rank { rank, log2_error: error, .. } => {
-                        log2_error = error;
-                        rank
-                    }
-                    GenericRank::Pole(_) => return Err("every state is a pole".to_owned()),
-                    GenericRank::Functions => {
-                        return Err("functions are met that are not rational".to_owned());
-                    }
-                    GenericRank::Unknown(why) => return Err(why),
-                }
-            }
-        };
+        (greatest, log2_error) = at_almost_all(system, claim, seed)?;
     }
     let rows = |system: &mut System| match &claim.matrix {
         None => Rows::of_words(system),
         Some((entries, columns)) => Rows::of_matrix(&system.graph, entries, *columns),
     };
-    let mentioned: Vec<NodeId> = claim.except.iter().flatten().copied().collect();
+    let mentioned: Vec<NodeId> = claim.except.iter().flat_map(NamedSet::mentioned).collect();
     let asked = Asked {
         rank: claim.rank,
         guards: claim.guards.clone(),
         conditions: claim.conditions.clone(),
         // where one equation describes a set, its left side does not vanish off it
-        nonzero: claim.except.iter().filter(|set| set.len() == 1).map(|set| set[0]).collect(),
+        nonzero: claim.except.iter().filter_map(NamedSet::single).collect(),
         mentioned,
     };
     if greatest > claim.rank {
@@ -163,10 +140,12 @@ fn decided(
     })?;
     if let Everywhere::Proved { beside, log2_error: error, .. } = &mut first {
         *error = error.max(log2_error);
-        for (set, place) in claim.except.iter().zip(&claim.written) {
+        for set in &claim.except {
+            let place = &set.written;
             let asked = Asked {
                 nonzero: Vec::new(),
-                conditions: [claim.conditions.as_slice(), set.as_slice()].concat(),
+                conditions: [claim.conditions.as_slice(), set.vanishing.as_slice()].concat(),
+                guards: [claim.guards.as_slice(), set.guards.as_slice()].concat(),
                 ..asked.clone()
             };
             let all_rows = rows(system);
@@ -183,6 +162,29 @@ fn decided(
     Ok(first)
 }
 
+/// The rank at almost all states that have the values at the beginning which the file gives, and a bound on the probability of an
+/// error, as a power of two.
+fn at_almost_all(system: &mut System, claim: &ClaimedEverywhere, seed: u64) -> Result<(usize, f64), String> {
+    let Some((entries, columns)) = &claim.matrix else {
+        let initial = initial_values(system)?;
+        for values in [initial, Default::default()] {
+            let words = Codistribution::new(system, &values, Length::UntilItStops)?;
+            if words.is_final() {
+                return Ok((words.generic_rank(), words.generic.log2_error));
+            }
+        }
+        return Err("it is not known that longer words do not raise the rank".to_owned());
+    };
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let is_angle = system.angle_test();
+    match generic_rank(&mut system.graph, entries, *columns, is_angle, &mut rng) {
+        GenericRank::Rank { rank, log2_error, .. } => Ok((rank, log2_error)),
+        GenericRank::Pole(_) => Err("every state is a pole".to_owned()),
+        GenericRank::Functions => Err("functions are met that are not rational".to_owned()),
+        GenericRank::Unknown(why) => Err(why),
+    }
+}
+
 /// A state at which the rank is greater than claimed, as it is at almost all of them.
 fn greater(
     algebra: &mut Algebra<'_>,
@@ -191,17 +193,17 @@ fn greater(
     greatest: usize,
 ) -> Everywhere {
     while search.rows.order < MOST_FIELDS && search.rows.extend(algebra) {}
-    let all = Case::of(&Chart::new());
-    let state = match claim.conditions.is_empty() {
-        true => state_on(algebra, search, &all, &claim.except),
-        false => None,
-    };
-    let found = state.and_then(|state| Some((rank_at(algebra, search, &state)?, state)));
+    let cases = search.all_cases(algebra).unwrap_or_default();
+    let found = cases.iter().find_map(|case| {
+        let state = state_on(algebra, search, case, &claim.except)?;
+        let found = rank_at(algebra, search, &state).filter(|found| *found > claim.rank)?;
+        Some((state, found))
+    });
     match found {
-        Some((found, state)) if found > claim.rank => {
+        Some((state, found)) => {
             Everywhere::Refuted { state, found, set: Vec::new(), log2_error: f64::NEG_INFINITY }
         }
-        _ => Everywhere::Open(format!("the rank is {greatest} at almost all states")),
+        None => Everywhere::Open(format!("the rank is {greatest} at almost all states")),
     }
 }
 
@@ -216,31 +218,41 @@ fn off_the_sets(
     claim: &ClaimedEverywhere,
 ) -> Reach<Everywhere> {
     let mut open: Vec<String> = explored.stopped.iter().cloned().collect();
-    for shown in merged(algebra, search, &explored.short) {
-        if claim.except.iter().any(|set| lies_in(algebra, &shown, set)) {
-            continue;
+    let mut left = Vec::new();
+    for short in &explored.short {
+        let pieces = match off_sets(algebra, search, &short.case, &claim.except) {
+            Ok(pieces) => pieces,
+            Err(_) => vec![short.case.clone()],
+        };
+        // all rows of a matrix are known, whatever is known of the case
+        let certain = match &short.lower {
+            Ok(log2_error) => Some(*log2_error),
+            Err(_) => (!search.rows.is_of_words()).then_some(f64::NEG_INFINITY),
+        };
+        let found =
+            certain.and_then(|log2_error| Some((log2_error, lower_at(algebra, search, &pieces, claim)?)));
+        if let Some((log2_error, (state, found))) = found {
+            let shown = merged(algebra, search, std::slice::from_ref(short));
+            let set = shown.iter().flat_map(|shown| shown.place(algebra)).collect();
+            return Ok(Everywhere::Refuted { state, found, set, log2_error });
         }
-        let texts = shown.texts(algebra);
+        if !pieces.is_empty() {
+            left.push(short.clone());
+        }
+    }
+    for shown in merged(algebra, search, &left) {
+        let texts = shown.place(algebra);
         let place =
             if texts.is_empty() { "everywhere".to_owned() } else { format!("where {}", texts.join(", ")) };
-        match &shown.lower {
-            Err(why) => open.push(format!("{place} no minor was found that is not zero: {why}")),
-            Ok(log2_error) => match state_on(algebra, search, &shown.case, &claim.except) {
-                Some(state) => {
-                    let found = rank_at(algebra, search, &state).filter(|found| *found < claim.rank);
-                    match found {
-                        Some(found) => {
-                            let log2_error = *log2_error;
-                            return Ok(Everywhere::Refuted { state, found, set: texts, log2_error });
-                        }
-                        None => open.push(format!("{place} the rank is {}", shown.rank)),
-                    }
-                }
-                None => {
-                    open.push(format!("{place} the rank is {}, and no state of it was found", shown.rank))
-                }
-            },
-        }
+        open.push(match &shown.lower {
+            Err(why) => format!("{place} no minor was found that is not zero: {why}"),
+            Ok(_) => {
+                format!(
+                    "{place} the rank is {}, and no state of it was found off the sets",
+                    shown.rank_in_words()
+                )
+            }
+        });
     }
     if !open.is_empty() {
         return Ok(Everywhere::Open(open.join("; ")));
@@ -258,7 +270,7 @@ fn off_the_sets(
     let used: BTreeSet<usize> = explored.full.iter().flat_map(|full| full.chosen.rows.clone()).collect();
     let examples = StatesOfCases {
         words: used.iter().map(|row| search.rows.names[*row].clone()).collect(),
-        entries: used.iter().flat_map(|row| search.rows.as_written()[*row].clone()).collect(),
+        entries: search.rows.as_written(used.iter().copied()),
         states,
     };
     let log2_error = f64::NEG_INFINITY;
@@ -268,20 +280,23 @@ fn off_the_sets(
 /// States of so many cases are written down.
 const MOST_EXAMPLES: usize = 40;
 
-/// Whether all expressions of a set vanish on another one.
-fn lies_in(algebra: &mut Algebra<'_>, shown: &Shown, set: &[NodeId]) -> bool {
-    let nodes = algebra.in_chart(&shown.case.chart, set);
-    let nodes = algebra.system.graph.substitute(&nodes, &shown.case.values);
-    nodes.into_iter().all(|node| {
-        let top = algebra.numerator(node).and_then(|top| shown.case.reduced(&top));
-        top.is_ok_and(|top| top.is_empty())
+/// A state of some cases, off the sets that are left out, with a lower rank than claimed, and that rank.
+fn lower_at(
+    algebra: &mut Algebra<'_>,
+    search: &Search<'_>,
+    cases: &[Case],
+    claim: &ClaimedEverywhere,
+) -> Option<(State, usize)> {
+    cases.iter().find_map(|case| {
+        let state = state_on(algebra, search, case, &claim.except)?;
+        let found = rank_at(algebra, search, &state).filter(|found| *found < claim.rank)?;
+        Some((state, found))
     })
 }
 
 /// The rank of all rows that were taken, at a state, by exact elimination.
 fn rank_at(algebra: &mut Algebra<'_>, search: &Search<'_>, state: &State) -> Option<usize> {
-    let written = search.rows.as_written();
-    let entries: Vec<NodeId> = written.iter().flatten().copied().collect();
+    let entries = search.rows.as_written(0..search.rows.rows.len());
     let values = exact_values(algebra, &entries, state)?;
     let rows: Vec<Vec<RBig>> = values.chunks(search.rows.columns.max(1)).map(<[RBig]>::to_vec).collect();
     rank(&Rationals::default(), rows).ok()
@@ -292,23 +307,26 @@ fn on_a_set(algebra: &mut Algebra<'_>, search: &mut Search<'_>, explored: &Explo
     let shown = merged(algebra, search, &explored.short);
     let open: Vec<&Shown> = shown.iter().filter(|shown| shown.lower.is_err()).collect();
     let lower: Vec<&Shown> = shown.iter().filter(|shown| shown.lower.is_ok()).collect();
-    let text = |algebra: &mut Algebra<'_>, shown: &Shown| {
-        let texts = [shown.texts(algebra), shown.unless(algebra)].concat();
-        format!("{} where {}", shown.rank, texts.join(", "))
-    };
     let mut lowered: Vec<String> = Vec::new();
+    let mut some = false;
     for shown in lower {
-        lowered.push(text(algebra, shown));
+        some = some || shown.cases.iter().any(|case| state_on(algebra, search, case, &[]).is_some());
+        let place = shown.place(algebra);
+        lowered.push(format!("{} where {}", shown.rank_in_words(), place.join(", ")));
     }
+    let lowered = (!lowered.is_empty()).then(|| lowered.join("; "));
     let full = explored.full.iter().any(|full| state_on(algebra, search, &full.case, &[]).is_some());
-    match (lowered.is_empty(), full, open.is_empty()) {
-        (false, false, true) => format!("it is lower at all states: {}", lowered.join("; ")),
-        (false, _, _) => {
-            format!("it is not lower everywhere, or that is not decided; it is {}", lowered.join("; "))
+    match (lowered, explored.full.is_empty() && open.is_empty()) {
+        (None, true) => "there are no states".to_owned(),
+        (None, false) if full && open.is_empty() => "it is no lower".to_owned(),
+        (None, false) => "it is not decided whether it is lower".to_owned(),
+        (Some(lowered), true) if some => format!("it is lower at all states: {lowered}"),
+        (Some(lowered), true) => {
+            format!("it is lower at all states, of which none was found: {lowered}")
         }
-        (true, true, true) => "it is no lower".to_owned(),
-        (true, ..) if explored.full.is_empty() && open.is_empty() => "there are no states".to_owned(),
-        (true, ..) => "it is not decided whether it is lower".to_owned(),
+        (Some(lowered), false) => {
+            format!("it is not lower everywhere, or that is not decided; it is {lowered}")
+        }
     }
 }
 

@@ -13,13 +13,12 @@ pub(super) struct Coordinates {
 }
 
 impl Coordinates {
-    /// A differential, by the states, in these coordinates.
-    pub fn row(&self, system: &mut System, row: &[NodeId]) -> Vec<NodeId> {
+    /// A differential, by these states, in these coordinates.
+    pub fn row(&self, system: &mut System, states: &[Symbol], row: &[NodeId]) -> Vec<NodeId> {
         if self.changed.is_empty() {
             return row.to_vec();
         }
         let there = system.graph.substitute(row, &self.values);
-        let states = system.unknowns();
         let mut found = Vec::new();
         for (place, state) in states.iter().enumerate() {
             let own = self.changed.iter().find(|(old, ..)| old == state);

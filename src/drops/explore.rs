@@ -1,6 +1,6 @@
 //! All states, taken apart into sets on each of which the rank is known.
 
-use super::algebra::{Algebra, Chart, Reach, expanded};
+use super::algebra::{Algebra, Chart, Reach};
 use super::case::{Case, Step};
 use super::minor::Product;
 use super::point::{Point, draw};
@@ -14,6 +14,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// No more cases are looked at.
 const MOST_CASES: usize = 3_000;
+/// No more cases of a set are followed to find out whether all of it has one rank.
+const MOST_FOLLOWED: usize = 40;
+/// Nor are minors looked for on more of them.
+const MOST_TRIED: usize = 4;
 /// So many of those that are left are told.
 const MOST_LEFT: usize = 60;
 
@@ -30,11 +34,27 @@ pub(super) struct FullCase {
 #[derive(Clone)]
 pub(super) struct ShortCase {
     pub case: Case,
-    /// The rank at almost all of its states, by the rows that were taken.
+    /// Where it is known to be lower, a rank that none of its states exceeds, whatever rows are taken; else that at almost all of
+    /// its states, by the rows that were taken.
     pub rank: usize,
     /// A bound on the probability that the rank is lower than asked by an error, as a power of two; why it is not known to be
     /// lower, where it is not.
     pub lower: Result<f64, String>,
+}
+
+/// A rank that no state of a set exceeds, and a bound on the probability of an error, as a power of two.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bound {
+    pub rank: usize,
+    pub log2_error: f64,
+}
+
+impl ShortCase {
+    /// A set on which the rows that were taken have some rank, and what is known of all rows.
+    pub fn new(case: &Case, rank: usize, lower: Result<Bound, String>) -> ShortCase {
+        let rank = lower.as_ref().map_or(rank, |bound| bound.rank);
+        ShortCase { case: case.clone(), rank, lower: lower.map(|bound| bound.log2_error) }
+    }
 }
 
 /// What all states come to.
@@ -92,37 +112,53 @@ impl Search<'_> {
             };
             match guard.need {
                 Need::NotZero => ratio.top.iter().for_each(|(factor, _)| case.add_nonzero(factor)),
-                Need::Positive => {
-                    let odd = ratio.bottom.iter().filter(|(_, n)| n % 2 == 1);
-                    let odd = odd.map(|(factor, _)| (factor.clone(), 1));
-                    let signed: Vec<_> = ratio.top.iter().cloned().chain(odd).collect();
-                    match expanded(&signed) {
-                        Some(polynomial) => case.add_positive(&polynomial),
-                        None => ratio.top.iter().for_each(|(factor, _)| case.add_nonzero(factor)),
-                    }
-                }
+                Need::Positive => match ratio.signed() {
+                    Some(polynomial) => case.add_positive(&polynomial),
+                    None => ratio.top.iter().for_each(|(factor, _)| case.add_nonzero(factor)),
+                },
                 // a case may be larger than the set that it stands for: more is proved then than is needed
-                Need::NotNegative | Need::WithinOne | Need::InsideOne => {}
+                Need::NotNegative => case.not_negative.extend(ratio.signed()),
+                Need::WithinOne | Need::InsideOne => case.not_negative.extend(ratio.below_one()),
             }
         }
         Ok(Some(case))
     }
 
-    fn chart(&mut self, algebra: &mut Algebra<'_>, chart: &Chart, found: &mut Explored) -> Reach<()> {
-        let Some(mut case) = self.domain(algebra, chart)? else {
-            found.empty += 1;
-            return Ok(());
-        };
-        for node in self.nonzero.clone() {
-            let node = algebra.in_chart(chart, &[node])[0];
+    /// The states of a chart that are asked for, their equations not yet met; none where the rows exist nowhere.
+    fn asked_for(&self, algebra: &mut Algebra<'_>, chart: &Chart) -> Reach<Option<Case>> {
+        let Some(mut case) = self.domain(algebra, chart)? else { return Ok(None) };
+        for node in &self.nonzero {
+            let node = algebra.in_chart(chart, &[*node])[0];
             let polynomial = algebra.numerator(node)?;
             case.add_nonzero(&polynomial);
         }
-        for node in self.conditions.clone() {
-            let node = algebra.in_chart(chart, &[node])[0];
+        for node in &self.conditions {
+            let node = algebra.in_chart(chart, &[*node])[0];
             let polynomial = algebra.numerator(node)?;
             case = case.with_zero(&polynomial);
         }
+        Ok(Some(case))
+    }
+
+    /// All states that are asked for, as cases whose equations are met.
+    ///
+    /// # Errors
+    /// In words, where an equation is out of reach.
+    pub(super) fn all_cases(&self, algebra: &mut Algebra<'_>) -> Reach<Vec<Case>> {
+        let mut found = Vec::new();
+        for chart in algebra.charts().ok_or("there are too many angles")? {
+            if let Some(case) = self.asked_for(algebra, &chart)? {
+                found.extend(case.all_ready(algebra)?);
+            }
+        }
+        Ok(found)
+    }
+
+    fn chart(&mut self, algebra: &mut Algebra<'_>, chart: &Chart, found: &mut Explored) -> Reach<()> {
+        let Some(case) = self.asked_for(algebra, chart)? else {
+            found.empty += 1;
+            return Ok(());
+        };
         let mut open = vec![case];
         while let Some(case) = open.pop() {
             if found.stopped.is_none() && found.cases >= MOST_CASES {
@@ -184,14 +220,49 @@ impl Search<'_> {
                 lower = self.lower_on(algebra, case, &point);
             }
             if lower.is_err()
-                && let Some(log2_error) = self.lower_around(algebra, case)
+                && let Some(bound) = self.lower_around(algebra, case)
             {
-                lower = Ok(log2_error);
+                lower = Ok(bound);
             }
             if lower.is_ok() || !self.rows.extend(algebra) {
-                return Ok(Ranked::Short(ShortCase { case: case.clone(), rank, lower }));
+                return Ok(Ranked::Short(ShortCase::new(case, rank, lower)));
             }
         }
+    }
+
+    /// Whether the rows that were taken have some rank at all states of a set, as far as a few cases show it.
+    pub(super) fn is_no_lower(&mut self, algebra: &mut Algebra<'_>, case: Case, rank: usize) -> bool {
+        let asked = std::mem::replace(&mut self.rank, rank);
+        let found = self.has_minors(algebra, case);
+        self.rank = asked;
+        found.is_ok_and(|found| found)
+    }
+
+    fn has_minors(&mut self, algebra: &mut Algebra<'_>, case: Case) -> Reach<bool> {
+        let (mut open, mut tried) = (vec![case], 0);
+        for _ in 0..MOST_FOLLOWED {
+            let Some(case) = open.pop() else { return Ok(true) };
+            let case = match case.step(algebra)? {
+                Step::Empty => continue,
+                Step::Split(cases) => {
+                    open.extend(cases);
+                    continue;
+                }
+                Step::Ready(case) => case,
+            };
+            if tried == MOST_TRIED {
+                break;
+            }
+            tried += 1;
+            let point = self.point(algebra, &case)?;
+            let chosen = self.rows.independent(algebra, &case.chart, &point, self.rank, &mut self.rng);
+            match self.minor_on(algebra, &case, &chosen.unwrap_or_default())? {
+                Some(Ranked::Full(_)) => {}
+                Some(Ranked::Unless(cases, _)) => open.extend(cases),
+                _ => return Ok(false),
+            }
+        }
+        Ok(false)
     }
 
     pub(super) fn point(&mut self, algebra: &mut Algebra<'_>, case: &Case) -> Reach<Point> {
@@ -212,7 +283,7 @@ impl Search<'_> {
 }
 
 /// Whether an expression of a chart is divided by zero at all of its points.
-fn is_pole(algebra: &Algebra<'_>, node: NodeId) -> bool {
+pub(super) fn is_pole(algebra: &Algebra<'_>, node: NodeId) -> bool {
     let program = Program::with_unknown_functions(&algebra.system.graph, &[node], |_| false);
     let mut rng = ChaCha8Rng::seed_from_u64(0x706f_6c65); // any fixed seed
     (0..4).all(|_| {

@@ -5,6 +5,7 @@
 //! negative has a minimum wherever it vanishes, so that all its derivatives vanish there too: that is what [`semidefinite`]
 //! is asked for. Of a polynomial in one variable Sturm's chain counts the real zeros.
 
+use super::one_variable::zeros_of;
 use crate::number::polynomial::{Exponents, LARGEST_ARITY, Polynomial, Ring};
 use crate::number::{primitive, split, square_root};
 use dashu::base::{Abs, Sign};
@@ -212,58 +213,15 @@ pub(super) fn real_zeros(polynomial: &Polynomial) -> Option<usize> {
     if polynomial.degree_in(place) > HIGHEST {
         return None;
     }
-    let dense = |polynomial: &Polynomial| -> Vec<RBig> {
-        let mut values = vec![RBig::ZERO; usize::from(polynomial.degree_in(place)) + 1];
-        for (exponents, value) in polynomial.terms() {
-            values[usize::from(exponents[place])] = RBig::from(value.clone());
-        }
-        values
-    };
-    let mut chain = vec![dense(polynomial), dense(&derivative(polynomial, place))];
-    loop {
-        let [.., a, b] = &chain[..] else { return None };
-        let rest: Vec<RBig> = remainder(a, b).into_iter().map(|value| -value).collect();
-        if rest.is_empty() {
-            break;
-        }
-        chain.push(rest);
+    let mut values = vec![RBig::ZERO; usize::from(polynomial.degree_in(place)) + 1];
+    for (exponents, value) in polynomial.terms() {
+        values[usize::from(exponents[place])] = RBig::from(value.clone());
     }
-    let changes = |negative: bool| {
-        let signs: Vec<Sign> = chain
-            .iter()
-            .filter_map(|values| {
-                let turned = negative && values.len().is_multiple_of(2);
-                values.last().map(|lead| if turned { -lead.sign() } else { lead.sign() })
-            })
-            .collect();
-        signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
-    };
-    Some(changes(true) - changes(false))
+    Some(zeros_of(&values))
 }
 
 /// Zeros of polynomials of higher degrees are not counted.
 const HIGHEST: u8 = 40;
-
-/// The remainder of a division, lowest coefficient first and the last not zero.
-fn remainder(a: &[RBig], b: &[RBig]) -> Vec<RBig> {
-    let mut rest = a.to_vec();
-    while rest.len() >= b.len() {
-        let (Some(top), Some(lead)) = (rest.last().cloned(), b.last()) else { break };
-        let factor = top / lead;
-        let shift = rest.len() - b.len();
-        for (at, value) in b.iter().enumerate() {
-            rest[shift + at] -= &factor * value;
-        }
-        rest.pop();
-        while rest.last().is_some_and(RBig::is_zero) {
-            rest.pop();
-        }
-    }
-    while rest.last().is_some_and(RBig::is_zero) {
-        rest.pop();
-    }
-    rest
-}
 
 /// The remainder of a polynomial by another one in a variable, after it was multiplied by a power of the other's leading
 /// coefficient; `None` where it becomes too long.

@@ -1,12 +1,13 @@
-//! Where the rank is lower: all minors of a set vanish, and no field leaves it, so that longer words add nothing.
+//! Where the rank is lower: all minors of a set vanish, and no field leaves it, so that longer words add nothing
+//! ([`crate::observability::Growth`]).
 
 use super::algebra::{Algebra, Chart, Reach};
 use super::case::{Case, Step};
-use super::explore::{Ranked, Search, ShortCase};
+use super::explore::{Bound, Ranked, Search, ShortCase};
 use super::point::Point;
 use super::rows::Chosen;
 use crate::expression::{NodeId, Symbol};
-use crate::number::polynomial::{Polynomial, Ring};
+use crate::number::polynomial::Ring;
 use crate::observability::{GenericRank, generic_rank, vanishes};
 
 /// No more minors are reduced on one set.
@@ -22,9 +23,9 @@ impl Search<'_> {
         point: &Point,
         rank: usize,
     ) -> Reach<Ranked> {
-        let short = |lower| Ok(Ranked::Short(ShortCase { case: case.clone(), rank, lower }));
-        if let Some(log2_error) = self.lower_around(algebra, case) {
-            return short(Ok(log2_error));
+        let short = |lower| Ok(Ranked::Short(ShortCase::new(case, rank, lower)));
+        if let Some(bound) = self.lower_around(algebra, case) {
+            return short(Ok(bound));
         }
         if self.rows.is_of_words() {
             if let Some(field) = leaving_field(algebra, case) {
@@ -36,20 +37,55 @@ impl Search<'_> {
                 )));
             }
             let ranks = self.rows.ranks(algebra, &case.chart, point, &mut self.rng);
-            let (shorter, seen) = ranks.ok_or("no point was found at which the rows exist")?;
-            if !self.rows.complete && (self.rows.order == 0 || shorter < seen) {
+            let (_, growth) = ranks.ok_or("no point was found at which the rows exist")?;
+            if !self.rows.have_rested(growth) {
                 if self.rows.extend(algebra) {
                     return self.rank_on(algebra, case);
                 }
                 return short(Err("longer words may add to the rank".to_owned()));
             }
         }
-        let Some(basis) = self.rows.shortest(algebra, &case.chart, point, &mut self.rng) else {
-            return short(Err("no point was found at which the rows exist".to_owned()));
-        };
-        let (height, width) = (self.rows.rows.len(), self.rows.columns);
+        let (mut doubtful, mut rank) = (Vec::new(), 0);
+        for columns in self.rows.spans() {
+            let basis = self.rows.shortest(algebra, &case.chart, (point, columns), &mut self.rng);
+            let Some(basis) = basis else {
+                return short(Err("no point was found at which the rows exist".to_owned()));
+            };
+            if let Err(why) = self.borders_vanish(algebra, case, &basis, columns)? {
+                return short(Err(why));
+            }
+            rank = basis.rows.len();
+            if !basis.rows.is_empty() {
+                let (minor, _) = self.minor(algebra, case, &basis)?;
+                for (factor, _) in &minor.powers {
+                    for factor in case.doubtful(&case.reduced(factor)?) {
+                        if !doubtful.contains(&factor) {
+                            doubtful.push(factor);
+                        }
+                    }
+                }
+            }
+        }
+        let cases = case.where_one_vanishes(&doubtful, &[]);
+        let mut main = case.clone();
+        for factor in doubtful {
+            main.add_nonzero(&factor);
+            main.divisors.push(factor);
+        }
+        Ok(Ranked::Lower(cases, ShortCase { case: main, rank, lower: Ok(f64::NEG_INFINITY) }))
+    }
+
+    /// Nothing, where all minors that border one of the first so many columns vanish on a set; else why that is not known.
+    fn borders_vanish(
+        &mut self,
+        algebra: &mut Algebra<'_>,
+        case: &Case,
+        basis: &Chosen,
+        width: usize,
+    ) -> Reach<Result<(), String>> {
+        let height = self.rows.rows.len();
         if (height - basis.rows.len()) * (width - basis.columns.len()) > MOST_BORDERS {
-            return short(Err("there are too many minors".to_owned()));
+            return Ok(Err("there are too many minors".to_owned()));
         }
         for row in (0..height).filter(|row| !basis.rows.contains(row)) {
             for column in (0..width).filter(|column| !basis.columns.contains(column)) {
@@ -63,35 +99,15 @@ impl Search<'_> {
                     vanishes |= *power > 0 && case.reduced(factor)?.is_zero();
                 }
                 if !vanishes {
-                    return short(Err("a minor is not seen to vanish there".to_owned()));
+                    return Ok(Err("a minor is not seen to vanish there".to_owned()));
                 }
             }
         }
-        let mut doubtful: Vec<Polynomial> = Vec::new();
-        if !basis.rows.is_empty() {
-            let (minor, _) = self.minor(algebra, case, &basis)?;
-            for (factor, _) in &minor.powers {
-                for factor in case.doubtful(&case.reduced(factor)?) {
-                    if !doubtful.contains(&factor) {
-                        doubtful.push(factor);
-                    }
-                }
-            }
-        }
-        let cases = case.where_one_vanishes(&doubtful, &[]);
-        let mut main = case.clone();
-        for factor in doubtful {
-            main.add_nonzero(&factor);
-            main.divisors.push(factor);
-        }
-        Ok(Ranked::Lower(
-            cases,
-            ShortCase { case: main, rank: basis.rows.len(), lower: Ok(f64::NEG_INFINITY) },
-        ))
+        Ok(Ok(()))
     }
 
     /// The same by a larger set, on which fewer of the equations hold: the fields may leave the one and not the other.
-    pub(super) fn lower_around(&mut self, algebra: &mut Algebra<'_>, case: &Case) -> Option<f64> {
+    pub(super) fn lower_around(&mut self, algebra: &mut Algebra<'_>, case: &Case) -> Option<Bound> {
         let mut charts = vec![Chart::new(), case.chart.clone()];
         charts.extend(case.chart.iter().map(|angle| Chart::from([*angle])));
         charts.dedup();
@@ -116,7 +132,7 @@ impl Search<'_> {
     }
 
     /// That the rank is lower on a set whose equations can be solved without taking it apart.
-    fn lower_where_solved(&mut self, algebra: &mut Algebra<'_>, mut case: Case) -> Option<f64> {
+    fn lower_where_solved(&mut self, algebra: &mut Algebra<'_>, mut case: Case) -> Option<Bound> {
         let case = loop {
             match case.step(algebra).ok()? {
                 Step::Empty => return None,
@@ -133,7 +149,7 @@ impl Search<'_> {
         self.lower_on(algebra, &case, &point).ok()
     }
 
-    /// That the rank is lower than asked at all states of a set: a bound on the probability of an error.
+    /// That the rank is lower than asked at all states of a set: one that none of them exceeds.
     ///
     /// Where no field leaves the set, a rank that one order more of words did not raise is that of all words; all minors of
     /// the asked size are then zero at almost all of its states, and so at all.
@@ -145,27 +161,52 @@ impl Search<'_> {
         algebra: &mut Algebra<'_>,
         case: &Case,
         point: &Point,
-    ) -> Result<f64, String> {
+    ) -> Result<Bound, String> {
         if !case.relations.is_empty() {
             return Err("it is cut out by an equation that is linear in no symbol".to_owned());
         }
         let ranks = self.rows.ranks(algebra, &case.chart, point, &mut self.rng);
-        let (shorter, seen) = ranks.ok_or("no point was found at which the rows exist")?;
+        let (seen, growth) = ranks.ok_or("no point was found at which the rows exist")?;
+        let mut error = f64::NEG_INFINITY;
         if self.rows.is_of_words() {
             let field = leaving_field(algebra, case);
             if let Some(field) = field {
                 return Err(format!("the field {field} leaves it, so that longer words may add to the rank"));
             }
-            if !self.rows.complete && (self.rows.order == 0 || shorter < seen) {
-                return Err("longer words may add to the rank".to_owned());
+            let longer_may_add = || Err("longer words may add to the rank".to_owned());
+            if !self.rows.have_rested(growth) {
+                return longer_may_add();
+            }
+            let asked = self.rows.columns;
+            for width in self.rows.spans().into_iter().filter(|width| *width > asked) {
+                let (rank, log2_error) = self.generic_rank_by(algebra, case, width)?;
+                if rank > growth.below {
+                    return longer_may_add();
+                }
+                error = error.max(log2_error);
             }
         }
-        let entries: Vec<NodeId> = self.rows.rows.iter().flatten().copied().collect();
+        match self.generic_rank_by(algebra, case, self.rows.columns)? {
+            (rank, log2_error) if rank < self.rank && rank == seen => {
+                Ok(Bound { rank, log2_error: error.max(log2_error) })
+            }
+            _ => Err("the rank is no lower there".to_owned()),
+        }
+    }
+
+    /// The rank of the first so many columns at almost all states of a set, and a bound on the probability of an error.
+    fn generic_rank_by(
+        &mut self,
+        algebra: &mut Algebra<'_>,
+        case: &Case,
+        columns: usize,
+    ) -> Reach<(usize, f64)> {
+        let entries: Vec<NodeId> =
+            self.rows.rows.iter().flat_map(|row| row[..columns].iter().copied()).collect();
         let entries = algebra.in_chart(&case.chart, &entries);
         let entries = algebra.system.graph.substitute(&entries, &case.values);
-        match generic_rank(&mut algebra.system.graph, &entries, self.rows.columns, |_| false, &mut self.rng) {
-            GenericRank::Rank { rank, log2_error, .. } if rank < self.rank && rank == seen => Ok(log2_error),
-            GenericRank::Rank { .. } => Err("the rank is no lower there".to_owned()),
+        match generic_rank(&mut algebra.system.graph, &entries, columns, |_| false, &mut self.rng) {
+            GenericRank::Rank { rank, log2_error, .. } => Ok((rank, log2_error)),
             GenericRank::Pole(_) => Err("every state of it is a pole".to_owned()),
             GenericRank::Functions => Err("functions are met that are not rational".to_owned()),
             GenericRank::Unknown(why) => Err(why),

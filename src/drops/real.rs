@@ -1,9 +1,13 @@
 //! A state of a case in exact numbers.
 
 use super::algebra::Algebra;
-use super::case::Case;
+use super::case::{Case, Relation};
+use super::cover::NamedSet;
 use super::explore::Search;
-use crate::expression::{NodeId, Program, Symbol, expand_angles};
+use super::factors::places;
+use super::one_variable::{common, rational_zeros, zeros_of};
+use crate::expression::{Guard, Need, NodeId, Program, Symbol, expand_angles};
+use crate::number::polynomial::Polynomial;
 use crate::number::{Arithmetic, Rationals};
 use crate::observability::{Coordinate, State};
 use dashu::rational::RBig;
@@ -16,43 +20,190 @@ const ATTEMPTS: u64 = 80;
 /// The length to which exact values may grow.
 const BITS: usize = 1 << 14;
 
-/// A state at which all equations of a case hold, exactly, the rows exist, and not all expressions of any of some lists are
-/// zero. `None` where none was found: that says nothing.
+/// A state of a case at which the rows exist and which lies in none of some sets, exactly. `None` where none was found: that
+/// says nothing.
 pub(super) fn state_on(
     algebra: &mut Algebra<'_>,
     search: &Search<'_>,
     case: &Case,
-    off: &[Vec<NodeId>],
+    off: &[NamedSet],
 ) -> Option<State> {
-    if !case.relations.is_empty() {
-        return None;
-    }
-    let mut all: Vec<NodeId> = search.rows.rows.iter().flatten().copied().collect();
-    all.extend(search.guards.iter().map(|guard| guard.node));
-    all.extend(off.iter().flatten());
-    let everything = algebra.in_chart(&case.chart, &all);
-    let mut symbols = algebra.system.graph.symbols_of(everything);
-    symbols.extend(algebra.system.graph.symbols_of(case.values.values().copied()));
-    symbols.extend(case.values.keys());
-    symbols.sort_unstable();
-    symbols.dedup();
-    let mut solved: Vec<(Symbol, NodeId)> = case.values.iter().map(|(s, v)| (*s, *v)).collect();
-    solved.sort_unstable();
+    let frame = Frame::of(algebra, search, case, off)?;
     let mut rng = ChaCha8Rng::seed_from_u64(0x0073_7461_7465); // any fixed seed
     for attempt in 0..ATTEMPTS {
-        let mut values: BTreeMap<Symbol, RBig> = BTreeMap::new();
-        for symbol in symbols.iter().filter(|symbol| !case.values.contains_key(symbol)) {
-            values.insert(*symbol, drawn(algebra, *symbol, attempt, &mut rng));
+        let mut values = frame.draw(algebra, case, attempt, &mut rng);
+        if solved(algebra, &case.relations, &mut values, &mut rng).is_none() {
+            continue;
         }
-        let nodes: Vec<NodeId> = solved.iter().map(|(_, node)| *node).collect();
+        let nodes: Vec<NodeId> = frame.solved.iter().map(|(_, node)| *node).collect();
         let Some(found) = at(algebra, &nodes, &values) else { continue };
-        values.extend(solved.iter().map(|(symbol, _)| *symbol).zip(found));
+        values.extend(frame.solved.iter().map(|(symbol, _)| *symbol).zip(found));
+        if !meets(algebra, case, &values) {
+            continue;
+        }
         let Some(state) = in_the_file(algebra, case, values) else { continue };
         if is_inside(algebra, search, &state, off) == Some(true) {
             return Some(state);
         }
     }
     None
+}
+
+/// Whether a case whose one unsolved equation has no rational solution has real points: at rational values of all else that equation
+/// has a real zero at which nothing vanishes that must not. `false` where that was not found, which says nothing.
+pub(super) fn has_real_points(algebra: &mut Algebra<'_>, search: &Search<'_>, case: &Case) -> bool {
+    let ([relation], true) =
+        (case.relations.as_slice(), search.guards.is_empty() && case.positive.is_empty())
+    else {
+        return false;
+    };
+    let Some(frame) = Frame::of(algebra, search, case, &[]) else { return false };
+    let mut rng = ChaCha8Rng::seed_from_u64(0x7265_616c); // any fixed seed
+    (0..ATTEMPTS).any(|attempt| {
+        let values = frame.draw(algebra, case, attempt, &mut rng);
+        let Some(equation) = in_one_variable(algebra, &relation.polynomial, relation.place, &values) else {
+            return false;
+        };
+        zeros_of(&equation) > 0
+            && case.nonzero.iter().all(|factor| {
+                let factor = in_one_variable(algebra, factor, relation.place, &values);
+                factor.is_some_and(|factor| common(&equation, &factor).len() == 1)
+            })
+    })
+}
+
+/// What is drawn for a case, and what follows from it.
+struct Frame {
+    free: Vec<Symbol>,
+    solved: Vec<(Symbol, NodeId)>,
+}
+
+impl Frame {
+    fn of(algebra: &mut Algebra<'_>, search: &Search<'_>, case: &Case, off: &[NamedSet]) -> Option<Frame> {
+        if !case.is_met() {
+            return None;
+        }
+        let mut all: Vec<NodeId> = search.rows.rows.iter().flatten().copied().collect();
+        all.extend(search.guards.iter().map(|guard| guard.node));
+        all.extend(off.iter().flat_map(NamedSet::mentioned));
+        let everything = algebra.in_chart(&case.chart, &all);
+        let mut free = algebra.system.graph.symbols_of(everything);
+        free.extend(algebra.system.graph.symbols_of(case.values.values().copied()));
+        let polynomials = case.relations.iter().map(|relation| &relation.polynomial);
+        for polynomial in polynomials.chain(&case.nonzero) {
+            free.extend(places(polynomial).into_iter().filter_map(|place| algebra.symbol_at(place)));
+        }
+        let related: Option<Vec<Symbol>> =
+            case.relations.iter().map(|relation| algebra.symbol_at(relation.place)).collect();
+        let related = related?;
+        free.retain(|symbol| !case.values.contains_key(symbol) && !related.contains(symbol));
+        free.sort_unstable();
+        free.dedup();
+        let mut solved: Vec<(Symbol, NodeId)> = case.values.iter().map(|(s, v)| (*s, *v)).collect();
+        solved.sort_unstable();
+        Some(Frame { free, solved })
+    }
+
+    fn draw(
+        &self,
+        algebra: &Algebra<'_>,
+        case: &Case,
+        attempt: u64,
+        rng: &mut ChaCha8Rng,
+    ) -> BTreeMap<Symbol, RBig> {
+        let mut values = BTreeMap::new();
+        for symbol in &self.free {
+            // on a circle, and on much else, few rational points are simple: those of right triangles, and zero
+            let value = match case.relations.is_empty() || rng.random_range(0..3u8) == 0 {
+                true => drawn(algebra, *symbol, attempt, rng),
+                false => {
+                    let (top, bottom) = SPECIAL[rng.random_range(0..SPECIAL.len())];
+                    RBig::from(top) / RBig::from(bottom)
+                }
+            };
+            values.insert(*symbol, value);
+        }
+        values
+    }
+}
+
+/// Values at which equations that are linear in nothing often have rational solutions.
+const SPECIAL: [(i64, i64); 14] = [
+    (0, 1),
+    (1, 1),
+    (-1, 1),
+    (2, 1),
+    (-2, 1),
+    (3, 1),
+    (4, 1),
+    (1, 2),
+    (3, 5),
+    (4, 5),
+    (-3, 5),
+    (5, 13),
+    (12, 13),
+    (1, 3),
+];
+
+/// Puts rational solutions of equations that were not solved beside the values, each for its own variable.
+fn solved(
+    algebra: &mut Algebra<'_>,
+    relations: &[Relation],
+    values: &mut BTreeMap<Symbol, RBig>,
+    rng: &mut ChaCha8Rng,
+) -> Option<()> {
+    let mut open: Vec<&Relation> = relations.iter().collect();
+    while !open.is_empty() {
+        // one that mentions no other's variable
+        let at = open.iter().position(|relation| {
+            let mut others = open.iter().filter(|other| other.place != relation.place);
+            others.all(|other| relation.polynomial.degree_in(other.place) == 0)
+        })?;
+        let relation = open.remove(at);
+        let equation = in_one_variable(algebra, &relation.polynomial, relation.place, values)?;
+        let found = rational_zeros(&equation);
+        if found.is_empty() {
+            return None;
+        }
+        let root = found[rng.random_range(0..found.len())].clone();
+        values.insert(algebra.symbol_at(relation.place)?, root);
+    }
+    Some(())
+}
+
+/// A polynomial in one variable at values of all others, constant first, the last one not zero.
+fn in_one_variable(
+    algebra: &mut Algebra<'_>,
+    polynomial: &Polynomial,
+    place: usize,
+    values: &BTreeMap<Symbol, RBig>,
+) -> Option<Vec<RBig>> {
+    let mut found = vec![RBig::ZERO; usize::from(polynomial.degree_in(place)) + 1];
+    for (power, part) in polynomial.coefficients_in(place) {
+        let node = algebra.exactly(&part);
+        found[usize::from(power)] = at(algebra, &[node], values)?.pop()?;
+    }
+    while found.last().is_some_and(RBig::is_zero) {
+        found.pop();
+    }
+    Some(found)
+}
+
+/// Whether what must not vanish does not, and what must be positive is, as far as it can be computed exactly.
+fn meets(algebra: &mut Algebra<'_>, case: &Case, values: &BTreeMap<Symbol, RBig>) -> bool {
+    let zero = case.nonzero.iter().map(|factor| (factor, Need::NotZero));
+    let needs: Vec<(NodeId, Need)> = zero
+        .chain(case.positive.iter().map(|factor| (factor, Need::Positive)))
+        .map(|(factor, need)| (algebra.exactly(factor), need))
+        .collect();
+    let nodes: Vec<NodeId> = needs.iter().map(|(node, _)| *node).collect();
+    if let Some(found) = at(algebra, &nodes, values) {
+        return needs.iter().zip(&found).all(|((_, need), value)| need.is_met_by(value));
+    }
+    // one by one, since one that has no exact value hides all others
+    needs.iter().all(|(node, need)| {
+        at(algebra, &[*node], values).is_none_or(|found| found.iter().all(|value| need.is_met_by(value)))
+    })
 }
 
 /// A simple number, within the range that the file gives where it gives one.
@@ -115,21 +266,33 @@ fn in_the_file(algebra: &mut Algebra<'_>, case: &Case, values: BTreeMap<Symbol, 
     Some(state)
 }
 
-/// Whether all guards hold at a state, and not all expressions of a list vanish.
+/// Whether all guards hold at a state, and it lies in none of some sets.
 fn is_inside(
     algebra: &mut Algebra<'_>,
     search: &Search<'_>,
     state: &State,
-    off: &[Vec<NodeId>],
+    off: &[NamedSet],
 ) -> Option<bool> {
     let nodes: Vec<NodeId> = search.guards.iter().map(|guard| guard.node).collect();
     let values = exact_values(algebra, &nodes, state)?;
-    let holds = search.guards.iter().zip(&values).all(|(guard, value)| guard.need.is_met_by(value));
-    if !holds {
+    if !search.guards.iter().zip(&values).all(|(guard, value)| guard.need.is_met_by(value)) {
         return Some(false);
     }
-    for list in off {
-        if exact_values(algebra, list, state)?.iter().all(RBig::is_zero) {
+    for set in off {
+        // where its equations do not exist it is not
+        if all_hold(algebra, &set.guards, state)?
+            && exact_values(algebra, &set.vanishing, state)?.iter().all(RBig::is_zero)
+        {
+            return Some(false);
+        }
+    }
+    Some(true)
+}
+
+fn all_hold(algebra: &mut Algebra<'_>, guards: &[Guard], state: &State) -> Option<bool> {
+    for guard in guards {
+        let value = exact_values(algebra, &[guard.node], state)?.pop()?;
+        if !guard.need.is_met_by(&value) {
             return Some(false);
         }
     }

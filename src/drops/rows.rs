@@ -1,18 +1,24 @@
 //! The rows whose rank is asked for: a matrix of the file, or the differentials of Lie derivatives along longer and longer
-//! words, which are taken as they are needed.
+//! words, which are taken as they are needed. These are taken by all coordinates that move, the unknown ones first: whether longer words
+//! add nothing is asked of all columns ([`Growth`]), and the rank of those of the unknown.
 
 use super::algebra::{Algebra, Chart};
 use super::point::{Point, run};
-use crate::expression::{Graph, NodeId, Program};
+use crate::expression::{Graph, NodeId, Program, Symbol, gradient};
 use crate::number::PrimeField;
-use crate::observability::{Codistribution, Length, Word, independent_rows};
+use crate::observability::{Codistribution, Growth, Length, Word, independent_rows};
 use crate::system::System;
 use rand::Rng;
 use std::collections::HashMap;
 
-/// Rows of as many entries as there are columns.
+/// Rows of as many entries as the span is taken by.
 pub(super) struct Rows {
+    /// The columns whose rank is asked for; they are the first.
     pub columns: usize,
+    /// All of them: of words those of what is known at the beginning too.
+    pub width: usize,
+    /// What the columns of words are by, in their order.
+    by: Vec<Symbol>,
     /// What each row is of, as a paper writes it.
     pub names: Vec<String>,
     pub rows: Vec<Vec<NodeId>>,
@@ -52,6 +58,8 @@ impl Rows {
         let (last, programs, written) = (Vec::new(), HashMap::new(), Vec::new());
         Rows {
             columns,
+            width: columns,
+            by: Vec::new(),
             names,
             rows,
             written,
@@ -70,8 +78,13 @@ impl Rows {
         let last: Vec<(Word, NodeId)> = (0..system.outputs.len())
             .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
             .collect();
+        let mut by = system.unknowns();
+        let columns = by.len();
+        by.extend(system.closed_coordinates().into_iter().filter(|symbol| system.known.contains(symbol)));
         let mut rows = Rows {
-            columns: system.unknown_count(),
+            columns,
+            width: by.len(),
+            by,
             names: Vec::new(),
             rows: Vec::new(),
             written: Vec::new(),
@@ -99,13 +112,23 @@ impl Rows {
     fn catch_up(&mut self, algebra: &mut Algebra<'_>) {
         let coordinates = algebra.coordinates.clone();
         for row in self.written.get(self.rows.len()..).unwrap_or_default() {
-            self.rows.push(coordinates.row(algebra.system, row));
+            self.rows.push(coordinates.row(algebra.system, &self.by, row));
         }
     }
 
-    /// The rows as the file has them.
-    pub fn as_written(&self) -> &[Vec<NodeId>] {
-        if self.grows { &self.written } else { &self.rows }
+    /// The columns whose rank is asked for of some rows, as the file has them, one row after the other.
+    pub fn as_written(&self, rows: impl IntoIterator<Item = usize>) -> Vec<NodeId> {
+        let all = if self.grows { &self.written } else { &self.rows };
+        rows.into_iter().flat_map(|row| all[row][..self.columns].iter().copied()).collect()
+    }
+
+    /// The numbers of columns that have to be looked at, one after the other, before something is said of the rank: all that longer words
+    /// are told by, and then those that it is asked of.
+    pub fn spans(&self) -> Vec<usize> {
+        match self.complete || self.width == self.columns {
+            true => vec![self.columns],
+            false => vec![self.width, self.columns],
+        }
     }
 
     /// Whether longer words can be taken.
@@ -115,7 +138,7 @@ impl Rows {
 
     fn add(&mut self, system: &mut System, words: Vec<(Word, NodeId)>) {
         for (word, value) in &words {
-            let row = system.differential(*value);
+            let row = gradient(&mut system.graph, *value, &self.by);
             if row.iter().all(|entry| system.graph.constant_value(*entry).is_some_and(|c| c.is_zero())) {
                 continue;
             }
@@ -137,7 +160,7 @@ impl Rows {
     fn longer(&mut self, system: &mut System) -> bool {
         let fields = system.moving_fields();
         let next = self.rows.len() + self.last.len() * fields.len();
-        if !self.grows || self.order >= self.columns + MORE_FIELDS || next > MOST_WORDS {
+        if !self.grows || self.order >= self.width + MORE_FIELDS || next > MOST_WORDS {
             return false;
         }
         let mut longer = Vec::new();
@@ -160,36 +183,47 @@ impl Rows {
         true
     }
 
-    /// Rows and columns that are independent at a point, of words that are shorter than the longest, unless these are all.
+    /// Rows and columns that are independent at a point, of words that are shorter than the longest, unless these are all; among the
+    /// first so many columns.
     pub fn shortest(
         &mut self,
         algebra: &mut Algebra<'_>,
         chart: &Chart,
-        point: &Point,
+        (point, columns): (&Point, usize),
         rng: &mut impl Rng,
     ) -> Option<Chosen> {
         let matrix = self.at(algebra, chart, point, rng)?;
         let counts = |row: &usize| self.complete || self.orders[*row] < self.order;
         let order: Vec<usize> = (0..matrix.len()).filter(counts).collect();
-        choose(&point.field, &matrix, &order, self.columns, self.columns)
+        choose(&point.field, &matrix, &order, columns, columns)
     }
 
-    /// The rank at a point, of the words that are shorter than the longest, and of all.
+    /// The rank at a point; and how that by all columns has grown with the longest words.
     pub fn ranks(
         &mut self,
         algebra: &mut Algebra<'_>,
         chart: &Chart,
         point: &Point,
         rng: &mut impl Rng,
-    ) -> Option<(usize, usize)> {
+    ) -> Option<(usize, Growth)> {
         let matrix = self.at(algebra, chart, point, rng)?;
         let order: Vec<usize> = (0..matrix.len()).collect();
         let shorter: Vec<usize> =
             order.iter().copied().filter(|row| self.orders[*row] < self.order).collect();
-        let rank = |rows: &[usize]| {
-            choose(&point.field, &matrix, rows, self.columns, self.columns).map(|chosen| chosen.rows.len())
+        let rank = |rows: &[usize], columns: usize| {
+            choose(&point.field, &matrix, rows, columns, columns).map(|chosen| chosen.rows.len())
         };
-        Some((rank(&shorter)?, rank(&order)?))
+        let growth = Growth {
+            order: self.order,
+            below: rank(&shorter, self.width)?,
+            up_to: rank(&order, self.width)?,
+        };
+        Some((rank(&order, self.columns)?, growth))
+    }
+
+    /// Whether no longer word adds to a rank where no field leaves the set on which its rows have grown so.
+    pub fn have_rested(&self, growth: Growth) -> bool {
+        self.complete || growth.has_ended()
     }
 
     /// Rows and columns, at most so many, that are independent at a point: for each way to prefer rows.
@@ -228,7 +262,7 @@ impl Rows {
             self.programs.insert(chart.clone(), (self.rows.len(), program));
         }
         let values = run(&self.programs.get(chart)?.1, point, rng)?;
-        Some(values.chunks(self.columns.max(1)).map(<[u64]>::to_vec).collect())
+        Some(values.chunks(self.width.max(1)).map(<[u64]>::to_vec).collect())
     }
 }
 
@@ -239,7 +273,10 @@ pub(crate) fn rows_up_to(system: &mut System, rank: usize) -> (Vec<String>, Vec<
     let order = fields.map_or(0, |words| if words.generic_rank() >= rank { words.order } else { 0 });
     let mut rows = Rows::of_words(system);
     while rows.order <= order && rows.longer(system) {}
-    (rows.names, rows.written.into_iter().flatten().collect())
+    let is_zero = |entry: &NodeId| system.graph.constant_value(*entry).is_some_and(|c| c.is_zero());
+    let counts = |row: &usize| !rows.written[*row][..rows.columns].iter().all(is_zero);
+    let kept: Vec<usize> = (0..rows.written.len()).filter(counts).collect();
+    (kept.iter().map(|row| rows.names[*row].clone()).collect(), rows.as_written(kept))
 }
 
 fn cost(graph: &Graph, row: &[NodeId]) -> usize {
@@ -253,7 +290,7 @@ fn choose(
     most: usize,
     columns: usize,
 ) -> Option<Chosen> {
-    let ordered: Vec<Vec<u64>> = order.iter().map(|row| matrix[*row].clone()).collect();
+    let ordered: Vec<Vec<u64>> = order.iter().map(|row| matrix[*row][..columns].to_vec()).collect();
     let mut places = independent_rows(field, &ordered).ok()?;
     places.truncate(most);
     let mut rows: Vec<usize> = places.into_iter().map(|place| order[place]).collect();

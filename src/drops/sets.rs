@@ -4,14 +4,15 @@ use super::algebra::{Algebra, Reach, with_angles};
 use super::case::Case;
 use super::choice;
 use super::explore::{FullCase, Search, ShortCase};
-use super::merge::{Shown, merged};
+use super::merge::merged;
 use super::minor::Product;
 use super::on_box::{BoxShare, share_of_the_box};
-use super::real::state_on;
+use super::real::{has_real_points, state_on};
 use super::rows::Rows;
-use crate::expression::{Guard, NodeId};
-use crate::observability::{Codistribution, Length, StateInWords};
-use crate::system::System;
+use super::shown::Shown;
+use crate::expression::{Guard, NodeId, add_guard};
+use crate::observability::{Codistribution, Length, StateInWords, solve_conditions};
+use crate::system::{Assignment, System};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::sync::atomic::AtomicBool;
@@ -24,14 +25,18 @@ pub struct DropSet {
     pub equations: Vec<String>,
     /// What does not vanish on it, as `x != 0`: the rest of what the equations describe is another set, or none.
     pub unless: Vec<String>,
-    /// The rank at almost all of its states.
+    /// A rank that none of its states exceeds.
     pub rank: usize,
+    /// Whether all of its states have it: else smaller sets within it may have a lower one.
+    pub exactly: bool,
     /// Why it is not known that the rank is lower at all of its states; nothing where it is.
     pub open: Option<String>,
     /// A bound on the probability that the rank is not lower, as a power of two.
     pub log2_error: f64,
     /// A state of it in exact numbers, where one was found.
     pub state: Option<StateInWords>,
+    /// Whether it is known to have states: equations in real numbers may have no solution.
+    pub exists: bool,
 }
 
 /// A minor as a product of factors.
@@ -60,6 +65,8 @@ pub struct DropAnswer {
     pub rank: usize,
     /// Whether longer words cannot raise it.
     pub is_final: bool,
+    /// What the file says of values at the beginning: states are asked for which meet it.
+    pub initial: Vec<String>,
     /// What has to hold for all words to exist.
     pub domain: Vec<String>,
     /// Where the rank is proved to be lower.
@@ -112,6 +119,46 @@ pub(super) fn mentioned_in_words(system: &mut System) -> Vec<NodeId> {
     found
 }
 
+/// What the file says of values at the beginning.
+#[derive(Default)]
+struct Initial {
+    vanishing: Vec<NodeId>,
+    guards: Vec<Guard>,
+    texts: Vec<String>,
+}
+
+/// What the file says of values at the beginning, as expressions that vanish and what these need to exist.
+///
+/// # Errors
+/// In words, where a side is no number.
+fn initial_equations(system: &mut System) -> Result<Initial, String> {
+    let mut found = Initial::default();
+    for equation in system.initial_conditions().to_vec() {
+        let mut sides = Vec::new();
+        for side in [&equation.left, &equation.right] {
+            let (value, needed) = system.elaborate_guarded(side).map_err(|problem| problem.message)?;
+            found.guards.extend(needed);
+            sides.push(value.as_number().ok_or("a value at the beginning is a number")?);
+        }
+        found.texts.push(format!("{} = {}", system.graph.text(sides[0]), system.graph.text(sides[1])));
+        found.vanishing.push(system.graph.sub(sides[0], sides[1]));
+    }
+    Ok(found)
+}
+
+/// The same solved: values for states.
+///
+/// # Errors
+/// In words, where that is not possible in one way.
+pub(super) fn initial_values(system: &mut System) -> Result<Assignment, String> {
+    let equations = system.initial_conditions().to_vec();
+    let mut branches = solve_conditions(system, &equations).map_err(|why| why.to_string())?;
+    match (branches.pop(), branches.is_empty()) {
+        (Some(only), true) => Ok(only.values),
+        _ => Err("values at the beginning are given in several ways".to_owned()),
+    }
+}
+
 /// Nothing, where every state is one at which the rank is asked for, and words are Lie derivatives.
 ///
 /// # Errors
@@ -129,10 +176,13 @@ pub(super) fn on_all_states(system: &System) -> Result<(), String> {
 fn drops_of(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<DropAnswer, String> {
     let begin = Instant::now();
     on_all_states(system)?;
-    let words = Codistribution::new(system, &Default::default(), Length::UntilItStops)?;
+    let initial = initial_values(system)?;
+    let words = Codistribution::new(system, &initial, Length::UntilItStops)?;
     let (rank, is_final) = (words.generic_rank(), words.is_final());
+    let Initial { vanishing: conditions, guards: needed, texts } = initial_equations(system)?;
     let guards: Vec<Guard> = {
         let mut guards = system.smooth_guards(&system.moving_fields());
+        needed.into_iter().for_each(|guard| add_guard(&system.graph, &mut guards, guard));
         guards.retain(|guard| guard.is_obvious(&system.graph) != Some(true));
         guards
     };
@@ -142,6 +192,7 @@ fn drops_of(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<Dr
         dimension: system.unknown_count(),
         rank,
         is_final,
+        initial: texts,
         domain: guards.iter().map(|guard| guard.text(&system.graph)).collect(),
         sets: Vec::new(),
         open: Vec::new(),
@@ -152,10 +203,13 @@ fn drops_of(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<Dr
         seconds: 0.0,
     };
     let rows = Rows::of_words(system);
-    let asked = Asked { rank, guards, ..Asked::default() };
+    let asked = Asked { rank, guards, conditions, ..Asked::default() };
     let found = prepared(system, rows, &asked, seed, interrupt, |algebra, search| {
         let explored = &search.run(algebra)?;
         answer.out_of_reach.clone_from(&explored.stopped);
+        if explored.full.is_empty() && explored.short.is_empty() {
+            answer.out_of_reach = Some("there is no state at which all terms exist".to_owned());
+        }
         answer.cases = (explored.cases, explored.empty);
         answer.minors = explored.full.iter().map(|full| used(algebra, &search.rows, full)).collect();
         let (sets, open): (Vec<_>, Vec<_>) =
@@ -226,7 +280,7 @@ pub(super) fn prepared<T>(
 
 /// The equations of a case, one after the other, as texts.
 fn equations(algebra: &mut Algebra<'_>, case: &Case) -> Vec<String> {
-    let shown = Shown::of(&ShortCase { case: case.clone(), rank: 0, lower: Ok(0.0) });
+    let shown = Shown::around(&ShortCase { case: case.clone(), rank: 0, lower: Ok(0.0) });
     shown.texts(algebra)
 }
 
@@ -258,13 +312,16 @@ fn shown_factors(algebra: &mut Algebra<'_>, minor: &Product) -> Vec<(String, i64
 }
 
 fn described(algebra: &mut Algebra<'_>, search: &mut Search<'_>, shown: Shown) -> DropSet {
-    let state = state_on(algebra, search, &shown.case, &[]).map(|state| state.describe(algebra.system));
+    let state = shown.cases.iter().find_map(|case| state_on(algebra, search, case, &[]));
+    let exists = state.is_some() || shown.cases.iter().any(|case| has_real_points(algebra, search, case));
     DropSet {
         equations: shown.texts(algebra),
         unless: shown.unless(algebra),
         rank: shown.rank,
+        exactly: shown.exactly,
         log2_error: *shown.lower.as_ref().unwrap_or(&0.0),
         open: shown.lower.err(),
-        state,
+        state: state.map(|state| state.describe(algebra.system)),
+        exists,
     }
 }

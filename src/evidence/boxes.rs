@@ -1,9 +1,10 @@
 //! A certificate as boxes, each with the rows of its minor, written down for the checker.
 
-use super::lowering::Lowering;
 use crate::certificate::{HeldSymbol, ProvedBox, Region};
+use crate::checker::Lowering;
 use crate::checker::{
-    CertifiedBox, CertifiedBoxes, Evidence, Missing, Ratio, SymbolRange, VerdictFile, VerdictRecord,
+    CertifiedBox, CertifiedBoxes, ClaimKind, ClaimParts, Evidence, Missing, Ratio, RecordedWord, SymbolRange,
+    VerdictFile, VerdictRecord, listed_statement, source_digest,
 };
 use crate::system::System;
 use dashu::integer::IBig;
@@ -51,10 +52,14 @@ pub fn certificate_file(
     } else {
         Evidence::Boxes(boxes)
     };
+    let what = if region.is_of_own_rows() { ClaimKind::RowsOnBoxes } else { ClaimKind::SystemOnBoxes };
     let record = VerdictRecord {
         file: system.name.clone(),
+        digest: source_digest(&system.source),
         id: "certify".to_owned(),
-        statement: format!("{} have full rank all over these boxes", region.rows_in_words()),
+        statement: listed_statement(what, ""),
+        asked: ClaimParts::listed(what, ""),
+        verdict: RecordedWord::Found,
         evidence,
     };
     Ok((VerdictFile::new(0, vec![record]), written))

@@ -1,24 +1,25 @@
 //! What verdicts rest on, written down for the checker.
 //!
-//! A `Lowering` turns nodes of the graph into a `crate::checker::Listing`, as they were read and without any
+//! The checker's `Lowering` turns nodes of the graph into a `crate::checker::Listing`, as they were read and without any
 //! simplification of its own; [`rank_records`] writes the ranks of a sweep, each with its minor and its kernel, [`certificate_file`] proved boxes
 //! with their minors.
 //!
 //! This floor decides nothing: what it writes is checked by code that does not trust it.
 
 mod boxes;
-mod lowering;
 mod minors;
 mod ranks;
 mod statements;
+mod states;
 
+pub(crate) use crate::checker::Lowering;
 #[doc(hidden)]
 pub use boxes::{WrittenBoxes, certificate_file};
-pub(crate) use lowering::{Lowering, exact_state};
 pub(crate) use minors::largest_minor;
 #[doc(hidden)]
 pub use ranks::rank_records;
 pub(crate) use statements::StatementAt;
+pub(crate) use states::exact_state;
 
 /// Why evidence could not be written down.
 #[derive(Debug, thiserror::Error)]

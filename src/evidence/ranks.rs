@@ -1,9 +1,13 @@
 //! The ranks of a sweep, each with the minor and the kernel by which it is checked.
 
 use super::NotWritten;
-use super::lowering::{Lowering, exact_state};
 use super::minors::largest_minor;
-use crate::checker::{CertifiedRank, Evidence, Missing, RankedState, Ratio, VerdictRecord};
+use super::states::exact_state;
+use crate::checker::Lowering;
+use crate::checker::{
+    CertifiedRank, ClaimKind, ClaimParts, Evidence, Missing, RankedState, Ratio, RecordedWord, VerdictRecord,
+    listed_statement, source_digest,
+};
 use crate::expression::syntax::Relation;
 use crate::expression::{Guard, NodeId, Program, expand_angles};
 use crate::number::PrimeField;
@@ -40,24 +44,25 @@ pub fn rank_records(
     }
     let smooth = [system.smooth_guards(&system.moving_fields()), inequalities.clone()].concat();
     let own = [system.definition_guards(OWN_ROWS), inequalities].concat();
+    let conditions_in_one = conditions.join(", ");
     let mut records = Vec::new();
     for branch in &answer.branches {
-        let place = match branch.conditions.as_slice() {
-            [] => "at states of the sample box".to_owned(),
-            conditions => format!("where {}", conditions.join(", ")),
-        };
         let sweeps = [
-            ("rank", "the observability codistribution", &branch.taken, Some(&branch.full), &smooth),
-            (OWN_ROWS, "the file's own rows", &branch.own, branch.rows.as_ref(), &own),
+            ("rank", ClaimKind::SystemAtStates, &branch.taken, Some(&branch.full), &smooth),
+            (OWN_ROWS, ClaimKind::RowsAtStates, &branch.own, branch.rows.as_ref(), &own),
         ];
         for (id, what, rows, report, guards) in sweeps {
             let Some(report) = report.filter(|report| !report.recorded.is_empty()) else { continue };
-            let conditions = Conditions { met: &met, guards };
+            let held = Conditions { met: &met, guards };
+            let asked = ClaimParts::listed(what, &conditions_in_one);
             records.push(VerdictRecord {
                 file: answer.file.clone(),
+                digest: source_digest(&system.source),
                 id: id.to_owned(),
-                statement: format!("the rank of {what}, {place}"),
-                evidence: Evidence::Rank(certified_rank(system, rows, report, conditions, answer.seed)?),
+                statement: listed_statement(what, &asked.given),
+                asked,
+                verdict: RecordedWord::Found,
+                evidence: Evidence::Rank(certified_rank(system, rows, report, held, answer.seed)?),
             });
         }
     }

@@ -1,6 +1,7 @@
 //! A refuted or proved equation, with the state at which it is evaluated.
 
-use super::lowering::{Lowering, exact_coordinate};
+use super::states::exact_coordinate;
+use crate::checker::Lowering;
 use crate::checker::{
     ExactCoordinate, ExactState, Listing, Missing, PrintedSides, Refutation, Requirement, Sides,
     StatedIdentity,

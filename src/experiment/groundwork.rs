@@ -36,7 +36,7 @@ impl Groundwork {
     /// # Errors
     /// What is wrong with the scene or its model, with the place in the scene.
     pub fn of(scene: Scene, simulates: bool) -> Result<Groundwork, SceneError> {
-        let system = System::read(&scene.model)?;
+        let system = System::read_named(&scene.model)?;
         Groundwork::with_system(scene, system, simulates)
     }
 

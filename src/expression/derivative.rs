@@ -6,7 +6,8 @@
 //! product of `u` and `v` has left the `k + 1` products `D^i(u) D^(k-i)(v)` and sums of neighbours among them, so the
 //! graph of the `k`-th Lie derivative has O(k^3) nodes for each node of the function and the field.
 
-use super::graph::{Graph, Node, NodeId, Symbol};
+use super::bars::slopes_of_factors;
+use super::graph::{Extent, Graph, Node, NodeId, Symbol};
 use crate::number::Function;
 use std::collections::HashMap;
 
@@ -32,13 +33,28 @@ pub struct Derivation {
     known: HashMap<NodeId, NodeId>,
     /// What is known, in the order in which it was found.
     found: Vec<NodeId>,
+    /// The symbols that were given a successor since, each with that successor, in the order in which they were met.
+    stepped: Vec<(Symbol, Symbol)>,
+}
+
+/// How much a derivation knows, to come back to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct KnownSoFar {
+    derivatives: usize,
+    steps: usize,
 }
 
 impl Derivation {
     /// The derivation that takes each of these symbols to its expression and all others to zero.
     pub fn new(slopes: HashMap<Symbol, NodeId>) -> Self {
-        let (known, fresh) = (HashMap::new(), HashMap::new());
-        Derivation { slopes, composes: false, fresh, known, found: Vec::new() }
+        Derivation {
+            slopes,
+            composes: false,
+            fresh: HashMap::new(),
+            known: HashMap::new(),
+            found: Vec::new(),
+            stepped: Vec::new(),
+        }
     }
 
     /// The composition with the map that takes symbols to their successors, and others to themselves. What is `fresh` has
@@ -47,6 +63,18 @@ impl Derivation {
         let named = |symbol: &Symbol| (*symbol, (graph.symbol_name(*symbol).to_owned(), 0));
         let fresh = fresh.iter().map(named).collect();
         Derivation { composes: true, fresh, ..Derivation::new(successors) }
+    }
+
+    /// The same kind of map with other values on the symbols; it has computed nothing yet.
+    pub(crate) fn with_values(&self, graph: &Graph, values: HashMap<Symbol, NodeId>) -> Self {
+        match self.composes {
+            false => Derivation::new(values),
+            true => {
+                let first = self.fresh.iter().filter(|(_, (_, step))| *step == 0);
+                let first: Vec<Symbol> = first.map(|(symbol, _)| *symbol).collect();
+                Derivation::composition(graph, values, &first)
+            }
+        }
     }
 
     /// Whether it is the composition with a map.
@@ -67,6 +95,7 @@ impl Derivation {
                 let node = graph.symbol(next);
                 self.slopes.insert(symbol, node);
                 self.fresh.insert(next, (name, step + 1));
+                self.stepped.push((symbol, next));
             }
         }
         let value = graph.substitute(&[root], &self.slopes)[0];
@@ -97,16 +126,27 @@ impl Derivation {
         self.known[&root]
     }
 
-    /// How many derivatives are known, to come back to.
-    pub(crate) fn len(&self) -> usize {
-        self.found.len()
+    /// How much is known, to come back to.
+    pub(crate) fn known_so_far(&self) -> KnownSoFar {
+        KnownSoFar { derivatives: self.found.len(), steps: self.stepped.len() }
     }
 
-    /// Forgets all but the first so many derivatives, since their nodes go.
-    pub(crate) fn shrink_to(&mut self, count: usize) {
-        for id in self.found.drain(count.min(self.found.len())..) {
+    /// Forgets what was found since, and the later values of signals that were named since: their nodes and symbols go.
+    pub(crate) fn shrink_to(&mut self, before: KnownSoFar) {
+        for id in self.found.drain(before.derivatives.min(self.found.len())..) {
             self.known.remove(&id);
         }
+        for (symbol, next) in self.stepped.drain(before.steps.min(self.stepped.len())..) {
+            self.slopes.remove(&symbol);
+            self.fresh.remove(&next);
+        }
+    }
+
+    /// Whether every node and symbol that it names is one of a graph of this extent.
+    pub(crate) fn is_within(&self, extent: &Extent) -> bool {
+        let nodes = self.known.iter().flat_map(|(id, value)| [id, value]).chain(self.slopes.values());
+        let symbols = self.slopes.keys().chain(self.fresh.keys());
+        nodes.into_iter().all(|id| extent.holds(*id)) && symbols.into_iter().all(|one| extent.names(*one))
     }
 
     /// What the root needs and is not yet differentiated, operands first.
@@ -123,6 +163,15 @@ impl Derivation {
 
     fn rule(&self, graph: &mut Graph, id: NodeId) -> NodeId {
         let slope = |operand: NodeId| self.known[&operand];
+        if let Some(factors) = slopes_of_factors(graph, id)
+            && factors.iter().all(|factor| self.known.contains_key(&factor.of))
+        {
+            let zero = graph.integer(0);
+            return factors.into_iter().fold(zero, |sum, factor| {
+                let part = graph.mul(factor.slope, slope(factor.of));
+                graph.add(sum, part)
+            });
+        }
         match graph.node(id) {
             Node::Constant(_) | Node::Pi => graph.integer(0),
             Node::Symbol(symbol) => match self.slopes.get(&symbol) {

@@ -7,6 +7,7 @@
 //!
 //! Reference: A. Griewank and A. Walther, *Evaluating Derivatives* (2nd ed. 2008), section 3.2.
 
+use super::bars::slopes_of_factors;
 use super::derivative::{Derivation, chain};
 use super::graph::{Graph, Node, NodeId, Symbol};
 use std::collections::{HashMap, HashSet};
@@ -77,6 +78,15 @@ impl Adjoints {
 
     /// Hands the adjoint of a node down to its operands.
     fn hand_down(&mut self, graph: &mut Graph, id: NodeId, adjoint: NodeId) {
+        if let Some(factors) = slopes_of_factors(graph, id)
+            && factors.iter().all(|factor| factor.of < id)
+        {
+            for factor in factors {
+                let part = graph.mul(adjoint, factor.slope);
+                self.add(graph, factor.of, part);
+            }
+            return;
+        }
         match graph.node(id) {
             Node::Constant(_) | Node::Pi | Node::Symbol(_) => {}
             Node::Add(a, b) => {

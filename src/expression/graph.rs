@@ -65,6 +65,18 @@ pub(crate) struct Extent {
     symbols: usize,
 }
 
+impl Extent {
+    /// Whether a node is one of so many.
+    pub(crate) fn holds(&self, id: NodeId) -> bool {
+        (id.0 as usize) < self.nodes
+    }
+
+    /// Whether a symbol is.
+    pub(crate) fn names(&self, symbol: Symbol) -> bool {
+        (symbol.0 as usize) < self.symbols
+    }
+}
+
 /// Constants longer than this many bits are not multiplied out when the graph is built.
 const FOLDED_BITS: usize = 4096;
 

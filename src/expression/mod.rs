@@ -7,6 +7,7 @@
 
 mod adjoin;
 mod angle;
+mod bars;
 mod block;
 mod common_factor;
 mod composed;
@@ -38,7 +39,7 @@ pub(crate) use block::Machine;
 pub(crate) use common_factor::share_a_factor;
 pub(crate) use composed::COMPOSED;
 pub use derivative::Derivation;
-pub(crate) use derivative::signal_of;
+pub(crate) use derivative::{KnownSoFar, signal_of};
 pub use domain::{Guard, Need};
 pub(crate) use domain::{add_guard, substitute_guards};
 pub(crate) use expansion::Expansion;

@@ -13,11 +13,11 @@ pub(crate) use checksum::Checksum;
 #[doc(hidden)]
 pub use packed::{PACKED, PackedFile, pack, packed_folders};
 pub(crate) use packed::{files_in, identity, is_file, is_folder};
-#[doc(hidden)]
-pub use read::read_text;
 pub(crate) use read::{ReadFailure, read_bytes};
 #[doc(hidden)]
-pub use standard::{look_at_standard_output, note, print, print_heard};
+pub use read::{read_head, read_text};
+#[doc(hidden)]
+pub use standard::{clear_terminal, look_at_standard_output, note, print, print_heard};
 #[doc(hidden)]
 pub use write::{remove_unfinished, write_whole};
 

@@ -82,6 +82,19 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, ReadFailure> {
     }
 }
 
+/// The first bytes of a file on the disk, however long it is.
+///
+/// # Errors
+/// It cannot be opened or read, or is no plain file.
+pub fn read_head(path: &Path, count: u64) -> Result<Vec<u8>, ReadFailure> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("it is no file").into());
+    }
+    let mut head = Vec::new();
+    std::fs::File::open(path)?.take(count).read_to_end(&mut head)?;
+    Ok(head)
+}
+
 /// The text of a file, if it is no more than `most` bytes of UTF-8. A byte-order mark in front is no part of it.
 ///
 /// # Errors

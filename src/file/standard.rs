@@ -4,6 +4,7 @@
 //! for an empty one. A program whose results are lost has to say so: here a write to standard output that fails is an
 //! error, and one to standard error is not, since nobody could be told.
 
+use crate::foreign::terminal;
 use std::fs::File;
 use std::io::{Error, ErrorKind, Result, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -37,12 +38,17 @@ pub(super) fn output() -> Result<File> {
     }
 }
 
-/// Prints a text to standard output.
+/// Clears the terminal, together with what has left it.
+pub fn clear_terminal() {
+    let _ = output().and_then(|mut output| output.write_all(b"\x1b[2J\x1b[3J\x1b[H"));
+}
+
+/// Prints a text to standard output; nothing in it acts on a terminal but colours and ends of lines.
 ///
 /// # Errors
 /// It cannot be written: the disk is full, or the stream is closed. A pipe whose reader has gone away is no error.
 pub fn print(text: &str) -> Result<()> {
-    match output()?.write_all(text.as_bytes()) {
+    match output()?.write_all(terminal(text).as_bytes()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         result => result,
     }
@@ -53,7 +59,7 @@ pub fn print(text: &str) -> Result<()> {
 /// # Errors
 /// As [`print`].
 pub fn print_heard(text: &str) -> Result<bool> {
-    match output()?.write_all(text.as_bytes()) {
+    match output()?.write_all(terminal(text).as_bytes()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
         result => result.map(|()| true),
     }
@@ -61,5 +67,5 @@ pub fn print_heard(text: &str) -> Result<bool> {
 
 /// Writes a line to standard error, if that can be written.
 pub fn note(line: &str) {
-    let _ = std::io::stderr().write_all(format!("{line}\n").as_bytes());
+    let _ = std::io::stderr().write_all(format!("{}\n", terminal(line)).as_bytes());
 }

@@ -218,9 +218,9 @@ impl ForeignExpr {
         1 + self.parts().into_iter().map(ForeignExpr::depth).max().unwrap_or(0)
     }
 
-    /// Whether it has a value at all values of its names: nothing is divided by but numbers, no roots, logarithms or the like.
-    pub(super) fn is_total(&self) -> bool {
-        let here = match &self.kind {
+    /// Whether it has a value wherever its parts have: nothing is divided by but numbers, it is no root, logarithm or the like.
+    pub(super) fn is_total_here(&self) -> bool {
+        match &self.kind {
             ForeignKind::Product(list) => list.iter().all(|(divided, part)| {
                 !divided || part.as_number().is_some_and(|value| *value != RBig::ZERO)
             }),
@@ -234,8 +234,7 @@ impl ForeignExpr {
                 )
             }
             _ => true,
-        };
-        here && self.parts().into_iter().all(ForeignExpr::is_total)
+        }
     }
 
     /// Its value in doubles, by nothing but what the parts mean: the second route that tests hold the emitted file to. `None`

@@ -83,6 +83,13 @@ fn chosen<'a>(text: &str, found: &'a [Found], which: Option<&str>) -> Result<&'a
     }
 }
 
+/// Names of inputs, in the order in which they are met.
+#[derive(Default)]
+struct Inputs {
+    known: BTreeSet<String>,
+    order: Vec<String>,
+}
+
 /// What stands on the left of an equation.
 enum Left<'a> {
     State(&'a str),
@@ -143,7 +150,7 @@ fn of_equations(equations: &[Syntax], is_discrete: bool, span: &Span) -> Result<
         }
     }
     let mut model = ForeignModel { is_discrete, ..ForeignModel::default() };
-    let mut inputs: Vec<String> = Vec::new();
+    let mut inputs = Inputs::default();
     for ((left, _), place, right) in &sides {
         let value = right_side(right, time, &measured, &moved, &mut inputs)?;
         match left {
@@ -157,7 +164,7 @@ fn of_equations(equations: &[Syntax], is_discrete: bool, span: &Span) -> Result<
             Left::Output(name) => model.outputs.push(ForeignOutput { name: Some((*name).to_owned()), value }),
         }
     }
-    model.known_inputs = inputs;
+    model.known_inputs = inputs.order;
     model.declare_others(true);
     Ok(model)
 }
@@ -167,7 +174,7 @@ fn right_side(
     time: &str,
     measured: &BTreeSet<&str>,
     moved: &BTreeSet<&str>,
-    inputs: &mut Vec<String>,
+    inputs: &mut Inputs,
 ) -> Result<ForeignExpr, Problem> {
     meaning(syntax, &mut |part| match &part.kind {
         SyntaxKind::Name(name) if name == time => {
@@ -191,8 +198,8 @@ fn right_side(
                     )
                     .help("write what is measured in its place")));
                 }
-                if !moved.contains(name.as_str()) && !inputs.contains(name) {
-                    inputs.push(name.clone());
+                if !moved.contains(name.as_str()) && inputs.known.insert(name.clone()) {
+                    inputs.order.push(name.clone());
                 }
                 Some(Ok(ForeignExpr::name(name, &part.span)))
             }

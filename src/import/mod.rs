@@ -6,6 +6,7 @@
 //!
 //! This floor knows nothing of ranks and verdicts.
 
+mod cases;
 mod expression;
 mod formulas;
 mod functions;
@@ -23,9 +24,20 @@ pub use expression::{FUNCTIONS, ForeignExpr, ForeignKind, ForeignOrder};
 pub use formulas::PrintedRoles;
 pub use model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate, ForeignUnknowns};
 
+use crate::foreign::{Allowance, Budget, Spent};
 use crate::system::{Problem, ReadError, System, with_plain_line_ends};
 use script::Dialect;
 use std::path::Path;
+
+/// What an import may come to: as many bytes as a proof file may have, expressions of so many parts once definitions and functions are put
+/// in, and so many steps where a reader has to look at pairs of things.
+const ALLOWANCE: Allowance = Allowance { bytes: 16 << 20, nodes: 2_000_000, steps: 200_000_000 };
+
+/// That a model becomes too large to be read.
+fn too_much(place: &expression::Span, spent: Spent) -> Problem {
+    Problem::new(place, format!("the model becomes too large: {spent}"), "here")
+        .help("give parts that occur several times names of their own, and import a part of the model")
+}
 
 /// A format that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,12 +178,13 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
     let located = |problem: Problem| problem.locate(name, &text);
     let roles = PrintedRoles { states: question.states.clone(), outputs: question.outputs.clone() };
     let which = question.model.as_deref();
+    let budget = Budget::new(ALLOWANCE);
     let mut model = match format {
         ForeignFormat::Julia => julia::read(&text, which),
-        ForeignFormat::Sbml => sbml::read(&text),
-        ForeignFormat::StrikePy => scripts::read(&text, Dialect::Python, which),
-        ForeignFormat::StrikeGoldd => scripts::read(&text, Dialect::Matlab, which),
-        ForeignFormat::Formulas => formulas::read(&text, &roles),
+        ForeignFormat::Sbml => sbml::read(&text, &budget),
+        ForeignFormat::StrikePy => scripts::read(&text, Dialect::Python, which, &budget),
+        ForeignFormat::StrikeGoldd => scripts::read(&text, Dialect::Matlab, which, &budget),
+        ForeignFormat::Formulas => formulas::read(&text, &roles, &budget),
     }
     .map_err(located)?;
     let asked = |why: String| {
@@ -200,7 +213,7 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
     let file =
         Path::new(name).file_name().map_or(name.to_owned(), |file| file.to_string_lossy().into_owned());
     let origin = format!("{}: {file}", format.in_words(&text));
-    let written = write::proof_text(&model, &origin).map_err(located)?;
+    let written = write::proof_text(&model, &origin, &budget).map_err(located)?;
     // what cannot be read back is no proof file, whoever is to blame
     if let Err(why) = System::parse("import.proof", &written.text, Path::new("")) {
         let (line, _) = why.line_and_column();

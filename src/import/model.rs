@@ -238,6 +238,24 @@ impl ForeignModel {
         Ok(())
     }
 
+    /// All of it but definitions and rates.
+    pub(super) fn without_formulas(&self) -> ForeignModel {
+        ForeignModel {
+            title: self.title.clone(),
+            source: self.source.clone(),
+            states: Vec::new(),
+            is_discrete: self.is_discrete,
+            definitions: Vec::new(),
+            outputs: self.outputs.clone(),
+            constants: self.constants.clone(),
+            known_inputs: self.known_inputs.clone(),
+            unknown_inputs: self.unknown_inputs.clone(),
+            beginnings: self.beginnings.clone(),
+            clock: self.clock.clone(),
+            remarks: self.remarks.clone(),
+        }
+    }
+
     /// All names of the model, each once, but those of outputs.
     pub(super) fn all_names(&self) -> Vec<String> {
         let states = self.states.iter().map(|state| state.name.clone());

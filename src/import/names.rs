@@ -9,6 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) struct ForeignNames {
     ours: BTreeMap<String, String>,
     taken: BTreeSet<String>,
+    /// Of names that are taken, the last number that was put behind.
+    counts: BTreeMap<String, usize>,
 }
 
 const GREEK: [(char, &str); 56] = [
@@ -131,10 +133,11 @@ impl ForeignNames {
     /// A name like this one that nothing has yet; it is taken then.
     pub fn free(&mut self, wanted: &str) -> String {
         let mut name = if has_a_meaning(wanted) { format!("{wanted}_") } else { wanted.to_owned() };
-        let mut count = 2;
+        let stem = wanted.trim_end_matches('_');
         while self.taken.contains(&name) || has_a_meaning(&name) {
-            name = format!("{}_{count}", wanted.trim_end_matches('_'));
-            count += 1;
+            let count = self.counts.entry(stem.to_owned()).or_insert(1);
+            *count += 1;
+            name = format!("{stem}_{count}");
         }
         self.taken.insert(name.clone());
         name

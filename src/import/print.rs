@@ -2,6 +2,7 @@
 
 use super::expression::{ForeignExpr, ForeignKind, ForeignOrder};
 use super::names::ForeignNames;
+use crate::foreign::Budget;
 use crate::system::Problem;
 use dashu::base::Sign;
 use dashu::integer::{IBig, UBig};
@@ -16,13 +17,19 @@ enum Binding {
     Primary,
 }
 
-/// The text of an expression. Where it has cases that our language cannot say, that is the error.
-pub(super) fn text(expression: &ForeignExpr, names: &ForeignNames) -> Result<String, Problem> {
+/// The text of an expression without cases.
+pub(super) fn text(
+    expression: &ForeignExpr,
+    names: &ForeignNames,
+    budget: &Budget,
+) -> Result<String, Problem> {
     if expression.depth() > super::expression::DEEPEST * 2 {
         let problem = Problem::new(&expression.span, "this is nested too deeply", "this");
         return Err(problem.help("give inner parts names of their own"));
     }
-    Ok(written(expression, names)?.0)
+    let text = written(expression, names)?.0;
+    budget.bytes(text.len()).map_err(|spent| super::too_much(&expression.span, spent))?;
+    Ok(text)
 }
 
 fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Binding), Problem> {
@@ -102,8 +109,8 @@ fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Bi
                 .collect::<Result<Vec<_>, Problem>>()?;
             (format!("{name}({})", list.join(", ")), Binding::Primary)
         }
-        ForeignKind::Case { sides, order, values } => {
-            written(&without_case(expression, sides, *order, values)?, names)?
+        ForeignKind::Case { .. } => {
+            return Err(Problem::new(&expression.span, "these cases cannot be written", "this"));
         }
     })
 }
@@ -191,14 +198,22 @@ fn opposite(one: &ForeignExpr, other: &ForeignExpr) -> bool {
     negated(one, other) || negated(other, one)
 }
 
-/// A case by `abs`, `min`, `max`, or by `sign` where both values exist everywhere: off the surface on which the sides are equal it
-/// is then the same, and that surface is thin.
-fn without_case(
+/// A case without a case.
+pub(super) enum Written {
+    /// By `abs`, `min` or `max`: each value stands in it once.
+    Once(ForeignExpr),
+    /// By `sign`: both values stand in it twice. It is right where both exist everywhere: off the surface on which the sides are
+    /// equal it is then the same, and that surface is thin.
+    BySign(ForeignExpr),
+}
+
+/// A case by `abs`, `min`, `max`, or by `sign`; `whole` is where it stands.
+pub(super) fn without_case(
     whole: &ForeignExpr,
     sides: &(ForeignExpr, ForeignExpr),
     order: ForeignOrder,
     values: &(ForeignExpr, ForeignExpr),
-) -> Result<ForeignExpr, Problem> {
+) -> Written {
     let span = &whole.span;
     let (then, otherwise) = values;
     // where the first of these is the greater one
@@ -207,7 +222,7 @@ fn without_case(
         ForeignOrder::Less | ForeignOrder::AtMost => (&sides.1, &sides.0),
     };
     let of_two = |name: &'static str| {
-        Ok(ForeignExpr::new(ForeignKind::Call(name, vec![then.clone(), otherwise.clone()]), span))
+        Written::Once(ForeignExpr::new(ForeignKind::Call(name, vec![then.clone(), otherwise.clone()]), span))
     };
     if same(then, high) && same(otherwise, low) {
         return of_two("max");
@@ -216,22 +231,14 @@ fn without_case(
         return of_two("min");
     }
     let zero = |one: &ForeignExpr| one.as_number() == Some(&RBig::ZERO);
-    let absolute = |of: &ForeignExpr| Ok(of.clone().under("abs"));
+    let absolute = |of: &ForeignExpr| of.clone().under("abs");
     if opposite(then, otherwise) {
         if zero(low) && same(then, high) || zero(high) && same(otherwise, low) {
-            return absolute(if zero(low) { then } else { low });
+            return Written::Once(absolute(if zero(low) { then } else { low }));
         }
         // where x is less than zero x, and else -x
         if zero(high) && same(then, low) || zero(low) && same(otherwise, high) {
-            return Ok(absolute(if zero(high) { low } else { high })?.negative());
-        }
-    }
-    for part in [then, otherwise] {
-        if !part.is_total() {
-            let message = "the cases cannot be written as one expression: this one does not exist everywhere";
-            return Err(Problem::new(&part.span, message, "does not exist everywhere").help(
-                "what can be read: cases that are abs, min or max, or whose values are without quotients, roots and logarithms; or keep the case that holds where you look",
-            ));
+            return Written::Once(absolute(if zero(high) { low } else { high }).negative());
         }
     }
     // then where high > low: (then + otherwise)/2 + sign(high - low)*(then - otherwise)/2
@@ -243,15 +250,5 @@ fn without_case(
         (_, true) => (then.clone(), then.clone()),
         _ => (then.clone().plus(otherwise.clone()), then.clone().minus(otherwise.clone())),
     };
-    Ok(middle.over(two()).plus(sign.times(half).over(two())))
-}
-
-/// Whether an expression has a case that is written by `sign`, which has no value where the sides are equal.
-pub(super) fn needs_sign(expression: &ForeignExpr) -> bool {
-    let here = match &expression.kind {
-        ForeignKind::Case { sides, order, values } => without_case(expression, sides, *order, values)
-            .is_ok_and(|other| matches!(other.kind, ForeignKind::Sum(ref terms) if terms.len() == 2)),
-        _ => false,
-    };
-    here || expression.parts().into_iter().any(needs_sign)
+    Written::BySign(middle.over(two()).plus(sign.times(half).over(two())))
 }

@@ -7,6 +7,7 @@ use super::script::{
     Dialect, Parser, ScriptValue, ScriptWorkspace, Syntax, SyntaxKind, Token, TokenKind, named_function,
     tokens,
 };
+use crate::foreign::Budget;
 use crate::system::Problem;
 use dashu::rational::RBig;
 use std::collections::BTreeSet;
@@ -39,10 +40,15 @@ const CONTROL: [&str; 17] = [
 ];
 
 /// Reads a model file: the model that it saves, or the one of several that has a name or number.
-pub(super) fn read(text: &str, dialect: Dialect, which: Option<&str>) -> Result<ForeignModel, Problem> {
+pub(super) fn read(
+    text: &str,
+    dialect: Dialect,
+    which: Option<&str>,
+    budget: &Budget,
+) -> Result<ForeignModel, Problem> {
     let (words, comments) = tokens(text, dialect)?;
     let mut script = Script {
-        workspace: ScriptWorkspace::default(),
+        workspace: ScriptWorkspace::new(budget),
         dialect,
         saved: None,
         title: None,
@@ -63,8 +69,8 @@ pub(super) fn read(text: &str, dialect: Dialect, which: Option<&str>) -> Result<
     Ok(model)
 }
 
-struct Script {
-    workspace: ScriptWorkspace,
+struct Script<'b> {
+    workspace: ScriptWorkspace<'b>,
     dialect: Dialect,
     /// The variables that `save` names, and what the file is called.
     saved: Option<BTreeSet<String>>,
@@ -76,7 +82,7 @@ struct Script {
     begin: Option<usize>,
 }
 
-impl Script {
+impl Script<'_> {
     fn all(&mut self, words: &[Token]) -> Result<(), Problem> {
         let mut parser = Parser::new(words, self.dialect);
         while !parser.at_end() {

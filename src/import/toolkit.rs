@@ -13,6 +13,8 @@ use std::collections::{BTreeMap, BTreeSet};
 struct Declared {
     /// Names with their values.
     parameters: Vec<(String, Option<RBig>)>,
+    /// Their names.
+    constants: BTreeSet<String>,
     variables: BTreeSet<String>,
     /// Names without a bracket among the variables: time.
     times: BTreeSet<String>,
@@ -44,11 +46,12 @@ pub(super) fn read(
     model.source = super::heading(text, comments, begin);
     let mut defined: BTreeMap<String, ForeignExpr> = BTreeMap::new();
     let mut order = Vec::new();
+    let mut rated = BTreeSet::new();
     for equation in lists.iter().filter(|list| !list.measured).flat_map(|list| &list.list) {
         let (left, right) = sides(equation)?;
         let value = value(right, &declared)?;
         if let Some(state) = differentiated(left, &declared) {
-            if model.states.iter().any(|own| own.name == state) {
+            if !rated.insert(state.to_owned()) {
                 return Err(Problem::new(
                     &left.span,
                     format!("'{state}' has two equations"),
@@ -193,6 +196,7 @@ fn declare(one: &Syntax, is_parameter: bool, is_time: bool, declared: &mut Decla
                 SyntaxKind::Number(value) => Some(value.clone()),
                 _ => None,
             });
+            declared.constants.insert(name.clone());
             declared.parameters.push((name.clone(), value));
         }
         SyntaxKind::Name(name) => {
@@ -309,7 +313,7 @@ fn value(syntax: &Syntax, declared: &Declared) -> Result<ForeignExpr, Problem> {
             return Some(Ok(ForeignExpr::name(name, &part.span)));
         }
         match &part.kind {
-            SyntaxKind::Name(name) if declared.parameters.iter().any(|(own, _)| own == name) => {
+            SyntaxKind::Name(name) if declared.constants.contains(name) => {
                 Some(Ok(ForeignExpr::name(name, &part.span)))
             }
             SyntaxKind::Name(name) => {

@@ -1,10 +1,13 @@
 //! A foreign model as a proof file.
 
+use super::cases::{Uncased, written_out};
 use super::model::{ForeignConstant, ForeignModel};
 use super::names::ForeignNames;
-use super::print::{needs_sign, text};
+use super::print::text;
 use crate::expression::parse::ends_a_line;
+use crate::foreign::Budget;
 use crate::system::Problem;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Lines are broken where they are longer than this.
@@ -71,6 +74,7 @@ fn constants(
     list: &[&ForeignConstant],
     names: &ForeignNames,
     unknown: bool,
+    budget: &Budget,
 ) -> Result<(), Problem> {
     let of_kind = || list.iter().filter(|constant| constant.is_unknown == unknown);
     let without: Vec<String> =
@@ -92,14 +96,20 @@ fn constants(
                 &(0..0),
             );
             let word = if unknown { " unknown" } else { "" };
-            let _ = writeln!(out, "param {} = {}{word}", names.ours(&constant.name), text(&number, names)?);
+            let _ = writeln!(
+                out,
+                "param {} = {}{word}",
+                names.ours(&constant.name),
+                text(&number, names, budget)?
+            );
         }
     }
     Ok(())
 }
 
 /// Writes a model. `origin` says in a few words what was imported, and goes into the citation.
-pub(super) fn proof_text(model: &ForeignModel, origin: &str) -> Result<ProofText, Problem> {
+pub(super) fn proof_text(model: &ForeignModel, origin: &str, budget: &Budget) -> Result<ProofText, Problem> {
+    let Uncased { model, has_sign } = &written_out(model, budget)?;
     let mut all = model.all_names();
     all.extend(model.outputs.iter().filter_map(|output| output.name.clone()));
     let mut names = ForeignNames::of(all.iter().map(String::as_str));
@@ -128,15 +138,13 @@ pub(super) fn proof_text(model: &ForeignModel, origin: &str) -> Result<ProofText
     let states: Vec<String> = model.states.iter().map(|state| names.ours(&state.name).to_owned()).collect();
     listed(&mut out, "state", &states);
     let list: Vec<&ForeignConstant> = model.constants.iter().collect();
-    constants(&mut out, &list, &names, true)?;
-    constants(&mut out, &list, &names, false)?;
+    constants(&mut out, &list, &names, true, budget)?;
+    constants(&mut out, &list, &names, false, budget)?;
     let signals =
         |list: &[String]| list.iter().map(|name| format!("{}(t)", names.ours(name))).collect::<Vec<_>>();
     listed(&mut out, "known", &signals(&model.known_inputs));
     listed(&mut out, "unknown", &signals(&model.unknown_inputs));
-    let cases = model.states.iter().map(|state| &state.rate);
-    let cases = cases.chain(model.definitions.iter().map(|(_, value)| value));
-    if cases.chain(model.outputs.iter().map(|output| &output.value)).any(needs_sign) {
+    if *has_sign {
         out.push_str(
             "# cases are written by sign(x): where x is zero, on a thin set, they have no value here\n",
         );
@@ -144,7 +152,7 @@ pub(super) fn proof_text(model: &ForeignModel, origin: &str) -> Result<ProofText
     out.push('\n');
     for (name, value) in &model.definitions {
         let name = names.ours(name);
-        let _ = writeln!(out, "let {name} = {}", broken(&text(value, &names)?, name.len() + 7));
+        let _ = writeln!(out, "let {name} = {}", broken(&text(value, &names, budget)?, name.len() + 7));
     }
     if !model.definitions.is_empty() {
         out.push('\n');
@@ -153,14 +161,14 @@ pub(super) fn proof_text(model: &ForeignModel, origin: &str) -> Result<ProofText
     let widest = states.iter().map(String::len).max().unwrap_or(0);
     for (state, name) in model.states.iter().zip(&states) {
         let mark = if model.is_discrete { '+' } else { '\'' };
-        let rate = broken(&text(&state.rate, &names)?, widest + 6);
+        let rate = broken(&text(&state.rate, &names, budget)?, widest + 6);
         let _ = writeln!(out, "  {:<width$} = {rate}", format!("{name}{mark}"), width = widest + 1);
     }
     out.push('\n');
-    outputs(&mut out, model, &names)?;
+    outputs(&mut out, model, &names, budget)?;
     for (name, value) in &model.beginnings {
         let what = match value {
-            Some(value) => format!("initial {} = {}", names.ours(name), text(value, &names)?),
+            Some(value) => format!("initial {} = {}", names.ours(name), text(value, &names, budget)?),
             None => format!("initial {} known", names.ours(name)),
         };
         let _ = writeln!(out, "# {what}");
@@ -169,19 +177,24 @@ pub(super) fn proof_text(model: &ForeignModel, origin: &str) -> Result<ProofText
 }
 
 /// Outputs: a name by itself, and whatever is more than that under the name that it has in the file.
-fn outputs(out: &mut String, model: &ForeignModel, names: &ForeignNames) -> Result<(), Problem> {
-    let (mut list, mut defined) = (Vec::new(), Vec::new());
-    let taken: Vec<String> = model.all_names();
+fn outputs(
+    out: &mut String,
+    model: &ForeignModel,
+    names: &ForeignNames,
+    budget: &Budget,
+) -> Result<(), Problem> {
+    let (mut list, mut defined) = (Vec::new(), BTreeSet::new());
+    let taken: BTreeSet<String> = model.all_names().into_iter().collect();
+
     for output in &model.outputs {
-        let value = text(&output.value, names)?;
+        let value = text(&output.value, names, budget)?;
         match &output.name {
             Some(name)
                 if !value.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !taken.contains(name) =>
             {
                 let ours = names.ours(name);
-                if !defined.contains(name) {
+                if defined.insert(name.clone()) {
                     let _ = writeln!(out, "let {ours} = {}", broken(&value, ours.len() + 7));
-                    defined.push(name.clone());
                 }
                 list.push(ours.to_owned());
             }

@@ -27,7 +27,7 @@ use bounds::known_signs;
 use std::collections::HashMap;
 
 /// What may be taken to hold, and where terms exist.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Given<'g> {
     /// Inequalities.
     pub assumed: &'g [Guard],
@@ -110,6 +110,19 @@ pub fn decide(
         boxes::Found::Fails => InequalityAnswer::Fails,
         boxes::Found::Open { share, sample, boxes } => InequalityAnswer::Open(Open { share, sample, boxes }),
     }
+}
+
+/// Whether signs and sums of squares alone tell that a goal holds.
+pub fn holds_by_signs(
+    graph: &mut Graph,
+    goal: Guard,
+    given: Given<'_>,
+    is_angle: &dyn Fn(Symbol) -> bool,
+) -> bool {
+    let all: Vec<Guard> = given.assumed.iter().chain(given.exists).copied().collect();
+    let bounds = bounds(graph, &all);
+    let premises = Premises { assumed: &all, equations: given.equations };
+    by_signs(graph, goal, premises, &bounds, is_angle)
 }
 
 /// Whether a sign is what is needed.

@@ -140,6 +140,14 @@ fn product(a: &Exponents, b: &Exponents) -> Option<Exponents> {
     Some(found)
 }
 
+fn quotient(a: &Exponents, b: &Exponents) -> Option<Exponents> {
+    let mut found = *a;
+    for (x, y) in found.iter_mut().zip(b) {
+        *x = x.checked_sub(*y)?;
+    }
+    Some(found)
+}
+
 fn total(exponents: &Exponents) -> u32 {
     exponents.iter().map(|e| u32::from(*e)).sum()
 }
@@ -228,17 +236,18 @@ fn monomials_up_to(
 fn prune(monomials: &mut Vec<Exponents>, polynomial: &Polynomial, normal: &dyn Fn(Polynomial) -> Polynomial) {
     let known: BTreeSet<Exponents> = polynomial.terms().map(|(e, _)| *e).collect();
     loop {
-        let cancels = |square: &Exponents, all: &[Exponents]| {
-            let pairs = all.iter().enumerate().flat_map(|(i, a)| all[i + 1..].iter().map(move |b| (a, b)));
-            known.contains(square) || pairs.into_iter().any(|(a, b)| product(a, b).as_ref() == Some(square))
+        let all: BTreeSet<Exponents> = monomials.iter().copied().collect();
+        // the square of a monomial is the product of two others
+        let cancels = |m: &Exponents, square: &Exponents| {
+            let other = |a: &Exponents| quotient(square, a).is_some_and(|b| all.contains(&b));
+            known.contains(square) || all.iter().any(|a| a != m && other(a))
         };
         let before = monomials.len();
-        let all = monomials.clone();
         monomials.retain(|m| {
             let Some(square) = product(m, m) else { return false };
             // with relations a square is several monomials, and may be cancelled elsewhere
             let term = Polynomial::term(square, IBig::ONE);
-            normal(term.clone()) != term || cancels(&square, &all)
+            normal(term.clone()) != term || cancels(m, &square)
         });
         if monomials.len() == before {
             return;

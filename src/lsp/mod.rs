@@ -9,12 +9,14 @@
 //! The channel and its messages are those of `lsp-server`. What stands in them is written down here: the last release of
 //! `lsp-types` is of June 2024, and a dozen messages need no crate of thousands of types.
 
+mod channel;
 mod hover;
 mod lookup;
 mod outline;
 mod source;
 
 use crate::system::{DeclarationKind, MOST_PROBLEMS, ReadError, System, format_text};
+pub use channel::{EditorStreams, standard_streams};
 use hover::described;
 use lookup::{Found, Library, Under, under};
 pub use lsp_server::Connection;

@@ -5,6 +5,7 @@
 //! a place in one is a place in the other.
 
 use crate::expression::syntax::Span;
+use crate::foreign::name_of;
 use crate::system::{Outline, boundary, with_plain_line_ends};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -59,7 +60,7 @@ impl Source {
 
     /// The name under which it is read, and told of.
     pub fn name(&self) -> String {
-        self.path.as_ref().map_or_else(|| self.uri.clone(), |path| path.display().to_string())
+        self.path.as_ref().map_or_else(|| self.uri.clone(), |path| name_of(path))
     }
 
     /// The position of a byte of the plain text.

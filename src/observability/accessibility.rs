@@ -11,9 +11,9 @@
 //! References: H. J. Sussmann and V. Jurdjevic, *Controllability of nonlinear systems*, J. Differential Equations 12 (1972);
 //! H. Nijmeijer and A. J. van der Schaft, *Nonlinear Dynamical Control Systems* (1990), propositions 3.22 and 3.47.
 
-use super::codistribution::{Stop, is_invariant};
 use super::generic::{GenericRank, formal_rank};
 use super::needed::{CodistributionError, needed};
+use super::saturation::{Stop, is_invariant};
 use crate::expression::{NodeId, Symbol, gradient};
 use crate::system::{Assignment, Role, System, UnknownKind};
 use rand::SeedableRng;

@@ -1,12 +1,12 @@
 //! The observability codistribution (equations 4.36 and 4.37): the differentials of the outputs and of their repeated
 //! Lie derivatives along words of fields, added shortest first.
 
-use super::composition;
-use super::conditions::{all_vanish, vanishes};
-use super::generic::{Ceiling, GenericAnswer, Seen, generic_answer, generic_answer_of};
+use super::conditions::all_vanish;
+use super::generic::{GenericAnswer, Seen, generic_answer, generic_answer_of};
 use super::needed::{CodistributionError, needed};
+use super::saturation::{Ceiling, Growth, Saturation, Stop, is_invariant};
 use super::series::lie_derivative_by_series;
-use crate::expression::{Node, NodeId, Symbol, gradient};
+use crate::expression::{Node, NodeId, gradient};
 use crate::number::Function;
 use crate::system::{Assignment, System, Time};
 
@@ -58,24 +58,6 @@ const LONGEST: usize = 12;
 /// On a set that the fields leave, words are taken while they are no more than this.
 const PATIENCE: usize = 300;
 
-/// Why no longer words were taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stop {
-    /// The rank has reached the dimension of the state space.
-    Full,
-    /// The rank has reached that at almost all states around, which no state of the locus can exceed. Where values are
-    /// known at the beginning: that of the differentials by these too.
-    Ceiling,
-    /// One further order did not raise the rank.
-    NoGrowth,
-    /// The longest word that was allowed.
-    Order,
-    /// There are more words of the next length than are worth taking.
-    TooMany,
-    /// No words were asked for.
-    NotTaken,
-}
-
 /// The rows from which the rank is decided.
 #[derive(Clone, Debug)]
 pub struct Codistribution {
@@ -101,8 +83,6 @@ pub struct Codistribution {
     pub guessed: bool,
 }
 
-/// Expressions of words that are taken by need have no more nodes than this.
-const MOST_NODES: usize = 2_000_000;
 /// What is known of a locus before any words are taken.
 #[derive(Clone, Debug)]
 pub struct Frame {
@@ -204,26 +184,16 @@ impl Codistribution {
         let fields = system.moving_fields();
         let dimension = system.unknown_count();
         let closed = system.closed_coordinates();
-        let ceiling = match frame.around {
-            Ceiling::Rests => closed.len(),
-            Ceiling::Around { closed, .. } => closed,
-        };
-        let invariant = frame.around == Ceiling::Rests;
-        let steps = composition::steps(system, conditions)?;
-        let (at_least, longest, most) = match (length, steps) {
-            (Length::UntilItStops, Some(steps)) if invariant => {
-                (steps.at_least, steps.most.max(LONGEST), MOST_WORDS)
-            }
-            (Length::UntilItStops, _) if invariant => (0, LONGEST, MOST_WORDS),
-            (Length::UntilItStops, _) => (closed.len(), closed.len(), PATIENCE),
-            (Length::Exactly(order), _) => (order, order, MOST_WORDS),
+        let saturation = Saturation::new(system, conditions, frame.around)?;
+        let rests = saturation.is_on_an_invariant_set();
+        let (longest, most) = match length {
+            Length::UntilItStops => (saturation.longest(LONGEST), if rests { MOST_WORDS } else { PATIENCE }),
+            Length::Exactly(order) => (order, MOST_WORDS),
         };
         // known signals that outputs tie have derivatives up to there
         let longest = system.longest_word().map_or(longest, |limit| longest.min(limit));
         let mut result = Codistribution::without_words(frame);
         result.stop = Stop::Order;
-        // a state that is known at the beginning has no column, and yet what it does not see may be seen through its rate: the
-        // words have ended where those of all that moves have
         let (mut with_all, mut closed_rank) = (Vec::new(), 0);
         let mut last: Vec<(Word, NodeId)> = (0..system.outputs.len())
             .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
@@ -252,26 +222,24 @@ impl Codistribution {
                 result.rows.push(row);
             }
             result.order = order;
-            let before = (result.needed.len(), closed_rank);
+            let below = closed_rank;
             (result.needed, result.guessed) = needed(system, &result.rows, conditions)?;
             closed_rank = match closed.len() > dimension {
                 true => needed(system, &with_all, conditions)?.0.len(),
                 false => result.needed.len(),
             };
-            if result.needed.len() == dimension && (length == Length::UntilItStops || order == longest) {
-                result.stop = Stop::Full;
-                break;
+            let growth = Growth { order, below, up_to: closed_rank };
+            let stop = saturation.stop(growth, result.needed.len());
+            match length {
+                Length::UntilItStops if stop.is_some() => result.stop = stop.unwrap_or(result.stop),
+                Length::Exactly(_) if order == longest && stop == Some(Stop::Full) => {
+                    result.stop = Stop::Full
+                }
+                // all further ones are constant
+                _ if last.is_empty() => result.stop = Stop::NoGrowth,
+                _ => continue,
             }
-            if closed_rank == ceiling && length == Length::UntilItStops {
-                result.stop = Stop::Ceiling;
-                break;
-            }
-            if last.is_empty()
-                || invariant && order > at_least && (result.needed.len(), closed_rank) == before
-            {
-                result.stop = Stop::NoGrowth;
-                break;
-            }
+            break;
         }
         let missing = result.generic.at_least > result.needed.len();
         let cut_off = system.longest_word().is_some();
@@ -284,64 +252,6 @@ impl Codistribution {
             result.take_by_need(system, conditions, &fields)?;
         }
         Ok(result)
-    }
-
-    /// Takes only words that raise the rank, and of longer ones only those that continue one of these: over the field of functions the
-    /// differentials of all others lie in the span of theirs, and so do those of what continues them.
-    fn take_by_need(
-        &mut self,
-        system: &mut System,
-        conditions: &Assignment,
-        fields: &[usize],
-    ) -> Result<(), CodistributionError> {
-        let begin = system.graph.len();
-        let mut taken =
-            Codistribution { words: Vec::new(), values: Vec::new(), rows: Vec::new(), ..self.clone() };
-        (taken.needed, taken.order, taken.stop) = (Vec::new(), 0, Stop::NoGrowth);
-        let outputs = (0..system.outputs.len()).map(|output| Word { fields: Vec::new(), output });
-        let mut candidates: Vec<Word> = outputs.collect();
-        while !candidates.is_empty() {
-            let before = taken.words.len();
-            for word in candidates.drain(..) {
-                if system.graph.len() - begin > MOST_NODES {
-                    // what was taken before names more
-                    self.stop = Stop::TooMany;
-                    if taken.words.len() > self.needed.len() {
-                        taken.stop = Stop::TooMany;
-                        *self = taken;
-                    }
-                    return Ok(());
-                }
-                let output = system.outputs[word.output].1;
-                let Ok(value) = lie_derivative_by_series(system, &word.fields, output) else {
-                    self.stop = Stop::TooMany; // what was taken before stays
-                    return Ok(());
-                };
-                taken.rows.push(system.differential(value));
-                taken.words.push(word);
-                taken.values.push(value);
-            }
-            let (needed, guessed) = needed(system, &taken.rows, conditions)?;
-            taken.rows = needed.iter().map(|place| taken.rows[*place].clone()).collect();
-            taken.words = needed.iter().map(|place| taken.words[*place].clone()).collect();
-            taken.values = needed.iter().map(|place| taken.values[*place]).collect();
-            taken.needed = (0..needed.len()).collect();
-            taken.guessed = guessed;
-            taken.order = taken.words.iter().map(|word| word.fields.len()).max().unwrap_or(0);
-            if taken.words.len() >= self.generic.at_most {
-                taken.stop =
-                    if taken.words.len() == system.unknown_count() { Stop::Full } else { Stop::NoGrowth };
-                break;
-            }
-            for word in &taken.words[before.min(taken.words.len())..] {
-                for field in fields {
-                    let fields = std::iter::once(*field).chain(word.fields.iter().copied()).collect();
-                    candidates.push(Word { fields, output: word.output });
-                }
-            }
-        }
-        *self = taken;
-        Ok(())
     }
 
     /// Whether the words that were taken show less than is there: those that are missing were too long, or too many, to be written.
@@ -401,24 +311,6 @@ fn rank_around(system: &mut System, conditions: &Assignment) -> Ceiling {
         .collect();
     let around = generic_answer(system, &kept, Ceiling::Rests);
     Ceiling::Around { closed: around.closed_at_most, unknown: around.at_most }
-}
-
-/// Whether the drift and every input are tangent to the set that the conditions describe: `L_X (x - value) = 0` on it.
-pub(super) fn is_invariant(system: &mut System, conditions: &Assignment) -> bool {
-    // of the last derivative of a signal that outputs tie, the rate is not that of the field
-    let counts = |(symbol, _): &(&Symbol, &NodeId)| !system.is_cut_off(**symbol);
-    let mut solved: Vec<_> =
-        conditions.iter().filter(counts).map(|(symbol, value)| (*symbol, *value)).collect();
-    solved.sort_unstable();
-    solved.into_iter().all(|(symbol, value)| {
-        let left = system.graph.symbol(symbol);
-        let difference = system.graph.sub(left, value);
-        system.moving_fields().into_iter().all(|field| {
-            let rate = system.lie_derivative(field, difference);
-            let on_the_set = system.graph.substitute(&[rate], conditions)[0];
-            vanishes(system, on_the_set)
-        })
-    })
 }
 
 /// All words with the drift or an input more in front, but those whose value is a constant.

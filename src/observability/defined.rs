@@ -49,6 +49,11 @@ impl Defined {
         }
     }
 
+    /// Whether there is no state at which something may not hold.
+    pub fn is_always_met(&self) -> bool {
+        self.needs.is_empty()
+    }
+
     /// Whether everything certainly holds at a state.
     pub fn holds(&self, state: &State) -> bool {
         self.first_failure(&|_| String::new(), state).is_none()

@@ -7,8 +7,8 @@
 //! This floor knows nothing of claims or palms.
 
 mod accessibility;
+mod by_need;
 mod codistribution;
-mod composition;
 mod conditions;
 mod defined;
 mod driven;
@@ -17,11 +17,13 @@ mod equilibrate;
 mod fibre;
 mod flow;
 mod generic;
+mod interior;
 mod locus;
 mod needed;
 mod nested;
 mod reduction;
 mod related_rank;
+mod saturation;
 mod series;
 mod signs;
 mod singular;
@@ -31,10 +33,10 @@ mod symmetry;
 pub use accessibility::{Accessibility, BracketMinor, RankBounds};
 #[doc(hidden)]
 pub use codistribution::OWN_ROWS;
-pub use codistribution::{Codistribution, Frame, Length, Stop, Word};
+pub use codistribution::{Codistribution, Frame, Length, Word};
 pub(crate) use conditions::vanishes;
 pub use conditions::{Branch, Unsolved, parse_condition, solve_conditions};
-pub(crate) use conditions::{also_met_otherwise, assumed, linear_solution, solve};
+pub(crate) use conditions::{Solution, UnsolvedBranch, also_met_otherwise, assumed, linear_solution, solve};
 #[doc(hidden)]
 pub use defined::Defined;
 pub(crate) use elimination::independent_rows;
@@ -46,15 +48,14 @@ pub(crate) use equilibrate::WEIGHT_OF_ERRORS;
 pub(crate) use equilibrate::equilibrate;
 pub use fibre::{
     SecondPoint, Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion, WORK as SOLUTIONS_WORK,
-    solutions,
+    solutions, solutions_telling,
 };
 #[doc(hidden)]
 pub use flow::Flow;
-pub use generic::{
-    Ceiling, GenericAnswer, GenericRank, Seen, generic_answer, generic_answer_of, generic_rank,
-};
 #[doc(hidden)]
 pub use generic::{Directions, Probe};
+pub use generic::{GenericAnswer, GenericRank, Seen, generic_answer, generic_answer_of, generic_rank};
+pub(crate) use interior::{Interior, interior};
 pub(crate) use locus::AVOIDED;
 pub(crate) use locus::{ATTEMPTS, Source};
 pub use locus::{Locus, LocusError};
@@ -64,6 +65,8 @@ pub use nested::{differential_by_duals, lie_derivative_by_duals};
 #[doc(hidden)]
 pub use reduction::Reduction;
 pub(crate) use related_rank::related_rank;
+pub(crate) use saturation::Growth;
+pub use saturation::{Ceiling, Stop};
 #[doc(hidden)]
 pub use series::lie_derivative_by_series;
 pub(crate) use signs::{Edges, SignCell, in_sign_cell, sign_cells};

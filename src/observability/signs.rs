@@ -117,7 +117,7 @@ pub fn in_sign_cell<T>(system: &mut System, cell: &SignCell, work: impl FnOnce(&
         for component in &mut field.components {
             component.1 = found.next().unwrap_or(component.1);
         }
-        field.derive_anew();
+        field.derive_anew(&system.graph);
     }
     if let Some(guards) = system.output_guards.first_mut() {
         cell.assumed.iter().for_each(|guard| add_guard(&system.graph, guards, *guard));

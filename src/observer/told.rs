@@ -142,7 +142,7 @@ fn hold_constants(system: &mut System, names: &[String], wanted: &EstimateQuesti
         for (component, node) in system.fields[place].components.iter_mut().zip(nodes) {
             component.1 = node;
         }
-        system.fields[place].derive_anew();
+        system.fields[place].derive_anew(&system.graph);
     }
     let nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
     let nodes = system.graph.substitute(&nodes, &values);
@@ -185,13 +185,13 @@ fn delayed(system: &mut System, late: &[(Symbol, Symbol)], wanted: &EstimateQues
         }
         driven.push(symbol);
         system.fields[place].components = vec![(symbol, system.graph.integer(1))];
-        system.fields[place].derive_anew();
+        system.fields[place].derive_anew(&system.graph);
         let info = SymbolInfo { kind: Kind::State, is_angle: false, default: None, range: None };
         system.symbols.insert(symbol, info);
         system.states.push(symbol);
         system.outputs.push((name.clone(), input));
     }
-    system.fields[drift].derive_anew();
+    system.fields[drift].derive_anew(&system.graph);
     for (column, delay) in late {
         let name = system.symbol_name(*column).to_owned();
         let output = system.outputs.iter().position(|(other, _)| *other == name)?;

@@ -2,6 +2,7 @@
 
 use super::numbering::Numbering;
 use crate::file;
+use crate::foreign::{name_of, shown_path};
 use crate::system::{Problem, ReadError, System, load, nearest};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -40,11 +41,12 @@ pub struct Paper {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
+    #[serde(deserialize_with = "crate::foreign::read_line")]
     title: String,
     #[serde(default)]
-    authors: Vec<String>,
+    authors: Vec<Line>,
     year: Option<i64>,
-    source: Option<String>,
+    source: Option<Line>,
     equations: Option<Equations>,
     #[serde(default)]
     order: Vec<Spanned<String>>,
@@ -53,6 +55,10 @@ struct Keys {
     trade: Option<Spanned<String>>,
     derivatives: Option<Spanned<String>>,
 }
+
+/// A text that is shown as a line.
+#[derive(Deserialize)]
+struct Line(#[serde(deserialize_with = "crate::foreign::read_line")] String);
 
 /// `equations = 20`, or a table from parts to their last equation; the parts in the order in which they stand in the file.
 struct Equations(Vec<(String, u32)>);
@@ -94,7 +100,7 @@ impl Paper {
     /// # Errors
     /// What is wrong, and where: there is no such folder, it holds no proof file, `paper.toml` names a file that is not there.
     pub fn read(path: &Path) -> Result<Paper, ReadError> {
-        let shown = path.display().to_string();
+        let shown = shown_path(path);
         let refuse =
             |message: String, help: &str| Problem::new(&(0..0), message, "").help(help).locate(&shown, "");
         if file::is_file(path) {
@@ -128,11 +134,11 @@ impl Paper {
     }
 
     fn described(manifest: &Path, folder: &Path, files: &[String]) -> Result<Paper, ReadError> {
-        let name = manifest.display().to_string();
+        let name = name_of(manifest);
         let text = load(manifest).map_err(|message| Problem::new(&(0..0), message, "").locate(&name, ""))?;
         let keys: Keys = toml::from_str(&text).map_err(|error| {
             let span = error.span().unwrap_or(0..0);
-            Problem::new(&span, error.message(), "here")
+            Problem::new(&span, error.message().replace('\n', ", "), "here")
                 .help("the keys are: title, authors, year, source, equations, order, scenes, trade, derivatives")
                 .locate(&name, &text)
         })?;
@@ -140,7 +146,7 @@ impl Paper {
             if file::is_file(&folder.join(named.get_ref())) {
                 return Ok(named.get_ref().clone());
             }
-            let message = format!("there is no file {}", folder.join(named.get_ref()).display());
+            let message = format!("there is no file {}", shown_path(&folder.join(named.get_ref())));
             let problem = Problem::new(&named.span(), message, "named here");
             Err(match nearest(named.get_ref(), files.iter().map(String::as_str)) {
                 Some(near) => problem.help(format!("perhaps you meant '{near}'")),
@@ -162,9 +168,9 @@ impl Paper {
         }
         Ok(Paper {
             title: keys.title,
-            authors: keys.authors,
+            authors: keys.authors.into_iter().map(|Line(author)| author).collect(),
             year: keys.year,
-            source: keys.source,
+            source: keys.source.map(|Line(source)| source),
             numbering,
             folder: folder.to_owned(),
             files: order,
@@ -174,18 +180,13 @@ impl Paper {
         })
     }
 
-    /// Authors, title and year in a line; the title as `titled` writes it.
-    pub fn reference(&self, titled: impl Fn(&str) -> String) -> String {
-        let mut text = match &self.authors[..] {
+    /// The authors as they stand before a title: each between commas, and a comma behind the last one.
+    pub fn authors_in_words(&self) -> String {
+        match &self.authors[..] {
             [] => String::new(),
             [one] => format!("{one}, "),
             [all @ .., last] => format!("{} and {last}, ", all.join(", ")),
-        };
-        text.push_str(&titled(&self.title));
-        if let Some(year) = self.year {
-            text.push_str(&format!(" ({year})"));
         }
-        text
     }
 
     /// Reads the proof files; each system is called as the paper calls its file.
@@ -194,7 +195,7 @@ impl Paper {
     /// The first file that cannot be used: what is wrong, and where.
     pub fn systems(&self) -> Result<Vec<System>, ReadError> {
         let read = |file: &String| {
-            let mut system = System::read(&self.folder.join(file))?;
+            let mut system = System::read_named(&self.folder.join(file))?;
             system.name.clone_from(file);
             Ok(system)
         };

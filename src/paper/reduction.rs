@@ -5,6 +5,7 @@
 use super::left_out::LeftOut;
 use crate::claim::{Outcome, decide_all};
 use crate::expression::syntax::Relation;
+use crate::foreign::name_of;
 use crate::observability::{Codistribution, Length, parse_condition};
 use crate::system::{Assignment, ReadError, ReductionTo, System};
 use crate::tradeoff::{ModelComparison, compare_reduction};
@@ -53,11 +54,10 @@ pub(super) fn reduce(
         let (line, column) = error.line_and_column();
         failed(format!("{}:{line}:{column}: {}", error.source_code.name(), error.message))
     };
-    let large = System::read(&reduction.path).map_err(read)?;
+    let large = System::read_named(&reduction.path).map_err(read)?;
     let (text, left_out) = claims(system, &large, reduction).map_err(failed)?;
     let path = folder.join(&system.name);
-    let mut longer =
-        System::parse(&path.display().to_string(), &text, path.parent().unwrap_or(folder)).map_err(read)?;
+    let mut longer = System::parse(&name_of(&path), &text, path.parent().unwrap_or(folder)).map_err(read)?;
     longer.claims.drain(..system.claims.len());
     longer.name.clone_from(&system.name);
     let outcomes = decide_all(&longer, seed, interrupt, &|_| ());

@@ -6,7 +6,7 @@ use super::left_out::LeftOut;
 use super::reduction::reduce;
 use super::views::{draw, has_a_rank, rank_on};
 use crate::certificate::certify_region;
-use crate::claim::decide_all;
+use crate::claim::{decide_all, isolated};
 use crate::drops::where_it_drops;
 use crate::experiment::slow::{SlowExperiment, SlowScene};
 use crate::experiment::{Experiment, Scene};
@@ -202,7 +202,7 @@ impl Run<'_> {
         if self.stopped() {
             return;
         }
-        let result = work();
+        let result = isolated(work).and_then(|found| found);
         self.step(what);
         // what was broken off is no finding
         match result {
@@ -228,7 +228,7 @@ impl Run<'_> {
             }
             let pictures = || {
                 let mut left_out = Vec::new();
-                Ok((draw(system, &mut left_out), left_out))
+                Ok((draw(system, seed, &mut left_out), left_out))
             };
             self.keep(place, "pictures", pictures, |file, ((maps, lines), left_out)| {
                 (file.maps, file.lines) = (maps, lines);
@@ -239,7 +239,9 @@ impl Run<'_> {
             if self.stopped() {
                 return;
             }
-            let result = reduce(system, reduction, &self.paper.folder, seed, interrupt);
+            let what = format!("the reduction of {}", reduction.alias.text);
+            let result = isolated(|| reduce(system, reduction, &self.paper.folder, seed, interrupt))
+                .unwrap_or_else(|why| Err(LeftOut { what, why }));
             self.step("a reduction");
             let file = &mut self.found().files[place];
             match result {

@@ -1,11 +1,11 @@
-//! The sets, maps and lines of one system: ranks decided, singular values drawn.
+//! The sets, maps and lines of one system: ranks decided, and how well states are observable drawn.
 
 use super::left_out::LeftOut;
 use crate::expression::NodeId;
-use crate::observability::{Codistribution, CodistributionError, Length, OWN_ROWS};
+use crate::observability::{CodistributionError, OWN_ROWS};
 use crate::sweep::{BranchAnswer, RankAnswer, RankError, RankQuestion, SweepReport, answer_rank};
-use crate::system::{Assignment, CoordinateRange, LineView, MapView, NamedSet, System, Value};
-use crate::tradeoff::{Landscape, LandscapeRows, Map, Slope};
+use crate::system::{CoordinateRange, LineView, MapView, NamedSet, System, Value};
+use crate::tradeoff::{Landscape, LandscapeRows, Map, PictureRows, Slope};
 use dashu::rational::RBig;
 use std::sync::atomic::AtomicBool;
 
@@ -71,7 +71,7 @@ impl SetRank {
     }
 }
 
-/// The smallest singular value over a plane: of the file's own rows where it has some, and of the full codistribution.
+/// How well a state is observable over a plane: by the file's own rows where it has some, and by the full codistribution.
 pub struct MapFound {
     /// What the file asks for.
     pub view: MapView,
@@ -79,11 +79,13 @@ pub struct MapFound {
     pub maps: Vec<(LandscapeRows, Map)>,
 }
 
-/// The singular values along a line, of the file's own rows where it has some.
+/// How well states are observable along a line, by the file's own rows where it has some.
 pub struct LineFound {
     /// What the file asks for.
     pub view: LineView,
-    /// The singular values along it.
+    /// Which rows.
+    pub rows: LandscapeRows,
+    /// The standard deviations along it.
     pub slope: Slope,
 }
 
@@ -105,54 +107,68 @@ pub(super) fn rank_on(system: &System, set: Option<&NamedSet>, seed: u64, interr
 }
 
 /// The maps and lines of a file, and what of them cannot be drawn.
-pub(super) fn draw(system: &System, left_out: &mut Vec<LeftOut>) -> (Vec<MapFound>, Vec<LineFound>) {
+pub(super) fn draw(
+    system: &System,
+    seed: u64,
+    left_out: &mut Vec<LeftOut>,
+) -> (Vec<MapFound>, Vec<LineFound>) {
     let own = own_rows(system);
     let mut maps = Vec::new();
     for view in &system.maps {
-        match map(system, own.as_deref(), view) {
+        match map(system, own.as_deref(), view, seed) {
             Ok(found) => maps.push(MapFound { view: view.clone(), maps: found }),
             Err(why) => left_out.push(LeftOut { what: format!("the map \"{}\"", view.title), why }),
         }
     }
     let mut lines = Vec::new();
     for view in &system.lines {
-        match line(system, own.as_deref(), view) {
-            Ok(slope) => lines.push(LineFound { view: view.clone(), slope }),
+        match line(system, own.as_deref(), view, seed) {
+            Ok((rows, slope)) => lines.push(LineFound { view: view.clone(), rows, slope }),
             Err(why) => left_out.push(LeftOut { what: format!("the line \"{}\"", view.title), why }),
         }
     }
     (maps, lines)
 }
 
-fn map(system: &System, own: Option<&[NodeId]>, view: &MapView) -> Result<Vec<(LandscapeRows, Map)>, String> {
+fn map(
+    system: &System,
+    own: Option<&[NodeId]>,
+    view: &MapView,
+    seed: u64,
+) -> Result<Vec<(LandscapeRows, Map)>, String> {
     let mut system = system.clone();
-    let length = view.order.map_or(Length::UntilItStops, Length::Exactly);
-    let full = Codistribution::new(&mut system, &Assignment::new(), length)?.entries();
+    let full = PictureRows::full(&mut system, view.order)?;
     let axis = |axis: &CoordinateRange<RBig>| CoordinateRange {
         name: axis.name.clone(),
         low: axis.low.to_f64().value(),
         high: axis.high.to_f64().value(),
     };
-    let [x, y] = [axis(&view.axes[0]), axis(&view.axes[1])];
+    let own = own.map(|rows| (LandscapeRows::Own, PictureRows::own(rows, system.unknown_count())));
     let mut maps = Vec::new();
-    for (kind, rows) in
-        own.map(|rows| (LandscapeRows::Own, rows)).into_iter().chain([(LandscapeRows::Full, &full[..])])
-    {
+    for (kind, rows) in own.into_iter().chain([(LandscapeRows::Full, full)]) {
         let mut copy = system.clone();
-        let landscape = Landscape::new(&mut copy, rows, &view.at)?;
-        maps.push((kind, landscape.map(x.clone(), y.clone(), MAP.0, MAP.1)?));
+        let landscape = Landscape::new(&mut copy, rows, &view.at, seed)?;
+        let axes = [axis(&view.axes[0]), axis(&view.axes[1])];
+        maps.push((kind, landscape.map(axes, MAP, view.of.as_deref())?));
     }
     Ok(maps)
 }
 
-fn line(system: &System, own: Option<&[NodeId]>, view: &LineView) -> Result<Slope, String> {
+fn line(
+    system: &System,
+    own: Option<&[NodeId]>,
+    view: &LineView,
+    seed: u64,
+) -> Result<(LandscapeRows, Slope), String> {
     let mut system = system.clone();
-    let rows = match own {
-        Some(rows) => rows.to_vec(),
-        None => Codistribution::new(&mut system, &Assignment::new(), Length::UntilItStops)?.entries(),
+    let (kind, rows) = match own {
+        Some(rows) => (LandscapeRows::Own, PictureRows::own(rows, system.unknown_count())),
+        None => (LandscapeRows::Full, PictureRows::full(&mut system, None)?),
     };
-    let mut landscape = Landscape::new(&mut system, &rows, &view.from)?;
-    landscape.line(&view.moving, view.end, LEAST_DISTANCE, POINTS_ON_A_LINE)
+    let mut landscape = Landscape::new(&mut system, rows, &view.from, seed)?;
+    let slope =
+        landscape.line(&view.moving, view.end, (LEAST_DISTANCE, POINTS_ON_A_LINE), view.of.as_deref())?;
+    Ok((kind, slope))
 }
 
 /// The file's own choice of rows.

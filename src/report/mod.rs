@@ -66,7 +66,7 @@ pub use page::{forget_seconds, forget_times};
 pub use poses::{conjecture_json, conjecture_text, poses_json, poses_page, poses_text};
 pub use ranks::{
     StateTableWriter, TableForm, accessibility_json, accessibility_text, drops_json, drops_text, global_json,
-    global_text, rank_json, rank_text, unseen_field_text,
+    global_text, rank_json, rank_so_far_json, rank_so_far_text, rank_text, unseen_field_text,
 };
 #[doc(hidden)]
 pub use slow::{slow_json, slow_page, slow_text};

@@ -7,7 +7,7 @@ use plotters::prelude::{
     ChartBuilder, Circle, Color, IntoFont, IntoLogRange, LineSeries, RGBColor, Rectangle, Text, WHITE,
 };
 
-/// Colours of singular values, from small (dark) to large (light).
+/// Colours of standard deviations, from large (dark, observable poorly) to small (light, observable well).
 const SCALE: [(u8, u8, u8); 8] = [
     (13, 8, 60),
     (59, 15, 112),
@@ -20,6 +20,12 @@ const SCALE: [(u8, u8, u8); 8] = [
 ];
 /// Where a pole is: nearly white, on light and on dark pages.
 const POLE: RGBColor = RGBColor(250, 250, 250);
+/// Where a standard deviation is infinite: no colour of the scale, and no pole.
+const INFINITE: RGBColor = RGBColor(0, 150, 136);
+/// What is said of it: doubles cannot tell more.
+const INFINITE_TEXT: &str = "infinite: not observable, or not to be told from it";
+/// So many decades above the smallest value have colours of their own.
+const DECADES: f64 = 6.0;
 /// What is counted or measured.
 const BAR: RGBColor = RGBColor(0, 114, 178);
 const RED: RGBColor = RGBColor(200, 40, 60);
@@ -40,39 +46,60 @@ fn shade(level: usize) -> RGBColor {
     RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
-/// What is said in the place of a picture without values.
-const NOTHING: &str =
-    "there is no singular value above zero to draw: poles, or nothing that remains without unit rows";
-
 /// Values whose logarithms differ by less are one value, and the rest rounding errors.
 const NO_DIFFERENCE: f64 = 1e-6;
 
-/// The smallest singular value over two coordinates; dark where it is small, white at poles. Under the pointer stand the
-/// values between which a cell's lies. `units` are those of the two coordinates.
-pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
-    let found: Vec<f64> =
-        map.smallest.iter().flatten().copied().filter(|v| *v > 0.0).map(f64::log10).collect();
-    let highest = found.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let lowest = found.iter().copied().fold(f64::INFINITY, f64::min).max(highest - 6.0);
-    if found.is_empty() {
-        return format!("<p>{}: {NOTHING}</p>", escaped(title));
+/// What is said in the place of a picture without finite values.
+fn nothing(infinite: usize, points: usize) -> String {
+    match infinite {
+        0 => "nothing to draw: there are poles everywhere".to_owned(),
+        count if count == points => {
+            "not observable at any point: the standard deviation is infinite, as far as doubles tell"
+                .to_owned()
+        }
+        count => format!(
+            "not observable at {count} of {points} points (as far as doubles tell), and poles at the others"
+        ),
     }
-    let is_singular = map.smallest.iter().flatten().any(|value| *value <= 0.0);
-    let everywhere = highest - lowest < NO_DIFFERENCE && !is_singular;
+}
+
+/// The standard deviation of an unknown over its prior one, over two coordinates: light where it is small and the unknown is observable
+/// well, dark where it is large, green where it is infinite, white at poles. Under the pointer stand the values between which a cell's
+/// lies. `units` are those of the two coordinates.
+pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
+    let all = || map.deviations.iter().flatten().copied();
+    let found: Vec<f64> = all().filter(|v| v.is_finite() && *v > 0.0).map(f64::log10).collect();
+    let infinite = all().filter(|value| value.is_infinite()).count();
+    if found.is_empty() {
+        return format!("<p>{}: {}</p>", escaped(title), nothing(infinite, map.deviations.len()));
+    }
+    let lowest = found.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = found.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let highest = largest.min(lowest + DECADES);
+    let everywhere = highest - lowest < NO_DIFFERENCE && infinite == 0;
     let span = (highest - lowest).max(NO_DIFFERENCE);
     let at = |step: usize| lowest + span * step as f64 / SHADES as f64;
     let values = |step: usize| match step {
-        _ if everywhere => format!("smallest singular value {:.3e}", 10f64.powf(highest)),
-        0 => format!("smallest singular value below {}", power(at(1), span / 10.0)),
+        _ if everywhere => format!("standard deviation {:.3e} of the prior one", 10f64.powf(highest)),
+        step if step + 1 == SHADES => {
+            format!("standard deviation above {} of the prior one", power(at(step), span / 10.0))
+        }
         _ => format!(
-            "smallest singular value {} to {}",
+            "standard deviation {} to {} of the prior one",
             power(at(step), span / 10.0),
             power(at(step + 1), span / 10.0)
         ),
     };
+    let shade = |step: usize| shade(SHADES - 1 - step);
     let mut by_colour: Vec<(RGBColor, String)> =
         (0..SHADES).map(|step| (shade(step), values(step))).collect();
     by_colour.push((POLE, "a pole".to_owned()));
+    by_colour.push((INFINITE, INFINITE_TEXT.to_owned()));
+    let beside: Vec<(RGBColor, &str)> =
+        [(INFINITE, "infinite", infinite > 0), (POLE, "pole", map.deviations.contains(&None))]
+            .into_iter()
+            .filter_map(|(colour, name, is_there)| is_there.then_some((colour, name)))
+            .collect();
     let canvas = Canvas { size: (420, 330), title, by_colour: &by_colour, is_crisp: true };
     canvas.draw(|area, extras| {
         let scale_room = room((lowest, lowest + span), |v| power(v, span));
@@ -88,6 +115,7 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
         let colour = |cell: &Option<f64>| match cell {
             None => POLE,
             Some(_) if everywhere => shade(SHADES / 2),
+            Some(value) if value.is_infinite() => INFINITE,
             Some(value) => shade(level(value.max(f64::MIN_POSITIVE), lowest, lowest + span)),
         };
         let (low, high) =
@@ -109,16 +137,24 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
             .y_desc(axis(&map.y.name, units[1]))
             .axis_desc_style(("sans-serif", 13))
             .draw()?;
+        let words = ("sans-serif", 12).into_font().color(&INK);
+        // what is no number has its field below the scale
+        for (row, (colour, name)) in beside.iter().enumerate() {
+            let top = 330 - 18 * (beside.len() - row) as i32;
+            legend.draw(&Rectangle::new([(4, top), (16, top + 10)], colour.filled()))?;
+            legend.draw(&Text::new((*name).to_owned(), (20, top), words.clone()))?;
+        }
         if everywhere {
-            let words = ("sans-serif", 12).into_font().color(&INK);
             for (row, line) in ["everywhere", &format!("{:.3e}", 10f64.powf(highest))].iter().enumerate() {
                 legend.draw(&Text::new((*line).to_owned(), (4, 60 + 18 * row as i32), words.clone()))?;
             }
             return Ok(());
         }
+        legend.draw(&Text::new("poorly", (4, 14), words.clone()))?;
+        legend.draw(&Text::new("well", (4, 270), words))?;
         let mut scale = ChartBuilder::on(&legend)
             .margin_top(34)
-            .margin_bottom(46)
+            .margin_bottom(64)
             .margin_right(8)
             .y_label_area_size(scale_room - 18)
             .build_cartesian_2d(0.0..1.0, lowest..lowest + span)?;
@@ -143,29 +179,38 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
 /// So many cells along each side are drawn as one.
 const BLOCK: usize = 2;
 
-/// The cells that are drawn, by rows from the top: of those of a block a pole, else the smallest value, so that nothing that is
-/// singular is lost.
+/// The cells that are drawn, by rows from the top: of those of a block a pole, else the largest value, so that nothing that is
+/// not observable is lost.
 fn blocks(map: &Map) -> Vec<Option<f64>> {
-    let rows: Vec<&[Option<f64>]> = map.smallest.chunks(map.width).collect();
+    let rows: Vec<&[Option<f64>]> = map.deviations.chunks(map.width).collect();
     let of_band = |band: &[&[Option<f64>]]| -> Vec<Option<f64>> {
         let columns = (0..map.width).step_by(BLOCK);
         let block = |left: usize| {
             let cells = band.iter().flat_map(|row| &row[left..(left + BLOCK).min(row.len())]);
-            cells.copied().try_fold(f64::INFINITY, |least, cell| Some(least.min(cell?)))
+            cells.copied().try_fold(0.0, |most: f64, cell| Some(most.max(cell?)))
         };
         columns.map(block).collect()
     };
     rows.chunks(BLOCK).rev().flat_map(of_band).collect()
 }
 
-/// The singular values on the way into a singularity, both axes logarithmic. Under the pointer stand all of them at a distance.
+/// The standard deviations over their prior ones on the way into a singularity, both axes logarithmic: the worst in red, a bar above
+/// the scale where one is infinite. Under the pointer stand all of them at a distance.
 pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
-    let values: Vec<f64> = slope.values.iter().flatten().copied().filter(|v| *v > 1e-20).collect();
+    let all = || slope.values.iter().flatten().flatten().copied();
+    let values: Vec<f64> = all().filter(|v| v.is_finite() && *v > 0.0).collect();
+    let infinite =
+        slope.values.iter().flatten().filter(|point| point.iter().any(|v| v.is_infinite())).count();
     if values.is_empty() {
-        return format!("<p>{}: {NOTHING}</p>", escaped(title));
+        return format!("<p>{}: {}</p>", escaped(title), nothing(infinite, slope.distance.len()));
     }
-    let highest = values.iter().copied().fold(1e-20, f64::max) * 2.0;
-    let lowest = values.iter().copied().fold(highest, f64::min).max(1e-18) / 2.0;
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(0.0, f64::max);
+    let (lowest, top) = (least / 2.0, most * 2.0);
+    // what is infinite lies above a line of its own, a tenth of the height
+    let room_above = if infinite > 0 { (top / lowest).powf(0.12).max(1.3) } else { 1.0 };
+    let highest = top * room_above;
+    let above = (top * highest).sqrt();
     let (near, far) =
         (slope.distance.last().copied().unwrap_or(1e-14), slope.distance.first().copied().unwrap_or(1.0));
     Canvas { size: (420, 300), title, by_colour: &[], is_crisp: false }.draw(|area, extras| {
@@ -175,6 +220,7 @@ pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
             .x_label_area_size(36)
             .y_label_area_size(62)
             .build_cartesian_2d((near..far).log_scale(), (lowest..highest).log_scale())?;
+        let label = |v: &f64| if *v > top && infinite > 0 { String::new() } else { format!("{v:.0e}") };
         chart
             .configure_mesh()
             .light_line_style(WHITE)
@@ -183,21 +229,43 @@ pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
             .y_labels(7)
             .label_style(("sans-serif", 12).into_font().color(&INK))
             .x_label_formatter(&|v| format!("{v:.0e}"))
-            .y_label_formatter(&|v| format!("{v:.0e}"))
+            .y_label_formatter(&label)
             .x_desc(axis("distance", unit))
-            .y_desc("singular values")
+            .y_desc("deviation / prior deviation")
             .axis_desc_style(("sans-serif", 12))
             .draw()?;
-        let count = slope.values.iter().map(Vec::len).max().unwrap_or(0);
-        for index in 0..count {
-            let points = slope
-                .distance
-                .iter()
-                .zip(&slope.values)
-                .filter_map(|(d, v)| v.get(index).filter(|v| **v >= lowest).map(|v| (*d, *v)));
-            let last = index + 1 == count;
-            let colour = if last { RED } else { LINES[index % LINES.len()] };
-            chart.draw_series(LineSeries::new(points, colour.stroke_width(if last { 2 } else { 1 })))?;
+        let worst = |point: &Vec<f64>| point.iter().copied().fold(0.0, f64::max);
+        let series = |of: &dyn Fn(&Vec<f64>) -> f64| -> Vec<(f64, f64)> {
+            let points = slope.distance.iter().zip(&slope.values);
+            points.filter_map(|(d, point)| Some((*d, of(point.as_ref()?)))).collect()
+        };
+        for index in 0..slope.names.len() {
+            let colour = LINES[index % LINES.len()];
+            for run in series(&|point| point[index]).split(|(_, value)| value.is_infinite()) {
+                chart.draw_series(LineSeries::new(run.iter().copied(), colour.stroke_width(1)))?;
+            }
+        }
+        let worst = series(&worst);
+        for run in worst.split(|(_, value)| value.is_infinite()) {
+            chart.draw_series(LineSeries::new(run.iter().copied(), RED.stroke_width(2)))?;
+        }
+        for run in worst.split(|(_, value)| value.is_finite()) {
+            let there: Vec<(f64, f64)> = run.iter().map(|(distance, _)| (*distance, above)).collect();
+            match there.as_slice() {
+                [alone] => {
+                    chart.draw_series([Circle::new(*alone, 2, INFINITE.filled())])?;
+                }
+                [first, .., last] => {
+                    chart.draw_series(LineSeries::new([*first, *last], INFINITE.stroke_width(4)))?;
+                }
+                [] => {}
+            }
+        }
+        if infinite > 0 {
+            chart.draw_series(LineSeries::new([(near, top), (far, top)], MESH.stroke_width(1)))?;
+            let place = chart.backend_coord(&(near, above));
+            let words = ("sans-serif", 12).into_font().color(&INK);
+            area.draw(&Text::new("infinite", (place.0 - 48, place.1 - 6), words))?;
         }
         let place = |distance: f64, value: f64| chart.backend_coord(&(distance, value));
         let (top, bottom) = (place(far, highest).1, place(far, lowest).1);
@@ -206,19 +274,33 @@ pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
     })
 }
 
-/// Colours of the singular values above the smallest, that are seen on light and dark pages.
+/// Colours of all unknowns under the worst, that are seen on light and dark pages.
 const LINES: [RGBColor; 4] =
     [RGBColor(112, 90, 200), RGBColor(0, 135, 190), RGBColor(0, 150, 110), RGBColor(150, 130, 60)];
 
 /// The stripes of a line, which are as wide as a finger.
-const STRIPES: usize = 16;
+const STRIPES: usize = 8;
 
 /// A stripe around every few distances, and what stands there; neighbours are one where all distances between them have the same
 /// values, those that have no stripe too.
 fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -> Vec<Hover> {
-    let said = |values: &Vec<f64>| match values.is_empty() {
-        true => "a pole".to_owned(),
-        false => values.iter().map(|value| format!("{value:.1e}")).collect::<Vec<_>>().join(", "),
+    let said = |values: &Option<Vec<f64>>| match values {
+        None => "a pole".to_owned(),
+        Some(values) => {
+            let number =
+                |value: &f64| if value.is_finite() { format!("{value:.1e}") } else { "infinite".to_owned() };
+            // those of one value together: most are at 1, or infinite
+            let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
+            for (name, value) in slope.names.iter().zip(values) {
+                let value = number(value);
+                match groups.iter_mut().find(|(known, _)| *known == value) {
+                    Some((_, names)) => names.push(name),
+                    None => groups.push((value, vec![name])),
+                }
+            }
+            let texts = groups.iter().map(|(value, names)| format!("{} {value}", names.join(", ")));
+            texts.collect::<Vec<_>>().join("; ")
+        }
     };
     let all: Vec<(f64, String)> = slope
         .distance
@@ -325,22 +407,25 @@ pub(crate) fn growth(growth: &[Growth], title: &str) -> String {
 mod tests {
     use super::*;
     use crate::system::CoordinateRange;
+    use crate::tradeoff::PictureScales;
 
     /// Neighbours are one stripe where nothing between them differs: a dip that no stripe shows keeps them apart.
     #[test]
     fn a_stripe_says_what_holds_all_over_it() {
         let stripes = |dip: Option<usize>| {
-            let value = |i: usize| if Some(i) == dip { vec![1e-3] } else { vec![1.0] };
+            let value = |i: usize| Some(if Some(i) == dip { vec![1e-3] } else { vec![1.0] });
             let slope = Slope {
                 distance: (0..64).map(|i| 10f64.powi(-i)).collect(),
+                names: vec!["x".to_owned()],
                 values: (0..64).map(value).collect(),
+                scales: no_scales(),
             };
             let place = |distance: f64| (10.0 * -distance.log10()).round() as i32;
             columns(&slope, place, [0, 9]).into_iter().map(|hover| hover.text).collect::<Vec<_>>()
         };
-        assert_eq!(stripes(None), ["1e0 to 1e-60: 1.0e0"]);
-        assert_eq!(stripes(Some(17)), ["1e0 to 1e-16: 1.0e0", "1e-20 to 1e-60: 1.0e0"]);
-        let nothing = Slope { distance: vec![], values: vec![] };
+        assert_eq!(stripes(None), ["1e0 to 1e-56: x 1.0e0"]);
+        assert_eq!(stripes(Some(17)), ["1e0 to 1e-16: x 1.0e0", "1e-24 to 1e-56: x 1.0e0"]);
+        let nothing = Slope { distance: vec![], names: vec![], values: vec![], scales: no_scales() };
         assert!(columns(&nothing, |_| 0, [0, 9]).is_empty());
     }
 
@@ -348,9 +433,9 @@ mod tests {
     #[test]
     fn a_constant_map_says_its_value() {
         let axis = |name: &str| CoordinateRange { name: name.to_owned(), low: -10_000.0, high: 10_000.0 };
-        let of = |smallest: Vec<f64>| {
-            let smallest = smallest.into_iter().map(Some).collect();
-            super::map(&Map { x: axis("x"), y: axis("y"), width: 2, height: 2, smallest }, "a map", [None; 2])
+        let of = |deviations: Vec<f64>| {
+            let deviations = deviations.into_iter().map(Some).collect();
+            super::map(&of_cells([axis("x"), axis("y")], 2, deviations), "a map", [None; 2])
         };
         let flat = of(vec![0.5, 0.5 + 1e-14, 0.5, 0.5 - 1e-14]);
         assert!(flat.contains(">everywhere<") && flat.contains(">5.000e-1<"), "{flat}");
@@ -362,13 +447,59 @@ mod tests {
         assert!(scale.len() > 2 && distinct.len() == scale.len(), "{labels:?}");
     }
 
+    fn no_scales() -> PictureScales {
+        PictureScales { priors: vec![], noise: vec![] }
+    }
+
+    fn of_cells([x, y]: [CoordinateRange<f64>; 2], width: usize, deviations: Vec<Option<f64>>) -> Map {
+        let height = deviations.len() / width;
+        Map { x, y, width, height, deviations, shown: vec![], scales: no_scales() }
+    }
+
+    /// What is infinite is neither the largest number nor a pole, and light is well observable.
+    #[test]
+    fn what_is_infinite_has_a_colour_of_its_own() {
+        let axis = |name: &str| CoordinateRange { name: name.to_owned(), low: 0.0, high: 1.0 };
+        let row = [
+            Some(1.0),
+            Some(1.0),
+            Some(1e6),
+            Some(1e6),
+            Some(f64::INFINITY),
+            Some(f64::INFINITY),
+            None,
+            None,
+        ];
+        let all: Vec<Option<f64>> = row.into_iter().chain(row).collect();
+        let found = super::map(&of_cells([axis("x"), axis("y")], 8, all), "a map", [None; 2]);
+        let cell = |title: &str, x: usize| {
+            let path = found.split("<path stroke=").find(|path| path.contains(&format!("<title>{title}")));
+            assert!(path.is_some_and(|path| path.contains(&format!("d=\"m{x} 0h1"))), "{title}: {found}");
+        };
+        cell("standard deviation 1", 0);
+        cell("standard deviation above", 1);
+        cell(INFINITE_TEXT, 2);
+        cell("a pole", 3);
+        for word in [">well<", ">poorly<", ">infinite<", ">pole<"] {
+            assert!(found.contains(word), "{word}: {found}");
+        }
+        let RGBColor(r, g, b) = shade(SHADES - 1);
+        assert!(found.contains(&format!("stroke=\"#{r:02x}{g:02x}{b:02x}\" d=\"m0 0h1")), "{found}");
+        let only = super::map(
+            &of_cells([axis("x"), axis("y")], 2, vec![Some(f64::INFINITY); 4]),
+            "a map",
+            [None; 2],
+        );
+        assert!(only.contains("not observable at any point"), "{only}");
+    }
+
     /// By hand: three by three cells, of which the lowest row is the last that is drawn.
     #[test]
-    fn what_is_singular_is_drawn() {
-        let smallest = vec![
+    fn what_is_not_observable_is_drawn() {
+        let deviations = vec![
             Some(1.0),
             Some(2.0),
-            Some(3.0),
+            Some(f64::INFINITY),
             Some(4.0),
             None,
             Some(6.0),
@@ -377,7 +508,7 @@ mod tests {
             Some(9.0),
         ];
         let axis = |name: &str| CoordinateRange { name: name.to_owned(), low: 0.0, high: 1.0 };
-        let map = Map { x: axis("x"), y: axis("y"), width: 3, height: 3, smallest };
-        assert_eq!(blocks(&map), [Some(7.0), Some(9.0), None, Some(3.0)]);
+        let map = of_cells([axis("x"), axis("y")], 3, deviations);
+        assert_eq!(blocks(&map), [Some(8.0), Some(9.0), None, Some(f64::INFINITY)]);
     }
 }

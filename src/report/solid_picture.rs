@@ -1,13 +1,13 @@
 //! Surfaces in space on a page: a picture that stands still by itself, and turns under a pointer that drags it with a few lines of script.
 
-use super::document::document;
+use super::document::{TURNING, document};
 use crate::shape::sphere::SurfaceMesh;
 use maud::{Markup, PreEscaped, html};
 use nalgebra::Vector3;
 use std::fmt::Write;
 
 /// What turns pictures; one on a page is enough.
-pub(super) const SCRIPT: &str = include_str!("solid_picture.js");
+pub(super) const SCRIPT: &str = TURNING;
 
 /// From where a picture is seen at first, in rad: the azimuth, and the height above the horizon.
 const TURN: f64 = 0.9;
@@ -58,7 +58,7 @@ pub(super) fn turnable_picture(title: &str, surfaces: &[ShownSurface]) -> Markup
     html! {
         figure {
             svg class="solid" viewBox="-1.05 -1.05 2.1 2.1" width="560" height="560" role="img" aria-label=(title)
-                style="touch-action:none;cursor:grab" data-turn=(TURN) data-rise=(RISE) data-solid=(data) {
+                data-turn=(TURN) data-rise=(RISE) data-solid=(data) {
                 @for (part, shown) in parts.iter().zip(surfaces) {
                     @let [hidden, seen] = part.projected(TURN, RISE);
                     path d=(hidden) fill="none" stroke=(shown.colour) stroke-width="0.002" stroke-opacity="0.2" {}
@@ -68,7 +68,11 @@ pub(super) fn turnable_picture(title: &str, surfaces: &[ShownSurface]) -> Markup
             figcaption {
                 @for (place, shown) in surfaces.iter().enumerate() {
                     @if place > 0 { ", " }
-                    span style={ "color:" (shown.colour) } { (shown.name) }
+                    // a colour as an attribute: the page allows no style but its own
+                    svg width="10" height="10" role="img" aria-label={ "the colour of " (shown.name) } {
+                        rect width="10" height="10" fill=(shown.colour) {}
+                    }
+                    " " (shown.name)
                 }
                 ". Drag to turn it."
             }

@@ -18,12 +18,14 @@ mod digits;
 mod fingerprint;
 mod given_states;
 mod ladder;
+mod left;
 mod part;
 mod part_text;
 mod preparation;
 mod prepared;
 mod prepared_branch;
 mod question;
+mod scales;
 mod sealed;
 mod series;
 mod solutions;
@@ -38,7 +40,7 @@ pub use certainty::Certainty;
 pub(crate) use cover::{NoCover, in_order};
 #[doc(hidden)]
 pub use deviation::NEARLY_INVISIBLE;
-pub use deviation::{StandardDeviation, StandardDeviations};
+pub use deviation::{LeastObservable, StandardDeviation, StandardDeviations};
 #[doc(hidden)]
 pub use digits::MOST_DIGITS;
 pub use digits::{Digits, NoDigits};
@@ -49,10 +51,11 @@ pub use ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateRepo
 pub use part::{MergeError, RankPart, shard_of};
 pub use preparation::{RankPreparation, answer_rank, answer_rank_at_once};
 pub use prepared::sweep;
-pub use question::{BranchAnswer, RankAnswer, RankError, TakenRow};
+pub use question::{BranchAnswer, GenericOnBranch, RankAnswer, RankError, TakenRow};
+pub(crate) use scales::{DrawnStates, MeasuredRows, Scales};
 pub use sealed::PartError;
 pub(crate) use sealed::{Bits, CONTRADICTS, seal, unseal};
-pub use solutions::{GlobalAnswer, answer_solutions};
+pub use solutions::{GlobalAnswer, answer_solutions, answer_solutions_telling};
 pub(crate) use states::UNINTERRUPTED;
 pub use states::{RecordedState, SweepOptions, SweepReport};
 pub(crate) use stream::{Elimination, Jacobi};

@@ -5,9 +5,10 @@ use super::asked::RankQuestion;
 use super::cells::by_signs;
 use super::fingerprint::{Fingerprint, of_question};
 use super::given_states::GivenStates;
+use super::left::left_by_inequalities;
 use super::part::{BranchCounts, MergeError, RankPart};
 use super::prepared_branch::{Extent, PreparedBranch};
-use super::question::{RankAnswer, RankError};
+use super::question::{GenericOnBranch, RankAnswer, RankError};
 use super::states::Stretch;
 use super::table::{StateTable, TableOf};
 use crate::expression::{NodeId, Symbol};
@@ -54,7 +55,7 @@ impl<'q> RankPreparation<'q> {
     /// # Errors
     /// No states or outputs, no drift or input, conditions that cannot be solved, a pole everywhere, an empty sample box.
     pub fn new(system: &mut System, question: &'q RankQuestion<'q>) -> Result<Self, RankError> {
-        RankPreparation::prepare(system, question, false)
+        RankPreparation::telling(system, question, false, &mut |_| ())
     }
 
     /// The same, but states are drawn only where the words that show what is seen are short enough to be written down in a moment.
@@ -62,7 +63,7 @@ impl<'q> RankPreparation<'q> {
     /// # Errors
     /// As for [`RankPreparation::new`].
     pub fn at_once(system: &mut System, question: &'q RankQuestion<'q>) -> Result<Self, RankError> {
-        RankPreparation::prepare(system, question, true)
+        RankPreparation::telling(system, question, true, &mut |_| ())
     }
 
     /// What a question is, as a number, without anything being prepared: two that differ in what is found at any state have
@@ -71,10 +72,15 @@ impl<'q> RankPreparation<'q> {
         of_question(system, question, at_once)
     }
 
-    fn prepare(
+    /// The one or the other, and tells of each branch what holds at almost all of its states as soon as that is known.
+    ///
+    /// # Errors
+    /// As for [`RankPreparation::new`].
+    pub fn telling(
         system: &mut System,
         question: &'q RankQuestion<'q>,
         only_if_short: bool,
+        known: &mut dyn FnMut(GenericOnBranch),
     ) -> Result<Self, RankError> {
         let asked = of_question(system, question, only_if_short);
         if system.unknown_count() == 0 || system.outputs.is_empty() {
@@ -90,6 +96,7 @@ impl<'q> RankPreparation<'q> {
         for branch in solve_conditions(system, &equations)? {
             branches.push(branch.tied_by_outputs(system)?);
         }
+        let mut branches = left_by_inequalities(system, question, branches)?;
         for branch in &mut branches {
             for symbol in question.fixed.keys() {
                 if branch.values.contains_key(symbol) {
@@ -111,7 +118,8 @@ impl<'q> RankPreparation<'q> {
             left_out.extend(part.without_states);
             let work = |system: &mut System| {
                 let own = own.as_deref().map(|rows| (rows, own_guards.as_slice()));
-                PreparedBranch::new(system, question, &part.branch, Extent { samples, only_if_short }, own)
+                let extent = Extent { samples, only_if_short };
+                PreparedBranch::new(system, question, &part.branch, (extent, own), known)
             };
             let mut branch = in_sign_cell(system, &part.cell, work)?;
             branch.cell = part.cell;

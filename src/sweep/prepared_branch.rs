@@ -8,7 +8,9 @@ use super::deviation::standard_deviations;
 use super::given_states::GivenStates;
 use super::part::BranchCounts;
 use super::prepared::PreparedSweep;
-use super::question::{BranchAnswer, RankError, TakenRow, guarded, held_parameters, named_unknowns};
+use super::question::{
+    BranchAnswer, GenericOnBranch, RankError, TakenRow, guarded, held_parameters, named_unknowns,
+};
 use super::series::PreparedSeries;
 use super::states::{Stretch, SweepOptions, SweepReport, Told};
 use super::stream::Stream;
@@ -18,6 +20,7 @@ use crate::observability::{
     Branch, Codistribution, Frame, Length, Locus, Probe, SignCell, UnseenMotions, unseen_motions,
 };
 use crate::system::{Assignment, System, Time};
+use std::sync::atomic::Ordering;
 
 /// What the full codistribution is decided by.
 pub(super) enum ByStates {
@@ -69,6 +72,9 @@ pub(super) struct PreparedBranch {
     pub rows: Option<PreparedSweep>,
 }
 
+/// The file's own rows, and what they need to exist.
+pub(super) type OwnRows<'a> = (&'a [NodeId], &'a [Guard]);
+
 /// How many states are drawn, and when none are.
 #[derive(Clone, Copy)]
 pub(super) struct Extent {
@@ -77,13 +83,13 @@ pub(super) struct Extent {
 }
 
 impl PreparedBranch {
-    /// Prepares a branch; `own` are the file's own rows, and what they need to exist.
+    /// Prepares a branch. What series say of it is handed on as soon as it is known.
     pub fn new(
         system: &mut System,
         question: &RankQuestion<'_>,
         branch: &Branch,
-        extent: Extent,
-        own: Option<(&[NodeId], &[Guard])>,
+        (extent, own): (Extent, Option<OwnRows<'_>>),
+        known: &mut dyn FnMut(GenericOnBranch),
     ) -> Result<Self, RankError> {
         branch.check_codistribution(system).map_err(RankError::Condition)?;
         let conditions = held_conditions(system, question, branch);
@@ -92,6 +98,7 @@ impl PreparedBranch {
         let given: Vec<Symbol> = conditions.keys().copied().filter(given).collect();
         let length = question.order.map_or(Length::UntilItStops, Length::Exactly);
         let frame = Frame::new(system, &conditions)?;
+        known(GenericOnBranch::new(system, branch, &frame));
         let wanted = extent.samples > 0 && (!extent.only_if_short || frame.words_are_short(system));
         let samples = if wanted { extent.samples } else { 0 };
         let codistribution = match wanted {
@@ -194,7 +201,7 @@ impl PreparedBranch {
         let full = full.report(system, counts.full, told)?;
         let deviations = match full.interrupted || by_series || !wanted {
             true => None,
-            false => standard_deviations(system, &locus, &codistribution, &full, question.seed, samples)?,
+            false => standard_deviations(system, &locus, &codistribution, &full, (question.seed, samples))?,
         };
         let rows = match rows.zip(counts.rows) {
             Some((rows, counts)) => Some(rows.report(system, counts, told)?),
@@ -202,9 +209,18 @@ impl PreparedBranch {
         };
         codistribution.generic.seen_at_states(system, &full);
         let known = codistribution.generic.is_final() && question.order.is_none();
-        let motions = motions(system, &codistribution, &conditions, &given);
+        // fields are found in one go: who does not wait is told what there is without them
+        let motions = match interrupt.load(Ordering::Relaxed) {
+            true => None,
+            false => motions(system, &codistribution, &conditions, &given),
+        };
         let generic_rank =
             codistribution.generic.rank().filter(|_| known).unwrap_or(codistribution.generic_rank());
+        // words that were not taken show nothing, and series do
+        let generic_rank = match wanted {
+            true => generic_rank,
+            false => generic_rank.max(codistribution.generic.at_least),
+        };
         // fields settle what the rank of all words is, and these words may be fewer
         let settled = motions.as_ref().is_some_and(|found| {
             found.settles_the_rank && generic_rank + found.directions() == system.unknown_count()

@@ -5,7 +5,9 @@ use super::deviation::StandardDeviations;
 use super::part::MergeError;
 use super::states::SweepReport;
 use crate::expression::{NodeId, Symbol};
-use crate::observability::{CodistributionError, GenericAnswer, LocusError, Stop, UnseenMotions, Unsolved};
+use crate::observability::{
+    Branch, CodistributionError, Frame, GenericAnswer, LocusError, Stop, UnseenMotions, Unsolved,
+};
 use crate::system::{Assignment, FieldRole, Range, SymbolInfo, System, Time, UnknownKind};
 use dashu::rational::RBig;
 use std::collections::HashSet;
@@ -56,6 +58,32 @@ pub struct BranchAnswer {
     pub taken: Vec<TakenRow>,
     /// The file's own rows.
     pub own: Vec<TakenRow>,
+}
+
+/// What is known of a branch of the conditions before states are looked at, or Lie derivatives written down.
+#[derive(Clone, Debug)]
+pub struct GenericOnBranch {
+    /// The conditions, solved, in words.
+    pub conditions: Vec<String>,
+    /// What is seen at almost all of its states, and of each unknown whether it is.
+    pub generic: GenericAnswer,
+    /// The unknowns: their names and what they are.
+    pub unknowns: Vec<(String, UnknownKind)>,
+}
+
+impl GenericOnBranch {
+    pub(super) fn new(system: &System, branch: &Branch, frame: &Frame) -> GenericOnBranch {
+        let mut solved: Vec<_> = branch.values.iter().collect();
+        solved.sort_unstable();
+        let condition = |(symbol, value): (&Symbol, &NodeId)| {
+            format!("{} = {}", system.symbol_name(*symbol), system.graph.text(*value))
+        };
+        GenericOnBranch {
+            conditions: solved.into_iter().map(condition).collect(),
+            generic: frame.generic.clone(),
+            unknowns: named_unknowns(system),
+        }
+    }
 }
 
 /// What was found.

@@ -4,7 +4,8 @@ use super::asked::held_conditions;
 use super::question::{RankError, held_parameters, named_unknowns};
 use super::{Certainty, RankQuestion};
 use crate::observability::{
-    Branch, CodistributionError, Solutions, SolutionsAnswer, SolutionsQuestion, solutions, solve_conditions,
+    Branch, CodistributionError, Solutions, SolutionsAnswer, SolutionsQuestion, solutions_telling,
+    solve_conditions,
 };
 use crate::system::System;
 use dashu::rational::RBig;
@@ -65,6 +66,19 @@ pub fn answer_solutions(
     work: u64,
     interrupt: &AtomicBool,
 ) -> Result<GlobalAnswer, RankError> {
+    answer_solutions_telling(system, work, interrupt, &mut |_| ())
+}
+
+/// The same, and tells what is known before the end as soon as it is: as an answer that was interrupted.
+///
+/// # Errors
+/// As for [`answer_solutions`].
+pub fn answer_solutions_telling(
+    system: &mut System,
+    work: u64,
+    interrupt: &AtomicBool,
+    known: &mut dyn FnMut(GlobalAnswer),
+) -> Result<GlobalAnswer, RankError> {
     let begin = Instant::now();
     if system.unknown_count() == 0 || system.outputs.is_empty() {
         return Err(RankError::NothingToSee(system.name.clone()));
@@ -82,21 +96,29 @@ pub fn answer_solutions(
     let held = held_parameters(system, &asked, &branch.values, std::iter::empty());
     let conditions = held_conditions(system, &asked, branch);
     let question = SolutionsQuestion { conditions, expressions: Vec::new(), work, interrupt };
-    let mut solutions = solutions(system, &question)?;
-    // a state that nothing moves is a constant
-    for (of_it, (_, kind)) in solutions.unknowns.iter_mut().zip(named_unknowns(system)) {
-        of_it.kind = Some(kind);
-    }
-    Ok(GlobalAnswer {
+    let kinds = named_unknowns(system);
+    let blank = GlobalAnswer {
         file: system.name.clone(),
         title: system.title.clone(),
         conditions: given(system, branch),
         held,
         known: system.known_names(),
-        solutions,
-        interrupted: interrupt.load(Ordering::Relaxed),
-        seconds: begin.elapsed().as_secs_f64(),
-    })
+        solutions: SolutionsAnswer::default(),
+        interrupted: true,
+        seconds: 0.0,
+    };
+    let finished = |mut solutions: SolutionsAnswer| {
+        // a state that nothing moves is a constant
+        for (of_it, (_, kind)) in solutions.unknowns.iter_mut().zip(&kinds) {
+            of_it.kind = Some(*kind);
+        }
+        GlobalAnswer { solutions, seconds: begin.elapsed().as_secs_f64(), ..blank.clone() }
+    };
+    let found = solutions_telling(system, &question, &mut |so_far| known(finished(so_far)))?;
+    let answer = finished(found);
+    // what is final has lost nothing
+    let interrupted = interrupt.load(Ordering::Relaxed) && !answer.is_final();
+    Ok(GlobalAnswer { interrupted, ..answer })
 }
 
 fn given(system: &System, branch: &Branch) -> Vec<String> {

@@ -13,7 +13,8 @@ pub struct StateRow {
     pub rank: Option<usize>,
     /// Whether it is proved for this very state.
     pub certified: bool,
-    /// The smallest singular value of the matrix that remains without unit rows, equilibrated; nothing where there is none.
+    /// The smallest singular value of the matrix that remains without unit rows, equilibrated; nothing where there is none. It says how
+    /// hard the rank is to decide, and nothing of how well a state is observable.
     pub smallest_singular_value: Option<f64>,
     /// The largest over the smallest; infinite where the smallest is zero. Equilibration ends where another round gains little, so that it is
     /// good to some percent.

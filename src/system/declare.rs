@@ -114,6 +114,10 @@ impl System {
                 self.coordinates.kinds.insert(one, kind);
             }
         }
+        if self.coordinates.further_experiments == 0 {
+            self.states.push(symbol);
+            return Ok(symbol);
+        }
         // one experiment after the other
         let own = self.coordinates.own.clone();
         self.states = own.clone();

@@ -115,7 +115,7 @@ impl System {
         span: &Span,
         expressions: impl IntoIterator<Item = &'a Expr>,
     ) -> Written {
-        let states = self.column_names();
+        let states = || self.column_names();
         let is_definition = |name: &str| self.definitions.contains_key(name);
         let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
         let mut places = Vec::new();

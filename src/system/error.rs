@@ -1,26 +1,43 @@
 //! What can be wrong with a file, shown at its place.
 
+use super::excerpt::{Excerpt, message};
 use super::problems::Cause;
-use miette::{Diagnostic, NamedSource, SourceSpan};
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+use std::fmt::Display;
 use std::sync::Arc;
 
 /// A file that could not be used: what, where, and what to do.
-#[derive(Clone, Debug, Diagnostic, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct ReadError {
     /// What is wrong.
     pub message: String,
     /// The text, with its name.
-    #[source_code]
     pub source_code: Arc<NamedSource<String>>,
     /// The place.
-    #[label("{label}")]
     pub span: SourceSpan,
     /// What stands at the place.
     pub label: String,
     /// What to do about it.
-    #[help]
     pub help: Option<String>,
+    /// What is shown of the text.
+    excerpt: Box<Excerpt>,
+}
+
+/// What is rendered is the excerpt, and never the text itself.
+impl Diagnostic for ReadError {
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as Box<dyn Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(self.excerpt.as_ref())
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = LabeledSpan::new_with_span(Some(self.label.clone()), self.excerpt.marked());
+        Some(Box::new(std::iter::once(label)))
+    }
 }
 
 impl ReadError {
@@ -89,11 +106,12 @@ impl Problem {
             label = "the text ends after this".to_owned();
         }
         ReadError {
-            message: self.message,
+            message: message(&self.message),
+            excerpt: Box::new(Excerpt::new(source.name(), text, begin..end)),
             source_code: source.clone(),
             span: SourceSpan::new(begin.into(), end - begin),
-            label,
-            help: self.help,
+            label: message(&label),
+            help: self.help.as_deref().map(message),
         }
     }
 }

@@ -4,9 +4,10 @@ use super::error::{Problem, ReadError};
 use super::imports::Reading;
 use super::model::{System, Value};
 use super::problems::{Cause, Problems};
-use super::source_text::{load, with_plain_line_ends};
+use super::source_text::{is_a_proof_file, load, no_proof_file, with_plain_line_ends};
 use crate::expression::{Graph, Guard, parse_expression};
 use crate::file;
+use crate::foreign::name_of;
 use miette::NamedSource;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -30,6 +31,23 @@ impl System {
         System::examine(path, 1).into_result()
     }
 
+    /// Reads a proof file that another file names. That other file may come from a stranger, and name anything that can be read
+    /// here: where it is no proof file, nothing of it is quoted.
+    ///
+    /// # Errors
+    /// What is wrong with the file, and where.
+    pub fn read_named(path: &Path) -> Result<System, ReadError> {
+        System::read(path).map_err(|error| match is_a_proof_file(path, error.source_code.inner()) {
+            true => error,
+            false => {
+                let name = name_of(path);
+                Problem::new(&(0..0), no_proof_file(path), "")
+                    .help("a proof file begins with an entry")
+                    .locate(&name, "")
+            }
+        })
+    }
+
     /// Reads a system from a text; imports are looked for in `folder`.
     ///
     /// # Errors
@@ -40,7 +58,7 @@ impl System {
 
     /// Reads a proof file and says all that is wrong with it, up to so many problems.
     pub fn examine(path: &Path, most: usize) -> Examination {
-        let name = path.display().to_string();
+        let name = name_of(path);
         match load(path) {
             Ok(text) => {
                 let folder = path.parent().unwrap_or(Path::new(""));

@@ -14,19 +14,20 @@ use crate::expression::parse::{
     read_all, repeat, sign, stop, sum, target, written_out,
 };
 use crate::expression::syntax::{Equation, Expr, ExprKind, Name, Span};
+use crate::foreign::shown;
 use winnow::combinator::{alt, cut_err, opt, peek, preceded, separated};
 use winnow::error::{ErrMode, ParserError};
 use winnow::prelude::*;
 use winnow::stream::{Location, Stream};
 use winnow::token::{literal, take_till, take_while};
 
-/// A text in double quotation marks.
+/// A text in double quotation marks, as it may be shown: in one line, with nothing in it that is not seen.
 pub(super) fn quoted(input: &mut Text<'_>) -> Read<String> {
     literal("\"").void().context("a text in double quotation marks").parse_next(input)?;
     let text = take_till(0.., |c| c == '"').parse_next(input)?;
     cut_err(literal("\"")).context("a closing quotation mark").parse_next(input)?;
     blank(input)?;
-    Ok(text.split_whitespace().collect::<Vec<_>>().join(" "))
+    Ok(shown(&text.split_whitespace().collect::<Vec<_>>().join(" ")).into_owned())
 }
 
 fn names(input: &mut Text<'_>) -> Read<Vec<Name>> {

@@ -5,9 +5,10 @@ use super::domain::Domain;
 use super::error::Problem;
 use super::model::{Field, FieldPlace, Kind, Matrix, SymbolInfo, System, Value};
 use super::problems::Problems;
-use super::source_text::{load, with_plain_line_ends};
+use super::source_text::{is_a_proof_file, load, no_proof_file, with_plain_line_ends};
 use crate::expression::syntax::{Name, Span};
 use crate::file;
+use crate::foreign::{name_of as whole_name, shown_path};
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -45,7 +46,7 @@ impl System {
         let refuse = |message: String| Problem::new(span, message, "this file");
         reading.files.insert(path.to_owned());
         let place =
-            file::identity(path).map_err(|e| refuse(format!("cannot read {}: {e}", path.display())))?;
+            file::identity(path).map_err(|e| refuse(format!("cannot read {}: {e}", shown_path(path))))?;
         if let Some(begin) = reading.open.iter().position(|open| *open == place) {
             let round = reading.open[begin..].iter().chain([&place]);
             let names: Vec<String> = round.map(|file| name_of(file)).collect();
@@ -87,7 +88,8 @@ impl System {
         for (symbol, info) in &other.symbols {
             if self.definitions.contains_key(self.graph.symbol_name(*symbol)) {
                 let hidden = self.graph.symbol_name(*symbol);
-                let message = format!("'{hidden}' is a definition above, and a symbol of {}", path.display());
+                let message =
+                    format!("'{hidden}' is a definition above, and a symbol of {}", shown_path(path));
                 return Err(Problem::new(span, message, "imported here")
                     .help("choose another name for the definition"));
             }
@@ -144,7 +146,7 @@ impl System {
 
     /// Reads a file that was not imported yet. The graph comes back here.
     fn import_anew(&mut self, path: &Path, span: &Span, reading: &mut Reading) -> Result<System, Problem> {
-        let name = path.display().to_string();
+        let name = whole_name(path);
         let text = load(path).map_err(|message| Problem::new(span, message, "this file"))?;
         let text = with_plain_line_ends(&text);
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -157,6 +159,9 @@ impl System {
             self.graph = *graph;
             let first = problems.into_found().into_iter().next();
             let problem = first.unwrap_or_else(|| Problem::new(&(0..0), "the file cannot be read", ""));
+            if !is_a_proof_file(path, &text) {
+                return Problem::new(span, no_proof_file(path), "imported here");
+            }
             let inner = problem.locate(&name, &text);
             let (line, column) = inner.line_and_column();
             let problem =

@@ -18,6 +18,7 @@ mod elaborate;
 mod enter_field;
 mod error;
 mod examine;
+mod excerpt;
 mod extent;
 mod format;
 mod functions;

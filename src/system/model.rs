@@ -98,9 +98,9 @@ pub struct Field {
 }
 
 impl Field {
-    /// Forgets what was differentiated along it, since its components are others.
-    pub(crate) fn derive_anew(&mut self) {
-        self.derivation = Derivation::new(self.components.iter().copied().collect());
+    /// Forgets what was differentiated along it, or composed with it, since its components are others.
+    pub(crate) fn derive_anew(&mut self, graph: &Graph) {
+        self.derivation = self.derivation.with_values(graph, self.components.iter().copied().collect());
     }
 }
 
@@ -432,7 +432,7 @@ impl System {
     /// What the names in the statements of a claim stand for: definitions and fields, and those that they mention in turn,
     /// in the order in which they are met; imported ones under the names that they have here.
     pub fn explanations(&self, body: &ClaimBody) -> Explanations {
-        let states = self.column_names();
+        let states = || self.column_names();
         let is_definition = |name: &str| self.definitions.contains_key(name);
         let scope = Scope { source: &self.source, is_definition: &is_definition, states: &states };
         let mut places = Vec::new();

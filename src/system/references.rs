@@ -4,10 +4,11 @@ use super::error::{Problem, nearest};
 use super::grammar::parse_file;
 use super::model::System;
 use super::problems::{Cause, Full, Problems};
-use super::source_text::{load, with_plain_line_ends};
+use super::source_text::{is_a_proof_file, load, no_proof_file, with_plain_line_ends};
 use super::standing::{Basis, Reference};
 use super::syntax::{ClaimBody, ClaimSyntax, Item};
-use std::collections::{BTreeSet, HashMap, HashSet};
+use crate::foreign::shown_path;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 /// An entry, as far as references go.
@@ -45,11 +46,12 @@ impl System {
         files: &mut BTreeSet<PathBuf>,
     ) -> Result<(), Full> {
         let mut known = Known::from([(PathBuf::new(), entries(&self.claims))]);
+        let mut ways = Ways::default();
         let looked_for = |reference: &Reference| reference.file.as_ref().map(|file| folder.join(file));
         for claim in &self.claims {
             for reference in references(claim) {
                 files.extend(looked_for(reference));
-                if let Err(problem) = self.check_reference(claim, reference, folder, &mut known) {
+                if let Err(problem) = self.check_reference(claim, reference, folder, &mut known, &mut ways) {
                     problems.add(problem)?;
                 }
             }
@@ -64,11 +66,11 @@ impl System {
         reference: &Reference,
         folder: &Path,
         known: &mut Known,
+        ways: &mut Ways,
     ) -> Result<(), Problem> {
         let file = look_into(reference, Path::new(""), folder, known)?;
         self.exists(claim, reference, &known[&file])?;
-        let mut met = HashSet::from([(PathBuf::new(), claim.id.clone())]);
-        if leads_back(reference, Path::new(""), folder, known, &mut met)? {
+        if ways.lead_back(&claim.id, reference, folder, known) {
             let message = format!("'{}' is said to come from itself", claim.id);
             return Err(Problem::new(&reference.span, message, "leads back to it"));
         }
@@ -128,8 +130,12 @@ fn look_into(
     let refuse = |message: String| Problem::new(&reference.span, message, "referred to here");
     if !known.contains_key(&path) {
         let text = load(&path).map_err(refuse)?;
-        let items = parse_file(&with_plain_line_ends(&text))
-            .map_err(|error| refuse(format!("{}: {error}", path.display())))?;
+        let items = parse_file(&with_plain_line_ends(&text)).map_err(|error| {
+            match is_a_proof_file(&path, &text) {
+                true => refuse(format!("{}: {error}", shown_path(&path))),
+                false => refuse(no_proof_file(&path)),
+            }
+        })?;
         let claims: Vec<ClaimSyntax> = items
             .into_iter()
             .filter_map(|item| match item {
@@ -142,30 +148,72 @@ fn look_into(
     Ok(path)
 }
 
-/// Whether what a reference names refers, through whatever other entries, to one that was met on the way to it.
-fn leads_back(
-    reference: &Reference,
-    within: &Path,
-    folder: &Path,
-    known: &mut Known,
-    met: &mut HashSet<(PathBuf, String)>,
-) -> Result<bool, Problem> {
-    let file = look_into(reference, within, folder, known)?;
-    let Some(entry) = known.get(&file).and_then(|entries| entries.get(&reference.name)) else {
-        return Ok(false);
-    };
-    let next = entry.refers_to.clone();
-    let place = (file.clone(), reference.name.clone());
-    if !met.insert(place.clone()) {
-        return Ok(true);
-    }
-    for reference in &next {
-        // what is wrong in another file is said there
-        let back = leads_back(reference, &file, folder, known, met);
-        if back.unwrap_or(false) {
-            return Ok(true);
+/// What is known of an entry that something refers to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// It is on the way that is being followed.
+    Open,
+    /// Nothing that it refers to, through whatever others, leads back to where it came from.
+    Ends,
+    /// Something does.
+    Circular,
+}
+
+/// An entry: its file and its name.
+type Place = (PathBuf, String);
+
+/// An entry on the way, and which of its references comes next.
+struct Step {
+    place: Place,
+    next: std::vec::IntoIter<Reference>,
+}
+
+/// Follows references, each once, however many entries lead to it.
+#[derive(Default)]
+struct Ways(HashMap<Place, Way>);
+
+impl Ways {
+    /// Whether a reference of an entry leads, through whatever other entries, to one that was met on the way.
+    fn lead_back(&mut self, from: &str, reference: &Reference, folder: &Path, known: &mut Known) -> bool {
+        let first = (PathBuf::new(), from.to_owned());
+        let before = self.0.insert(first.clone(), Way::Open);
+        let mut steps = vec![Step { place: first.clone(), next: vec![reference.clone()].into_iter() }];
+        let found = self.follow(&mut steps, folder, known);
+        for step in steps {
+            self.0.insert(step.place, Way::Circular);
         }
+        match before {
+            // the other references of this entry are not known by this one
+            None if !found => self.0.remove(&first),
+            Some(before) if !found => self.0.insert(first, before),
+            _ => None,
+        };
+        found
     }
-    met.remove(&place);
-    Ok(false)
+
+    fn follow(&mut self, steps: &mut Vec<Step>, folder: &Path, known: &mut Known) -> bool {
+        while let Some(step) = steps.last_mut() {
+            let Some(reference) = step.next.next() else {
+                self.0.insert(step.place.clone(), Way::Ends);
+                steps.pop();
+                continue;
+            };
+            // what is wrong in another file is said there
+            let Ok(file) = look_into(&reference, &step.place.0, folder, known) else { continue };
+            let Some(entry) = known.get(&file).and_then(|entries| entries.get(&reference.name)) else {
+                continue;
+            };
+            let next = entry.refers_to.clone().into_iter();
+            let place = (file, reference.name);
+            match self.0.get(&place) {
+                Some(Way::Open | Way::Circular) => return true,
+                Some(Way::Ends) => {}
+                None => {
+                    self.0.insert(place.clone(), Way::Open);
+                    steps.push(Step { place, next });
+                }
+            }
+        }
+        false
+    }
 }

@@ -223,11 +223,13 @@ impl Derivatives {
     fn view(&mut self, view: &View) {
         view.equations().into_iter().for_each(|equation| self.equation(equation));
         match view {
-            View::Map { axes, at, .. } => {
+            View::Map { axes, at, of, .. } => {
+                of.iter().for_each(|name| self.name(&name.text));
                 axes.iter().for_each(|axis| self.name(&axis.name.text));
                 at.iter().for_each(|(name, _)| self.name(&name.text));
             }
-            View::Line { moving, from, .. } => {
+            View::Line { moving, from, of, .. } => {
+                of.iter().for_each(|name| self.name(&name.text));
                 self.name(&moving.text);
                 from.iter().flatten().for_each(|(name, _)| self.name(&name.text));
             }

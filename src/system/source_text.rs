@@ -2,8 +2,10 @@
 //! look other than it is.
 
 use super::error::Problem;
+use super::grammar::ENTRIES;
 use crate::expression::parse::ends_a_line;
 use crate::file::{ReadFailure, read_text};
+use crate::foreign::shown_path;
 use std::path::Path;
 
 /// Files longer than this are refused.
@@ -36,12 +38,25 @@ pub(super) fn refuse_reordering(text: &str) -> Result<(), Problem> {
     }
 }
 
+/// Whether a text is what its author calls a proof file, right or wrong: by the end of its name, and by its first word. Anything
+/// else is not quoted where another file has named it.
+pub(super) fn is_a_proof_file(path: &Path, text: &str) -> bool {
+    let code = text.lines().map(str::trim_start).find(|line| !line.is_empty() && !line.starts_with('#'));
+    let word = code.and_then(|line| line.split(|c: char| !c.is_ascii_alphabetic()).next());
+    path.extension().is_some_and(|end| end == "proof") && word.is_none_or(|word| ENTRIES.contains(&word))
+}
+
+/// That a file is no proof file, and nothing of what it is.
+pub(super) fn no_proof_file(path: &Path) -> String {
+    format!("{} is no proof file that can be read", shown_path(path))
+}
+
 /// The text of a file, or what is wrong with it in words. A byte-order mark is no part of it.
 pub(crate) fn load(path: &Path) -> Result<String, String> {
     read_text(path, LONGEST_FILE).map_err(|why| match why {
         why @ (ReadFailure::TooLong(_) | ReadFailure::NotText { .. }) => {
-            why.to_string().replacen("it", &path.display().to_string(), 1)
+            why.to_string().replacen("it", &shown_path(path), 1)
         }
-        why => format!("cannot read {}: {why}", path.display()),
+        why => format!("cannot read {}: {why}", shown_path(path)),
     })
 }

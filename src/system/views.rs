@@ -47,8 +47,8 @@ pub struct CoordinateRange<N> {
     pub high: N,
 }
 
-/// A plane of two coordinates over which singular values are looked at:
-/// `map "valleys": x in [0, 1], y in [0, 2] at {z = 1} order 2 "caption"`.
+/// A plane of two coordinates over which it is looked at how well a state is observable:
+/// `map "valleys": x in [0, 1], y in [0, 2] at {z = 1} order 2 of x "caption"`.
 #[derive(Clone, Debug)]
 pub struct MapView {
     /// Its title.
@@ -59,6 +59,8 @@ pub struct MapView {
     pub at: Point,
     /// The length of the words of the full codistribution; until the rank stops growing where none is given.
     pub order: Option<usize>,
+    /// The state that is looked at; the worst at each point where none is named.
+    pub of: Option<String>,
     /// What is seen on it, in words.
     pub caption: Option<String>,
     /// Where its title stands.
@@ -85,6 +87,8 @@ pub struct LineView {
     pub end: LineEnd,
     /// The values of other symbols: its own, or those of the map before it.
     pub from: Point,
+    /// The state that is looked at; all of them where none is named.
+    pub of: Option<String>,
     /// Where its title stands.
     pub span: Span,
 }
@@ -116,6 +120,7 @@ pub(crate) enum View {
         axes: Vec<Axis>,
         at: Vec<(Name, Expr)>,
         order: Option<Expr>,
+        of: Option<Name>,
         caption: Option<String>,
         span: Span,
     },
@@ -124,6 +129,7 @@ pub(crate) enum View {
         moving: Name,
         end: End,
         from: Option<Vec<(Name, Expr)>>,
+        of: Option<Name>,
         span: Span,
     },
     Reduction {
@@ -215,8 +221,15 @@ fn map(input: &mut Text<'_>) -> Read<View> {
     }
     let at = opt(preceded(keyword("at"), assignments)).parse_next(input)?.unwrap_or_default().0;
     let order = opt(preceded(keyword("order"), cut_err(sum))).parse_next(input)?;
+    let of = shown(input)?;
     let caption = opt(quoted).parse_next(input)?;
-    Ok(View::Map { title, axes, at, order, caption, span })
+    Ok(View::Map { title, axes, at, order, of, caption, span })
+}
+
+/// The state that a picture shows: `of x`.
+fn shown(input: &mut Text<'_>) -> Read<Option<Name>> {
+    let state = cut_err(coordinate).context("a state, as in of x");
+    opt(preceded(keyword("of"), state)).parse_next(input)
 }
 
 fn line(input: &mut Text<'_>) -> Read<View> {
@@ -242,7 +255,8 @@ fn line(input: &mut Text<'_>) -> Read<View> {
         }
     };
     let from = opt(preceded(keyword("from"), assignments)).parse_next(input)?.map(|(list, _)| list);
-    Ok(View::Line { title, moving, end, from, span })
+    let of = shown(input)?;
+    Ok(View::Line { title, moving, end, from, of, span })
 }
 
 fn reduction(input: &mut Text<'_>) -> Read<View> {
@@ -278,7 +292,7 @@ impl System {
                     span: span.clone(),
                 });
             }
-            View::Map { title, axes, at, order, caption, span } => {
+            View::Map { title, axes, at, order, of, caption, span } => {
                 let mut checked = Vec::new();
                 for Axis { name, low, high } in axes {
                     self.coordinate(name)?;
@@ -300,10 +314,11 @@ impl System {
                 }
                 let at = self.point(at)?;
                 let order = order.as_ref().map(|order| self.word_length(order)).transpose()?;
+                let of = self.shown(of.as_ref())?;
                 let (title, caption, span) = (title.clone(), caption.clone(), span.clone());
-                self.maps.push(MapView { title, axes: [x, y], at, order, caption, span });
+                self.maps.push(MapView { title, axes: [x, y], at, order, of, caption, span });
             }
-            View::Line { title, moving, end, from, span } => {
+            View::Line { title, moving, end, from, of, span } => {
                 let symbol = self.coordinate(moving)?;
                 let end = match end {
                     End::Value(value) => {
@@ -321,8 +336,9 @@ impl System {
                     Some(list) => self.point(list)?,
                     None => self.maps.last().map(|map| map.at.clone()).unwrap_or_default(),
                 };
+                let of = self.shown(of.as_ref())?;
                 let (title, moving, span) = (title.clone(), moving.text.clone(), span.clone());
-                self.lines.push(LineView { title, moving, end, from, span });
+                self.lines.push(LineView { title, moving, end, from, of, span });
             }
             View::Reduction { alias, conditions, remark } => {
                 let Some((_, path)) = self.aliases.iter().find(|(known, _)| *known == alias.text) else {
@@ -359,6 +375,18 @@ impl System {
 
     fn coordinate(&self, name: &Name) -> Result<Symbol, Problem> {
         self.find_symbol(&name.text).ok_or_else(|| self.unknown(&name.text, &name.span, Wanted::Symbol))
+    }
+
+    /// The state that a picture shows.
+    fn shown(&self, of: Option<&Name>) -> Result<Option<String>, Problem> {
+        let Some(name) = of else { return Ok(None) };
+        if self.unknowns().contains(&self.coordinate(name)?) {
+            return Ok(Some(name.text.clone()));
+        }
+        let message =
+            format!("'{}' is known, and a picture shows how well an unknown is observable", name.text);
+        Err(Problem::new(&name.span, message, "not unknown")
+            .help("name a state, or a parameter that is unknown"))
     }
 
     fn point(&mut self, list: &[(Name, Expr)]) -> Result<Point, Problem> {

@@ -45,7 +45,7 @@ pub(crate) enum Insert {
 pub(crate) struct Scope<'a> {
     pub source: &'a str,
     pub is_definition: &'a dyn Fn(&str) -> bool,
-    pub states: &'a [String],
+    pub states: &'a dyn Fn() -> Vec<String>,
 }
 
 /// A name in the text of a file that stands for something else, and where it stands.
@@ -180,7 +180,7 @@ pub(crate) fn places_in(scope: &Scope<'_>, expr: &Expr, found: &mut Vec<Place>) 
             if let ("d", [argument]) | ("bracket", [_, argument]) = (function.as_str(), arguments.as_slice())
             {
                 let end = argument.span.end;
-                found.push((end..end, Insert::States(scope.states.to_vec())));
+                found.push((end..end, Insert::States((scope.states)())));
             }
         }
         ExprKind::Sum(parts) | ExprKind::Product(parts) => parts.iter().for_each(|(_, part)| inner(part)),
@@ -244,7 +244,7 @@ mod tests {
         let source = "( - v # the rate, v\n  + L(v, w)*\u{2028} d(x) ) # all";
         let expr = crate::expression::parse_expression(source).unwrap();
         assert_eq!(in_one_line(source, &expr.span), "( - v + L(v, w)* d(x) )");
-        let states = ["x".to_owned(), "y".to_owned()];
+        let states = || vec!["x".to_owned(), "y".to_owned()];
         let scope = Scope { source, is_definition: &|name| name == "v" || name == "w", states: &states };
         let mut places = Vec::new();
         places_in(&scope, &expr, &mut places);

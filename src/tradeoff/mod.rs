@@ -16,9 +16,11 @@ mod trade;
 pub(crate) use growth::Growth;
 #[doc(hidden)]
 pub use growth::growth_of_lie_derivatives;
+#[cfg(all(test, feature = "report"))]
+pub(crate) use landscape::PictureScales;
+pub(crate) use landscape::{Landscape, Map, PictureRows, Slope};
 #[doc(hidden)]
-pub use landscape::LandscapeRows;
-pub(crate) use landscape::{Landscape, Map, Slope};
+pub use landscape::{LandscapeRows, standard_deviations_at};
 pub(crate) use models::{ModelComparison, compare_reduction};
 #[doc(hidden)]
 pub use printed::{ExpandedText, PrintedValue};

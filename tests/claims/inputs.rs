@@ -272,7 +272,7 @@ fn outputs_that_are_zero_tie_signals_to_states() {
     has_rank(&format!("system \"s\" experiments 2 {line}"), 4);
 }
 
-/// Drawn states lie on the set, with all derivatives; and the checker, which knows nothing of it, confirms what is told.
+/// Drawn states lie on the set, with all derivatives; and the checker, which does not look at outputs that tie states, finds no fault.
 #[test]
 fn states_are_drawn_where_these_outputs_are_zero() {
     let folder = folder();

@@ -2,7 +2,7 @@
 //! rests on, found again by the checker; the same by another way, the rank with the function among the outputs; and what is no
 //! such statement.
 
-use palmistry::checker::{Effort, Finding, VerdictFile};
+use palmistry::checker::{Checking, Effort, Finding, ProofSources, Unchecked, VerdictFile};
 use palmistry::claim::{Kept, decide_all_keeping};
 use palmistry::{System, decide_all};
 use std::path::Path;
@@ -183,11 +183,13 @@ fn the_checker_finds_it_again() {
     // the words, and the words with the functions; for each unseen one a matrix, and the field; two ranks at a state
     assert_eq!(["a", "b", "c", "d"].map(count), [2, 4, 2, 2]);
     let file = VerdictFile::new(1, records);
-    let checked = file.check(7, &Effort::new(1 << 28), &false.into(), &|| ());
+    let (sources, effort, never) = (ProofSources::given([system]), Effort::new(1 << 33), false.into());
+    let with = Checking { sources: &sources, seed: 7, effort: &effort, interrupt: &never };
+    let checked = file.check(with, &|| ());
     for verdict in &checked {
         let finding = &verdict.finding;
         assert!(
-            matches!(finding, Finding::Confirmed { .. } | Finding::Consistent { .. }),
+            matches!(finding, Finding::Consistent { .. } | Finding::NotChecked(Unchecked::StepOfAProof)),
             "{}: {finding:?}",
             verdict.record.id
         );
@@ -197,7 +199,7 @@ fn the_checker_finds_it_again() {
     let at = forged.find("\"rank\":3").expect("a rank with the function's differential");
     let forged = format!("{}\"rank\":2{}", &forged[..at], &forged[at + 8..]);
     let forged = VerdictFile::read(&forged).unwrap();
-    let checked = forged.check(7, &Effort::new(1 << 28), &false.into(), &|| ());
+    let checked = forged.check(with, &|| ());
     assert!(checked.iter().any(|verdict| matches!(verdict.finding, Finding::NotConfirmed(_))));
 }
 

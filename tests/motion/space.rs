@@ -190,8 +190,8 @@ fn the_command_tells_state_shape_and_bounds() {
     }
     assert_eq!(simulated, read);
     let html = std::fs::read_to_string(page.join("index.html")).unwrap();
-    // a picture that turns and two with errors, nothing from elsewhere
-    assert_eq!(html.matches("<svg").count(), 3);
+    // a picture that turns with the colours of its two surfaces, and two with errors, nothing from elsewhere
+    assert_eq!(html.matches("<svg").count(), 5);
     assert!(html.contains("pointermove") && html.contains("hull of the contacts"));
     assert!(!html.contains("http"));
     surfaces_are_written(&page, &simulated["shape"]["bounds"]);

@@ -2,6 +2,7 @@
 
 use dashu::rational::RBig;
 use palmistry::certificate::{BoxStanding, Limits, Region, RegionRows};
+use palmistry::drops::{DropAnswer, where_it_drops};
 use palmistry::expression::Symbol;
 use palmistry::number::{Interval, RealNumber};
 use palmistry::sweep::{BranchAnswer, Certainty};
@@ -141,6 +142,36 @@ fn rank_of(
         };
         Ok(answer.branches.iter().map(said).collect())
     })
+}
+
+/// A state by the names of its coordinates, as it is printed.
+type Named = Vec<(String, String)>;
+
+/// Drawn states that meet conditions with their certified ranks, and whether the rank that was found is that of all Lie derivatives.
+pub fn recorded(
+    text: &str,
+    conditions: Vec<String>,
+    samples: u64,
+) -> Result<Vec<(bool, Named, usize)>, String> {
+    caught(|| {
+        let mut system = read(text)?;
+        let question = RankQuestion { samples, recorded: samples, conditions, ..RankQuestion::default() };
+        let answer = answer_rank(&mut system, &question).map_err(|error| error.to_string())?;
+        let mut found = Vec::new();
+        for branch in &answer.branches {
+            for one in &branch.full.recorded {
+                let state = one.state.describe(&system);
+                let named = state.iter().map(|at| (at.name.clone(), at.exact.clone())).collect();
+                found.push((branch.is_final, named, one.rank));
+            }
+        }
+        Ok(found)
+    })
+}
+
+/// Where the rank of a file drops.
+pub fn drops(text: &str) -> Result<DropAnswer, String> {
+    caught(|| where_it_drops(&mut read(text)?, 1, &false.into()))
 }
 
 /// Which rows are certified.

@@ -11,11 +11,13 @@
 //! rational, rational in pi, or of 240 digits. It writes proof files as text, and `library` alone gives them to the
 //! library. See `README.md` beside this file for what is tried.
 
+mod agreement;
 mod boxes;
 mod condition_sets;
 mod conditions;
 mod determinism;
 mod dice;
+mod exact_sets;
 mod expression;
 mod findings;
 mod identities;
@@ -31,4 +33,5 @@ mod rewriting;
 mod series;
 mod system;
 mod systems;
+mod thin;
 mod witness;

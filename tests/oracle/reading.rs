@@ -1,12 +1,17 @@
-//! Constants as the library prints them, read back: `3/2`, `-pi/2`, `1 + 2*pi`, `sqrt(2)`.
+//! Constants and expressions as the library prints them, read back: `3/2`, `-pi/2`, `1 + 2*pi`, `sqrt(2)`, `x*sin(1/2*phi)`.
 
-use super::expression::{Expression, Function};
+use super::expression::{Expression, Function, Symbol};
 use Expression as E;
 use dashu::rational::RBig;
 
 /// A constant; `None` where the text is none.
 pub fn read_constant(text: &str) -> Option<E> {
-    let mut reader = Reader { rest: text };
+    read_expression(text, &[])
+}
+
+/// An expression of some symbols; `None` where the text is none.
+pub fn read_expression(text: &str, symbols: &[Symbol]) -> Option<E> {
+    let mut reader = Reader { rest: text, symbols };
     let found = reader.sum()?;
     reader.skip();
     reader.rest.is_empty().then_some(found)
@@ -14,6 +19,7 @@ pub fn read_constant(text: &str) -> Option<E> {
 
 struct Reader<'a> {
     rest: &'a str,
+    symbols: &'a [Symbol],
 }
 
 impl Reader<'_> {
@@ -97,6 +103,9 @@ impl Reader<'_> {
         let name = self.word(|c| c.is_ascii_alphabetic())?.to_owned();
         if name == "pi" {
             return Some(E::Pi);
+        }
+        if let Some(symbol) = self.symbols.iter().find(|symbol| **symbol == name) {
+            return Some(E::Symbol(symbol));
         }
         let all = [
             Function::Sin,

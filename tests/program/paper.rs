@@ -65,7 +65,11 @@ fn a_folder_is_taken_through_everything() {
         "title = \"Carts\"\nauthors = [\"A\", \"B\"]\nyear = 1999\nequations = 3\norder = [\"pendulum.proof\"]\n",
     );
     let found = found(folder.path());
-    assert_eq!(found.paper.reference(str::to_owned), "A and B, Carts (1999)");
+    let paper = &found.paper;
+    assert_eq!(
+        (paper.authors_in_words().as_str(), paper.title.as_str(), paper.year),
+        ("A and B, ", "Carts", Some(1999))
+    );
     let names: Vec<&str> = found.files.iter().map(|file| file.system.name.as_str()).collect();
     assert_eq!(names, ["pendulum.proof", "cart.proof"]);
     let words: Vec<&str> =

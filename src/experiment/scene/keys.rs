@@ -17,6 +17,7 @@ use std::path::PathBuf;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneKeys {
+    #[serde(deserialize_with = "crate::foreign::read_line")]
     pub title: String,
     pub model: PathBuf,
     #[serde(default = "one")]
@@ -231,6 +232,7 @@ pub(super) struct ObserverKeys {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ModeKeys {
+    #[serde(deserialize_with = "crate::foreign::read_line")]
     pub name: String,
     pub model: PathBuf,
     pub estimate: Vec<String>,

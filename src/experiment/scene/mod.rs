@@ -21,6 +21,7 @@ pub use robot::SimulatedRobot;
 pub(in crate::experiment) use simulated::sample_times;
 pub use simulated::{Body, LibraryBody, Palms, SceneOutline, Simulated, SimulatedSystem};
 
+use crate::foreign::{name_of, shown_path};
 use crate::mechanics::Palm;
 use crate::observer::{ColumnNames, FaultRules};
 use crate::system::{Problem, System, load};
@@ -71,14 +72,14 @@ impl Scene {
     /// # Errors
     /// What is wrong with the file, and where. The files that it names have to be there.
     pub fn read(path: &Path) -> Result<Scene, SceneError> {
-        let name = path.display().to_string();
+        let name = name_of(path);
         let text = load(path).map_err(|message| Problem::new(&(0..0), message, "").locate(&name, ""))?;
         let scene = Scene::parse(&name, &text)?;
         let named = [("model", Some(&scene.model)), ("data.record", scene.data.record.as_ref())];
         for (place, file) in named.into_iter().filter_map(|(place, file)| Some((place, file?))) {
             let is_stream = place == "data.record" && file == Path::new(check::STREAM_NAME);
             if !is_stream && !crate::file::is_file(file) {
-                let message = format!("there is no file {}", file.display());
+                let message = format!("there is no file {}", shown_path(file));
                 let help = "a file is looked for from the folder in which the scene lies";
                 return Err(scene.error_at(place, message, "named here", help));
             }

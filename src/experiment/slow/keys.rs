@@ -4,6 +4,7 @@ use super::super::scene::place::Places;
 use super::super::scene::{Body, sample_times};
 use super::families::Family;
 use super::scene::{SlowPalms, SlowScene, SlowStudy};
+use crate::foreign::name_of;
 use crate::mechanics::moving::Course;
 use crate::mechanics::resting::plan_3_14;
 use crate::system::{Problem, ReadError, load};
@@ -29,6 +30,7 @@ pub(super) const COLUMNS: [&str; 4] = ["phi1", "phi2", "s1", "s2"];
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
+    #[serde(deserialize_with = "crate::foreign::read_line")]
     title: String,
     motion: String,
     #[serde(default = "one")]
@@ -123,7 +125,7 @@ impl SlowScene {
         let text = load(path).ok()?;
         let value = toml::from_str::<toml::Table>(&text).ok()?;
         let is_slow = value.get("motion").is_some();
-        is_slow.then(|| SlowScene::parse(&path.display().to_string(), &text))
+        is_slow.then(|| SlowScene::parse(&name_of(path), &text))
     }
 
     /// Reads a scene from a text; files are looked for from the folder of `name`.

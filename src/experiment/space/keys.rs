@@ -7,6 +7,7 @@ use super::record::COLUMNS;
 use super::scene::{SpaceBody, SpaceObserver, SpaceScene};
 use super::shape::ShapeKeys;
 use crate::experiment::solid::FEWEST;
+use crate::foreign::name_of;
 use crate::mechanics::moving::{Course, PushedPalm};
 use crate::mechanics::spatial::{SpatialDrive, SpatialPalm};
 use crate::system::{Problem, ReadError, load};
@@ -26,6 +27,7 @@ const MOST_DEGREE: usize = 12;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
+    #[serde(deserialize_with = "crate::foreign::read_line")]
     title: String,
     #[serde(rename = "motion")]
     _motion: String,
@@ -118,7 +120,7 @@ impl SpaceScene {
         let text = load(path).ok()?;
         let value = toml::from_str::<toml::Table>(&text).ok()?;
         let is_spatial = value.get("motion").and_then(toml::Value::as_str) == Some(SPATIAL);
-        is_spatial.then(|| SpaceScene::parse(&path.display().to_string(), &text))
+        is_spatial.then(|| SpaceScene::parse(&name_of(path), &text))
     }
 
     /// Reads a scene from a text; files are looked for from the folder of `name`.

@@ -12,6 +12,7 @@
 mod headers;
 mod pieces;
 
+use crate::foreign::Budget;
 use crate::import::expression::{ForeignExpr, ForeignKind, Span};
 use crate::import::functions::constant;
 use crate::import::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
@@ -31,10 +32,14 @@ pub struct PrintedRoles {
 }
 
 /// Reads formulas.
-pub(in crate::import) fn read(text: &str, roles: &PrintedRoles) -> Result<ForeignModel, Problem> {
+pub(in crate::import) fn read(
+    text: &str,
+    roles: &PrintedRoles,
+    budget: &Budget,
+) -> Result<ForeignModel, Problem> {
     let (body, headers) = without_headers(text)?;
     let (words, comments) = tokens(&body, Dialect::Printed)?;
-    let mut reading = Reading::default();
+    let mut reading = Reading::new(budget);
     for (header, list) in [("states", &mut reading.states), ("parameters", &mut reading.parameters)] {
         list.extend(names_in(text, headers.get(header))?);
     }
@@ -81,8 +86,9 @@ pub(in crate::import) fn read(text: &str, roles: &PrintedRoles) -> Result<Foreig
     Ok(model)
 }
 
-#[derive(Default)]
-struct Reading {
+struct Reading<'b> {
+    /// What shared parts may cost that are put in where they are used.
+    budget: &'b Budget,
     states: Vec<String>,
     parameters: Vec<String>,
     known: Vec<String>,
@@ -98,9 +104,33 @@ struct Reading {
     shared: BTreeMap<String, ForeignExpr>,
     lines: usize,
     vectors: usize,
+    /// The names that have a rate, and those that have a definition.
+    rated: BTreeSet<String>,
+    defined: BTreeSet<String>,
 }
 
-impl Reading {
+impl<'b> Reading<'b> {
+    fn new(budget: &'b Budget) -> Reading<'b> {
+        Reading {
+            budget,
+            states: Vec::new(),
+            parameters: Vec::new(),
+            known: Vec::new(),
+            inputs: Vec::new(),
+            unknown_inputs: Vec::new(),
+            rates: Vec::new(),
+            definitions: Vec::new(),
+            outputs: Vec::new(),
+            asked_outputs: Vec::new(),
+            declared: BTreeSet::new(),
+            shared: BTreeMap::new(),
+            lines: 0,
+            vectors: 0,
+            rated: BTreeSet::new(),
+            defined: BTreeSet::new(),
+        }
+    }
+
     fn look_for_names(&mut self, words: &[Token]) {
         for three in words.windows(4) {
             if three[1].is("(") && three[2].is_word(TIME) && three[3].is(")") {
@@ -199,14 +229,15 @@ impl Reading {
                 return Ok(());
             }
             let mut own = name.clone();
-            if self.definitions.iter().any(|(other, _)| *other == own) {
+            if !self.defined.insert(own.clone()) {
                 own = format!("@{number}_{}", self.lines);
+                self.defined.insert(own.clone());
             }
             self.shared.insert(name, ForeignExpr::name(&own, &left.span));
             self.definitions.push((own, value));
             return Ok(());
         }
-        if self.definitions.iter().any(|(own, _)| *own == name) {
+        if !self.defined.insert(name.clone()) {
             return Err(Problem::new(&left.span, format!("'{name}' has two equations"), "the second one")
                 .help("take one of them out"));
         }
@@ -215,7 +246,7 @@ impl Reading {
     }
 
     fn rate(&mut self, name: &str, rate: ForeignExpr, span: &Span) -> Result<(), Problem> {
-        if self.rates.iter().any(|own| own.name == name) {
+        if !self.rated.insert(name.to_owned()) {
             return Err(Problem::new(span, format!("'{name}' has two rates"), "the second one")
                 .help("take one of them out"));
         }
@@ -256,7 +287,9 @@ impl Reading {
         let span = &part.span;
         if let Some(name) = symbol(part) {
             if let Some(shared) = self.shared.get(&name) {
-                return Some(Ok(ForeignExpr { span: span.clone(), ..shared.clone() }));
+                let paid = self.budget.nodes(shared.size());
+                let paid = paid.map_err(|spent| crate::import::too_much(span, spent));
+                return Some(paid.map(|()| ForeignExpr { span: span.clone(), ..shared.clone() }));
             }
             let missing =
                 |what: &str, help: &str| Some(Err(Problem::new(span, what.to_owned(), "this").help(help)));
@@ -312,9 +345,7 @@ impl Reading {
             return Err(Problem::new(&(0..text.len().min(1)), "the file has no rates", "the file")
                 .help("a rate is x' = e, dx/dt = e or Eq(Derivative(x(t), t), e); a vector of rates needs 'states: x, y'"));
         }
-        if let Some(missing) =
-            self.states.iter().find(|name| !model.states.iter().any(|state| state.name == **name))
-        {
+        if let Some(missing) = self.states.iter().find(|name| !self.rated.contains(*name)) {
             return Err(Problem::new(
                 &(0..text.len().min(1)),
                 format!("the state '{missing}' has no rate"),

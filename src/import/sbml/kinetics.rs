@@ -63,6 +63,13 @@ pub(super) struct Reaction {
     span: Span,
 }
 
+/// Names that are taken, and of those that several wanted, the last number that was put behind.
+#[derive(Default)]
+pub(super) struct Taken {
+    pub names: BTreeSet<String>,
+    pub counts: BTreeMap<String, usize>,
+}
+
 /// The names of constants of reactions that more than one reaction has, or that mean something in the whole model.
 pub(super) fn shared_local_names(model: Node<'_, '_>) -> BTreeSet<String> {
     let mut count: BTreeMap<&str, usize> = BTreeMap::new();
@@ -80,7 +87,7 @@ impl Reaction {
         formulas: &Formulas,
         is_level_3: bool,
         shared: &BTreeSet<String>,
-        taken: &mut BTreeSet<String>,
+        taken: &mut Taken,
     ) -> Result<Reaction, Problem> {
         let id = required(node, "id")?.to_owned();
         let mut makes = Vec::new();
@@ -95,15 +102,19 @@ impl Reaction {
         let Some(law) = child(node, "kineticLaw") else { return Ok(reaction) };
         let Some(math) = child(law, "math") else { return Ok(reaction) };
         let mut value = formulas.meaning(math)?;
+        let Taken { names: taken, counts } = taken;
         let mut names: BTreeMap<String, String> = BTreeMap::new();
         for list in ["listOfParameters", "listOfLocalParameters"] {
             for parameter in listed(law, list) {
                 let own = required(parameter, "id")?;
                 let mut name = own.to_owned();
                 if shared.contains(own) {
-                    name = format!("{own}_{}", reaction.id);
+                    let wanted = format!("{own}_{}", reaction.id);
+                    name.clone_from(&wanted);
+                    let count = counts.entry(wanted.clone()).or_insert(1);
                     while taken.contains(&name) {
-                        name.push('_');
+                        *count += 1;
+                        name = format!("{wanted}_{count}");
                     }
                 }
                 taken.insert(name.clone());
@@ -137,7 +148,7 @@ fn stoichiometry(node: Node<'_, '_>, formulas: &Formulas, is_level_3: bool) -> R
     }
 }
 
-impl Reading {
+impl Reading<'_> {
     /// Laws as definitions, and rates of the species that reactions change, or that nothing changes and nothing holds.
     pub(super) fn add_reactions(&self, model: &mut ForeignModel) -> Result<(), Problem> {
         for reaction in &self.reactions {
@@ -152,7 +163,7 @@ impl Reading {
                 None => {}
             }
             if let Some((species, place)) =
-                reaction.makes.iter().find(|(species, _)| !self.species.iter().any(|one| one.id == *species))
+                reaction.makes.iter().find(|(species, _)| !self.index.species.contains_key(species))
             {
                 return Err(Problem::new(
                     &place.span,
@@ -162,36 +173,43 @@ impl Reading {
                 .help("list it under listOfSpecies"));
             }
         }
+        // which reaction makes how much of which species
+        let mut made: BTreeMap<&str, Vec<(usize, &ForeignExpr)>> = BTreeMap::new();
+        for (at, reaction) in self.reactions.iter().enumerate() {
+            for (species, count) in &reaction.makes {
+                made.entry(species).or_default().push((at, count));
+            }
+        }
         for species in self.species.iter().filter(|one| self.moves_by_reactions(&one.id)) {
-            let rate = self.rate(species)?;
+            let rate = self.rate(species, made.get(species.id.as_str()).map_or(&[], Vec::as_slice))?;
             model.states.push(ForeignRate { name: species.id.clone(), rate, span: species.span.clone() });
         }
         Ok(())
     }
 
     fn moves_by_reactions(&self, id: &str) -> bool {
-        self.species.iter().any(|one| one.id == id && !one.is_held) && self.rule(id).is_none()
+        self.index.species.get(id).is_some_and(|at| !self.species[*at].is_held) && self.rule(id).is_none()
     }
 
-    fn rate(&self, species: &Species) -> Result<ForeignExpr, Problem> {
+    /// The rate of a species, by what reactions make of it.
+    fn rate(&self, species: &Species, made: &[(usize, &ForeignExpr)]) -> Result<ForeignExpr, Problem> {
         let span = &species.span;
         let mut terms = Vec::new();
-        for reaction in &self.reactions {
-            for (_, count) in reaction.makes.iter().filter(|(own, _)| *own == species.id) {
-                let rate = ForeignExpr::name(&reaction.id, &reaction.span);
-                let (negative, size) = match count.as_number() {
-                    Some(value) if *value < RBig::ZERO => (true, Some(-value.clone())),
-                    Some(value) => (false, Some(value.clone())),
-                    None => (false, None),
-                };
-                let term = match size {
-                    Some(size) if size == RBig::ONE => rate,
-                    Some(size) if size == RBig::ZERO => continue,
-                    Some(size) => ForeignExpr::new(ForeignKind::Number(size), span).times(rate),
-                    None => count.clone().times(rate),
-                };
-                terms.push((negative, term));
-            }
+        for (reaction, count) in made {
+            let reaction = &self.reactions[*reaction];
+            let rate = ForeignExpr::name(&reaction.id, &reaction.span);
+            let (negative, size) = match count.as_number() {
+                Some(value) if *value < RBig::ZERO => (true, Some(-value.clone())),
+                Some(value) => (false, Some(value.clone())),
+                None => (false, None),
+            };
+            let term = match size {
+                Some(size) if size == RBig::ONE => rate,
+                Some(size) if size == RBig::ZERO => continue,
+                Some(size) => ForeignExpr::new(ForeignKind::Number(size), span).times(rate),
+                None => (*count).clone().times(rate),
+            };
+            terms.push((negative, term));
         }
         let mut rate = match terms.len() {
             0 => return Ok(self.dilution(species)?.unwrap_or_else(|| ForeignExpr::integer(0, span))),
@@ -211,7 +229,7 @@ impl Reading {
     }
 
     fn is_concentration(&self, species: &Species) -> bool {
-        let compartment = self.compartments.iter().find(|one| one.id == species.compartment);
+        let compartment = self.compartment(&species.compartment);
         !species.is_amount && !compartment.is_some_and(|one| one.is_point)
     }
 

@@ -2,7 +2,10 @@
 
 use super::super::expression::{DEEPEST, ForeignExpr, ForeignKind, ForeignOrder, Span};
 use super::super::functions::{call, case, constant, fraction};
+use super::super::script::MOST_CASES;
+use super::super::too_much;
 use super::xml::{elements, is, place};
+use crate::foreign::Budget;
 use crate::number::parse_decimal;
 use crate::system::Problem;
 use roxmltree::Node;
@@ -11,15 +14,20 @@ use std::collections::BTreeMap;
 /// Formulas that grow beyond this when functions are put in are refused.
 const LARGEST: usize = 200_000;
 
+/// Values with more parts than these are not written twice.
+const TWICE: usize = 40;
+
 /// Avogadro's number, as SBML level 3 fixes it.
 const AVOGADRO: &str = "6.02214179e23";
 
 /// What formulas of a model mean.
-pub(super) struct Formulas {
+pub(super) struct Formulas<'b> {
     /// The functions of the model: their arguments and what they are of them.
     pub functions: BTreeMap<String, (Vec<String>, ForeignExpr)>,
     /// What time is called.
     pub time: String,
+    /// What functions may cost that are put in where they are used.
+    pub budget: &'b Budget,
 }
 
 type Meant = Result<ForeignExpr, Problem>;
@@ -28,7 +36,7 @@ fn unread(node: Node<'_, '_>, what: &str, help: &str) -> Problem {
     Problem::new(&place(node), what.to_owned(), "this").help(help)
 }
 
-impl Formulas {
+impl Formulas<'_> {
     /// What a `math` element means. Its names are those of the file; time has a name of its own.
     pub fn meaning(&self, math: Node<'_, '_>) -> Meant {
         match elements(math).next() {
@@ -159,14 +167,16 @@ impl Formulas {
             return Err(unread(node, &message, ""));
         }
         // how large it becomes, before it does
+        let sizes: Vec<usize> = arguments.iter().map(ForeignExpr::size).collect();
         let mut size = body.size();
         body.names(&mut |used, _| {
             let at = parameters.iter().position(|parameter| parameter == used);
-            size = size.saturating_add(at.map_or(0, |at| arguments[at].size()));
+            size = size.saturating_add(at.map_or(0, |at| sizes[at]));
         });
         if size > LARGEST || body.depth() > DEEPEST {
             return Err(unread(node, "a formula that becomes too large", "write it as assignment rules"));
         }
+        self.budget.nodes(size).map_err(|spent| too_much(&place(node), spent))?;
         let mut whole = body.clone();
         let by_name: BTreeMap<&str, &ForeignExpr> =
             parameters.iter().map(String::as_str).zip(&arguments).collect();
@@ -191,6 +201,10 @@ impl Formulas {
                     ));
                 }
             }
+        }
+        if pieces.len() > MOST_CASES {
+            let help = "a table of values is no model: say it as a formula";
+            return Err(unread(node, &format!("more than {MOST_CASES} cases"), help));
         }
         for (value, condition) in pieces.into_iter().rev() {
             let then = self.of(value, depth + 1)?;
@@ -225,6 +239,14 @@ impl Formulas {
                     "leq" => ForeignOrder::AtMost,
                     "gt" => ForeignOrder::Greater,
                     "geq" => ForeignOrder::AtLeast,
+                    // both values would stand there several times: one comparison of a number that is one or zero
+                    "and" | "or" if then.size() + otherwise.size() > TWICE => {
+                        let span = place(condition);
+                        let number = |value: i64| ForeignExpr::integer(value, &span);
+                        let holds = self.chosen(condition, number(1), number(0), depth + 1)?;
+                        let half = number(1).over(number(2));
+                        return Ok(case(holds, ForeignOrder::Greater, half, then, otherwise));
+                    }
                     "and" => {
                         let inner = self.chosen(*right, then, otherwise.clone(), depth + 1)?;
                         return self.chosen(*left, inner, otherwise, depth + 1);

@@ -9,18 +9,19 @@ mod xml;
 
 use super::expression::{ForeignExpr, Span};
 use super::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
+use crate::foreign::Budget;
 use crate::number::parse_decimal;
 use crate::system::Problem;
 use dashu::rational::RBig;
-use kinetics::{Reaction, Species};
+use kinetics::{Reaction, Species, Taken};
 use mathml::{Formulas, text_of};
 use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet};
 use xml::{child, document, elements, is, listed, place, required, says};
 
 /// Reads a model.
-pub(super) fn read(text: &str) -> Result<ForeignModel, Problem> {
-    let document = document(text)?;
+pub(super) fn read(text: &str, budget: &Budget) -> Result<ForeignModel, Problem> {
+    let document = document(text, budget)?;
     let root = document.root_element();
     if !is(root, "sbml") {
         return Err(Problem::new(&place(root), "this is no SBML", "the first element")
@@ -36,7 +37,7 @@ pub(super) fn read(text: &str) -> Result<ForeignModel, Problem> {
         Problem::new(&place(root), "the file has no model", "this").help("an SBML file has <model> in it")
     })?;
     refuse(model)?;
-    Reading::of(model, level == "3")?.model(model)
+    Reading::of(model, level == "3", budget)?.model(model)
 }
 
 /// What changes the meaning of a model and is not read.
@@ -105,8 +106,8 @@ struct Compartment {
     is_point: bool,
 }
 
-struct Reading {
-    formulas: Formulas,
+struct Reading<'b> {
+    formulas: Formulas<'b>,
     compartments: Vec<Compartment>,
     species: Vec<Species>,
     parameters: Vec<(String, Option<RBig>)>,
@@ -114,6 +115,25 @@ struct Reading {
     rules: Vec<(String, Rule)>,
     beginnings: Vec<(String, ForeignExpr)>,
     reactions: Vec<Reaction>,
+    index: Index,
+}
+
+/// Where things stand in the lists of a model, by their ids; the first one of each id.
+#[derive(Default)]
+struct Index {
+    compartments: BTreeMap<String, usize>,
+    species: BTreeMap<String, usize>,
+    parameters: BTreeSet<String>,
+    rules: BTreeMap<String, usize>,
+}
+
+/// The first place of each id.
+fn places<'i>(ids: impl Iterator<Item = &'i String>) -> BTreeMap<String, usize> {
+    let mut found = BTreeMap::new();
+    for (at, id) in ids.enumerate() {
+        found.entry(id.clone()).or_insert(at);
+    }
+    found
 }
 
 /// A number in an attribute.
@@ -129,14 +149,24 @@ fn value_of(node: Node<'_, '_>, name: &str) -> Result<Option<RBig>, Problem> {
     }
 }
 
-impl Reading {
-    fn of(model: Node<'_, '_>, is_level_3: bool) -> Result<Reading, Problem> {
+/// Whether a compartment is a point without a size. In level 3 it may have one all the same, and a concentration there is an
+/// amount by that size.
+fn is_point(node: Node<'_, '_>, is_level_3: bool) -> Result<bool, Problem> {
+    let has_no_dimension = match node.attribute("spatialDimensions").map(str::trim) {
+        None => false,
+        Some(text) => parse_decimal(text).is_some_and(|dimensions| dimensions == RBig::ZERO),
+    };
+    Ok(has_no_dimension && !(is_level_3 && value_of(node, "size")?.is_some()))
+}
+
+impl<'b> Reading<'b> {
+    fn of(model: Node<'_, '_>, is_level_3: bool, budget: &'b Budget) -> Result<Reading<'b>, Problem> {
         let ids: BTreeSet<&str> = model.descendants().filter_map(|node| node.attribute("id")).collect();
         let time = ["time", "t", "clock"]
             .into_iter()
             .find(|name| !ids.contains(name))
             .unwrap_or("time_of_the_model");
-        let mut formulas = Formulas { functions: BTreeMap::new(), time: time.to_owned() };
+        let mut formulas = Formulas { functions: BTreeMap::new(), time: time.to_owned(), budget };
         for function in listed(model, "listOfFunctionDefinitions") {
             let (name, definition) = function_definition(function, &formulas)?;
             formulas.functions.insert(name, definition);
@@ -147,9 +177,7 @@ impl Reading {
                 Ok(Compartment {
                     id: required(node, "id")?.to_owned(),
                     size: value_of(node, "size")?,
-                    is_point: node
-                        .attribute("spatialDimensions")
-                        .is_some_and(|n| matches!(n.trim(), "0" | "0.0")),
+                    is_point: is_point(node, is_level_3)?,
                 })
             })
             .collect::<Result<Vec<_>, Problem>>()?;
@@ -157,12 +185,19 @@ impl Reading {
         let species = listed(model, "listOfSpecies")
             .into_iter()
             .map(|node| Species::read(node, factor))
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<Vec<_>, _>>()?;
         let parameters = listed(model, "listOfParameters")
             .into_iter()
             .map(|node| Ok((required(node, "id")?.to_owned(), value_of(node, "value")?)))
             .collect::<Result<Vec<_>, Problem>>()?;
+        let index = Index {
+            compartments: places(compartments.iter().map(|one| &one.id)),
+            species: places(species.iter().map(|one| &one.id)),
+            parameters: parameters.iter().map(|(id, _)| id.clone()).collect(),
+            rules: BTreeMap::new(),
+        };
         let mut reading = Reading {
+            index,
             formulas,
             compartments,
             species,
@@ -173,10 +208,19 @@ impl Reading {
         };
         reading.read_rules(model)?;
         reading.read_beginnings(model)?;
-        let mut taken: BTreeSet<String> = ids.into_iter().map(str::to_owned).collect();
-        let places = kinetics::shared_local_names(model);
+        if is_level_3 {
+            // a size may come from a rule as well
+            let begun: BTreeSet<&str> = reading.beginnings.iter().map(|(id, _)| id.as_str()).collect();
+            for one in &mut reading.compartments {
+                let has_size = reading.index.rules.contains_key(&one.id) || begun.contains(one.id.as_str());
+                one.is_point &= !has_size;
+            }
+        }
+        let names = ids.into_iter().map(str::to_owned).collect();
+        let mut taken = Taken { names, ..Taken::default() };
+        let shared = kinetics::shared_local_names(model);
         for node in listed(model, "listOfReactions") {
-            let reaction = Reaction::read(node, &reading.formulas, is_level_3, &places, &mut taken)?;
+            let reaction = Reaction::read(node, &reading.formulas, is_level_3, &shared, &mut taken)?;
             reading.reactions.push(reaction);
         }
         Ok(reading)
@@ -192,9 +236,9 @@ impl Reading {
 
     /// Whether rules may be about it.
     fn has(&self, id: &str) -> bool {
-        self.compartments.iter().any(|one| one.id == id)
-            || self.species.iter().any(|one| one.id == id)
-            || self.parameters.iter().any(|(own, _)| own == id)
+        self.index.compartments.contains_key(id)
+            || self.index.species.contains_key(id)
+            || self.index.parameters.contains(id)
     }
 
     fn read_rules(&mut self, model: Node<'_, '_>) -> Result<(), Problem> {
@@ -204,7 +248,7 @@ impl Reading {
                 continue;
             }
             let variable = required(node, "variable")?.to_owned();
-            let twice = self.rules.iter().any(|(own, _)| *own == variable);
+            let twice = self.index.rules.contains_key(&variable);
             if twice || !self.has(&variable) {
                 let message = match twice {
                     true => format!("'{variable}' has two rules"),
@@ -216,6 +260,7 @@ impl Reading {
                     .help("rules about stoichiometries are not read; write the number into the reaction"));
             }
             let rule = Rule { is_rate, value: self.math(node)?, span: place(node) };
+            self.index.rules.insert(variable.clone(), self.rules.len());
             self.rules.push((variable, rule));
         }
         Ok(())
@@ -239,7 +284,11 @@ impl Reading {
     }
 
     fn rule(&self, id: &str) -> Option<&Rule> {
-        self.rules.iter().find(|(own, _)| own == id).map(|(_, rule)| rule)
+        self.index.rules.get(id).map(|at| &self.rules[*at].1)
+    }
+
+    fn compartment(&self, id: &str) -> Option<&Compartment> {
+        self.index.compartments.get(id).map(|at| &self.compartments[*at])
     }
 
     fn model(self, node: Node<'_, '_>) -> Result<ForeignModel, Problem> {
@@ -295,11 +344,7 @@ impl Reading {
         }
         let mut held = Vec::new();
         for one in self.species.iter().filter(|one| !ruled(&one.id)) {
-            let size = self
-                .compartments
-                .iter()
-                .find(|own| own.id == one.compartment)
-                .and_then(|own| own.size.clone());
+            let size = self.compartment(&one.compartment).and_then(|own| own.size.clone());
             constants.push(constant(&one.id, one.beginning(size.as_ref()), false));
             held.push(one.id.as_str());
         }
@@ -316,6 +361,8 @@ impl Reading {
         let mut fixed: BTreeSet<String> = constants.iter().map(|constant| constant.name.clone()).collect();
         fixed.extend(self.rules.iter().filter(|(_, rule)| !rule.is_rate).map(|(id, _)| id.clone()));
         let mut states_begin = false;
+        let mut moving = BTreeMap::new();
+        let mut assigned = BTreeSet::new();
         for (id, value) in &self.beginnings {
             if moved.contains(id) {
                 states_begin = true;
@@ -323,7 +370,7 @@ impl Reading {
             }
             let mut bad = None;
             value.names(&mut |name, span| {
-                if !fixed.contains(name) || self.depends_on_states(name, &moved, 0) {
+                if !fixed.contains(name) || self.depends_on_states(name, &moved, &mut moving) {
                     bad = Some((name.to_owned(), span.clone()));
                 }
             });
@@ -337,7 +384,7 @@ impl Reading {
                     "give '{id}' a value of its own, or make it unknown by taking the assignment out"
                 )));
             }
-            constants.retain(|constant| constant.name != *id);
+            assigned.insert(id.as_str());
             model.definitions.push((id.clone(), value.clone()));
         }
         if states_begin {
@@ -346,19 +393,31 @@ impl Reading {
                     .to_owned(),
             );
         }
+        constants.retain(|constant| !assigned.contains(constant.name.as_str()));
         model.constants = constants;
         Ok(())
     }
 
-    fn depends_on_states(&self, name: &str, moved: &BTreeSet<String>, depth: usize) -> bool {
-        if moved.contains(name) || name == self.formulas.time || depth > self.rules.len() {
+    /// Whether what a name stands for moves; `known` are the names of which that is known, those that are being looked at among them:
+    /// what is defined by itself counts as moving.
+    fn depends_on_states(
+        &self,
+        name: &str,
+        moved: &BTreeSet<String>,
+        known: &mut BTreeMap<String, bool>,
+    ) -> bool {
+        if moved.contains(name) || name == self.formulas.time {
             return true;
         }
+        if let Some(moves) = known.get(name) {
+            return *moves;
+        }
+        known.insert(name.to_owned(), true);
         let mut found = false;
         if let Some(rule) = self.rule(name).filter(|rule| !rule.is_rate) {
-            rule.value
-                .names(&mut |inner, _| found = found || self.depends_on_states(inner, moved, depth + 1));
+            rule.value.names(&mut |inner, _| found = found || self.depends_on_states(inner, moved, known));
         }
+        known.insert(name.to_owned(), found);
         found
     }
 
@@ -375,7 +434,7 @@ impl Reading {
         let free = self.rules.iter().filter(|(id, rule)| !rule.is_rate && !used.contains(id));
         let mut names: Vec<String> = free.map(|(id, _)| id.clone()).collect();
         if names.is_empty() {
-            let is_species = |name: &&ForeignRate| self.species.iter().any(|one| one.id == name.name);
+            let is_species = |name: &&ForeignRate| self.index.species.contains_key(&name.name);
             names = model.states.iter().filter(is_species).map(|state| state.name.clone()).collect();
             if names.is_empty() {
                 names = model.states.iter().map(|state| state.name.clone()).collect();

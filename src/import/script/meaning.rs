@@ -5,6 +5,9 @@ use super::super::functions::{call, case};
 use super::syntax::{Syntax, SyntaxKind};
 use crate::system::Problem;
 
+/// A formula of more cases is refused.
+pub(in crate::import) const MOST_CASES: usize = 2000;
+
 type Meant = Result<ForeignExpr, Problem>;
 
 /// The name and the arguments of a call, whatever module the function is taken from: `exp(x)`, `sym.exp(x)`.
@@ -170,6 +173,10 @@ fn function(syntax: &Syntax, special: &mut impl FnMut(&Syntax) -> Option<Meant>)
 
 /// `Piecewise((e, condition), ..., (e, True))`
 fn piecewise(syntax: &Syntax, cases: &[Syntax], special: &mut impl FnMut(&Syntax) -> Option<Meant>) -> Meant {
+    if cases.len() > MOST_CASES {
+        return Err(Problem::new(&syntax.span, format!("more than {MOST_CASES} cases"), "this")
+            .help("a table of values is no model: say it as a formula"));
+    }
     let mut result: Option<ForeignExpr> = None;
     for one in cases.iter().rev() {
         let SyntaxKind::List(pair) = &one.kind else { return Err(refused(one, "this case")) };

@@ -7,7 +7,7 @@ mod syntax;
 mod tokens;
 mod workspace;
 
-pub(super) use meaning::{meaning, named_function};
+pub(super) use meaning::{MOST_CASES, meaning, named_function};
 pub(super) use parser::Parser;
 pub(super) use syntax::{Syntax, SyntaxKind};
 pub(super) use tokens::{Dialect, Token, TokenKind, tokens};

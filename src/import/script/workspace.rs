@@ -5,6 +5,7 @@ use super::super::expression::{ForeignExpr, ForeignKind, Span};
 use super::super::functions::{self, constant, is_function};
 use super::meaning::{meaning, named_function};
 use super::syntax::{Syntax, SyntaxKind};
+use crate::foreign::Budget;
 use crate::system::Problem;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,6 +24,15 @@ pub(in crate::import) enum ScriptValue {
 }
 
 impl ScriptValue {
+    /// All entries, as they are.
+    fn parts(&self) -> &[ForeignExpr] {
+        match self {
+            ScriptValue::One(one) => std::slice::from_ref(one),
+            ScriptValue::Many { entries, .. } => entries,
+            ScriptValue::Else => &[],
+        }
+    }
+
     /// All entries, row by row.
     pub fn entries(self) -> Option<Vec<ForeignExpr>> {
         match self {
@@ -37,22 +47,42 @@ impl ScriptValue {
 type Broken = (Span, String, Option<String>);
 
 /// The names of a script.
-#[derive(Default)]
-pub(in crate::import) struct ScriptWorkspace {
+pub(in crate::import) struct ScriptWorkspace<'b> {
+    /// What the values of all names together may cost.
+    budget: &'b Budget,
     bound: BTreeMap<String, Result<ScriptValue, Broken>>,
     symbols: BTreeSet<String>,
     /// Definitions in the order in which they are made: name and expression.
     pub definitions: Vec<(String, ForeignExpr)>,
+    /// The names of definitions, and of those that several have, the last number that was put behind.
+    defined: BTreeSet<String>,
+    counts: BTreeMap<String, usize>,
+    /// How often each symbol stands in definitions and in what names stand for.
+    used: BTreeMap<String, usize>,
     /// Names that are kept as values and get no definition.
     pub plain: BTreeSet<String>,
 }
 
 type Valued = Result<ScriptValue, Problem>;
 
-impl ScriptWorkspace {
+impl<'b> ScriptWorkspace<'b> {
+    /// No names yet.
+    pub fn new(budget: &'b Budget) -> ScriptWorkspace<'b> {
+        ScriptWorkspace {
+            budget,
+            bound: BTreeMap::new(),
+            symbols: BTreeSet::new(),
+            definitions: Vec::new(),
+            defined: BTreeSet::new(),
+            counts: BTreeMap::new(),
+            used: BTreeMap::new(),
+            plain: BTreeSet::new(),
+        }
+    }
+
     /// Makes a symbol and gives it as a value.
     pub fn symbol(&mut self, name: &str, span: &Span) -> Valued {
-        if self.definitions.iter().any(|(own, _)| own == name) {
+        if self.defined.contains(name) {
             return Err(Problem::new(
                 span,
                 format!("'{name}' has a value already, and becomes a symbol here"),
@@ -66,18 +96,32 @@ impl ScriptWorkspace {
 
     /// Binds a name.
     pub fn bind(&mut self, name: &str, value: ScriptValue) {
-        self.bound.insert(name.to_owned(), Ok(value));
+        value.parts().iter().for_each(|one| count_names(&mut self.used, one, true));
+        self.rebind(name, Ok(value));
+    }
+
+    fn rebind(&mut self, name: &str, value: Result<ScriptValue, Broken>) {
+        if let Some(Ok(before)) = self.bound.insert(name.to_owned(), value) {
+            before.parts().iter().for_each(|one| count_names(&mut self.used, one, false));
+        }
     }
 
     /// Binds a name to what could not be read: that is told where somebody needs it.
     pub fn break_name(&mut self, name: &str, why: Problem) {
-        self.bound.insert(name.to_owned(), Err((why.span, why.message, why.help)));
+        self.rebind(name, Err((why.span, why.message, why.help)));
     }
 
     /// What a name stands for, if anything.
     pub fn get(&self, name: &str) -> Option<Valued> {
         self.bound.get(name).map(|bound| match bound {
-            Ok(value) => Ok(value.clone()),
+            // who uses a value has it once more
+            Ok(value) => {
+                let parts = value.parts();
+                let place = parts.first().map_or(0..0, |one| one.span.clone());
+                let size = parts.iter().map(ForeignExpr::size).sum();
+                self.budget.nodes(size).map_err(|spent| super::super::too_much(&place, spent))?;
+                Ok(value.clone())
+            }
             Err((span, message, help)) => {
                 Err(Problem { help: help.clone(), ..Problem::new(span, message, "this") })
             }
@@ -94,16 +138,15 @@ impl ScriptWorkspace {
                 if self.symbols.contains(name) && !self.uses(name) && !one_uses(&one, name) {
                     self.symbols.remove(name);
                 }
-                let taken = |wanted: &str| {
-                    self.symbols.contains(wanted) || self.definitions.iter().any(|(own, _)| own == wanted)
-                };
                 let mut own = name.to_owned();
-                let mut count = 2;
-                while taken(&own) {
+                while self.symbols.contains(&own) || self.defined.contains(&own) {
+                    let count = self.counts.entry(name.to_owned()).or_insert(1);
+                    *count += 1;
                     own = format!("{name}_{count}");
-                    count += 1;
                 }
                 let span = one.span.clone();
+                self.defined.insert(own.clone());
+                count_names(&mut self.used, &one, true);
                 self.definitions.push((own.clone(), one));
                 ScriptValue::One(ForeignExpr::name(own, &span))
             }
@@ -114,18 +157,11 @@ impl ScriptWorkspace {
 
     /// Whether a value of another name, or a definition, is made of a symbol.
     fn uses(&self, symbol: &str) -> bool {
-        let values = self
-            .bound
-            .iter()
-            .filter(|(name, _)| *name != symbol)
-            .filter_map(|(_, value)| value.as_ref().ok());
-        let mut entries = values.flat_map(|value| match value {
-            ScriptValue::One(one) => std::slice::from_ref(one),
-            ScriptValue::Many { entries, .. } => entries.as_slice(),
-            ScriptValue::Else => &[],
-        });
-        entries.any(|one| one_uses(one, symbol))
-            || self.definitions.iter().any(|(_, one)| one_uses(one, symbol))
+        let mut own = BTreeMap::new();
+        if let Some(Ok(value)) = self.bound.get(symbol) {
+            value.parts().iter().for_each(|one| count_names(&mut own, one, true));
+        }
+        self.used.get(symbol).copied().unwrap_or(0) > own.get(symbol).copied().unwrap_or(0)
     }
 
     /// The value of an expression.
@@ -300,6 +336,15 @@ impl ScriptWorkspace {
         }
         Err(Problem::new(&syntax.span, "this call cannot be read", "this"))
     }
+}
+
+/// Counts the names in an expression, or takes them back.
+fn count_names(counts: &mut BTreeMap<String, usize>, one: &ForeignExpr, more: bool) {
+    one.names(&mut |name, _| match counts.get_mut(name) {
+        Some(count) => *count = if more { *count + 1 } else { count.saturating_sub(1) },
+        None if more => drop(counts.insert(name.to_owned(), 1)),
+        None => {}
+    });
 }
 
 fn one_uses(one: &ForeignExpr, symbol: &str) -> bool {

@@ -5,6 +5,7 @@ use super::integrate::steps;
 use super::laws::{Situation, TimedState};
 use super::scene::{MovingScene, SceneError};
 use super::trajectory::{Ended, Moment, Trajectory};
+use crate::foreign::{Allowance, Budget};
 
 /// Contacts are looked at after each step of the integrator, of which there are at least so many: a contact force
 /// that is negative for a shorter time than a step may go unseen.
@@ -38,12 +39,13 @@ pub fn simulate(scene: &MovingScene, times: &[f64]) -> Result<Trajectory, SceneE
     let last = checked_times(times)?;
     scene.check()?;
 
+    let budget = Budget::new(ALLOWANCE);
     let mut moments = Vec::with_capacity(times.len());
     let mut now = TimedState { time: 0.0, state: scene.start() };
     let start_energy = Moment::of(scene, now.time, &now.state).energy();
     for &time in times {
         if time > now.time {
-            match advance(scene, now, time, last / FEWEST_STEPS) {
+            match advance(scene, now, [time, last / FEWEST_STEPS], &budget) {
                 Ok(held) => now = TimedState { time, ..held },
                 Err(stop) => {
                     // an end at once after a sample is that sample
@@ -68,9 +70,20 @@ fn breach(at: &TimedState, scene: &MovingScene) -> Option<Breach> {
     Situation::at(scene, at.time, &at.state).breach(scene)
 }
 
-/// The state at time `end`.
-fn advance(scene: &MovingScene, from: TimedState, end: f64, longest: f64) -> Result<TimedState, Stop> {
+/// What a motion may cost: steps of the integrator.
+const ALLOWANCE: Allowance = Allowance { bytes: u64::MAX, nodes: u64::MAX, steps: 1_000_000 };
+
+/// The state at time `end`, by steps that are no longer than `longest`.
+fn advance(
+    scene: &MovingScene,
+    from: TimedState,
+    [end, longest]: [f64; 2],
+    budget: &Budget,
+) -> Result<TimedState, Stop> {
     let (all, failure) = steps(scene, from, end, longest);
+    let paid = budget.steps(all.len());
+    let failure =
+        failure.or(paid.err().map(|spent| format!("{spent} of the integrator: let it end earlier")));
     let mut held = from;
     for step in all {
         if let Some(first) = breach(&step, scene) {

@@ -8,6 +8,7 @@ use super::contact::Places;
 use super::laws::Situation;
 use super::orientation::{Orientation, rotation_vector_rate};
 use super::scene::{SpatialDrive, SpatialPalm, SpatialScene};
+use crate::foreign::Budget;
 use nalgebra::Vector3;
 use ode_solvers::{Dop853, OutputType, SVector, System};
 
@@ -98,6 +99,7 @@ pub(super) fn steps(
     from: TimedState,
     end: f64,
     longest: f64,
+    budget: &Budget,
 ) -> (Vec<TimedState>, Option<String>) {
     let mut all = vec![from];
     let mut here = from;
@@ -118,9 +120,13 @@ pub(super) fn steps(
             return (all, Some("the body turns too fast for its time to be told".to_owned()));
         }
         let (found, failure) = piece(scene, here, until, longest);
+        let paid = budget.steps(1 + found.len());
         all.extend(found);
         if failure.is_some() {
             return (all, failure);
+        }
+        if let Err(spent) = paid {
+            return (all, Some(format!("{spent} of the integrator: let it end earlier")));
         }
         if let Some(last) = all.last_mut() {
             // begin + (end - begin) may be off by a rounding

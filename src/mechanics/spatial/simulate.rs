@@ -3,6 +3,7 @@
 use super::integrate::{TimedState, steps};
 use super::orientation::Orientation;
 use super::scene::{SpatialPalm, SpatialScene, SpatialSceneError};
+use crate::foreign::{Allowance, Budget};
 use nalgebra::Vector3;
 
 /// One palm at one moment. SI units, angles in radians.
@@ -128,6 +129,9 @@ impl SpatialTrajectory {
 /// negative for a shorter time than a step may go unseen.
 const FEWEST_STEPS: f64 = 256.0;
 
+/// What a motion may cost: steps of the integrator.
+const ALLOWANCE: Allowance = Allowance { bytes: u64::MAX, nodes: u64::MAX, steps: 50_000 };
+
 /// The end of a contact is sought until it is known to so many seconds.
 const LOCATED: f64 = 1e-12;
 
@@ -156,11 +160,12 @@ pub fn simulate_solid(scene: &SpatialScene, times: &[f64]) -> Result<SpatialTraj
         work: 0.0,
         near: None,
     };
+    let budget = Budget::new(ALLOWANCE);
     let mut moments = Vec::with_capacity(times.len());
     let start_energy = SpatialMoment::of(scene, &now).energy();
     for &time in times {
         if time > now.time {
-            match advance(scene, now, time, last / FEWEST_STEPS) {
+            match advance(scene, now, time, last / FEWEST_STEPS, &budget) {
                 Ok(held) => now = TimedState { time, ..held },
                 Err(end) => {
                     let (at, ended) = *end;
@@ -210,8 +215,9 @@ fn advance(
     from: TimedState,
     end: f64,
     longest: f64,
+    budget: &Budget,
 ) -> Result<TimedState, Box<(Option<TimedState>, SpatialEnded)>> {
-    let (all, failure) = steps(scene, from, end, longest);
+    let (all, failure) = steps(scene, from, end, longest, budget);
     let mut held = from;
     for step in all {
         if let Some(first) = breach(&step, scene) {
@@ -244,7 +250,7 @@ fn locate(scene: &SpatialScene, held: TimedState, broken: f64, mut by: Breach) -
         if middle <= low.time || middle >= high {
             break;
         }
-        let (all, failure) = steps(scene, held, middle, middle - held.time);
+        let (all, failure) = steps(scene, held, middle, middle - held.time, &Budget::new(ALLOWANCE));
         let Some(&state) = all.last().filter(|_| failure.is_none()) else { break };
         match breach(&state, scene) {
             None => low = state,

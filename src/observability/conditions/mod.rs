@@ -23,7 +23,7 @@ pub use written::parse_condition;
 use crate::expression::syntax::{Equation, Relation};
 use crate::expression::{Graph, Guard, Need, NodeId, Symbol, add_guard, sign};
 use crate::system::{Assignment, System};
-use single::{way, way_apart_from_turns};
+use single::{factors_of, is_nowhere_zero, touching, way, way_apart_from_turns};
 use turns::turns_do_not_matter;
 use vanishing::{is_a_constant_but_zero, vanish_where};
 use way::{Apart, Way};
@@ -54,8 +54,19 @@ pub struct Solution {
     pub smaller: Vec<Branch>,
     /// Branches that have too few dimensions for that: edges and crossings of parts.
     pub thinner: Vec<Branch>,
-    /// Thinner branches that could not be solved, in words.
-    pub unsolved: Vec<String>,
+    /// Thinner branches that could not be solved.
+    pub unsolved: Vec<UnsolvedBranch>,
+}
+
+/// A branch some conditions of which could not be solved.
+#[derive(Clone, Debug, Default)]
+pub struct UnsolvedBranch {
+    /// What was solved.
+    pub branch: Branch,
+    /// What vanishes on it besides.
+    pub open: Vec<NodeId>,
+    /// All of its conditions, in words.
+    pub text: String,
 }
 
 /// Why a condition could not be used.
@@ -98,13 +109,15 @@ impl Unsolved {
 const LONGEST_QUOTE: usize = 80;
 /// No more branches than this are followed.
 const MOST_BRANCHES: usize = 64;
+/// What is thinner than a part is followed as long as its conditions have no more operations.
+const LONGEST_OF_THIN: usize = 150;
 
 /// The parts of the set on which all conditions hold; see `solve`.
 ///
 /// # Errors
 /// As for `solve`.
 pub fn solve_conditions(system: &mut System, conditions: &[Equation]) -> Result<Vec<Branch>, Unsolved> {
-    let solution = solve(system, conditions)?;
+    let solution = solve(system, conditions, &[])?;
     Ok(solution.parts.into_iter().chain(solution.smaller).collect())
 }
 
@@ -115,6 +128,8 @@ struct Condition {
     right: NodeId,
     /// As it is quoted: the condition of the file that it comes from.
     text: String,
+    /// Whether its left side is nowhere negative, and its derivatives are among the conditions.
+    touches: bool,
 }
 
 /// A branch on the way.
@@ -132,6 +147,8 @@ struct Partial {
     least: usize,
     /// Whether it comes of a condition that is met in several ways.
     several: bool,
+    /// What is kept from zero wherever there is anything to speak of, by no condition.
+    kept: Vec<Guard>,
 }
 
 /// What one step made of a branch.
@@ -142,13 +159,21 @@ enum Step {
     Stuck(Partial, Unsolved),
 }
 
-/// Takes the set on which all conditions hold apart into branches and solves each.
+/// Takes the set on which all conditions hold apart into branches and solves each, for a statement about those of its states at which some
+/// guards hold: what they keep from zero can be divided by, and parts that are thinner than the set are followed only where they may hold.
 ///
 /// # Errors
 /// Where a branch that is no thinner than a part of the set cannot be solved, or where no state meets all conditions.
-pub fn solve(system: &mut System, conditions: &[Equation]) -> Result<Solution, Unsolved> {
-    let start = begin(system, conditions)?;
+pub fn solve(system: &mut System, conditions: &[Equation], guards: &[Guard]) -> Result<Solution, Unsolved> {
+    let mut start = begin(system, conditions)?;
+    start.kept = guards.iter().filter(|guard| guard.need == Need::NotZero).copied().collect();
     let count = start.open.len();
+    follow(system, start, count)
+}
+
+/// Follows a branch to the ends of all that it divides into; of `count` conditions it has `open` ones.
+fn follow(system: &mut System, start: Partial, count: usize) -> Result<Solution, Unsolved> {
+    let several_asked = start.open.len() != 1;
     let only = start.open.first().map(|condition| condition.text.clone()).unwrap_or_default();
     let (mut work, mut done, mut unsolved, mut never) = (vec![start], Vec::new(), Vec::new(), None);
     let mut followed = 0;
@@ -157,15 +182,27 @@ pub fn solve(system: &mut System, conditions: &[Equation]) -> Result<Solution, U
         if followed > 4 * MOST_BRANCHES || work.len() + done.len() > MOST_BRANCHES {
             return Err(Unsolved::TooMany);
         }
-        match step(system, partial, count) {
+        let next = match partial.least > count && followed > 2 * MOST_BRANCHES {
+            true => Step::Stuck(partial, Unsolved::TooMany),
+            false => step(system, partial, count),
+        };
+        match next {
             Step::Empty(why) => never = never.or(Some(why)),
             Step::Open(next) => work.extend(next.into_iter().rev()),
             Step::Stuck(partial, _) if partial.least > count => {
-                let open = partial.open.iter().map(|c| quote(system, c.left, c.right));
-                let steps: Vec<String> = partial.steps.iter().cloned().chain(open).collect();
-                unsolved.push(steps.join(", "));
+                let quoted = partial.open.iter().map(|c| quote(system, c.left, c.right));
+                let steps: Vec<String> = partial.steps.iter().cloned().chain(quoted).collect();
+                let open = partial.open.clone();
+                let open = open.iter().map(|c| system.graph.sub(c.left, c.right)).collect();
+                unsolved.push(UnsolvedBranch {
+                    text: steps.join(", "),
+                    open,
+                    branch: finish(system, partial),
+                });
             }
-            Step::Stuck(partial, _) if partial.several && count == 1 => return Err(Unsolved::Several(only)),
+            Step::Stuck(partial, _) if partial.several && !several_asked => {
+                return Err(Unsolved::Several(only));
+            }
             Step::Stuck(_, why) => return Err(why),
             Step::Done(partial) => {
                 let codimension = partial.codimension;
@@ -175,8 +212,8 @@ pub fn solve(system: &mut System, conditions: &[Equation]) -> Result<Solution, U
     }
     let Some(least) = done.iter().map(|(codimension, _)| *codimension).min() else {
         return Err(match (never, unsolved.is_empty()) {
-            (_, false) => Unsolved::NotKnown(unsolved.remove(0)),
-            (Some(text), true) if count == 1 => Unsolved::Never(text),
+            (_, false) => Unsolved::NotKnown(unsolved.remove(0).text),
+            (Some(text), true) if !several_asked => Unsolved::Never(text),
             _ => Unsolved::NeverTogether,
         });
     };
@@ -216,7 +253,7 @@ fn begin(system: &mut System, conditions: &[Equation]) -> Result<Partial, Unsolv
             continue; // it says nothing, wherever both sides exist
         }
         if !partial.open.iter().any(|other| (other.left, other.right) == (left, right)) {
-            partial.open.push(Condition { left, right, text });
+            partial.open.push(Condition { left, right, text, touches: false });
         }
     }
     Ok(partial)
@@ -254,11 +291,14 @@ impl Partial {
         found
     }
 
-    /// A guard that holds nowhere on the branch.
-    fn fails(&self, system: &mut System) -> Option<Guard> {
-        let nodes: Vec<NodeId> = self.guards.iter().map(|guard| guard.node).collect();
+    /// A guard that holds nowhere on the branch; of parts that are thinner than the set also one of those that the statement needs.
+    fn fails(&self, system: &mut System, count: usize) -> Option<Guard> {
+        let is_thin = self.least > count;
+        let guards: Vec<Guard> =
+            self.guards.iter().chain(self.kept.iter().filter(|_| is_thin)).copied().collect();
+        let nodes: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
         let there = self.put_in(system, &nodes);
-        let mut both = self.guards.iter().zip(there);
+        let mut both = guards.iter().zip(there);
         both.find(|(guard, node)| {
             Guard { node: *node, need: guard.need }.is_obvious(&system.graph) == Some(false)
                 || guard.need == Need::NotZero && vanishes(system, *node)
@@ -296,13 +336,15 @@ impl Partial {
 
 /// Meets one more condition.
 fn step(system: &mut System, mut partial: Partial, count: usize) -> Step {
-    if let Some(guard) = partial.fails(system) {
+    if let Some(guard) = partial.fails(system, count) {
         return Step::Empty(guard.text(&system.graph));
     }
     let mut open = Vec::new();
-    let nodes: Vec<NodeId> = partial.guards.iter().map(|guard| guard.node).collect();
-    let there = partial.put_in(system, &nodes).into_iter().zip(&partial.guards);
-    let guards: Vec<Guard> = there.map(|(node, guard)| Guard { node, need: guard.need }).collect();
+    let mut guards: Vec<Guard> = partial.guards.iter().chain(&partial.kept).copied().collect();
+    let nodes: Vec<NodeId> = guards.iter().map(|guard| guard.node).collect();
+    for (guard, node) in guards.iter_mut().zip(partial.put_in(system, &nodes)) {
+        guard.node = node;
+    }
     for condition in std::mem::take(&mut partial.open) {
         let sides = partial.put_in(system, &[condition.left, condition.right]);
         let difference = system.graph.sub(sides[0], sides[1]);
@@ -326,8 +368,24 @@ fn step(system: &mut System, mut partial: Partial, count: usize) -> Step {
         // an angle that is known up to whole turns, and was not put in: the condition tells these apart
         let mentioned = system.graph.symbols_of([condition.left, condition.right]);
         let way = match partial.turns.iter().any(|(angle, _)| mentioned.contains(angle)) {
-            true => way_apart_from_turns(system, condition.left, condition.right),
-            false => way(system, condition.left, condition.right),
+            true => way_apart_from_turns(system, condition.left, condition.right, &guards),
+            false => way(system, condition.left, condition.right, &guards),
+        };
+        let way = match way {
+            Way::Unknown if is_nowhere_zero(system, condition.left, condition.right, &guards) => {
+                return Step::Empty(condition.text.clone());
+            }
+            Way::Unknown if !condition.touches => touching(system, condition.left, condition.right),
+            Way::Linear { slope, rest, .. }
+                if partial.least > count && system.graph.reachable([slope, rest]).len() > LONGEST_OF_THIN =>
+            {
+                // too thin to be a part over the complex numbers: followed as long as that costs little
+                match factors_of(system, condition.left, condition.right) {
+                    Some(factors) => Way::Factors(factors),
+                    None => Way::Unknown,
+                }
+            }
+            way => way,
         };
         let length = system.graph.reachable([condition.left, condition.right]).len();
         let key = (way.rank(), length, quote(system, condition.left, condition.right));
@@ -339,12 +397,21 @@ fn step(system: &mut System, mut partial: Partial, count: usize) -> Step {
     let taken = open.remove(index);
     let text = taken.text.clone();
     let zero = system.graph.integer(0);
-    let also = |left: NodeId| Condition { left, right: zero, text: text.clone() };
+    let also = |left: NodeId| Condition { left, right: zero, text: text.clone(), touches: false };
     partial.open = open;
     match way {
         Way::Unknown => {
             partial.open.insert(0, taken);
             Step::Stuck(partial, Unsolved::NotLinear(text))
+        }
+        Way::All(terms) => {
+            partial.open.splice(0..0, terms.into_iter().map(also));
+            Step::Open(vec![partial])
+        }
+        Way::Touching(slopes) => {
+            partial.open.splice(0..0, slopes.into_iter().map(also));
+            partial.open.push(Condition { touches: true, ..taken });
+            Step::Open(vec![partial])
         }
         Way::Factors(factors) if factors.is_empty() => Step::Empty(text),
         Way::Factors(factors) => {
@@ -360,11 +427,6 @@ fn step(system: &mut System, mut partial: Partial, count: usize) -> Step {
         Way::Turns(angle, values) => {
             Step::Open(values.iter().map(|value| partial.with_turns(system, angle, *value)).collect())
         }
-        Way::Linear { .. } if partial.least > count => {
-            // too thin to be a part: followed as long as that costs nothing
-            partial.open.insert(0, taken);
-            Step::Stuck(partial, Unsolved::NotLinear(text))
-        }
         Way::Linear { symbol, value, slope, rest, apart } => {
             let mut main = partial.with(system, symbol, value);
             add_guard(&system.graph, &mut main.guards, Guard { node: slope, need: Need::NotZero });
@@ -374,6 +436,35 @@ fn step(system: &mut System, mut partial: Partial, count: usize) -> Step {
             other.least = other.least.max(other.codimension + apart.dimensions());
             Step::Open(vec![main, other])
         }
+    }
+}
+
+impl Branch {
+    /// The part of the branch on which some expressions vanish besides.
+    ///
+    /// # Errors
+    /// As for `solve`.
+    pub(crate) fn meeting(&self, system: &mut System, vanishing: &[NodeId]) -> Result<Solution, Unsolved> {
+        let turns = self.up_to_turns.iter().map(|angle| (*angle, self.values[angle])).collect();
+        let codimension = self.values.len();
+        let zero = system.graph.integer(0);
+        let mut start = Partial {
+            values: self.before_turns.clone(),
+            turns,
+            guards: self.guards.clone(),
+            assumed: self.assumed.clone(),
+            steps: self.steps.clone(),
+            open: Vec::new(),
+            codimension,
+            least: codimension,
+            several: false,
+            kept: Vec::new(),
+        };
+        for left in vanishing {
+            let text = quote(system, *left, zero);
+            start.open.push(Condition { left: *left, right: zero, text, touches: false });
+        }
+        follow(system, start, codimension + vanishing.len())
     }
 }
 

@@ -14,6 +14,10 @@ pub(super) enum Way {
     Turns(Symbol, Vec<NodeId>),
     /// `slope symbol + rest = 0`: the value where the slope is not zero, and any where both vanish.
     Linear { symbol: Symbol, value: NodeId, slope: NodeId, rest: NodeId, apart: Apart },
+    /// A sum of terms of which none is negative: all of these vanish.
+    All(Vec<NodeId>),
+    /// What is nowhere negative: where it vanishes these do, its derivatives.
+    Touching(Vec<NodeId>),
     /// By no way that is known.
     Unknown,
 }
@@ -45,11 +49,12 @@ impl Way {
     pub(super) fn rank(&self) -> u8 {
         match self {
             Way::Value(..) => 0,
-            Way::Turns(..) => 1,
+            Way::Turns(..) | Way::All(_) => 1,
             Way::Linear { apart: Apart::Coprime, .. } => 2,
             Way::Factors(_) => 3,
             Way::Linear { .. } => 4,
-            Way::Unknown => 5,
+            Way::Touching(_) => 5,
+            Way::Unknown => 6,
         }
     }
 }

@@ -98,7 +98,7 @@ pub struct SecondPoint {
 }
 
 /// What is known of the values of all unknowns.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolutionsAnswer {
     /// The unknowns in the order of the file, then the expressions.
     pub unknowns: Vec<SolutionsOf>,
@@ -138,6 +138,19 @@ pub const WORK: u64 = 10_000_000_000;
 pub fn solutions(
     system: &mut System,
     question: &SolutionsQuestion,
+) -> Result<SolutionsAnswer, CodistributionError> {
+    solutions_telling(system, question, &mut |_| ())
+}
+
+/// The same; what is known before anything is counted is told as soon as it is: which unknowns have infinitely many values, then what
+/// symmetries show.
+///
+/// # Errors
+/// As for [`solutions`].
+pub fn solutions_telling(
+    system: &mut System,
+    question: &SolutionsQuestion,
+    known: &mut dyn FnMut(SolutionsAnswer),
 ) -> Result<SolutionsAnswer, CodistributionError> {
     let frame = Frame::new(system, &question.conditions)?;
     let generic = frame.generic;
@@ -181,25 +194,40 @@ pub fn solutions(
         second: None,
         orders_are_open: false,
     };
+    let mut tell = |answer: &SolutionsAnswer| {
+        let mut so_far = answer.clone();
+        conclude(&mut so_far, &Err("it was interrupted".to_owned()), &generic);
+        known(so_far);
+    };
+    tell(&answer);
     let counted = match Model::new(system, &question.conditions, &expressions(question)) {
         Ok(model) => {
             by_symmetry(&model, &mut answer);
+            tell(&answer);
             count(system, &model, question, &mut answer)
         }
         Err(why) => Err(why),
     };
+    conclude(&mut answer, &counted, &generic);
+    Ok(answer)
+}
+
+/// What follows of each unknown from what is seen locally and from what was counted.
+fn conclude(answer: &mut SolutionsAnswer, counted: &Result<(), String>, generic: &GenericAnswer) {
     for of_it in &mut answer.unknowns {
-        match (of_it.local, &counted) {
-            (Seen::No, _) => of_it.solutions = Solutions::Infinite,
+        match (of_it.local, counted) {
+            // it is no bound on what is infinite that few were met where it was held
+            (Seen::No, _) => (of_it.solutions, of_it.at_most) = (Solutions::Infinite, None),
             (Seen::Undecided, _) => {
                 let why = generic
                     .open
                     .clone()
                     .unwrap_or_else(|| "it is not known whether it is seen locally".to_owned());
-                of_it.solutions = Solutions::Undecided(why);
-                of_it.at_most = None;
+                (of_it.solutions, of_it.at_most) = (Solutions::Undecided(why), None);
             }
-            (Seen::Yes, Err(why)) => of_it.solutions = Solutions::Undecided(why.clone()),
+            (Seen::Yes, Err(why)) => {
+                (of_it.solutions, of_it.at_most) = (Solutions::Undecided(why.clone()), None);
+            }
             (Seen::Yes, Ok(())) => {
                 let least = of_it.at_least.as_ref().map_or(1, |(least, _)| *least);
                 if matches!(of_it.solutions, Solutions::Finite(count) if count < least) {
@@ -210,7 +238,6 @@ pub fn solutions(
             }
         }
     }
-    Ok(answer)
 }
 
 /// The logarithm of the sum of two probabilities.

@@ -2,9 +2,10 @@
 
 use super::probe::{ATTEMPTS, seen_in};
 use super::steps::Steps;
-use super::{Ceiling, GenericAnswer, Seen, conclude, nothing_known};
+use super::{GenericAnswer, Seen, conclude, nothing_known};
 use crate::expression::NodeId;
 use crate::number::PrimeField;
+use crate::observability::saturation::Ceiling;
 use crate::system::{Assignment, System};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

@@ -4,7 +4,7 @@
 //!
 //! From a random state, with random series for the inputs, the outputs' derivatives and their differentials are computed in residues
 //! ([`equations`], [`covectors`]). Their span is that of all words: words are the coefficients of the inputs' derivatives
-//! in it. Once a derivative of an output adds nothing, no further one of it does. A nonzero minor modulo one prime is a nonzero
+//! in it. Once a derivative of an output adds nothing, no further one of it does ([`super::saturation`]). A nonzero minor modulo one prime is a nonzero
 //! minor, so what is found is certainly there; that nothing was missed is as certain as [`bound`] says.
 //!
 //! References: A. Sedoglavic, *A probabilistic algorithm to test local algebraic observability in polynomial time*, J. Symbolic
@@ -29,6 +29,7 @@ pub use matrix::{GenericRank, generic_rank};
 pub(crate) use orders::Orders;
 pub use probe::{Directions, Probe};
 
+use super::saturation::Ceiling;
 use crate::expression::{NodeId, Symbol};
 use crate::system::{Assignment, System, Time};
 use bound::Rounds;
@@ -84,21 +85,6 @@ impl GenericAnswer {
     pub fn is_final(&self) -> bool {
         self.rank().is_some()
     }
-}
-
-/// What bounds a rank from above.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ceiling {
-    /// The fields leave no state of the set: what has stopped growing has stopped for good.
-    Rests,
-    /// They may, and these are the ranks at almost all states around, with what is known at the beginning as unknown, and of the
-    /// unknowns; a rank falls on a special set, and never rises.
-    Around {
-        /// That of all that moves.
-        closed: usize,
-        /// That of the unknowns.
-        unknown: usize,
-    },
 }
 
 /// What is seen at almost all states that satisfy the conditions.

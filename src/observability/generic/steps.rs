@@ -1,5 +1,5 @@
 //! The generic answer in discrete time: a random state is followed modulo a prime for as many steps as can show anything new
-//! ([`super::super::composition`]), a known signal drawn anew at each, and the derivatives by the state at the beginning with it. Nothing is written
+//! ([`crate::observability::saturation`]), a known signal drawn anew at each, and the derivatives by the state at the beginning with it. Nothing is written
 //! out, so that the cost of a step is that of the map and of a product with its Jacobian.
 //!
 //! After `k` steps of a map of degree `d` what is seen is of degree `d^k` in what was drawn, the logarithm of its coefficients
@@ -12,6 +12,7 @@ use crate::expression::{
 };
 use crate::number::polynomial::Size;
 use crate::number::{Arithmetic, Function, PrimeField, Refusal};
+use crate::observability::saturation::most_steps;
 use crate::system::{Assignment, System};
 use rand_chacha::ChaCha8Rng;
 use std::collections::HashMap;
@@ -155,7 +156,7 @@ impl Steps {
         };
         let next = step.inputs().iter().map(next).collect();
         let columns = (0..closed.len()).filter(|place| unknowns.contains(&closed[*place])).collect();
-        let count = if rests && !on_a_set { closed.len() } else { 2 * closed.len() };
+        let count = most_steps(closed.len(), on_a_set || !rests);
         let (outputs, closed) = (system.outputs.len(), closed.len());
         Ok(Steps {
             start,

@@ -1,7 +1,9 @@
 //! Looks for what is wrong with the rows of a file.
 
 use super::spike::spikes;
-use super::{Cell, Fault, FaultKind, FaultRules, OnFault, RecordError, RecordReading, RecordRows};
+use super::{
+    Cell, Fault, FaultKind, FaultRules, MOST_FAULTS, OnFault, RecordError, RecordReading, RecordRows,
+};
 use std::collections::BTreeSet;
 
 impl RecordRows {
@@ -11,7 +13,8 @@ impl RecordRows {
     /// There is a fault and the rules say to stop; or no row is left.
     pub fn settle(self, rules: &FaultRules) -> Result<RecordReading, RecordError> {
         let faults = check(&self, rules);
-        if rules.on_fault == OnFault::Stop && !faults.is_empty() {
+        // of what has so many faults not all are known
+        if rules.on_fault == OnFault::Stop && !faults.is_empty() || faults.len() > MOST_FAULTS {
             return Err(RecordError::Faulty { path: self.path, faults });
         }
         let skipped: BTreeSet<usize> = faults.iter().filter(|f| f.takes_its_row()).map(|f| f.row).collect();
@@ -68,6 +71,9 @@ pub fn check(rows: &RecordRows, rules: &FaultRules) -> Vec<Fault> {
 pub(super) fn unreadable(rows: &RecordRows) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (row, place) in rows.rows.iter().enumerate() {
+        if faults.len() > MOST_FAULTS {
+            break;
+        }
         if place.surplus > 0 {
             faults.push(rows.fault(row, None, FaultKind::Surplus { cells: place.surplus }));
         }

@@ -1,9 +1,9 @@
 //! Columns of a file under other names and in other units than those of a model.
 
-use super::table::{Row, Table};
+use super::table::{Row, Table, listed};
 use super::{Cell, Record, RecordError, TIME};
 use crate::system::nearest;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Where a column comes from: `factor` times what stands there, and `offset` more.
@@ -55,11 +55,16 @@ impl ColumnNames {
     pub(crate) fn plan(&self, path: &Path, header: &[String]) -> Result<ColumnPlan, RecordError> {
         let mut plan =
             ColumnPlan { names: Vec::new(), shown: Vec::new(), places: Vec::new(), width: header.len() };
+        // of columns with one name the first
+        let places: BTreeMap<&str, usize> =
+            header.iter().enumerate().rev().map(|(at, name)| (name.as_str(), at)).collect();
+        let mut named = BTreeSet::new();
         for source in &self.sources {
-            let place = header.iter().position(|name| *name == source.from).ok_or_else(|| {
+            named.extend([source.name.as_str(), source.from.as_str()]);
+            let place = places.get(source.from.as_str()).copied().ok_or_else(|| {
                 let near = nearest(&source.from, header.iter().map(String::as_str));
                 let near = near.map_or_else(
-                    || format!("its columns are {}", header.join(", ")),
+                    || format!("its columns are {}", listed(header)),
                     |near| format!("perhaps '{near}' is meant"),
                 );
                 let help = format!("{near}; [columns] takes '{}' from it", source.name);
@@ -69,7 +74,7 @@ impl ColumnNames {
         }
         for (place, name) in header.iter().enumerate() {
             // what has its name from the scene comes before what has it from the file
-            if !self.sources.iter().any(|source| source.name == *name || source.from == *name) {
+            if !named.contains(name.as_str()) {
                 plan.add(name, name, place, None);
             }
         }
@@ -87,7 +92,7 @@ impl ColumnNames {
             None => (name.to_owned(), values.to_vec()),
         };
         let (time, times) = write(TIME, record.times());
-        let columns = record.names().iter().filter_map(|name| Some(write(name, record.column(name)?)));
+        let columns = record.names.iter().zip(&record.columns).map(|(name, values)| write(name, values));
         let columns = columns.collect();
         if time == TIME { Record::new(times, columns) } else { Record::over(&time, times, columns) }
     }

@@ -2,8 +2,9 @@
 //! a comment, spaces around a cell do not count.
 
 use super::table::Table;
-use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row, STREAM};
+use super::{Cell, LONGEST_FILE, MOST_CELLS, ROOM, Record, RecordError, Row, STREAM};
 use crate::file::read_bytes;
+use crate::foreign::{Budget, Spent};
 use csv::{ReaderBuilder, Trim, WriterBuilder};
 use std::io::{Error, Read, Write};
 use std::path::Path;
@@ -28,8 +29,12 @@ pub(super) fn read(path: &Path) -> Result<Table, RecordError> {
     let names = names(&header, path)?;
     let refuse = |why: String| Err(no_header(path, why));
     let mut rows = Vec::new();
+    let room = Budget::new(ROOM);
+    let too_large = |spent: Spent| no_header(path, format!("its numbers are too many: {spent}"));
+    room.bytes(bytes.len()).map_err(too_large)?;
     for line in reader.byte_records() {
         let line = line.map_err(complain)?;
+        room.bytes(names.len() * size_of::<Cell>() + 2 * size_of::<Row>()).map_err(too_large)?;
         let cells = (0..names.len()).map(|i| cell(line.get(i).unwrap_or_default())).collect();
         if (rows.len() as u64 + 1).saturating_mul(names.len() as u64) > MOST_CELLS {
             return refuse(format!("it has more than {MOST_CELLS} cells"));

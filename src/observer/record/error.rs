@@ -1,6 +1,7 @@
 //! Why a record could not be read or written.
 
-use super::Fault;
+use super::{Fault, MOST_FAULTS};
+use crate::foreign::{shown, shown_path};
 use miette::Diagnostic;
 use std::path::PathBuf;
 
@@ -11,7 +12,7 @@ const LISTED: usize = 8;
 #[derive(Debug, Diagnostic, thiserror::Error)]
 pub enum RecordError {
     /// The file cannot be opened or read as what its extension says.
-    #[error("cannot read {}: {why}", path.display())]
+    #[error("cannot read {}: {why}", shown_path(path))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -22,7 +23,7 @@ pub enum RecordError {
         help: Option<String>,
     },
     /// The file cannot be written.
-    #[error("cannot write {}: {why}", path.display())]
+    #[error("cannot write {}: {why}", shown_path(path))]
     Unwritable {
         /// The file.
         path: PathBuf,
@@ -30,21 +31,21 @@ pub enum RecordError {
         why: String,
     },
     /// The extension names no format of records.
-    #[error("{} is neither a .csv nor a .parquet file", path.display())]
+    #[error("{} is neither a .csv nor a .parquet file", shown_path(path))]
     #[diagnostic(help("a record's format is told by its extension: name it .csv or .parquet"))]
     Extension {
         /// The file.
         path: PathBuf,
     },
     /// A Parquet file, where the crate was built without them.
-    #[error("{} is a Parquet file, and this build has no Parquet", path.display())]
+    #[error("{} is a Parquet file, and this build has no Parquet", shown_path(path))]
     #[diagnostic(help("build it with the feature 'parquet', or keep records as .csv"))]
     NoParquet {
         /// The file.
         path: PathBuf,
     },
     /// The header names no columns that can be used.
-    #[error("the header of {} cannot be used: {why}", path.display())]
+    #[error("the header of {} cannot be used: {}", shown_path(path), shown(why))]
     Header {
         /// The file.
         path: PathBuf,
@@ -55,7 +56,7 @@ pub enum RecordError {
         help: String,
     },
     /// A column that is needed is not there.
-    #[error("{} has no column '{column}'", path.display())]
+    #[error("{} has no column '{}'", shown_path(path), shown(column))]
     Column {
         /// The file.
         path: PathBuf,
@@ -66,7 +67,7 @@ pub enum RecordError {
         help: String,
     },
     /// A header and nothing below it.
-    #[error("{} has no rows", path.display())]
+    #[error("{} has no rows", shown_path(path))]
     #[diagnostic(help("a record has one row a sample below its header"))]
     NoRows {
         /// The file.
@@ -82,7 +83,7 @@ pub enum RecordError {
         faults: Vec<Fault>,
     },
     /// Nothing is left when the faulty rows are skipped.
-    #[error("{} has no row without fault\n{}", path.display(), listed(faults))]
+    #[error("{} has no row without fault\n{}", shown_path(path), listed(faults))]
     #[diagnostic(help("the columns may be in another order than the header says"))]
     NothingLeft {
         /// The file.
@@ -91,7 +92,7 @@ pub enum RecordError {
         faults: Vec<Fault>,
     },
     /// A column has another length than the times.
-    #[error("column '{column}' has {found} values, but there are {expected} times")]
+    #[error("column '{}' has {found} values, but there are {expected} times", shown(column))]
     #[diagnostic(help("give every column one value for each time"))]
     Length {
         /// The column.
@@ -102,7 +103,10 @@ pub enum RecordError {
         expected: usize,
     },
     /// A column's name is empty, taken, or that of the times.
-    #[error("a column cannot be called '{column}': the name is empty, there twice, or that of the times")]
+    #[error(
+        "a column cannot be called '{}': the name is empty, there twice, or that of the times",
+        shown(column)
+    )]
     #[diagnostic(help("give every column a name of its own other than 'time'"))]
     Name {
         /// The name.
@@ -113,9 +117,10 @@ pub enum RecordError {
 fn faulty(path: &std::path::Path, faults: &[Fault]) -> String {
     let count = match faults.len() {
         1 => "one fault".to_owned(),
+        count if count > MOST_FAULTS => format!("more than {MOST_FAULTS} faults"),
         count => format!("{count} faults"),
     };
-    format!("{} has {count}\n{}", path.display(), listed(faults))
+    format!("{} has {count}\n{}", shown_path(path), listed(faults))
 }
 
 fn listed(faults: &[Fault]) -> String {

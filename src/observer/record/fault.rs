@@ -1,5 +1,6 @@
 //! What can be wrong with a row, and the rules by which it is found.
 
+use crate::foreign::shown;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -111,7 +112,7 @@ impl fmt::Display for Fault {
             write!(f, " at {time} s")?;
         }
         if let Some(column) = &self.column {
-            write!(f, ", {column}")?;
+            write!(f, ", {}", shown(column))?;
         }
         match &self.kind {
             FaultKind::NotANumber { says } => write!(f, ": {says:?} is no number"),

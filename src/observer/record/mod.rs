@@ -30,6 +30,8 @@ pub(crate) use rows::RecordRows;
 pub(crate) use stream::RowStream;
 pub(crate) use table::{Cell, Row};
 
+use crate::foreign::Allowance;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The name of the column of times, in seconds.
@@ -42,7 +44,13 @@ pub(crate) const STREAM: &str = "standard input";
 const LONGEST_FILE: u64 = 512 << 20;
 
 /// More cells than this are not believed: a damaged file of a few bytes may promise any number of them.
-const MOST_CELLS: u64 = 100_000_000;
+const MOST_CELLS: u64 = 50_000_000;
+
+/// More faults than these are not listed: the file is another one than is thought.
+const MOST_FAULTS: usize = 1_000_000;
+
+/// What the rows of a file may take while they are read, its text among it.
+const ROOM: Allowance = Allowance { bytes: 1_600 << 20, nodes: u64::MAX, steps: u64::MAX };
 
 /// A table of numbers: a time in seconds and named columns, one row a sample.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,12 +81,13 @@ impl Record {
     /// When a column has another length than the times, or a name is empty or there twice.
     pub fn new(times: Vec<f64>, columns: Vec<(String, Vec<f64>)>) -> Result<Record, RecordError> {
         let mut record = Record { times, ..Record::default() };
+        let mut known = BTreeSet::new();
         for (name, values) in columns {
             if values.len() != record.times.len() {
                 let (found, expected) = (values.len(), record.times.len());
                 return Err(RecordError::Length { column: name, found, expected });
             }
-            if name.trim().is_empty() || name == TIME || record.names.contains(&name) {
+            if name.trim().is_empty() || name == TIME || !known.insert(name.clone()) {
                 return Err(RecordError::Name { column: name });
             }
             record.names.push(name);

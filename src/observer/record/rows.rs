@@ -3,10 +3,11 @@
 use super::columns::ColumnPlan;
 #[cfg(feature = "parquet")]
 use super::parquet_file;
-use super::table::{Cell, Row, Table};
+use super::table::{Cell, Row, Table, listed};
 use super::{ColumnNames, Fault, FaultKind, Record, RecordError, STREAM, TIME, comma_separated};
+use crate::foreign::shown;
 use crate::system::nearest;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// A record as it stands in its file.
@@ -60,7 +61,11 @@ impl RecordRows {
         let plan = columns.plan(path, &table.names)?;
         let judged = judged(path, &plan, needed)?;
         let Table { names, rows, foreign } = plan.table(table);
-        if let Some((column, what)) = foreign.iter().find(|(index, _)| judged.contains(index)) {
+        if let Some((column, what)) = judged
+            .iter()
+            .filter_map(|column| Some((column, foreign.get(column)?)))
+            .min_by_key(|(column, _)| **column)
+        {
             let why = format!("the column '{}' holds {what}, not numbers", plan.shown[*column]);
             let help = "write it as doubles; times are seconds".to_owned();
             return Err(RecordError::Header { path: path.to_owned(), why, help });
@@ -126,17 +131,18 @@ pub(super) fn twice(path: &Path, names: &[String]) -> Result<(), RecordError> {
 /// The columns that are judged: the times first; where none is needed beside them, all.
 pub(super) fn judged(path: &Path, plan: &ColumnPlan, needed: &[&str]) -> Result<Vec<usize>, RecordError> {
     let names = &plan.names;
-    let index = |column: &str| {
-        let place = names.iter().position(|name| name == column);
-        place.ok_or_else(|| missing(path, &plan.shown, column))
-    };
+    // of columns with one name the first
+    let places: BTreeMap<&str, usize> =
+        names.iter().enumerate().rev().map(|(at, name)| (name.as_str(), at)).collect();
+    let index = |column: &str| places.get(column).copied().ok_or_else(|| missing(path, &plan.shown, column));
     let mut judged = vec![index(TIME)?];
+    let mut known = BTreeSet::from([judged[0]]);
     if needed.is_empty() {
         judged.extend((0..names.len()).filter(|i| names[*i] != TIME));
     }
     for column in needed {
         let column = index(column)?;
-        if !judged.contains(&column) {
+        if known.insert(column) {
             judged.push(column);
         }
     }
@@ -147,13 +153,14 @@ fn missing(path: &Path, names: &[String], column: &str) -> RecordError {
     let help = match nearest(column, names.iter().map(String::as_str)) {
         Some(name) => {
             format!(
-                "perhaps '{name}' is meant; the header must name it '{column}', or a scene so: [columns] {column} = \"{name}\""
+                "perhaps '{name}' is meant; the header must name it '{column}', or a scene so: [columns] {column} = \"{name}\"",
+                name = shown(name)
             )
         }
         None if names.len() == 1 => {
             format!("its header is the one name {:?}; columns are separated by commas", names[0])
         }
-        None => format!("its columns are {}", names.join(", ")),
+        None => format!("its columns are {}", listed(names)),
     };
     RecordError::Column { path: path.to_owned(), column: column.to_owned(), help }
 }

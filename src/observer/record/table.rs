@@ -1,5 +1,6 @@
 //! What the readers of the formats find: cells, readable or not, in rows under names.
 
+use crate::foreign::shown;
 use std::collections::BTreeMap;
 
 /// What stands in a cell.
@@ -41,4 +42,15 @@ pub(super) struct Table {
     pub rows: Vec<Row>,
     /// What the columns hold that cannot hold numbers, by their indices.
     pub foreign: BTreeMap<usize, String>,
+}
+
+/// Names in a line, the first ones of many.
+pub(super) fn listed(names: &[String]) -> String {
+    const MOST: usize = 40;
+    let more = names.len().saturating_sub(MOST);
+    let first: Vec<_> = names.iter().take(MOST).map(|name| shown(name)).collect();
+    match more {
+        0 => first.join(", "),
+        _ => format!("{} and {more} more", first.join(", ")),
+    }
 }

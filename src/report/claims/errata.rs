@@ -2,6 +2,7 @@
 //! numbers with both values.
 
 use crate::claim::{Outcome, Verdict, Witness};
+use crate::foreign::{code_block, code_span, markdown};
 use crate::paper::{NumberedEquation, Paper};
 use crate::report::claims::outcomes::{error_bound, explanations, special_text, with_decimal};
 use crate::report::claims::words::{meaning, words_markdown};
@@ -16,7 +17,7 @@ pub fn errata_markdown<'o>(paper: &Paper, outcomes: impl IntoIterator<Item = &'o
          Written by `palmistry verify`; every statement below is checked each time it runs. A form of the text that is \
          called wrong is refuted by a state in exact numbers at which its two sides differ, wherever it can be stated; the \
          right form is proved.\n\n",
-        paper.reference(|title| format!("*{title}*")),
+        reference(paper),
     );
     words_markdown(&paper.numbering, &outcomes, &mut out);
     for fault in Flaw::ALL {
@@ -37,6 +38,16 @@ pub fn errata_markdown<'o>(paper: &Paper, outcomes: impl IntoIterator<Item = &'o
     out
 }
 
+/// Authors, title and year in a line.
+fn reference(paper: &Paper) -> String {
+    let year = paper.year.map_or(String::new(), |year| format!(" ({year})"));
+    let title = match paper.title.trim() {
+        "" => String::new(),
+        title => format!("*{}*", markdown(title)),
+    };
+    format!("{}{title}{year}", markdown(&paper.authors_in_words()))
+}
+
 fn heading(fault: Flaw) -> &'static str {
     match fault {
         Flaw::Erratum => "Errata",
@@ -52,29 +63,25 @@ fn capitalised(text: &str) -> String {
     characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
 }
 
-fn block(code: &str) -> String {
-    format!("```\n{code}\n```\n")
-}
-
 /// One form that does not hold as the text has it.
 fn entry(outcome: &Outcome, fault: Flaw, out: &mut String) {
     let [_, before, between] = fault.keywords();
     let (before, between) = (capitalised(before), capitalised(between));
-    let _ = writeln!(out, "## {}\n", outcome.id);
+    let _ = writeln!(out, "## {}\n", markdown(&outcome.id));
     if let Some(quoted) = &outcome.quoted {
-        let _ = writeln!(out, "{before}:\n\n{}", block(quoted));
+        let _ = writeln!(out, "{before}:\n\n{}", code_block(quoted));
     }
     if let Some((printed, _)) = &outcome.printed {
         let label = if outcome.quoted.is_some() { "As a statement" } else { before.as_str() };
-        let _ = writeln!(out, "{label}:\n\n{}", block(printed));
+        let _ = writeln!(out, "{label}:\n\n{}", code_block(printed));
     }
-    let _ = writeln!(out, "{between}:\n\n{}", block(&outcome.statement));
+    let _ = writeln!(out, "{between}:\n\n{}", code_block(&outcome.statement));
     definitions(outcome, out);
     if let Some((_, Verdict::Refuted { witness, .. })) = &outcome.printed {
         let _ = writeln!(out, "{}\n", in_words(witness));
     }
     if let Some(special) = &outcome.printed_at_files_values {
-        let _ = writeln!(out, "Of the form in the text: {}.\n", special_text(special));
+        let _ = writeln!(out, "Of the form in the text: {}.\n", markdown(&special_text(special)));
     }
     if let Verdict::Proved { log2_error, .. } = &outcome.verdict {
         let form = match fault {
@@ -92,13 +99,13 @@ fn entry(outcome: &Outcome, fault: Flaw, out: &mut String) {
         let _ = writeln!(out, "{certainty}\n");
     }
     if let Some(special) = &outcome.at_files_values {
-        let _ = writeln!(out, "Of the right form: {}.\n", special_text(special));
+        let _ = writeln!(out, "Of the right form: {}.\n", markdown(&special_text(special)));
     }
     if let Some(from) = &outcome.follows {
-        let _ = writeln!(out, "Follows {from}.\n");
+        let _ = writeln!(out, "Follows {}.\n", markdown(from));
     }
     if let Some(remark) = &outcome.remark {
-        let _ = writeln!(out, "{remark}\n");
+        let _ = writeln!(out, "{}\n", markdown(remark));
     }
 }
 
@@ -106,12 +113,13 @@ fn entry(outcome: &Outcome, fault: Flaw, out: &mut String) {
 fn definitions(outcome: &Outcome, out: &mut String) {
     let lines = explanations(outcome);
     if !lines.is_empty() {
-        let _ = writeln!(out, "where\n\n{}", block(&lines.join("\n")));
+        let _ = writeln!(out, "where\n\n{}", code_block(&lines.join("\n")));
     }
 }
 
 fn in_words(witness: &Witness) -> String {
-    let state: Vec<String> = witness.state.iter().map(|at| format!("{}: {}", at.name, at.exact)).collect();
+    let state: Vec<String> =
+        witness.state.iter().map(|at| markdown(&format!("{}: {}", at.name, at.exact))).collect();
     let side = match witness.entry {
         None => "left side of the form in the text".to_owned(),
         Some((row, column)) => {
@@ -121,9 +129,9 @@ fn in_words(witness: &Witness) -> String {
     let place =
         if state.is_empty() { format!("The {side}") } else { format!("At {} the {side}", state.join("; ")) };
     format!(
-        "{place} is `{}`, of the right side `{}`.",
-        with_decimal(&witness.left),
-        with_decimal(&witness.right)
+        "{place} is {}, of the right side {}.",
+        code_span(&with_decimal(&witness.left)),
+        code_span(&with_decimal(&witness.right))
     )
 }
 
@@ -155,9 +163,9 @@ fn table(all: &[NumberedEquation<'_>], out: &mut String) {
             .collect();
         let mut last = entries.join(", ");
         if !reasons.is_empty() {
-            last = format!("{last}: {}", reasons.join("; ").replace('|', "/"));
+            last = format!("{last}: {}", markdown(&reasons.join("; ").replace('|', "/")));
         }
-        let _ = writeln!(out, "| {} | {} | {last} |", equation.number, equation.word());
+        let _ = writeln!(out, "| {} | {} | {last} |", markdown(&equation.number), equation.word());
     }
 }
 
@@ -176,5 +184,6 @@ fn in_the_table(outcome: &Outcome, word: &str) -> String {
     if let Some(from) = &outcome.follows {
         notes.push(format!("follows {from}"));
     }
-    if notes.is_empty() { outcome.id.clone() } else { format!("{} ({})", outcome.id, notes.join(" ")) }
+    let id = markdown(&outcome.id);
+    if notes.is_empty() { id } else { format!("{id} ({})", markdown(&notes.join(" "))) }
 }

@@ -1,6 +1,7 @@
 //! Outcomes of claims as JUnit XML.
 
 use crate::claim::Outcome;
+use crate::foreign::shown;
 use crate::report::claims::text::claim_text;
 use crate::report::layout::Layout;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -22,23 +23,26 @@ pub fn junit(outcomes: &[Outcome]) -> miette::Result<String> {
             status
         };
         let mut case = TestCase::new(outcome.id.as_str(), status);
-        case.set_classname(outcome.file.as_str());
+        case.set_classname(&*shown(&outcome.file));
         case.set_time(std::time::Duration::from_secs_f64(outcome.seconds));
         // attributes that continuous integration shows beside the name of a case
         let (line, column) = outcome.place;
-        let place =
-            [("file", outcome.file.clone()), ("line", line.to_string()), ("column", column.to_string())];
+        let place = [
+            ("file", shown(&outcome.file).into_owned()),
+            ("line", line.to_string()),
+            ("column", column.to_string()),
+        ];
         case.extra.extend(place.map(|(name, value)| (name.into(), value.into())));
         case.add_property(("statement", outcome.statement.as_str()));
         if let Some((printed, _)) = &outcome.printed {
             case.add_property(("printed", printed.as_str()));
         }
         match suites.last_mut() {
-            Some(suite) if suite.name.as_str() == outcome.file => {
+            Some(suite) if suite.name.as_str() == shown(&outcome.file) => {
                 suite.add_test_case(case);
             }
             _ => {
-                let mut suite = TestSuite::new(outcome.file.as_str());
+                let mut suite = TestSuite::new(&*shown(&outcome.file));
                 suite.add_test_case(case);
                 suites.push(suite);
             }

@@ -56,6 +56,9 @@ pub fn claim_json(outcome: &Outcome) -> Value {
     if let Some(special) = &outcome.at_files_values {
         object["at_the_files_values"] = special_json(special);
     }
+    if !outcome.not_looked_at.is_empty() {
+        object["not_looked_at"] = json!(outcome.not_looked_at);
+    }
     if !outcome.beside.is_empty() {
         object["beside"] = json!(outcome.beside);
     }
@@ -197,6 +200,9 @@ pub fn claim_line(outcome: &Outcome) -> String {
     if let Some(from) = &outcome.follows {
         line.push_str(&format!("\n         follows    {from}"));
     }
+    for part in &outcome.not_looked_at {
+        line.push_str(&format!("\n         {}", not_looked_at_text(part)));
+    }
     if let Some(special) = &outcome.at_files_values {
         line.push_str(&format!("\n         {}", special_text(special)));
     }
@@ -204,4 +210,9 @@ pub fn claim_line(outcome: &Outcome) -> String {
         line.push_str(&format!("\n         expected: {}", outcome.expected_word()));
     }
     line
+}
+
+/// A thin part of a set that a proof does not speak of, as a sentence.
+pub(crate) fn not_looked_at_text(part: &str) -> String {
+    format!("nothing is said of a part of fewer dimensions: {part}")
 }

@@ -1,7 +1,10 @@
 //! Claims as a report on a terminal: a line for what is as expected, and all that is known of what is not.
 
 use crate::claim::{Outcome, Verdict, Witness};
-use crate::report::claims::outcomes::{claim_line, error_bound, special_text, state_line, with_decimal};
+use crate::foreign;
+use crate::report::claims::outcomes::{
+    claim_line, error_bound, not_looked_at_text, special_text, state_line, with_decimal,
+};
 use crate::report::claims::words::counts_text;
 use crate::report::formula::statement_latex;
 use crate::report::layout::{Layout, Tone};
@@ -51,7 +54,7 @@ pub fn claims_text(
     for outcome in outcomes.iter().filter(|outcome| shown == Shown::All || !outcome.ok) {
         if outcome.file != file && shown == Shown::All {
             file = &outcome.file;
-            lines.push(layout.paint(Tone::Strong, file));
+            lines.push(layout.paint(Tone::Strong, &foreign::shown(file)));
         }
         lines.push(claim_text(outcome, layout));
         for told in &outcome.beside {
@@ -103,7 +106,7 @@ fn unexpected(outcome: &Outcome, layout: &Layout) -> String {
         layout.paint(Tone::Bad, "FAIL"),
         outcome.word(),
         layout.paint(Tone::Strong, &outcome.id),
-        outcome.file,
+        foreign::shown(&outcome.file),
     );
     let mut lines = vec![head];
     let mut say = |label: &str, text: &str| {
@@ -122,6 +125,9 @@ fn unexpected(outcome: &Outcome, layout: &Layout) -> String {
     }
     say(if outcome.fault.is_some() { between } else { "claimed" }, &outcome.statement);
     details(&outcome.verdict, &mut say);
+    for part in &outcome.not_looked_at {
+        say("", &not_looked_at_text(part));
+    }
     if let Some(special) = &outcome.at_files_values {
         say("", &special_text(special));
     }

@@ -1,6 +1,7 @@
 //! The words of outcomes: what each one says, how many entries have it, and which errors are errors of their own.
 
 use crate::claim::Outcome;
+use crate::foreign::markdown;
 use crate::paper::Numbering;
 use crate::system::Flaw;
 use std::fmt::Write as _;
@@ -112,7 +113,7 @@ pub(crate) fn words_markdown(numbering: &Numbering, outcomes: &[&Outcome], out: 
     for fault in Flaw::ALL {
         let found = errors(numbering, outcomes.iter().copied(), fault);
         if !(found.independent.is_empty() && found.following.is_empty()) {
-            let _ = writeln!(out, "- {}.", found.text(fault.word()));
+            let _ = writeln!(out, "- {}.", markdown(&found.text(fault.word())));
         }
     }
     out.push('\n');

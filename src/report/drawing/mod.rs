@@ -215,7 +215,7 @@ fn paint(colour: &str) -> String {
 
 /// A text that may stand in XML.
 pub(super) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    crate::foreign::html(text)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use crate::experiment::{Basin, CurvatureMap};
 use crate::report::axis::number;
-use crate::report::drawing::{Canvas, INK, MESH, svg};
+use crate::report::drawing::{Canvas, INK, MESH, escaped, svg};
 use crate::report::motion::answers::{Observed, noise_unit};
 use crate::report::motion::plot::with_unit;
 use crate::report::motion::studies::ratio_words;
@@ -37,7 +37,10 @@ pub(super) fn noise(observed: &Observed<'_>, place: usize) -> String {
     };
     let ((left, right), (low, high)) = (ends(|point| point.0), ends(|point| point.1));
     if all().next().is_none() {
-        return format!("<p>{name}: no estimate converged at any level of noise, and nothing bounds it</p>");
+        return format!(
+            "<p>{}: no estimate converged at any level of noise, and nothing bounds it</p>",
+            escaped(name)
+        );
     }
     svg((420, 330), &format!("{name} at the first sample: error over noise"), |area| {
         let (head, plot) = area.split_vertically(48);

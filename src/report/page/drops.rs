@@ -34,6 +34,9 @@ fn told(answer: &DropAnswer) -> Markup {
         p {
             @if answer.is_final { "At almost all states the rank is " b { (rank) } " of " (dimension) "." }
             @else { "Asked for is the rank " b { (rank) } " of " (dimension) "; that almost all states have it is not decided." }
+            @if !answer.initial.is_empty() {
+                " It is asked for at the beginning, where " (listed(&answer.initial, SHORT)) "."
+            }
             @if !answer.domain.is_empty() {
                 " It is asked for where all terms exist: "
                 (listed(&answer.domain[..answer.domain.len().min(CONDITIONS)], SHORT))
@@ -82,14 +85,17 @@ fn sets(sets: &[DropSet]) -> Markup {
                 @for set in sets {
                     tr {
                         td { (place(set)) }
-                        td.number { b { (set.rank) } }
+                        td.number { @if !set.exactly { "at most " } b { (set.rank) } }
                         td {
                             @match error_bound(set.log2_error).as_str() {
                                 "0" => { "certain" }
                                 bound => { "error below " (raised(bound)) }
                             }
                         }
-                        td.words { @if let Some(state) = &set.state { (at(state)) } }
+                        td.words {
+                            @if let Some(state) = &set.state { (at(state)) }
+                            @else if !set.exists { "no state of it was found, and there may be none" }
+                        }
                     }
                 }
             }
@@ -219,9 +225,11 @@ mod tests {
             equations: vec!["omega0 = 0".to_owned()],
             unless: vec!["x != 0".to_owned()],
             rank: 4,
+            exactly: false,
             open: None,
             log2_error: f64::NEG_INFINITY,
             state: None,
+            exists: false,
         };
         let open = DropSet { open: Some("too long".to_owned()), unless: Vec::new(), ..set.clone() };
         DropAnswer {
@@ -230,6 +238,7 @@ mod tests {
             dimension: 6,
             rank: 6,
             is_final: true,
+            initial: Vec::new(),
             domain: vec!["y != 0".to_owned()],
             sets: vec![set],
             open: vec![open],

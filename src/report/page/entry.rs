@@ -2,7 +2,7 @@
 
 use super::anchors::{Anchors, Placed};
 use crate::claim::{Outcome, Verdict};
-use crate::report::claims::outcomes::{error_bound, special_text, witness_line};
+use crate::report::claims::outcomes::{error_bound, not_looked_at_text, special_text, witness_line};
 use crate::report::formula::formula_mathml;
 use crate::report::names::fields_text;
 use crate::system::{Basis, Flaw};
@@ -34,6 +34,7 @@ pub(super) fn entry(claim: Placed<'_>, anchors: &Anchors, engines: &Engines<'_>)
                 }
             }
             @for told in &outcome.beside { p { (told) } }
+            @for part in &outcome.not_looked_at { p { (not_looked_at_text(part)) } }
             @if let Some(special) = &outcome.at_files_values { p { (special_text(special)) } }
             @if !outcome.fields.is_empty() { p { "fields: " (fields_text(&outcome.fields)) } }
             @if let Some(from) = &outcome.follows { p { "follows " (from) } }

@@ -1,7 +1,8 @@
 //! The main job's findings as JSON and as lines for the terminal.
 
 use crate::experiment::Answer;
-use crate::paper::{FileFindings, Findings, ReductionFound, SetRank};
+use crate::foreign::shown;
+use crate::paper::{FileFindings, Findings, LineFound, ReductionFound, SetRank};
 use crate::report::certificate::answer::region_json;
 use crate::report::claims::outcomes::{claim_json, claim_line};
 use crate::report::claims::words::{counts, counts_text, errors};
@@ -15,7 +16,7 @@ use crate::report::trade::answer::trade_json;
 use crate::sweep::RankAnswer;
 use crate::system::Flaw;
 use crate::tradeoff::stress::StressStudy;
-use crate::tradeoff::{LandscapeRows, Map, PrintedExpression, PrintedValue, Slope};
+use crate::tradeoff::{LandscapeRows, Map, PrintedExpression, PrintedValue};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -24,21 +25,41 @@ fn four_digits(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-fn map_json(kind: LandscapeRows, map: &Map) -> Value {
+fn map_json(kind: LandscapeRows, map: &Map, of: Option<&str>) -> Value {
     json!({
         "rows": if kind == LandscapeRows::Own { "own" } else { "full" },
         "x": { "name": map.x.name, "low": map.x.low, "high": map.x.high, "cells": map.width },
         "y": { "name": map.y.name, "low": map.y.low, "high": map.y.high, "cells": map.height },
-        "smallest_singular_value": map.smallest.iter().map(|v| v.map(four_digits)).collect::<Vec<_>>(),
+        "of": of.unwrap_or("worst"),
+        "standard_deviation": map.deviations.iter().map(|v| v.map(deviation_json)).collect::<Vec<_>>(),
+        "cells_by_state": object_of(&map.shown, |count| json!(count)),
+        "priors": object_of(&map.scales.priors, |value| json!(value)),
+        "units_of_noise": object_of(&map.scales.noise, |value| json!(value)),
     })
 }
 
-fn line_json(title: &str, slope: &Slope) -> Value {
-    let short = |values: &[f64]| values.iter().copied().map(four_digits).collect::<Vec<_>>();
+fn object_of<T>(list: &[(String, T)], value: impl Fn(&T) -> Value) -> Value {
+    list.iter().map(|(name, one)| (name.clone(), value(one))).collect::<serde_json::Map<_, _>>().into()
+}
+
+/// A standard deviation over its prior one; where it is infinite this word, since null is a pole.
+fn deviation_json(value: f64) -> Value {
+    if value.is_finite() { json!(four_digits(value)) } else { json!("infinite") }
+}
+
+fn line_json(line: &LineFound) -> Value {
+    let slope = &line.slope;
+    let of = |place: usize| -> Vec<Option<Value>> {
+        slope.values.iter().map(|values| Some(deviation_json(values.as_ref()?[place]))).collect()
+    };
+    let all = slope.names.iter().enumerate().map(|(place, name)| (name.clone(), json!(of(place))));
     json!({
-        "into": title,
-        "distance": short(&slope.distance),
-        "singular_values": slope.values.iter().map(|values| short(values)).collect::<Vec<_>>(),
+        "into": line.view.title,
+        "rows": if line.rows == LandscapeRows::Own { "own" } else { "full" },
+        "distance": slope.distance.iter().copied().map(four_digits).collect::<Vec<_>>(),
+        "standard_deviation": all.collect::<serde_json::Map<_, _>>(),
+        "priors": object_of(&slope.scales.priors, |value| json!(value)),
+        "units_of_noise": object_of(&slope.scales.noise, |value| json!(value)),
     })
 }
 
@@ -86,9 +107,9 @@ fn file_json(file: &FileFindings) -> Value {
         "ranks": file.ranks.iter().map(set_json).collect::<Vec<_>>(),
         "maps": file.maps.iter().map(|found| json!({
             "title": found.view.title,
-            "maps": found.maps.iter().map(|(kind, map)| map_json(*kind, map)).collect::<Vec<_>>(),
+            "maps": found.maps.iter().map(|(kind, map)| map_json(*kind, map, found.view.of.as_deref())).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
-        "lines": file.lines.iter().map(|line| line_json(&line.view.title, &line.slope)).collect::<Vec<_>>(),
+        "lines": file.lines.iter().map(line_json).collect::<Vec<_>>(),
         "printed": file.printed.iter().map(printed_json).collect::<Vec<_>>(),
         "reductions": file.reductions.iter().map(reduction_json).collect::<Vec<_>>(),
         "lie_derivatives": file.derivatives.as_ref().map(|found| json!({
@@ -240,7 +261,7 @@ pub(crate) fn ranks_in_words(answer: &RankAnswer, own: bool) -> String {
 fn file_text(file: &FileFindings, out: &mut String) {
     let system = &file.system;
     if !(file.ranks.is_empty() && file.printed.is_empty() && file.left_out.is_empty()) {
-        let _ = writeln!(out, "{}: {}", system.name, system.title);
+        let _ = writeln!(out, "{}: {}", shown(&system.name), system.title);
     }
     if !file.ranks.is_empty() {
         let own = file.ranks.iter().filter_map(|rank| rank.found.as_ref().ok());

@@ -8,9 +8,9 @@ use crate::claim::Outcome;
 use crate::paper::{DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank};
 use crate::report::formula::{conditions_mathml, formula_mathml};
 use crate::report::plot;
-use crate::report::ranks::taken_for_granted;
+use crate::report::ranks::{deviation_text, taken_for_granted};
 use crate::sweep::RankAnswer;
-use crate::tradeoff::{ExpandedText, LandscapeRows, PrintedExpression};
+use crate::tradeoff::{ExpandedText, LandscapeRows, Map, PrintedExpression};
 use maud::{Markup, PreEscaped, html};
 
 /// The unit of a name, where it is known.
@@ -54,18 +54,36 @@ fn maps(map: &MapFound, units: Units<'_>) -> Markup {
             div.grid {
                 @for (kind, drawn) in &map.maps {
                     @let title = if *kind == LandscapeRows::Own { "the file's own rows" } else { "the full codistribution" };
+                    @let title = map.view.of.as_ref().map_or(title.to_owned(), |of| format!("{title}: {of}"));
                     @let units = [units(&drawn.x.name), units(&drawn.y.name)];
-                    (PreEscaped(plot::map(drawn, title, [units[0].as_deref(), units[1].as_deref()])))
+                    (PreEscaped(plot::map(drawn, &title, [units[0].as_deref(), units[1].as_deref()])))
                 }
             }
             figcaption {
                 b { (map.view.title) ". " }
-                "The smallest singular value (of what remains without unit rows, equilibrated; computed, not certified) over two "
-                "coordinates; white where there is a pole. "
+                "How well " (map.view.of.as_deref().unwrap_or("the worst state")) " is observable by these rows: its standard "
+                "deviation over its prior one, where each row is measured up to its own range (computed, not certified). Light is "
+                "small, which is well; dark is large; green is infinite, which is not observable or not to be told from it; white "
+                "is a pole. "
+                @if map.view.of.is_none() { (worst_of(map)) }
                 @if let Some(caption) = &map.view.caption { (caption) }
             }
         }
     }
+}
+
+/// Which state is the worst in which part of each map.
+fn worst_of(found: &MapFound) -> String {
+    let of = |map: &Map| {
+        let all: usize = map.shown.iter().map(|(_, count)| count).sum();
+        let part = |(name, count): &(String, usize)| {
+            format!("{name} in {:.0} %", 100.0 * *count as f64 / all as f64)
+        };
+        map.shown.iter().map(part).collect::<Vec<_>>().join(", ")
+    };
+    let parts: Vec<String> =
+        found.maps.iter().map(|(_, map)| of(map)).filter(|text| !text.is_empty()).collect();
+    if parts.is_empty() { String::new() } else { format!("The worst is {} of the cells. ", parts.join("; ")) }
 }
 
 fn lines(lines: &[LineFound], units: Units<'_>) -> Markup {
@@ -77,11 +95,18 @@ fn lines(lines: &[LineFound], units: Units<'_>) -> Markup {
                 }
             }
             figcaption {
-                "The singular values of the file's own rows (of the full codistribution where it has none) along lines; the "
-                "smallest in red. Distances are in the coordinate that moves."
+                "How well each state is observable along lines"
+                @if lines.iter().all(|line| line.rows == LandscapeRows::Own) { ", by the file's own rows alone" }
+                ": its standard deviation over its prior one, that of the worst in red; dots above the scale where it is infinite. "
+                "Distances are in the coordinate that moves."
             }
         }
     }
+}
+
+/// A name or an expression as mathematics; as it is written where it is none.
+fn in_line(text: &str) -> Markup {
+    formula_mathml(text).map_or_else(|| html! { (text) }, PreEscaped)
 }
 
 /// Conditions as mathematics; as they are written where they are none.
@@ -103,7 +128,7 @@ fn reduction(found: &ReductionFound) -> Markup {
             "is, fields and differentials are the same). Left out: "
             @for (place, name) in found.left_out.iter().enumerate() {
                 @if place > 0 { ", " }
-                (PreEscaped(formula_mathml(name).unwrap_or_else(|| name.clone())))
+                (in_line(name))
             }
             "."
             @if let Some(remark) = &found.reduction.remark { " " (remark) "." }
@@ -150,7 +175,7 @@ fn ranks(ranks: &[SetRank]) -> Markup {
         div.scroll { table {
             thead { tr {
                 th { "states" } th { "rank, full codistribution" } th { "not seen" } th { "rank, own rows" } th { "not seen by these" }
-                th { "words needed" } th { "sampled" } th { "certified" } th { "worst condition" }
+                th { "words needed" } th { "sampled" } th { "certified" } th { "least observable" }
             } }
             tbody {
                 @for rank in ranks {
@@ -165,7 +190,7 @@ fn ranks(ranks: &[SetRank]) -> Markup {
                                 td.words { @for words in distinct_words(answer) { div { (words) } } }
                                 td.number { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
                                 td.number { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
-                                td.number { (worst(answer)) }
+                                td.number { (least_observable(answer)) }
                             }
                             Err(why) => { td colspan="8" { (why) } }
                         }
@@ -176,12 +201,13 @@ fn ranks(ranks: &[SetRank]) -> Markup {
     }
 }
 
-fn worst(answer: &RankAnswer) -> String {
-    let conditions = answer.branches.iter().filter_map(|b| b.full.worst.as_ref()).map(|(_, s)| s.condition());
-    match conditions.fold(None::<f64>, |a, c| Some(a.map_or(c, |a| a.max(c)))) {
-        Some(condition) => format!("{condition:.1e}"),
-        None => "-".to_owned(),
-    }
+/// The state with the largest standard deviation over its prior one.
+fn least_observable(answer: &RankAnswer) -> String {
+    let found = answer.branches.iter().filter_map(|branch| branch.deviations.as_ref());
+    let all: Vec<_> = found.filter_map(|found| Some((found.least.as_ref()?, found))).collect();
+    let least = all.into_iter().max_by(|(a, _), (b, _)| a.deviation.total_cmp(&b.deviation));
+    least
+        .map_or("-".to_owned(), |(least, found)| format!("{}: {}", least.state, deviation_text(found, least)))
 }
 
 fn printed(found: &PrintedExpression, outcomes: &[Outcome]) -> Markup {
@@ -190,7 +216,7 @@ fn printed(found: &PrintedExpression, outcomes: &[Outcome]) -> Markup {
     let poles: Vec<&Outcome> =
         outcomes.iter().filter(|outcome| outcome.pole_of.as_deref() == Some(found.text.as_str())).collect();
     html! {
-        h3 { "Numbers in print: " (PreEscaped(formula_mathml(&found.text).unwrap_or_else(|| found.text.clone()))) }
+        h3 { "Numbers in print: " (in_line(&found.text)) }
         @if let Some(expanded) = &found.expanded {
             p {
                 "Multiplied out over its common denominator, as a computer-algebra system's " code { "simplify" }

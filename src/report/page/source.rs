@@ -1,6 +1,7 @@
 //! The text of each proof file, its lines counted, so that an entry can point to where it stands.
 
 use super::anchors::Anchors;
+use crate::foreign::shown;
 use crate::system::System;
 use maud::{Markup, PreEscaped, html};
 
@@ -19,12 +20,17 @@ pub(super) fn sources(systems: &[&System], anchors: &Anchors) -> Markup {
     }
 }
 
+/// A line in which everything is seen, its tabs as they are.
+fn in_letters(line: &str) -> String {
+    line.split('\t').map(shown).collect::<Vec<_>>().join("\t")
+}
+
 /// A numbered list of lines. Only those to which something points have a name.
 fn text(source: &str, file: usize, anchors: &Anchors) -> String {
     let named = anchors.lines_of(file);
     let mut out = String::from("<ol>");
     for (place, line) in source.lines().enumerate() {
-        let line = line.replace('&', "&amp;").replace('<', "&lt;");
+        let line = in_letters(line).replace('&', "&amp;").replace('<', "&lt;");
         match named.contains(&(place + 1)) {
             true => out.push_str(&format!("<li id=\"{}\">{line}\n", Anchors::line_name(file, place + 1))),
             false => out.push_str(&format!("<li>{line}\n")),

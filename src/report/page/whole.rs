@@ -14,7 +14,7 @@ use crate::report::motion::answers::Observed;
 use crate::report::motion::section::observed_section;
 use crate::report::slow_observed::SlowObserved;
 use crate::report::slow_section::slow_section;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 /// The names of the sections, which nothing else on the page may have.
 const SECTIONS: [&str; 13] = [
@@ -84,7 +84,8 @@ fn header(found: &Findings, links: Markup) -> Markup {
         header {
             h1 { "What holds, and what does not" }
             p {
-                (PreEscaped(found.paper.reference(|title| html! { em { (title) } }.into_string())))
+                (found.paper.authors_in_words()) em { (found.paper.title) }
+                @if let Some(year) = found.paper.year { " (" (year) ")" }
                 @if let Some(source) = &found.paper.source { ", " (source) }
                 ", checked from first principles. "
                 "Each verdict says what stands behind it: " b { "proved" } " is exact arithmetic with the "

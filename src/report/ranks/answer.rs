@@ -132,7 +132,7 @@ fn branch_json(branch: &BranchAnswer) -> Value {
     object["stopped_because"] = json!(stop_text(branch.stop));
     object["generic_rank"] = json!(branch.generic_rank);
     object["longer_words_cannot_raise_it"] = json!(branch.is_final);
-    add_generic_json(branch, &mut object);
+    add_generic_json(&branch.generic, &branch.unknowns, &mut object);
     object["unseen_fields"] = branch.motions.as_ref().map_or(Value::Null, motions_json);
     object["standard_deviations"] = branch.deviations.as_ref().map_or(Value::Null, deviations_json);
     object["own_rows"] = branch.rows.as_ref().map_or(Value::Null, sweep_json);
@@ -197,7 +197,8 @@ fn sweep_text(title: &str, report: &SweepReport, out: &mut String) {
     if report.smallest_gap.is_finite() {
         let _ = writeln!(out, "  smallest gap on which a computed rank rests: {:.1e}", report.smallest_gap);
     }
-    if let Some((state, spectrum)) = &report.worst {
+    // how hard a rank is to decide says nothing of how well a state is observable: it is for those who ask for digits
+    if let Some((state, spectrum)) = report.worst.as_ref().filter(|_| report.digits.is_some()) {
         let values: Vec<String> = state.iter().map(|at| format!("{} = {:.6}", at.name, at.value)).collect();
         let condition = match &report.digits {
             Some(Ok(found)) => found.condition.clone(),
@@ -290,7 +291,7 @@ pub fn rank_text(answer: &RankAnswer) -> String {
                 values_text(&branch.held)
             );
         }
-        generic_text(branch, &mut out);
+        generic_text(&branch.generic, &branch.unknowns, &mut out);
         if branch.stop == Stop::NotTaken {
             branch.motions.iter().for_each(|found| motions_text(found, false, &mut out));
             let _ = writeln!(out, "no states were sampled (--samples N draws N)");

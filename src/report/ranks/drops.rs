@@ -20,6 +20,8 @@ fn set_json(set: &DropSet) -> Value {
         "equations": set.equations,
         "unless": set.unless,
         "rank": set.rank,
+        "exactly": set.exactly,
+        "exists": set.exists,
         "open": set.open,
         "error_bound": if set.open.is_none() { json!(error_bound(set.log2_error)) } else { Value::Null },
         "state": state,
@@ -56,6 +58,7 @@ pub fn drops_json(answer: &DropAnswer) -> Value {
         "rank": answer.rank,
         "final": answer.is_final,
         "exact": answer.is_exact(),
+        "initial": answer.initial,
         "domain": answer.domain,
         "sets": answer.sets.iter().map(set_json).collect::<Vec<_>>(),
         "open": answer.open.iter().map(set_json).collect::<Vec<_>>(),
@@ -95,11 +98,15 @@ pub fn drops_text(answer: &DropAnswer) -> String {
             ),
         }
     );
+    if !answer.initial.is_empty() {
+        let _ = writeln!(out, "of those that are asked for, where {}", answer.initial.join(", "));
+    }
     if !answer.domain.is_empty() {
         let _ = writeln!(out, "all words exist where {}", answer.domain.join(", "));
     }
     for set in &answer.sets {
-        let _ = write!(out, "rank {} {}", set.rank, place(&set.equations, &set.unless));
+        let most = if set.exactly { "" } else { "at most " };
+        let _ = write!(out, "rank {most}{} {}", set.rank, place(&set.equations, &set.unless));
         match error_bound(set.log2_error).as_str() {
             "0" => out.push_str(" (certain)"),
             bound => {
@@ -110,6 +117,8 @@ pub fn drops_text(answer: &DropAnswer) -> String {
         if let Some(state) = &set.state {
             let named: Vec<String> = state.iter().map(|at| format!("{} = {}", at.name, at.exact)).collect();
             let _ = writeln!(out, "  for example at {}", named.join(", "));
+        } else if !set.exists {
+            let _ = writeln!(out, "  no state of it was found, and there may be none");
         }
     }
     for set in &answer.open {

@@ -1,7 +1,7 @@
 //! What is seen at almost all states, and of each unknown whether it is.
 
 use crate::observability::{GenericAnswer, Seen};
-use crate::sweep::BranchAnswer;
+use crate::sweep::GenericOnBranch;
 use crate::system::UnknownKind;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -22,9 +22,11 @@ pub(in crate::report) fn unknown_verdict(kind: UnknownKind, seen: Seen) -> &'sta
     }
 }
 
+/// The unknowns: their names and what they are.
+type Unknowns = [(String, UnknownKind)];
+
 /// The answer and the table of unknowns, as the fields of an object.
-pub(super) fn add_generic_json(branch: &BranchAnswer, object: &mut Value) {
-    let generic = &branch.generic;
+pub(super) fn add_generic_json(generic: &GenericAnswer, unknowns: &Unknowns, object: &mut Value) {
     object["generic"] = json!({
         "rank": generic.rank(),
         "at_least": generic.at_least,
@@ -35,7 +37,7 @@ pub(super) fn add_generic_json(branch: &BranchAnswer, object: &mut Value) {
         "open": generic.open,
     });
     let unknown = |((name, kind), (_, seen)): (&(String, UnknownKind), &(_, Seen))| json!({ "name": name, "kind": kind.name(), "verdict": unknown_verdict(*kind, *seen) });
-    let unknowns = branch.unknowns.iter().zip(&generic.unknowns).map(unknown);
+    let unknowns = unknowns.iter().zip(&generic.unknowns).map(unknown);
     object["unknowns"] = unknowns.collect();
     object["degrees_of_freedom_left"] = json!(generic.rank().map(|rank| generic.dimension - rank));
 }
@@ -80,12 +82,38 @@ pub(in crate::report) fn generic_sentence(generic: &GenericAnswer) -> String {
     }
 }
 
+/// What is known where somebody did not wait for the states, as one object.
+pub fn rank_so_far_json(file: &str, branches: &[GenericOnBranch]) -> Value {
+    let branch = |branch: &GenericOnBranch| {
+        let mut object = json!({ "conditions": branch.conditions });
+        add_generic_json(&branch.generic, &branch.unknowns, &mut object);
+        object
+    };
+    json!({
+        "file": file,
+        "interrupted": true,
+        "samples": 0,
+        "branches": branches.iter().map(branch).collect::<Vec<_>>(),
+    })
+}
+
+/// The same as text.
+pub fn rank_so_far_text(file: &str, branches: &[GenericOnBranch]) -> String {
+    let mut out = format!("{file}: interrupted before states were looked at\n");
+    for branch in branches {
+        if !branch.conditions.is_empty() {
+            let _ = writeln!(out, "where {}", branch.conditions.join(", "));
+        }
+        generic_text(&branch.generic, &branch.unknowns, &mut out);
+    }
+    out
+}
+
 /// The answer and the table of unknowns, in words.
-pub(super) fn generic_text(branch: &BranchAnswer, out: &mut String) {
-    let generic = &branch.generic;
+pub(super) fn generic_text(generic: &GenericAnswer, unknowns: &Unknowns, out: &mut String) {
     let _ = writeln!(out, "{}", generic_sentence(generic));
-    let width = branch.unknowns.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-    for ((name, kind), (_, seen)) in branch.unknowns.iter().zip(&generic.unknowns) {
+    let width = unknowns.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    for ((name, kind), (_, seen)) in unknowns.iter().zip(&generic.unknowns) {
         let _ = writeln!(out, "  {name:<width$}  {:<9}  {}", kind.name(), unknown_verdict(*kind, *seen));
     }
 }

@@ -1,6 +1,7 @@
 //! How many values of each unknown give the same outputs, as JSON and as text.
 
 use super::generic::unknown_verdict;
+use crate::foreign::shown;
 use crate::observability::{SecondPoint, Solutions, SolutionsOf};
 use crate::report::claims::outcomes::error_bound;
 use crate::report::names::{plain_number, values_json, values_text};
@@ -124,7 +125,7 @@ fn in_words(of_it: &SolutionsOf, orders_are_open: bool) -> String {
 /// An answer as text.
 pub fn global_text(answer: &GlobalAnswer) -> String {
     let found = &answer.solutions;
-    let mut out = format!("{}: {}\n", answer.file, answer.title);
+    let mut out = format!("{}: {}\n", shown(&answer.file), answer.title);
     if !answer.conditions.is_empty() {
         let _ = writeln!(out, "at the beginning {}", answer.conditions.join(", "));
     }

@@ -13,6 +13,8 @@ pub use accessible::{accessibility_json, accessibility_text};
 pub(super) use answer::taken_for_granted;
 pub use answer::{rank_json, rank_text};
 pub use drops::{drops_json, drops_text};
+pub use generic::{rank_so_far_json, rank_so_far_text};
 pub use global::{global_json, global_text};
 pub use motions::unseen_field_text;
+pub(super) use seen::deviation_text;
 pub use state_table::{StateTableWriter, TableForm};

@@ -3,7 +3,7 @@
 use crate::number::{rational_to_f64, round_to_decimal};
 use crate::observability::{NamedCoordinate, StateInWords};
 use crate::report::names::plain_number;
-use crate::sweep::{NEARLY_INVISIBLE, StandardDeviations, UnseenDirection};
+use crate::sweep::{LeastObservable, NEARLY_INVISIBLE, StandardDeviations, UnseenDirection};
 use dashu::rational::RBig;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -87,6 +87,20 @@ pub(super) fn deviations_text(found: &StandardDeviations, out: &mut String) {
         );
         let _ = writeln!(out, "{}", line.trim_end());
     }
+    if let Some(least) = &found.least {
+        let (state, deviation) = (&least.state, deviation_text(found, least));
+        let _ = writeln!(out, "  least observable: {state}, {deviation}, at {}", place_text(&least.at));
+    }
+}
+
+/// How well the state is observable that is so least.
+pub(crate) fn deviation_text(found: &StandardDeviations, least: &LeastObservable) -> String {
+    let is_seen = found.list.iter().any(|row| row.state == least.state && row.is_seen);
+    match (least.deviation.is_finite(), is_seen) {
+        (true, _) => number_text(least.deviation),
+        (false, true) => "unknown".to_owned(),
+        (false, false) => "not seen".to_owned(),
+    }
 }
 
 fn number_text(value: f64) -> String {
@@ -103,6 +117,12 @@ pub(super) fn deviations_json(found: &StandardDeviations) -> Value {
         "states": found.states,
         "units_of_noise": found.words.iter().map(|(word, unit)| (word.clone(), json!(unit)))
             .collect::<serde_json::Map<_, _>>(),
+        "least_observable": found.least.as_ref().map(|least| json!({
+            "state": least.state,
+            "deviation": finite(least.deviation),
+            "at": least.at.iter().map(|at| (at.name.clone(), json!({ "exact": at.exact, "value": at.value })))
+                .collect::<serde_json::Map<_, _>>(),
+        })),
         "of": found.list.iter().map(|row| json!({
             "state": row.state,
             "spread": row.spread,

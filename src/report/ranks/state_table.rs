@@ -1,5 +1,6 @@
 //! A table with a row for each state of a sweep, CSV or Parquet, written as the states come: it may be longer than any memory.
 
+use crate::foreign::shown_path;
 use crate::sweep::StateRow;
 #[cfg(feature = "parquet")]
 use parquet::{
@@ -44,7 +45,7 @@ impl TableForm {
             Some("csv") => Ok(TableForm::CommaSeparated),
             Some("parquet") if cfg!(feature = "parquet") => Ok(TableForm::Parquet),
             Some("parquet") => Err("this program was built without Parquet; name a .csv file".to_owned()),
-            _ => Err(format!("{} is neither a .csv nor a .parquet file", path.display())),
+            _ => Err(format!("{} is neither a .csv nor a .parquet file", shown_path(path))),
         }
     }
 }

@@ -48,8 +48,9 @@ fn listening(scene: &Path) -> (Child, Receiver<Value>) {
     let out = BufReader::new(child.stdout.take().unwrap());
     std::thread::spawn(move || {
         for line in out.lines() {
-            // errors are printed over several lines: these are no answers
-            let Ok(found) = serde_json::from_str::<Value>(&line.unwrap()) else { break };
+            // whatever is printed, errors too
+            let line = line.unwrap();
+            let found = serde_json::from_str::<Value>(&line).unwrap_or_else(|why| panic!("{why}: {line}"));
             if sender.send(found).is_err() {
                 break;
             }
@@ -233,6 +234,31 @@ fn nobody_listens_any_more() {
     assert!(words.contains("nobody reads"), "{words}");
 }
 
+/// Before anything is read, and where the command line is not understood: one line, and that an object.
+#[test]
+fn errors_of_a_stream_are_lines_too() {
+    let (folder, scene, _) = spring(SCENE);
+    let piped = SCENE.replace("duration = 8\nsamples = 401\n", "");
+    let piped = piped.replace("[start]\nx = 0.7\nv = -0.9\nk = 2.3\n", "[data]\nrecord = \"-\"\n");
+    let piped = piped.replace("guess_off = 0.05", "guess = { x = 0.7, v = -0.9, k = 2.3 }");
+    let from_scene = write(&folder, "piped.toml", piped);
+    let (scene, from_scene) = (scene.to_str().unwrap(), from_scene.to_str().unwrap());
+    for arguments in [
+        &["observe", "missing.toml", "--data", "-"][..],
+        &["observe", scene, "--data", "-", "--no-such-word"],
+        &["observe", scene, "--data=-", "--no-such-word"],
+        &["observe", scene, "--data", "-", "--out", "x"],
+        &["observe", from_scene],
+        &["prove", "--watch", "--no-such-word"],
+    ] {
+        let output = palmistry(&[arguments, &["--json"]].concat());
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert_eq!((output.status.code(), text.lines().count()), (Some(2), 1), "{arguments:?}: {text}");
+        let object: Value = serde_json::from_str(&text).unwrap();
+        assert!(object["error"].is_object(), "{arguments:?}: {text}");
+    }
+}
+
 #[test]
 fn what_a_stream_cannot_do_is_refused() {
     let (folder, scene, _) = spring(SCENE);
@@ -258,7 +284,7 @@ fn what_a_stream_cannot_do_is_refused() {
         let (mut child, lines) = listening(scene);
         let _ = child.stdin.take().unwrap().write_all(text.as_bytes());
         let (left, status, words) = end_of(child, &lines);
-        assert!(left.is_empty(), "{left:?}");
+        assert!(matches!(left.as_slice(), [only] if only["error"].is_object()), "{left:?}");
         assert_eq!(status, Some(2), "{text:?}: {words}");
         assert!(words.contains(word), "{text:?}: {words}");
     }

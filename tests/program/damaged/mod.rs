@@ -6,7 +6,7 @@
 
 use palmistry::RankQuestion;
 use palmistry::certificate::{Limits, Region, RegionRows};
-use palmistry::checker::{Effort, VerdictFile};
+use palmistry::checker::{Checking, Effort, ProofSources, VerdictFile};
 use palmistry::claim::{Kept, decide_all_keeping};
 use palmistry::experiment::space::SpaceScene;
 use palmistry::experiment::{Experiment, Scene, Studies, StudyPart};
@@ -441,11 +441,14 @@ fn verdicts() {
     let records: Vec<_> = outcomes.into_iter().flat_map(|outcome| outcome.evidence).collect();
     assert!(records.len() >= 3, "{} records", records.len());
     let whole = VerdictFile::new(1, records).text().unwrap();
-    let reader = Watched::new("verdicts", |bytes| {
+    let sources = ProofSources::given([system]);
+    let reader = Watched::new("verdicts", move |bytes| {
         if let Ok(text) = std::str::from_utf8(bytes)
             && let Ok(file) = VerdictFile::read(text)
         {
-            let _ = file.check(1, &Effort::default(), &false.into(), &|| ()).len();
+            let (effort, never) = (Effort::default(), false.into());
+            let with = Checking { sources: &sources, seed: 1, effort: &effort, interrupt: &never };
+            let _ = file.check(with, &|| ()).len();
         }
     });
     reader.try_all(&[whole.into_bytes()]);

@@ -1,12 +1,10 @@
 //! From nodes of a graph to a listing: one operation a node, operands first.
 
-use crate::checker::{
-    ExactCoordinate, ExactState, Listing, Missing, Ratio, Requirement, RequirementKind, Sides, SidesRelation,
-    Step,
-};
+use super::doubt::Missing;
+use super::listing::{Listing, Step};
+use super::witness::{Requirement, RequirementKind, Sides, SidesRelation};
 use crate::expression::syntax::Relation;
 use crate::expression::{Graph, Guard, Need, Node, NodeId};
-use crate::observability::{Coordinate, State};
 use dashu::rational::RBig;
 use std::collections::HashMap;
 
@@ -21,7 +19,12 @@ pub struct Lowering<'g> {
 impl<'g> Lowering<'g> {
     /// An empty listing.
     pub fn new(graph: &'g Graph) -> Self {
-        Lowering { graph, listing: Listing::default(), places: HashMap::new() }
+        Lowering::behind(graph, Listing::default())
+    }
+
+    /// A listing that goes on behind the operations of another one.
+    pub fn behind(graph: &'g Graph, listing: Listing) -> Self {
+        Lowering { graph, listing, places: HashMap::new() }
     }
 
     /// The place of a node's operation, and those of all that it needs.
@@ -115,23 +118,4 @@ impl<'g> Lowering<'g> {
     pub fn finish(self) -> Listing {
         self.listing
     }
-}
-
-/// A coordinate for the checker.
-pub fn exact_coordinate(value: &Coordinate) -> ExactCoordinate {
-    match value {
-        Coordinate::Number(value) => ExactCoordinate::Number(Ratio(value.clone())),
-        Coordinate::Angle { sine, cosine } => {
-            ExactCoordinate::Angle { sin: Ratio(sine.clone()), cos: Ratio(cosine.clone()) }
-        }
-    }
-}
-
-/// A state for the checker, by names.
-pub fn exact_state(graph: &Graph, state: &State) -> ExactState {
-    let named = state.values.iter().map(|(symbol, value)| {
-        let name = graph.symbol_name(*symbol).to_owned();
-        (name, exact_coordinate(value))
-    });
-    named.collect()
 }

@@ -1,0 +1,142 @@
+//! Sets that inequalities and domains make thinner than they look, and parts of sets that are thinner than the rest: by hand, each.
+
+use palmistry::{Outcome, RankQuestion, System, Verdict, answer_rank, prove};
+use std::path::Path;
+
+const MODEL: &str = "system \"thin\"\nstate x, y, z, phi\nparam k\nangle phi\ndrift f\n  others' = 0\noutput x*y, y, z, sin(phi)\n";
+
+fn outcomes(claims: &[(&str, String)]) -> Vec<Outcome> {
+    let claims: Vec<String> = claims.iter().map(|(id, claim)| format!("claim {id}: {claim}\n")).collect();
+    let text = format!("{MODEL}{}", claims.concat());
+    let system = System::parse("thin.proof", &text, Path::new("")).unwrap_or_else(|why| panic!("{why:?}"));
+    prove(&system)
+}
+
+fn outcome(claim: &str) -> Outcome {
+    outcomes(&[("c", claim.to_owned())]).remove(0)
+}
+
+/// What is refuted has a state, and that it is refuted at; of a number there is none to give.
+#[test]
+fn a_claim_is_asked_of_each_part_of_its_set() {
+    for (claim, expected) in [
+        // one point of a line
+        ("rank([x]) = 1 where x >= 0, x <= 0", "refuted"),
+        ("rank([x]) = 0 where x >= 0, x <= 0", "proved"),
+        ("rank = 4 where y in [0, 0]", "refuted"),
+        ("rank = 3 where y in [0, 0]", "proved"),
+        ("observable(x) where y in [0, 0]", "refuted"),
+        ("observable(x) where y in [0, 1]", "proved"),
+        ("rank([x]) = 1 where 0 <= x <= 0", "refuted"),
+        ("rank([x]) = 1 where x^2 <= 0", "refuted"),
+        ("rank([x]) = 1 where x^2 + y^2 <= 0", "refuted"),
+        ("rank([x]) = 1 where abs(x) <= 0", "refuted"),
+        ("rank([x]) = 1 where x^2 + 2*x*y + 2*y^2 = 0", "refuted"),
+        ("rank([x - 1; y]) = 1 where x >= 1, x <= 1, y^2 <= 0", "refuted"),
+        // domains
+        ("rank([x; 0*sqrt(x); 0*sqrt(-x)]) = 1", "refuted"),
+        ("rank([x - 1; sqrt(x - 1)*sqrt(1 - x)]) = 1", "refuted"),
+        ("rank([x - 1]) = 1 where asin(x) >= 0, x >= 1", "refuted"),
+        ("rank([x; acos(x^2 + 1)]) = 1", "refuted"),
+        // angles
+        ("rank([cos(phi) - 1; sin(phi)]) = 1 where cos(phi) >= 1", "refuted"),
+        ("rank([cos(phi)]) = 1 where sin(phi)^2 >= 1", "refuted"),
+        ("rank([cos(phi)]) = 1 where cos(phi)^2 <= 0", "refuted"),
+        ("rank([x]) = 1 where exp(x) <= 1, x >= 0", "refuted"),
+        // an equation on what inequalities make thin
+        ("x = 0 where x >= 0, x <= 0", "proved"),
+        ("x = y where (x - y)^2 <= 0", "proved"),
+        // a point beside a half-line
+        ("rank([x]) = 1 where x^2*(x - 1) >= 0", "undecided"),
+        ("rank([x - 1]) = 1 where (x - 1)^2*x <= 0", "undecided"),
+        // what is closed and has no thin part
+        ("rank([x]) = 1 where abs(x) <= 1", "proved"),
+        ("rank([x; y]) = 1 where x^2 + y^2 <= 1, x + y >= 0", "proved"),
+        ("rank([x]) = 1 where x*y >= 0", "proved"),
+        ("rank([x]) = 1 where x^2 + y^2 >= 1", "proved"),
+        // Whitney's umbrella has a stick
+        ("x != 7 where (y^2 + z^2)*x + y^2 + 2*z^2 = 0", "refuted"),
+        ("rank([y]) = 1 where (y^2 + z^2)*x + y^2 + 2*z^2 = 0", "undecided"),
+        ("x != 7 where x^2 - 14*x + 49 = 0", "refuted"),
+        ("x*y = 0 where x^2 + y^2 = 0", "proved"),
+        // nothing
+        ("rank = 3 where 0 > 0", "undecided"),
+        ("rank = 3 where x >= 1, x <= 0", "undecided"),
+        ("x = 0 where x^2 + 1 <= 0", "undecided"),
+        // numbers
+        ("0 = 0 within -1", "refuted"),
+        ("1 = 0 within -1", "refuted"),
+        ("x*(2^1000)^100 = 0", "refuted"),
+        // absolute values to a power have their derivative at zero, by themselves they have none
+        ("d(x*abs(x), x) at {x = 0} = 0", "proved"),
+        ("d(x*abs(x), x) = 2*abs(x)", "proved"),
+        ("d(abs(x)^3, x) at {x = 0} = 0", "proved"),
+        ("d(abs(x)^3*abs(y)*y, y) = 2*abs(y)*abs(x)^3", "proved"),
+        ("d(abs(x), x) at {x = 0} = 0", "undecided"),
+    ] {
+        let found = outcome(claim);
+        assert_eq!(found.word(), expected, "{claim}: {:?}", found.verdict);
+        if let Verdict::Refuted { witness, .. } = &found.verdict {
+            assert!(!witness.state.is_empty() || claim.contains("within"), "{claim}: no state");
+        }
+    }
+}
+
+/// Central differences, of numbers that share nothing with derivatives.
+#[test]
+fn derivatives_of_absolute_values_are_slopes() {
+    type Case = (&'static str, fn(f64) -> f64);
+    let cases: [Case; 5] = [
+        ("x*abs(x)", |x| x * x.abs()),
+        ("x^2*abs(x)", |x| x * x * x.abs()),
+        ("abs(x)^3", |x| x.abs().powi(3)),
+        ("(x - 1)*abs(x - 1)*x", |x| (x - 1.0) * (x - 1.0).abs() * x),
+        ("sin(x*abs(x))", |x| (x * x.abs()).sin()),
+    ];
+    for (text, value) in cases {
+        for at in [-2, -1, 0, 1, 3] {
+            let (x, step) = (f64::from(at), 1e-4);
+            let slope = (value(x + step) - value(x - step)) / (2.0 * step);
+            let claim = format!("d({text}, x) at {{x = {at}}} = ({slope:.8}) within 0.001");
+            assert_eq!(outcome(&claim).word(), "proved", "{claim}");
+        }
+    }
+}
+
+/// The random numbers of a claim are those of what it says.
+#[test]
+fn a_name_and_a_place_change_no_verdict() {
+    let claims =
+        ["x*y = 0", "rank([x, y; y, x]) = 1", "x^2 + y^2 >= 2*x*z", "rank = 2", "x != 7 where x*y = z"];
+    let named = |names: [&'static str; 5], reversed: bool| {
+        let mut all: Vec<_> = names.into_iter().zip(claims.map(str::to_owned)).collect();
+        if reversed {
+            all.reverse();
+        }
+        let mut found: Vec<(String, Verdict)> =
+            outcomes(&all).into_iter().map(|one| (one.statement, one.verdict)).collect();
+        found.sort_by(|a, b| a.0.cmp(&b.0));
+        found
+    };
+    let first = named(["a", "b", "c", "d", "e"], false);
+    assert_eq!(first, named(["p1", "p2", "p3", "p4", "p5"], false));
+    assert_eq!(first, named(["v", "u", "t", "s", "r"], true));
+}
+
+/// Of nothing there is no rank.
+#[test]
+fn an_empty_set_has_no_rank() {
+    for (conditions, rank) in [
+        ("0 > 0", None),
+        ("x > 0, x < 0", None),
+        ("x >= 1, x <= 0", None),
+        ("y >= 0, y <= 0", Some(3)),
+        ("y > 0", Some(4)),
+    ] {
+        let mut system = System::parse("thin.proof", MODEL, Path::new("")).unwrap();
+        let question =
+            RankQuestion { samples: 0, conditions: vec![conditions.to_owned()], ..RankQuestion::default() };
+        let found = answer_rank(&mut system, &question).map(|answer| answer.branches[0].generic_rank);
+        assert_eq!(found.as_ref().ok().copied(), rank, "{conditions}: {found:?}");
+    }
+}
