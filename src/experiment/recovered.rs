@@ -15,6 +15,21 @@ pub struct Reconstruction {
     pub coverage: Coverage,
     /// Shape and motion from all readings at once, where that is where the shape comes from.
     pub whole: Option<WholeMotion>,
+    /// Where a motion that explains all readings at once is no answer, because windows that fit say otherwise.
+    pub contradiction: Option<Contradiction>,
+}
+
+/// What a window says of a state, and all readings at once.
+#[derive(Clone, Debug)]
+pub struct Contradiction {
+    /// The window's first sample, in s.
+    pub time: f64,
+    /// The state.
+    pub name: String,
+    /// What the window says.
+    pub by_window: Measured,
+    /// What all readings say.
+    pub of_all: Measured,
 }
 
 /// A motion that explains all readings at once.
@@ -28,6 +43,8 @@ pub struct WholeMotion {
     pub misfit: f64,
     /// The standard deviation of a contact by which it is measured, in m: the stated one, or what is left where none is stated.
     pub sigma: f64,
+    /// Whether it is the stated one.
+    pub stated: bool,
 }
 
 /// One sample of it.

@@ -105,7 +105,7 @@ fn error_in_words(error: Option<TrackError>, mean: f64) -> String {
 fn mean_radius(observed: &SlowObserved<'_>) -> f64 {
     let truth =
         observed.experiment.truth.as_ref().map(|truth| truth.shape.perimeter() / std::f64::consts::TAU);
-    let found = observed.answers.together.as_ref().map(|found| found.shape.support.mean);
+    let found = observed.answers.together.as_ref().map(|found| found.shape.support.mean());
     truth.or(found).unwrap_or(1.0)
 }
 
@@ -198,8 +198,8 @@ pub fn slow_json(observed: &SlowObserved<'_>) -> Value {
         let deviations: Vec<Value> =
             found.shape.covariance.diagonal().iter().map(|variance| number(variance.sqrt())).collect();
         json!({
-            "mean": support.mean,
-            "harmonics": support.harmonics,
+            "mean": support.mean(),
+            "harmonics": support.harmonics(),
             "deviations": deviations,
             "order": found.order,
             "kinks": found.kinks.iter().map(|kink| json!({ "angle": kink.angle, "jumps": kink.jumps })).collect::<Vec<_>>(),

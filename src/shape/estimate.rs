@@ -1,6 +1,6 @@
 //! A support function that was estimated, and how sure it is.
 
-use super::{Convexity, Coverage, SupportSeries, convexity};
+use super::{Convexity, Coverage, SupportFunction, SupportSeries};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{PI, TAU};
 
@@ -17,9 +17,11 @@ pub struct Measured {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeEstimate {
     /// The support function.
-    pub support: SupportSeries,
-    /// Of `a_0, a_1, b_1, a_2, b_2, ...`, in m^2: a row and a column each.
+    pub support: SupportFunction,
+    /// Of its coefficients: a row and a column each. Those of a series are `a_0, a_1, b_1, a_2, b_2, ...`, in m.
     pub covariance: DMatrix<f64>,
+    /// Other support functions about the same point that explain the samples, each with the probability that it is the one: what they differ by is in all deviations.
+    pub others: Vec<(f64, ShapeEstimate)>,
     /// How many samples it was made of.
     pub samples: usize,
     /// The sum of the squares of what is left, in units of the samples' variances.
@@ -35,6 +37,9 @@ const ONE_IN_A_THOUSAND: f64 = 3.090_232_306_167_813;
 
 /// Pieces of a turn for each harmonic, where the band of the radius of curvature is first looked at.
 const PIECES: usize = 8;
+
+/// Normals at which it is looked at where nobody knows how fast it changes.
+const GRID: usize = 1440;
 
 /// A piece is halved this often at most.
 const DEPTH: u32 = 12;
@@ -78,35 +83,50 @@ impl ShapeEstimate {
     }
 
     fn deviation_of(&self, angle: f64, part: impl Fn(&[f64; 4]) -> f64) -> f64 {
-        let basis = SupportSeries::basis(angle, self.support.order());
-        self.spread(&DVector::from_iterator(basis.len(), basis.iter().map(part)))
+        let own = |of: &ShapeEstimate| Measured {
+            value: part(&of.support.support(angle)),
+            deviation: of.spread(of.support.basis(angle).iter().map(&part)),
+        };
+        self.with_others(&own).deviation
     }
 
     /// The standard deviation of a linear form in the coefficients.
-    fn spread(&self, form: &DVector<f64>) -> f64 {
-        (&self.covariance * form).dot(form).max(0.0).sqrt()
+    fn spread(&self, form: impl Iterator<Item = f64>) -> f64 {
+        let form = DVector::from_iterator(self.covariance.nrows(), form);
+        (&self.covariance * &form).dot(&form).max(0.0).sqrt()
+    }
+
+    /// A value of this one, with the deviation of the mixture of all about it.
+    fn with_others(&self, of: &dyn Fn(&ShapeEstimate) -> Measured) -> Measured {
+        let own = of(self);
+        let probability = 1.0 - self.others.iter().map(|(probability, _)| probability).sum::<f64>();
+        let mut variance = probability * own.deviation.powi(2);
+        for (probability, other) in &self.others {
+            let other = of(other);
+            variance += probability * (other.deviation.powi(2) + (other.value - own.value).powi(2));
+        }
+        Measured { value: own.value, deviation: variance.sqrt() }
     }
 
     /// The perimeter, `int r da`, in m.
     pub fn perimeter(&self) -> Measured {
-        let deviation =
-            self.covariance.get((0, 0)).map_or(f64::INFINITY, |variance| variance.max(0.0).sqrt());
-        Measured { value: self.support.perimeter(), deviation: TAU * deviation }
+        self.with_others(&|of| Measured {
+            value: of.support.perimeter(),
+            deviation: of.spread(of.support.sizes_by_coefficients()[0].iter().copied()),
+        })
     }
 
     /// The area, `1/2 int r^2 - r'^2 da`, in m^2; its deviation by its derivatives.
     pub fn area(&self) -> Measured {
-        let by = self.support.coefficients().into_iter().enumerate().map(|(i, value)| {
-            let k = i.div_ceil(2) as f64;
-            if i == 0 { TAU * value } else { PI * (1.0 - k * k) * value }
-        });
-        let by = DVector::from_iterator(self.covariance.nrows(), by);
-        Measured { value: self.support.area(), deviation: self.spread(&by) }
+        self.with_others(&|of| Measured {
+            value: of.support.area(),
+            deviation: of.spread(of.support.sizes_by_coefficients()[1].iter().copied()),
+        })
     }
 
-    /// Whether the estimated polynomial, as it is, is that of a convex body: decided in interval arithmetic.
+    /// Whether the estimated function, as it is, is that of a convex body.
     pub fn convexity(&self) -> Convexity {
-        convexity(&self.support)
+        self.support.convexity()
     }
 
     /// Whether all that lies in the band is convex: that `r + r''` is positive at all normals at once, also less as many of its standard deviations as errors exceed
@@ -117,17 +137,13 @@ impl ShapeEstimate {
         // the quantile by E. Wilson and M. Hilferty (1931), good to a few thousandths
         let cube = 1.0 - 2.0 / (9.0 * p) + ONE_IN_A_THOUSAND * (2.0 / (9.0 * p)).sqrt();
         let width = (p * cube.powi(3)).sqrt();
-        // how fast curvature and deviation can change with the angle
-        let slope: f64 = (1..)
-            .zip(&self.support.harmonics)
-            .map(|(k, [a, b])| {
-                let k = f64::from(k);
-                let at = 2 * k as usize - 1;
-                let spread = |i: usize| self.covariance[(i, i)].max(0.0).sqrt();
-                k * (k * k - 1.0) * (a.hypot(*b) + width * (spread(at) + spread(at + 1)))
-            })
-            .sum();
-        let order = self.support.order() + 1;
+        // how fast curvature and deviation can change with the angle: known of a series alone, else a fine grid has to do
+        let (slope, order) = match &self.support {
+            SupportFunction::Series(series) if self.others.is_empty() => {
+                (self.steepest(series, width), series.order() + 1)
+            }
+            _ => (0.0, GRID / PIECES),
+        };
         let half = PI / (PIECES * order) as f64;
         let mut open: Vec<(f64, f64, u32)> =
             (0..PIECES * order).map(|i| ((2 * i + 1) as f64 * half, half, 0)).collect();
@@ -156,6 +172,17 @@ impl ShapeEstimate {
             None => Convexity::Convex { least },
         }
     }
+
+    /// How fast `r + r''` of a series and so many of its deviations change at most.
+    fn steepest(&self, series: &SupportSeries, width: f64) -> f64 {
+        let slopes = (1..).zip(&series.harmonics).map(|(k, [a, b])| {
+            let k = f64::from(k);
+            let at = 2 * k as usize - 1;
+            let spread = |i: usize| self.covariance[(i, i)].max(0.0).sqrt();
+            k * (k * k - 1.0) * (a.hypot(*b) + width * (spread(at) + spread(at + 1)))
+        });
+        slopes.sum()
+    }
 }
 
 #[cfg(test)]
@@ -166,7 +193,8 @@ mod tests {
         let support = SupportSeries { mean: 1.0, harmonics: vec![[0.0; 2], [second, 0.0]] };
         ShapeEstimate {
             covariance: DMatrix::identity(5, 5) * deviation.powi(2),
-            support,
+            support: support.into(),
+            others: Vec::new(),
             samples: 100,
             chi_square: 95.0,
             degrees: 95,

@@ -121,7 +121,8 @@ pub fn fit_support(
     let degrees = found.degrees();
     let spread = found.cost / degrees as f64;
     Some(ShapeEstimate {
-        support: SupportSeries::of_coefficients(found.coefficients.as_slice()),
+        support: SupportSeries::of_coefficients(found.coefficients.as_slice()).into(),
+        others: Vec::new(),
         covariance: found.covariance * spread.max(1.0),
         samples: samples.len(),
         chi_square: found.cost,

@@ -52,9 +52,13 @@ impl SupportSeries {
     /// `[r, r', r'', r''']` at an angle, in m.
     pub fn support(&self, angle: f64) -> [f64; 4] {
         let mut value = [self.mean, 0.0, 0.0, 0.0];
+        let (step_sine, step_cosine) = angle.sin_cos();
+        let (mut sine, mut cosine) = (0.0, 1.0);
         for (k, [a, b]) in (1..).zip(&self.harmonics) {
+            // one turn more: each is off by no more than k roundings
+            (sine, cosine) =
+                (sine * step_cosine + cosine * step_sine, cosine * step_cosine - sine * step_sine);
             let k = f64::from(k);
-            let (sine, cosine) = (k * angle).sin_cos();
             let (even, odd) = (a * cosine + b * sine, b * cosine - a * sine);
             value[0] += even;
             value[1] += k * odd;

@@ -33,8 +33,8 @@ fn exact_readings_tell_the_body() {
     let error = experiment.error(&found.track).expect("a whole track");
     assert!(error.radius < 1e-12 && error.phi0 < 1e-11, "{error:?}");
     // the sizes of the harmonics are those of the scene, however the frame lies: sqrt(0.004), sqrt(0.0005)
-    let size = |k: usize| found.shape.support.harmonics[k - 1].map(|x| x * x).iter().sum::<f64>().sqrt();
-    assert!((found.shape.support.mean - 1.0).abs() < 1e-12);
+    let size = |k: usize| found.shape.support.harmonics()[k - 1].map(|x| x * x).iter().sum::<f64>().sqrt();
+    assert!((found.shape.support.mean() - 1.0).abs() < 1e-12);
     assert!((size(2) - 0.004f64.sqrt()).abs() < 1e-11 && (size(3) - 0.0005f64.sqrt()).abs() < 1e-11);
     // with twice the samples the error of quadrature is that of a high order, and the thesis's way is behind
     let quadrature = experiment.error(answers.quadrature.as_ref().unwrap()).unwrap();

@@ -4,10 +4,16 @@
 //! band is that of the readings. Where this does not apply, or does not explain the readings, the shape is made of what the observer shown
 //! believes of the support radii (`track`). Either way it is one estimator's ([`crate::shape`]).
 
+mod agreement;
+mod candidate;
+mod descent;
+mod knots;
 mod law;
 mod recognition;
 mod record;
+mod series;
 mod start;
+mod stepping;
 mod table;
 mod track;
 mod whole;
@@ -18,23 +24,17 @@ pub use track::{on_palm, shown, turned};
 use super::recovered::{Reconstruction, TouchTrack, WholeMotion, WholeSample};
 use super::run::{Answer, Experiment};
 use super::scene::{Method, SceneError};
-use super::simulation::NOMINAL;
 use super::simulation::deviation;
 use crate::mechanics::Palm;
 use crate::shape::{Coverage, Measured, ShapeEstimate, SupportSample, SupportWeights, fit_support};
+use candidate::Found;
 use record::WholeRecord;
 use std::sync::atomic::AtomicBool;
-use whole::Found;
+use whole::Told;
 
 /// All readings at once are believed whose misfit is below this part of the mean radius, or a few times the noise: else it is another model.
 const BELIEVED: f64 = 1e-3;
 const BELIEVED_NOISE: f64 = 5.0;
-
-/// The standard deviation of the contacts at first where none is stated, in parts of their mean.
-const UNSTATED: f64 = 1e-4;
-
-/// The noise that is not stated is sought again until it does not get smaller by this factor.
-const SMALLER: f64 = 0.5;
 
 impl Experiment {
     /// The shape that the readings tell, with what the answers found as the beginning. None where the model is not one of two palms with the outputs `s1` and `s2` and
@@ -42,18 +42,18 @@ impl Experiment {
     pub fn reconstruct(&self, answers: &[Answer], interrupt: &AtomicBool) -> Option<Reconstruction> {
         let answer = shown(answers)?;
         let track = track::touch_track(self, answer)?;
-        if let Some((record, found)) = self.whole_record(&track, interrupt) {
-            let normals = |palm: usize| -> Vec<f64> {
-                let at = |(time, at): (&f64, &record::Followed)| record.palms_at(*time).normals(at.phi)[palm];
-                record.times.iter().zip(&found.motion).map(at).collect()
-            };
-            let paths = [normals(0), normals(1)];
-            let coverage = Coverage::of_paths(paths.iter().map(Vec::as_slice));
-            let whole = Some(whole_motion(&record, &found));
-            return Some(Reconstruction { track, shape: Some(found.shape), coverage, whole });
+        let mut contradiction = None;
+        if let Some((record, told)) = self.whole_record(&track, interrupt) {
+            let whole = whole_motion(&record, &told);
+            contradiction = agreement::contradiction(&self.names(), answer, &whole);
+            if contradiction.is_none() {
+                let coverage = coverage(&record, &told.best);
+                let (shape, whole) = (Some(told.best.shape), Some(whole));
+                return Some(Reconstruction { track, shape, coverage, whole, contradiction });
+            }
         }
         let (shape, coverage) = from_track(&track, !answer.track.updates.is_empty());
-        Some(Reconstruction { track, shape, coverage, whole: None })
+        Some(Reconstruction { track, shape, coverage, whole: None, contradiction })
     }
 
     /// What every observer makes of the readings, as [`Experiment::run`], and the shape that they tell, which stands with the answer that
@@ -84,40 +84,28 @@ impl Experiment {
     }
 
     /// Shape and motion from all readings at once, where the palms are flat and a body between them explains the readings.
-    fn whole_record(&self, track: &TouchTrack, interrupt: &AtomicBool) -> Option<(WholeRecord, Found)> {
+    fn whole_record(&self, track: &TouchTrack, interrupt: &AtomicBool) -> Option<(WholeRecord, Told)> {
         if track.forms.iter().any(|form| *form != Palm::Flat) {
             return None;
         }
         let stated = deviation(self.scene.sensor.noise, self.scene.sensor.resolution);
         let mut record = WholeRecord::of(self, stated)?;
-        let mut starts = record.starts(self, track);
-        if stated > 0.0 {
-            let found = record.explain(&starts, interrupt)?;
-            let most = (BELIEVED * found.shape.support.mean).max(BELIEVED_NOISE * stated);
-            return (found.misfit <= most && found.shape.support.mean > 0.0).then_some((record, found));
-        }
-        // nobody says how good the readings are: what is left says it, and with it how many harmonics they tell
-        let read = || record.contacts.iter().flatten();
-        let length = read().map(|s| s.abs()).sum::<f64>() / read().count() as f64;
-        record.sigma = UNSTATED * length;
-        let mut found = record.explain(&starts, interrupt)?;
-        if found.misfit > BELIEVED * found.shape.support.mean {
-            return None;
-        }
-        while found.misfit < SMALLER * record.sigma && record.sigma > NOMINAL {
-            let before = record.sigma;
-            record.sigma = found.misfit.max(NOMINAL);
-            starts = vec![found.unknowns.clone()];
-            match record.explain(&starts, interrupt) {
-                Some(next) => found = next,
-                None => {
-                    record.sigma = before;
-                    break;
-                }
-            }
-        }
-        Some((record, found))
+        let starts = record.starts(self, track);
+        let told = record.tell(&starts, stated, interrupt)?;
+        let mean = told.best.shape.support.mean();
+        let most = (BELIEVED * mean).max(BELIEVED_NOISE * stated);
+        (told.best.misfit <= most && mean > 0.0).then_some((record, told))
     }
+}
+
+/// The normals that a motion touched.
+fn coverage(record: &WholeRecord, found: &Found) -> Coverage {
+    let normals = |palm: usize| -> Vec<f64> {
+        let at = |(time, at): (&f64, &record::Followed)| record.palms_at(*time).normals(at.phi)[palm];
+        record.times.iter().zip(&found.motion).map(at).collect()
+    };
+    let paths = [normals(0), normals(1)];
+    Coverage::of_paths(paths.iter().map(Vec::as_slice))
 }
 
 /// The shape by what an observer believes of the radii. Samples of a window share their errors and count as one; where there are no windows, errors are taken for independent.
@@ -133,21 +121,45 @@ fn from_track(track: &TouchTrack, by_windows: bool) -> (Option<ShapeEstimate>, C
     (shape, Coverage::of_paths(paths.iter().map(Vec::as_slice)))
 }
 
-fn whole_motion(record: &WholeRecord, found: &Found) -> WholeMotion {
-    let measured = |value: f64, row: &[f64]| {
+/// A value of one candidate, and its derivatives by the free unknowns.
+type Value<'a> = (f64, &'a [f64]);
+
+/// The best candidate's motion, with the deviations of all candidates about it.
+fn whole_motion(record: &WholeRecord, told: &Told) -> WholeMotion {
+    let own = |found: &Found, (value, row): Value<'_>| {
         let row = nalgebra::DVector::from_column_slice(row);
         Measured { value, deviation: (&found.covariance * &row).dot(&row).max(0.0).sqrt() }
     };
-    let samples = record.times.iter().zip(&found.motion).map(|(time, at)| WholeSample {
+    let least = 1.0 - told.others.iter().map(|(probability, _)| probability).sum::<f64>();
+    let measured = |of: &dyn Fn(&Found) -> Measured| {
+        let best = of(&told.best);
+        let mut variance = least * best.deviation.powi(2);
+        for (probability, found) in &told.others {
+            let other = of(found);
+            variance += probability * (other.deviation.powi(2) + (other.value - best.value).powi(2));
+        }
+        Measured { value: best.value, deviation: variance.sqrt() }
+    };
+    let samples = record.times.iter().enumerate().map(|(i, time)| WholeSample {
         time: *time,
-        phi0: measured(at.phi, &at.phi_row),
-        omega0: measured(at.rate, &at.rate_row),
-        radii: [0, 1].map(|palm| measured(at.radii[palm], &at.radius_rows[palm])),
-        centre: at.centre,
+        phi0: measured(&|found| own(found, (found.motion[i].phi, &found.motion[i].phi_row))),
+        omega0: measured(&|found| own(found, (found.motion[i].rate, &found.motion[i].rate_row))),
+        radii: [0, 1].map(|palm: usize| {
+            measured(&|found| own(found, (found.motion[i].radii[palm], &found.motion[i].radius_rows[palm])))
+        }),
+        centre: told.best.motion[i].centre,
     });
-    let gyration = (record.head() == 2).then(|| {
-        let value = found.unknowns.gyration;
-        Measured { value, deviation: value * found.covariance[(1, 1)].max(0.0).sqrt() }
+    let gyration = record.place_of_gyration().map(|place| {
+        measured(&|found| {
+            let value = found.unknowns.gyration;
+            Measured { value, deviation: value * found.covariance[(place, place)].max(0.0).sqrt() }
+        })
     });
-    WholeMotion { samples: samples.collect(), gyration, misfit: found.misfit, sigma: record.sigma }
+    WholeMotion {
+        samples: samples.collect(),
+        gyration,
+        misfit: told.best.misfit,
+        sigma: record.sigma,
+        stated: record.stated,
+    }
 }

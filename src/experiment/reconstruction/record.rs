@@ -1,15 +1,12 @@
 //! What a whole record tells of a body between flat palms: the readings of both contacts, the palms as they move, and what follows from a shape.
 
 use super::law::{PalmsAt, Pose, pose};
-use crate::observer::{Signals, advance};
-use crate::shape::{ShapeEstimate, SupportSeries};
+use crate::observer::Signals;
+use crate::shape::{ShapeEstimate, SupportFunction};
 use num_dual::{Derivative, DualSVec64};
 
 /// Pose and its consequences are differentiated by `[h, h', h'']` at both contacts, the body's rate and its radius of gyration.
-const INPUTS: usize = 8;
-
-/// The tolerance of the integration.
-const TOLERANCE: f64 = 1e-12;
+pub(super) const INPUTS: usize = 8;
 
 /// A whole record. SI units.
 pub(super) struct WholeRecord {
@@ -23,8 +20,11 @@ pub(super) struct WholeRecord {
     pub gravity: f64,
     /// The radius of gyration where it is known.
     pub gyration: Option<f64>,
-    /// The standard deviation of a contact.
+    /// The body's rate at the first sample where it is known, in rad/s.
+    pub rate: Option<f64>,
+    /// The standard deviation of a contact, and whether it is stated.
     pub sigma: f64,
+    pub stated: bool,
     /// The body's angle at the first sample: any, where the frame of the body is a choice.
     pub phi: f64,
 }
@@ -36,11 +36,11 @@ pub(super) struct Unknowns {
     pub rate: f64,
     /// The radius of gyration, in m.
     pub gyration: f64,
-    /// The coefficients of the support function, in the order of [`SupportSeries::coefficients`].
-    pub support: Vec<f64>,
+    /// The support function.
+    pub support: SupportFunction,
 }
 
-/// One sample of a motion that follows from unknowns. Rows are derivatives by the free unknowns: rate, where it is free the logarithm of the radius of
+/// One sample of a motion that follows from unknowns. Rows are derivatives by the free unknowns: where they are free the rate and the logarithm of the radius of
 /// gyration, and the coefficients.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Followed {
@@ -56,21 +56,21 @@ pub(super) struct Followed {
 }
 
 /// The support function at both contacts.
-struct Touched {
+pub(super) struct Touched {
     palms: PalmsAt,
     /// `[h, h', h'', h''']`.
-    support: [[f64; 4]; 2],
-    bases: [Vec<[f64; 4]>; 2],
+    pub support: [[f64; 4]; 2],
+    pub bases: [Vec<[f64; 4]>; 2],
 }
 
 /// A pose with all that its derivatives are made of.
-struct Local {
-    pose: Pose<DualSVec64<INPUTS>>,
-    touched: Touched,
+pub(super) struct Local {
+    pub pose: Pose<DualSVec64<INPUTS>>,
+    pub touched: Touched,
 }
 
 /// The value and the derivatives of a dual number.
-fn parts(number: &DualSVec64<INPUTS>) -> [f64; INPUTS] {
+pub(super) fn parts(number: &DualSVec64<INPUTS>) -> [f64; INPUTS] {
     let mut parts = [0.0; INPUTS];
     if let Some(slopes) = &number.eps.0 {
         parts.copy_from_slice(slopes.as_slice());
@@ -81,7 +81,12 @@ fn parts(number: &DualSVec64<INPUTS>) -> [f64; INPUTS] {
 impl WholeRecord {
     /// How many unknowns come before the coefficients.
     pub fn head(&self) -> usize {
-        if self.gyration.is_some() { 1 } else { 2 }
+        usize::from(self.rate.is_none()) + usize::from(self.gyration.is_none())
+    }
+
+    /// Where the radius of gyration stands among the unknowns, if it is one.
+    pub fn place_of_gyration(&self) -> Option<usize> {
+        self.gyration.is_none().then(|| self.head() - 1)
     }
 
     pub fn palms_at(&self, time: f64) -> PalmsAt {
@@ -93,25 +98,19 @@ impl WholeRecord {
 
     fn touched(&self, time: f64, phi: f64, x: &Unknowns) -> Touched {
         let palms = self.palms_at(time);
-        let order = x.support.len() / 2;
-        let bases = palms.normals(phi).map(|angle| SupportSeries::basis(angle, order));
-        let support = [0, 1].map(|i: usize| {
-            let mut sum = [0.0; 4];
-            for (coefficient, basis) in x.support.iter().zip(&bases[i]) {
-                sum.iter_mut().zip(basis).for_each(|(sum, basis)| *sum += coefficient * basis);
-            }
-            sum
-        });
-        Touched { palms, support, bases }
+        let normals = palms.normals(phi);
+        let bases = normals.map(|angle| x.support.basis(angle));
+        Touched { palms, support: normals.map(|angle| x.support.support(angle)), bases }
     }
 
     /// The pose without its derivatives.
-    fn pose(&self, time: f64, phi: f64, rate: f64, x: &Unknowns) -> Pose<f64> {
-        let Touched { palms, support, .. } = self.touched(time, phi, x);
+    pub(super) fn pose(&self, time: f64, phi: f64, rate: f64, x: &Unknowns) -> Pose<f64> {
+        let palms = self.palms_at(time);
+        let support = palms.normals(phi).map(|angle| x.support.support(angle));
         pose(&palms, &support.map(|[r, slope, second, _]| [r, slope, second]), rate, x.gyration, self.gravity)
     }
 
-    fn local(&self, time: f64, phi: f64, rate: f64, x: &Unknowns) -> Local {
+    pub(super) fn local(&self, time: f64, phi: f64, rate: f64, x: &Unknowns) -> Local {
         let touched = self.touched(time, phi, x);
         let input = |value: f64, place: usize| -> DualSVec64<INPUTS> {
             DualSVec64::new(value, Derivative::derivative_generic(nalgebra::Const, nalgebra::Const, place))
@@ -121,15 +120,33 @@ impl WholeRecord {
         Local { pose, touched }
     }
 
+    /// The derivatives of the body's acceleration by its angle and its rate, and by the free unknowns where these two are held.
+    pub fn linear(&self, time: f64, [phi, rate]: [f64; 2], x: &Unknowns) -> ([f64; 2], Vec<f64>) {
+        let local = self.local(time, phi, rate, x);
+        let by = parts(&local.pose.acceleration);
+        let none = vec![0.0; self.head() + local.touched.bases[0].len()];
+        let by_phi: f64 = (0..2)
+            .map(|i| (0..3).map(|k| -by[3 * i + k] * local.touched.support[i][k + 1]).sum::<f64>())
+            .sum();
+        ([by_phi, by[6]], self.row(&local, &by, x, &none, &none))
+    }
+
     /// The derivatives by the free unknowns of a quantity with derivatives by the inputs, where those of angle and rate are known.
-    fn row(&self, local: &Local, by: &[f64; INPUTS], x: &Unknowns, phi: &[f64], rate: &[f64]) -> Vec<f64> {
+    pub(super) fn row(
+        &self,
+        local: &Local,
+        by: &[f64; INPUTS],
+        x: &Unknowns,
+        phi: &[f64],
+        rate: &[f64],
+    ) -> Vec<f64> {
         let by_phi: f64 = (0..2)
             .map(|i| (0..3).map(|k| -by[3 * i + k] * local.touched.support[i][k + 1]).sum::<f64>())
             .sum();
         let mut row: Vec<f64> = phi.iter().zip(rate).map(|(phi, rate)| by_phi * phi + by[6] * rate).collect();
         let head = self.head();
-        if head == 2 {
-            row[1] += by[7] * x.gyration;
+        if let Some(place) = self.place_of_gyration() {
+            row[place] += by[7] * x.gyration;
         }
         for (i, bases) in local.touched.bases.iter().enumerate() {
             for (own, basis) in row[head..].iter_mut().zip(bases) {
@@ -139,60 +156,12 @@ impl WholeRecord {
         row
     }
 
-    /// The motion from the first sample over so many; with its derivatives, if wanted. None where it cannot be followed.
-    pub fn follow(&self, x: &Unknowns, rows: usize, derivatives: bool) -> Option<Vec<Followed>> {
-        let p = if derivatives { self.head() + x.support.len() } else { 0 };
-        let mut y = vec![0.0; 2 + 2 * p];
-        (y[0], y[1]) = (self.phi, x.rate);
-        if p > 0 {
-            y[2 + p] = 1.0;
-        }
-        let law = |time: f64, y: &[f64], dy: &mut [f64]| {
-            if p == 0 {
-                (dy[0], dy[1]) = (y[1], self.pose(time, y[0], y[1], x).acceleration);
-            } else {
-                let local = self.local(time, y[0], y[1], x);
-                (dy[0], dy[1]) = (y[1], local.pose.acceleration.re);
-                let (phi, rate) = y[2..].split_at(p);
-                dy[2..2 + p].copy_from_slice(rate);
-                let row = self.row(&local, &parts(&local.pose.acceleration), x, phi, rate);
-                dy[2 + p..].copy_from_slice(&row);
-            }
-        };
-        let mut followed = Vec::with_capacity(rows);
-        for i in 0..rows.min(self.times.len()) {
-            if i > 0 {
-                y = advance(&law, self.times[i - 1], self.times[i], &y, TOLERANCE).ok()?;
-            }
-            followed.push(self.sample(i, &y, p, x));
-        }
-        Some(followed)
-    }
-
-    fn sample(&self, i: usize, y: &[f64], p: usize, x: &Unknowns) -> Followed {
-        let local = self.local(self.times[i], y[0], y[1], x);
-        let (phi, rate) = y[2..].split_at(p);
-        let contact = |i: usize| self.row(&local, &parts(&local.pose.contacts[i]), x, phi, rate);
-        let radius = |i: usize| {
-            let mut by = [0.0; INPUTS];
-            by[3 * i] = 1.0;
-            self.row(&local, &by, x, phi, rate)
-        };
-        Followed {
-            phi: y[0],
-            rate: y[1],
-            radii: local.touched.support.map(|support| support[0]),
-            centre: local.pose.centre.map(|x| x.re),
-            contacts: local.pose.contacts.map(|x| x.re),
-            contact_rows: if p > 0 { [contact(0), contact(1)] } else { Default::default() },
-            radius_rows: if p > 0 { [radius(0), radius(1)] } else { Default::default() },
-            phi_row: phi.to_vec(),
-            rate_row: rate.to_vec(),
-        }
-    }
-
     /// The unknowns that a shape and a rate give.
     pub fn unknowns(&self, shape: &ShapeEstimate, rate: f64, gyration: f64) -> Unknowns {
-        Unknowns { rate, gyration: self.gyration.unwrap_or(gyration), support: shape.support.coefficients() }
+        Unknowns {
+            rate: self.rate.unwrap_or(rate),
+            gyration: self.gyration.unwrap_or(gyration),
+            support: shape.support.clone(),
+        }
     }
 }

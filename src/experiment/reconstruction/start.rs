@@ -5,7 +5,7 @@ use super::super::run::Experiment;
 use super::super::unguided::{PalmReadings, palm_readings};
 use super::law::PalmsAt;
 use super::record::{Unknowns, WholeRecord};
-use crate::shape::{SupportSample, SupportWeights, fit_support};
+use crate::shape::{SupportSample, SupportSeries, SupportWeights, fit_support};
 
 /// A record that so many samples make is not thinned out.
 const MOST_SAMPLES: usize = 4000;
@@ -42,7 +42,9 @@ impl WholeRecord {
             palms,
             gravity: readings.gravity,
             gyration: readings.gyration,
+            rate: known_rate(experiment),
             sigma,
+            stated: sigma > 0.0,
             phi: truth.map_or(0.0, |moment| moment.phi0),
         };
         (record.times.len() >= FEWEST_SAMPLES).then_some(record)
@@ -82,11 +84,12 @@ impl WholeRecord {
         if !(radius > 0.0 && most.is_finite()) {
             return Vec::new();
         }
-        let mut support = vec![0.0; 1 + 2 * DISC_ORDER];
-        support[0] = radius;
+        let support = SupportSeries { mean: radius, harmonics: vec![[0.0; 2]; DISC_ORDER] };
         let gyration = self.gyration.unwrap_or(radius / 2f64.sqrt());
         let rates = (0..RATES).map(|i| most * (2.0 * f64::from(i) / f64::from(RATES - 1) - 1.0));
-        rates.map(|rate| Unknowns { rate, gyration, support: support.clone() }).collect()
+        let rates = self.rate.map_or_else(|| rates.collect::<Vec<f64>>(), |rate| vec![rate]);
+        let disc = |rate| Unknowns { rate, gyration, support: support.clone().into() };
+        rates.into_iter().map(disc).collect()
     }
 
     fn start(&self, samples: &[SupportSample], rate: Option<f64>, gyration: Option<f64>) -> Option<Unknowns> {
@@ -98,7 +101,7 @@ impl WholeRecord {
         let rate = rate.filter(|rate| rate.is_finite())?;
         // a disc's, where nobody knows
         let gyration =
-            gyration.filter(|gyration| *gyration > 0.0).unwrap_or(shape.support.mean / 2f64.sqrt());
+            gyration.filter(|gyration| *gyration > 0.0).unwrap_or(shape.support.mean() / 2f64.sqrt());
         Some(self.unknowns(&shape, rate, gyration))
     }
 
@@ -154,6 +157,15 @@ struct Windows {
     samples: Vec<SupportSample>,
     rate: Option<f64>,
     gyration: Option<f64>,
+}
+
+/// The rate at the first sample, where the scene says that the observers may not change it.
+fn known_rate(experiment: &Experiment) -> Option<f64> {
+    let question = &experiment.question;
+    if !question.clamped.iter().any(|name| name == "omega0") {
+        return None;
+    }
+    question.guess.iter().find(|(name, _)| name == "omega0").map(|(_, value)| *value)
 }
 
 fn readings(experiment: &Experiment) -> Option<PalmReadings> {

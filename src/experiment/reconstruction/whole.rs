@@ -2,36 +2,21 @@
 //!
 //! The body slides between two flat palms by its one law of motion (`law`), so that all contacts follow from its rate at the first sample and its
 //! support function: a handful of unknowns for hundreds of readings. No torque and no mass is in it, no derivative of a reading, and no window: what
-//! a method by windows forgets from one to the next is kept here. Levenberg and Marquardt's method begins at a shape and a rate that others found, on the first part of the record, and goes
-//! on to all of it; then harmonics are added while G. Schwarz's criterion says that they tell something.
+//! a method by windows forgets from one to the next is kept here. The search begins at a shape and a rate that others found, on the first part of the record, and goes
+//! on to all of it. Then candidates are held against each other, Fourier polynomials of all orders (`series`) and closed splines through a few points (`knots`), each with the probability that it gives to the
+//! readings. What they differ by is in the band.
 
-use super::record::{Followed, Unknowns, WholeRecord};
-use crate::shape::{ORDERS, ShapeEstimate, SupportSeries, convex_deviation};
-use nalgebra::{DMatrix, DVector};
+use super::candidate::{Best, Found};
+use super::record::{Unknowns, WholeRecord};
+use super::series::{convex_weights, expanded};
+use crate::experiment::simulation::NOMINAL;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a whole record told.
-pub(super) struct Found {
-    pub unknowns: Unknowns,
-    /// Of the free unknowns, with what the misfit adds.
-    pub covariance: DMatrix<f64>,
-    pub shape: ShapeEstimate,
-    pub motion: Vec<Followed>,
-    /// The root of the mean square of what is left of a contact, in m.
-    pub misfit: f64,
+/// What a whole record told: the likeliest candidate, and the others with their probabilities.
+pub(super) struct Told {
+    pub best: Found,
+    pub others: Vec<(f64, Found)>,
 }
-
-/// The highest order that is tried.
-const MOST: usize = 32;
-
-/// Steps for one order at most.
-const STEPS: usize = 30;
-
-/// A step that lowers the sum of the squares by less than this part of itself is the last one, unless it is below what follows.
-const SETTLED: f64 = 1e-9;
-
-/// So many orders without a better criterion end the search: a body with fourfold symmetry has none of the orders 5 and 6.
-const PATIENCE: usize = 3;
 
 /// Parts of the record that are explained one after the other.
 const PARTS: [f64; 4] = [0.15, 0.3, 0.6, 1.0];
@@ -45,49 +30,108 @@ const FOUND: f64 = 1e-2;
 /// So many of the discs go on.
 const KEPT: usize = 6;
 
-/// The best unknowns of some rows and order.
-#[derive(Clone)]
-struct Best {
-    x: Unknowns,
-    cost: f64,
-}
+/// The standard deviation of the contacts at first where none is stated, in parts of their mean.
+const UNSTATED: f64 = 1e-4;
 
-impl Best {
-    /// The criterion of G. Schwarz (1978), the variance of the readings being known.
-    fn criterion(&self, rows: usize) -> f64 {
-        self.cost + self.x.support.len() as f64 * (2.0 * rows as f64).ln()
-    }
-}
+/// A candidate that leaves less than this part of what another one leaves is the only one.
+const SMALLER: f64 = 0.5;
+
+/// Of noise fewer neighbours than these count as one.
+const ALIKE: f64 = 1.5;
+
+/// Candidates that are less likely are left out.
+const UNLIKELY: f64 = 1e-4;
 
 impl WholeRecord {
-    /// Shape and motion, from where others began; none where nothing can be followed, or it was interrupted.
-    ///
-    /// Where what they found explains nothing it is sought from discs at rates on a grid.
-    pub fn explain(&self, starts: &[Unknowns], interrupt: &AtomicBool) -> Option<Found> {
+    /// Shape and motion, from where others began; none where nothing can be followed, or it was interrupted. Where no deviation of a contact is stated it is what the best candidate leaves.
+    pub fn tell(&mut self, starts: &[Unknowns], stated: f64, interrupt: &AtomicBool) -> Option<Told> {
+        let is_stated = stated > 0.0;
+        self.sigma = if is_stated { stated } else { UNSTATED * self.size() };
+        let begin = self.begin(starts, interrupt)?;
+        let series = self.series(&begin.x, interrupt)?;
+        let splines = self.splines(&series, is_stated, interrupt);
+        let candidates = match is_stated {
+            true => [vec![series], splines].concat(),
+            false => self.by_what_is_left(series, splines, interrupt)?,
+        };
+        weighed(candidates).map(|told| self.widened(told, is_stated))
+    }
+
+    /// The candidates of readings whose deviation nobody states, measured by what the best of them leaves.
+    fn by_what_is_left(
+        &mut self,
+        mut series: Found,
+        mut splines: Vec<Found>,
+        interrupt: &AtomicBool,
+    ) -> Option<Vec<Found>> {
+        let least = |splines: &[Found]| splines.iter().map(|at| at.misfit).fold(f64::INFINITY, f64::min);
+        if least(&splines) > NOMINAL {
+            while self.sigma > NOMINAL && self.left(&series) < SMALLER * self.sigma {
+                self.sigma = self.left(&series);
+                series = self.series(&series.unknowns, interrupt)?;
+            }
+            self.sigma = self.left(&series);
+            if self.sigma <= NOMINAL {
+                return Some(vec![series]);
+            }
+            let is_noise = self.alike(&series) < ALIKE;
+            splines.extend(self.splines(&series, is_noise, interrupt));
+        }
+        let least = least(&splines);
+        if least > SMALLER * series.misfit {
+            let again = splines.iter().filter_map(|spline| self.spline_again(spline, interrupt));
+            let again: Vec<Found> = again.collect();
+            return Some([vec![series], again].concat());
+        }
+        // the series leaves what the readings do not have
+        self.sigma = least.max(NOMINAL);
+        let again = splines.iter().filter(|spline| spline.misfit <= 2.0 * self.sigma);
+        Some(again.filter_map(|spline| self.spline_again(spline, interrupt)).collect())
+    }
+
+    /// The deviation of a contact that a candidate leaves, in m.
+    fn left(&self, found: &Found) -> f64 {
+        let n = found.shape.samples as f64;
+        (found.misfit * (n / found.shape.degrees as f64).sqrt()).max(NOMINAL)
+    }
+
+    fn spline_again(&self, spline: &Found, interrupt: &AtomicBool) -> Option<Found> {
+        let prior = self.spline_prior(&spline.shape.support);
+        let best = self.descend(spline.unknowns.clone(), &prior, self.times.len(), interrupt)?;
+        self.at_minimum(&best, &prior)
+    }
+
+    /// A series that explains most, from where others began; where what they found explains nothing, from discs at rates on a grid.
+    fn begin(&self, starts: &[Unknowns], interrupt: &AtomicBool) -> Option<Best> {
         let rows = self.times.len();
         let stop = || interrupt.load(Ordering::Relaxed);
         let mut best: Option<Best> = None;
         for start in starts {
-            let straight = self.descend(start.clone(), rows, interrupt);
+            let straight = self.low(start.clone(), rows, interrupt);
             let mut ends = vec![straight];
-            if !ends[0].as_ref().is_some_and(|end| self.is_explained(end, rows)) {
+            if !ends[0].as_ref().is_some_and(|end| self.is_explained(end.cost, rows)) {
                 ends.push(self.by_parts(start.clone(), 0, interrupt));
             }
             best =
                 best.into_iter().chain(ends.into_iter().flatten()).min_by(|a, b| a.cost.total_cmp(&b.cost));
-            if stop() || best.as_ref().is_some_and(|best| self.is_explained(best, rows)) {
+            if stop() || best.as_ref().is_some_and(|best| self.is_explained(best.cost, rows)) {
                 break;
             }
         }
-        let is_found = |best: &Best| self.misfit(best, rows) < FOUND * best.x.support[0];
+        let is_found = |best: &Best| self.misfit(best.cost, rows) < FOUND * best.x.support.mean();
         if !best.as_ref().is_some_and(is_found) && !stop() {
             best = best
                 .into_iter()
                 .chain(self.begun_as_discs(interrupt))
                 .min_by(|a, b| a.cost.total_cmp(&b.cost));
         }
-        let best = self.choose_order(best?, interrupt)?;
-        if stop() { None } else { self.found(best.x) }
+        best.filter(|_| !stop())
+    }
+
+    /// A series of the order that it has, about which no more is known than that it is convex.
+    fn low(&self, start: Unknowns, rows: usize, interrupt: &AtomicBool) -> Option<Best> {
+        let order = start.support.order();
+        self.descend(expanded(&start, order), &convex_weights(self.size(), order), rows, interrupt)
     }
 
     /// The first parts of the record one after the other, from one of [`PARTS`] on.
@@ -95,7 +139,7 @@ impl WholeRecord {
         let mut end = None;
         let mut x = start;
         for part in &PARTS[first..] {
-            let best = self.descend(x, self.part(*part), interrupt)?;
+            let best = self.low(x, self.part(*part), interrupt)?;
             x = best.x.clone();
             end = Some(best);
         }
@@ -111,191 +155,64 @@ impl WholeRecord {
     fn begun_as_discs(&self, interrupt: &AtomicBool) -> Option<Best> {
         let rows = self.part(PARTS[0]);
         let starts = self.discs().into_iter();
-        let mut begun: Vec<Best> = starts.filter_map(|start| self.descend(start, rows, interrupt)).collect();
+        let mut begun: Vec<Best> = starts.filter_map(|start| self.low(start, rows, interrupt)).collect();
         begun.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let mut best: Option<Best> = None;
         for begin in begun.into_iter().take(KEPT) {
             let end = self.by_parts(begin.x, 1, interrupt);
             best = best.into_iter().chain(end).min_by(|a, b| a.cost.total_cmp(&b.cost));
-            if best.as_ref().is_some_and(|best| self.is_explained(best, self.times.len())) {
+            if best.as_ref().is_some_and(|best| self.is_explained(best.cost, self.times.len())) {
                 break;
             }
         }
         best
     }
 
-    /// The root of the mean square of what is left of a contact, in m.
-    fn misfit(&self, best: &Best, rows: usize) -> f64 {
-        self.sigma * (best.cost / (2 * rows) as f64).sqrt()
-    }
-
-    /// Whether what is left is no more than noise leaves, five deviations of the sum of so many squares added.
-    fn is_explained(&self, best: &Best, rows: usize) -> bool {
-        let n = 2.0 * rows as f64;
-        best.cost <= n + 5.0 * (2.0 * n).sqrt()
-    }
-
-    /// More harmonics while they tell something, and fewer while these tell nothing.
-    fn choose_order(&self, start: Best, interrupt: &AtomicBool) -> Option<Best> {
-        let rows = self.times.len();
-        let first = start.x.support.len() / 2;
-        let most = MOST.min(rows / 4).max(first);
-        let mut best = start.clone();
-        let (mut last, mut idle) = (start.clone(), 0);
-        for order in ORDERS.into_iter().filter(|order| (first + 1..=most).contains(order)) {
-            let mut x = last.x.clone();
-            x.support.resize(1 + 2 * order, 0.0);
-            let Some(end) = self.descend(x, rows, interrupt) else { break };
-            last = end;
-            if last.criterion(rows) < best.criterion(rows) {
-                (best, idle) = (last.clone(), 0);
-            } else {
-                idle += 1;
-            }
-            if idle == PATIENCE || interrupt.load(Ordering::Relaxed) {
-                break;
-            }
+    /// What is left more than noise explains makes all deviations larger; and where neighbours are left alike, no sample tells as much as an independent one.
+    fn widened(&self, mut told: Told, is_stated: bool) -> Told {
+        let best = &told.best;
+        let spread = (best.shape.chi_square / best.shape.degrees as f64).max(1.0);
+        let is_noise = is_stated && self.is_explained(best.shape.chi_square, self.times.len());
+        let is_exact = !is_stated && best.misfit <= NOMINAL;
+        let alike = if is_noise || is_exact { 1.0 } else { self.alike(best) };
+        let factor = spread * alike;
+        for found in std::iter::once(&mut told.best).chain(told.others.iter_mut().map(|(_, found)| found)) {
+            found.covariance *= factor;
+            found.shape.covariance *= factor;
+            found.shape.widened = factor.sqrt();
         }
-        if best.x.support.len() == start.x.support.len() {
-            for order in ORDERS.into_iter().rev().filter(|order| *order < first) {
-                let mut x = best.x.clone();
-                x.support.truncate(1 + 2 * order);
-                match self.descend(x, rows, interrupt) {
-                    Some(end) if end.criterion(rows) < best.criterion(rows) => best = end,
-                    _ => break,
-                }
-            }
+        told.best.shape.others =
+            told.others.iter().map(|(probability, found)| (*probability, found.shape.clone())).collect();
+        told
+    }
+
+    /// How many neighbours count as one: the sum of the autocorrelations of what is left, up to the first that is not positive.
+    fn alike(&self, found: &Found) -> f64 {
+        let mut most: f64 = 1.0;
+        for palm in 0..2 {
+            let left: Vec<f64> = found
+                .motion
+                .iter()
+                .zip(&self.contacts[palm])
+                .map(|(at, read)| at.contacts[palm] - read)
+                .collect();
+            let square: f64 = left.iter().map(|x| x * x).sum();
+            let with = |lag: usize| left.iter().zip(&left[lag..]).map(|(a, b)| a * b).sum::<f64>() / square;
+            let sum: f64 = (1..left.len() / 4).map(with).take_while(|part| *part > 0.0).sum();
+            most = most.max(1.0 + 2.0 * sum);
         }
-        Some(best)
-    }
-
-    /// What convexity says of each coefficient: the root of its weight.
-    fn drawn(&self, x: &Unknowns) -> Vec<f64> {
-        let mean = x.support.first().copied().unwrap_or(1.0);
-        (0..x.support.len()).map(|i| 1.0 / convex_deviation(mean, i.div_ceil(2))).collect()
-    }
-
-    fn cost(&self, x: &Unknowns, drawn: &[f64], motion: &[Followed]) -> f64 {
-        let contacts = motion.iter().enumerate().flat_map(|(i, at)| {
-            (0..2).map(move |palm| ((at.contacts[palm] - self.contacts[palm][i]) / self.sigma).powi(2))
-        });
-        let shape = x.support.iter().zip(drawn).map(|(value, drawn)| (value * drawn).powi(2));
-        contacts.sum::<f64>() + shape.sum::<f64>()
-    }
-
-    /// The normal equations: the matrix, and half of the gradient.
-    fn normal(&self, x: &Unknowns, drawn: &[f64], motion: &[Followed]) -> (DMatrix<f64>, DVector<f64>) {
-        let (head, p) = (self.head(), self.head() + x.support.len());
-        let mut rows = DMatrix::zeros(2 * motion.len(), p);
-        let mut left = DVector::zeros(2 * motion.len());
-        for (i, at) in motion.iter().enumerate() {
-            for palm in 0..2 {
-                left[2 * i + palm] = (at.contacts[palm] - self.contacts[palm][i]) / self.sigma;
-                for (j, slope) in at.contact_rows[palm].iter().enumerate() {
-                    rows[(2 * i + palm, j)] = slope / self.sigma;
-                }
-            }
-        }
-        let (mut matrix, mut gradient) = (rows.tr_mul(&rows), rows.tr_mul(&left));
-        for (i, (value, drawn)) in x.support.iter().zip(drawn).enumerate() {
-            matrix[(head + i, head + i)] += drawn * drawn;
-            gradient[head + i] += drawn * drawn * value;
-        }
-        (matrix, gradient)
-    }
-
-    fn moved(&self, x: &Unknowns, step: &DVector<f64>) -> Unknowns {
-        let head = self.head();
-        let gyration = if head == 2 { x.gyration * step[1].clamp(-1.0, 1.0).exp() } else { x.gyration };
-        let support = x.support.iter().enumerate().map(|(i, value)| value + step[head + i]);
-        Unknowns { rate: x.rate + step[0], gyration, support: support.collect() }
-    }
-
-    /// Levenberg and Marquardt's method on the first rows.
-    fn descend(&self, start: Unknowns, rows: usize, interrupt: &AtomicBool) -> Option<Best> {
-        let drawn = self.drawn(&start);
-        let mut x = start;
-        let mut motion = self.follow(&x, rows, true)?;
-        let mut cost = self.cost(&x, &drawn, &motion);
-        let mut damping = 1e-3;
-        for _ in 0..STEPS {
-            if interrupt.load(Ordering::Relaxed) {
-                return None;
-            }
-            let (matrix, gradient) = self.normal(&x, &drawn, &motion);
-            let mut better = None;
-            for _ in 0..8 {
-                if let Some(step) = solve(&matrix, &gradient, damping) {
-                    let there = self.moved(&x, &step);
-                    let next =
-                        self.follow(&there, rows, false).map(|motion| self.cost(&there, &drawn, &motion));
-                    if let Some(next) = next.filter(|next| *next < cost) {
-                        better = Some((there, next));
-                        break;
-                    }
-                }
-                damping = (damping * 10.0).max(1e-9);
-            }
-            let Some((there, next)) = better else { break };
-            let settled = cost - next <= SETTLED * next.max(1e-6 * rows as f64);
-            (x, cost) = (there, next);
-            damping *= 0.02;
-            if settled {
-                break;
-            }
-            motion = self.follow(&x, rows, true)?;
-        }
-        cost.is_finite().then_some(Best { x, cost })
-    }
-
-    fn found(&self, x: Unknowns) -> Option<Found> {
-        let motion = self.follow(&x, self.times.len(), true)?;
-        let drawn = self.drawn(&x);
-        let chi_square = self.cost(&x, &drawn, &motion);
-        let (matrix, gradient) = self.normal(&x, &drawn, &motion);
-        let inverse = scaled_inverse(&matrix)?;
-        let (n, p) = (2 * self.times.len(), gradient.len());
-        let degrees = n.saturating_sub(p).max(1);
-        let spread = (chi_square / degrees as f64).max(1.0);
-        let covariance = inverse * spread;
-        let head = self.head();
-        let shape = ShapeEstimate {
-            support: SupportSeries::of_coefficients(&x.support),
-            covariance: covariance.view((head, head), (p - head, p - head)).into_owned(),
-            samples: n,
-            chi_square,
-            degrees,
-            widened: spread.sqrt(),
-        };
-        let misfit = self.sigma * (chi_square / n as f64).sqrt();
-        Some(Found { unknowns: x, covariance, shape, motion, misfit })
+        most
     }
 }
 
-/// The unknowns' own scales: the roots of the diagonal.
-fn scales(matrix: &DMatrix<f64>) -> DVector<f64> {
-    matrix.diagonal().map(|value| if value > 0.0 { value.sqrt().recip() } else { 1.0 })
-}
-
-fn scaled(matrix: &DMatrix<f64>, scales: &DVector<f64>) -> DMatrix<f64> {
-    DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)] * scales[i] * scales[j])
-}
-
-/// The step of the normal equations with the diagonal made larger by a part of itself.
-fn solve(matrix: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64) -> Option<DVector<f64>> {
-    let scales = scales(matrix);
-    let mut scaled = scaled(matrix, &scales);
-    for i in 0..scaled.nrows() {
-        scaled[(i, i)] += damping;
-    }
-    let step = scaled.cholesky()?.solve(&gradient.component_mul(&scales));
-    let step = -step.component_mul(&scales);
-    step.iter().all(|value| value.is_finite()).then_some(step)
-}
-
-fn scaled_inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scales = scales(matrix);
-    let inverse = scaled(matrix, &scales).cholesky()?.inverse();
-    let inverse = scaled(&inverse, &scales);
-    inverse.iter().all(|value| value.is_finite()).then_some(inverse)
+/// Candidates by their probabilities, the likeliest first.
+fn weighed(mut candidates: Vec<Found>) -> Option<Told> {
+    candidates.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    let mut candidates = candidates.into_iter();
+    let best = candidates.next()?;
+    let weights: Vec<(f64, Found)> =
+        candidates.map(|other| ((other.evidence - best.evidence).exp(), other)).collect();
+    let total = 1.0 + weights.iter().map(|(weight, _)| weight).sum::<f64>();
+    let others = weights.into_iter().map(|(weight, other)| (weight / total, other));
+    Some(Told { best, others: others.filter(|(probability, _)| *probability > UNLIKELY).collect() })
 }

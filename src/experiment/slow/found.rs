@@ -31,6 +31,6 @@ impl SlowShape {
     /// that is another leaves more, if only a quarter more: a body that is nearly its own mirror image does.
     pub fn explains(&self, part: f64) -> bool {
         let most = 1.0 + CERTAIN / (2.0 * self.shape.samples as f64).sqrt();
-        self.misfit <= (most * self.sigma).max(part * self.shape.support.mean)
+        self.misfit <= (most * self.sigma).max(part * self.shape.support.mean())
     }
 }

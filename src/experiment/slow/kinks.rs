@@ -93,7 +93,7 @@ fn search(together: &Together<'_>, found: &SlowShape, interrupt: &dyn Fn() -> bo
     let lower = SPECTRA.into_iter().filter(|order| *order < found.order);
     for order in std::iter::once(found.order).chain(lower) {
         let series = if order == found.order {
-            found.shape.support.clone()
+            SupportSeries::of_coefficients(&found.shape.support.coefficients())
         } else {
             let mut first = found.shape.support.coefficients();
             first.truncate(1 + 2 * order);

@@ -120,7 +120,7 @@ impl Together<'_> {
             let turned = explained.track.phi0[last] - near[last];
             near[..rows].copy_from_slice(&explained.track.phi0);
             near[rows..].iter_mut().for_each(|phi0| *phi0 += turned);
-            support.clone_from(&explained.shape.support);
+            support = SupportSeries::of_coefficients(&explained.shape.support.coefficients());
             if explained.misfit > HOPELESS_PART * explained.sigma.max(1e-3 * readings.scale()) {
                 return Some(explained).filter(|_| rows == readings.rows());
             }

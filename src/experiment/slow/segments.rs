@@ -175,7 +175,7 @@ impl Growth<'_> {
 
     fn take(&mut self, rows: Range<usize>, found: &SlowShape) -> bool {
         self.phi0[rows.clone()].copy_from_slice(&found.track.phi0);
-        self.support.clone_from(&found.shape.support);
+        self.support = SupportSeries::of_coefficients(&found.shape.support.coefficients());
         self.rows = rows;
         true
     }
@@ -202,7 +202,7 @@ pub fn from_segments(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> O
             if !found.explains(EXACT) {
                 continue;
             }
-            let support = found.shape.support.clone();
+            let support = SupportSeries::of_coefficients(&found.shape.support.coefficients());
             let mut growth = Growth { readings, rows: 0..0, support, phi0: vec![0.0; rows], interrupt };
             growth.take(stretch, &found);
             growth.grow();

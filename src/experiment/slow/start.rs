@@ -109,8 +109,8 @@ fn closed(readings: &SlowReadings, track: &SlowTrack, order: usize) -> Option<(S
     let samples = touched(readings, track);
     let off = |sample: &SupportSample| (sample.radius - shape.support.support(sample.angle)[0]).powi(2);
     let left = (samples.iter().map(off).sum::<f64>() / samples.len() as f64).sqrt();
-    let left = (left + 0.02 * dent) / shape.support.mean;
-    left.is_finite().then_some((shape.support, left))
+    let left = (left + 0.02 * dent) / shape.support.mean();
+    left.is_finite().then(|| (SupportSeries::of_coefficients(&shape.support.coefficients()), left))
 }
 
 /// Heights from which to begin, the best first.

@@ -13,7 +13,7 @@ use super::thesis::{ThesisMethod, by_thesis};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::{DEFAULT_TOLERANCE, Drive, FormError, MovingScene, Shape, Trajectory};
 use crate::mechanics::resting::{follow_resting, plan_3_14};
-use crate::shape::SupportSeries;
+use crate::shape::SupportFunction;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -107,7 +107,7 @@ pub struct StudyRow {
 }
 
 /// The greatest difference of two outlines about their centres of mass over all directions, in m, one of them turned so that it is least.
-fn outline_error(shape: &Shape, found: &SupportSeries) -> f64 {
+fn outline_error(shape: &Shape, found: &SupportFunction) -> f64 {
     const DIRECTIONS: usize = 720;
     let truth: Vec<f64> =
         (0..DIRECTIONS).map(|i| shape.support(TAU * i as f64 / DIRECTIONS as f64)[0]).collect();

@@ -333,7 +333,8 @@ impl<'a> Together<'a> {
             kinks: outline.kinks,
             shape: ShapeEstimate {
                 covariance: &inverse * inverse.transpose() * (widened * widened),
-                support,
+                support: support.into(),
+                others: Vec::new(),
                 samples: 2 * rows,
                 chi_square,
                 degrees,

@@ -30,7 +30,7 @@ fn magnification(shape: &ShapeEstimate, counts: impl Fn(f64) -> bool) -> f64 {
     let widest =
         (0..NORMALS).map(angle).filter(|angle| counts(*angle)).map(|angle| 2.0 * shape.deviation(angle));
     let widest = widest.fold(0.0, f64::max);
-    let most = shape.support.mean / 12.0 / widest;
+    let most = shape.support.mean() / 12.0 / widest;
     if !(most.is_finite() && most > 1.0) {
         return 1.0;
     }
@@ -51,7 +51,7 @@ pub(super) fn outline_picture(
         let (angle, [x, y]) = (angle(i), shape.support.point(angle(i)));
         // what is not known at all does not fill the page
         let off = (off * band(angle) * if covered(angle) { magnified } else { 1.0 })
-            .clamp(-0.3 * shape.support.mean, 0.3 * shape.support.mean);
+            .clamp(-0.3 * shape.support.mean(), 0.3 * shape.support.mean());
         [x + off * angle.cos(), y + off * angle.sin()]
     };
     let sides: Vec<[f64; 2]> = truth.map(|shape| shape.outline(NORMALS)).unwrap_or_default();
@@ -109,7 +109,7 @@ pub(super) fn band_picture(found: &Reconstruction, shape: &ShapeEstimate, truth:
     let angles = || (0..=NORMALS).map(angle);
     let touched = angles().filter(|angle| covered(*angle));
     let largest = touched.map(|angle| band(angle).max(off(angle).map_or(0.0, f64::abs))).fold(0.0, f64::max);
-    let largest = if largest > 0.0 && largest.is_finite() { largest } else { shape.support.mean };
+    let largest = if largest > 0.0 && largest.is_finite() { largest } else { shape.support.mean() };
     let (unit, size) = match largest {
         m if m < 1e-6 => ("nm", 1e-9),
         m if m < 1e-3 => ("µm", 1e-6),

@@ -3,8 +3,8 @@
 use crate::report::motion::answers::Observed;
 use crate::report::motion::outline_plot::{band_picture, outline_picture};
 use crate::report::motion::reconstruction::{
-    EXPLAINED, convexity_in_words, from_in_words, gaps, length, misfit_in_words, reconstruction, truth,
-    widened_in_words, widest,
+    EXPLAINED, contradiction_in_words, convexity_in_words, from_in_words, gaps, length, misfit_in_words,
+    model_in_words, reconstruction, sizes_in_words, truth, widened_in_words, widest,
 };
 use crate::report::motion::shape::support_error;
 use maud::{Markup, PreEscaped, html};
@@ -17,25 +17,23 @@ pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
     };
     let truth = truth(observed.experiment);
     let covered = |angle: f64| found.coverage.contains(angle);
-    let (perimeter, area) = (shape.perimeter(), shape.area());
     let (picture, magnified) = outline_picture(found, shape, truth);
     html! {
         p {
-            "A closed support function with " (shape.support.order()) " harmonics, " (from_in_words(found)) ". "
+            "A closed support function, " (model_in_words(shape)) ", " (from_in_words(found)) ". "
             b { (format!("{:.1} %", 100.0 * found.coverage.fraction())) " of the normals were touched" } (gaps(found)) ". "
             @if let Some(band) = widest(found, shape, covered) {
                 "The band, two standard deviations to either side, is at most " b { (length(band)) } " wide where it was touched: "
-                (format!("{:.1e}", band / shape.support.mean)) " of the mean radius " (length(shape.support.mean)) ". "
+                (format!("{:.1e}", band / shape.support.mean())) " of the mean radius " (length(shape.support.mean())) ". "
             }
             @if let Some((largest, rms)) = truth.and_then(|truth| support_error(shape, truth, covered)) {
                 "The largest error there is " b { (length(largest)) } " (rms " (length(rms)) "). "
             }
         }
         p {
-            "Perimeter " (format!("{:.6} m ± {:.1e}", perimeter.value, perimeter.deviation)) ", area "
-            (format!("{:.6} m² ± {:.1e}", area.value, area.deviation))
-            @if found.coverage.fraction() < 1.0 { " (of the polynomial: harmonics that show only in gaps are not in it)" }
-            ". The polynomial is " (convexity_in_words(shape))
+            @for (name, size) in sizes_in_words(found, shape, "m²", 6) { (name) " " (size) "; " }
+            "the function is " (convexity_in_words(shape))
+            @if let Some(contradiction) = &found.contradiction { "; " (contradiction_in_words(contradiction)) }
             @match &found.whole {
                 Some(whole) => { "; " (misfit_in_words(whole, shape)) }
                 None if shape.widened > EXPLAINED => { "; " (widened_in_words(shape)) }

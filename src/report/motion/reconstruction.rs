@@ -1,6 +1,6 @@
 //! The shape that an experiment tells, in words and as JSON.
 
-use crate::experiment::{Answer, Experiment, Reconstruction, WholeMotion, error, shown};
+use crate::experiment::{Answer, Contradiction, Experiment, Reconstruction, WholeMotion, error, shown};
 use crate::mechanics::moving::Shape;
 use crate::report::motion::fit::finite;
 use crate::report::motion::shape::support_error;
@@ -98,8 +98,8 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
         let _ = writeln!(text, "\nshape: nothing was seen of it");
         return text;
     };
-    let _ = writeln!(text, "\nshape, {}: {} harmonics", from_in_words(found), shape.support.order());
-    let mean = shape.support.mean;
+    let _ = writeln!(text, "\nshape, {}: {}", from_in_words(found), model_in_words(shape));
+    let mean = shape.support.mean();
     let _ = writeln!(text, "  normals touched: {:.1} %{}", 100.0 * found.coverage.fraction(), gaps(found));
     let covered = |angle: f64| found.coverage.contains(angle);
     if let Some(band) = widest(found, shape, covered) {
@@ -112,16 +112,13 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
             length(mean)
         );
     }
-    let (perimeter, area) = (shape.perimeter(), shape.area());
-    if found.coverage.fraction() < 1.0 {
-        let _ = writeln!(
-            text,
-            "  what follows is of the polynomial: harmonics that show only in gaps are not in it"
-        );
+    for (name, size) in sizes_in_words(found, shape, "m^2", 9) {
+        let _ = writeln!(text, "  {name} {size}");
     }
-    let _ = writeln!(text, "  perimeter {:.9} m ± {:.1e}", perimeter.value, perimeter.deviation);
-    let _ = writeln!(text, "  area {:.9} m^2 ± {:.1e}", area.value, area.deviation);
     let _ = writeln!(text, "  {}", convexity_in_words(shape));
+    if let Some(contradiction) = &found.contradiction {
+        let _ = writeln!(text, "  {}", contradiction_in_words(contradiction));
+    }
     if let Some(whole) = &found.whole {
         let _ = writeln!(text, "  {}", misfit_in_words(whole, shape));
         if let Some(gyration) = whole.gyration {
@@ -154,12 +151,66 @@ pub(super) fn widened_in_words(shape: &ShapeEstimate) -> String {
 
 pub(super) fn misfit_in_words(whole: &WholeMotion, shape: &ShapeEstimate) -> String {
     let left = format!("contacts are explained to {} (rms)", length(whole.misfit));
-    match shape.widened > EXPLAINED {
-        true => {
-            format!("{left}, {:.1} times their noise, and the band is as much wider", shape.widened)
+    match (shape.widened > EXPLAINED, whole.stated) {
+        (true, true) => {
+            format!(
+                "{left}, their noise being {}, and the band is {:.1} times as wide as that noise alone would make it",
+                length(whole.sigma),
+                shape.widened
+            )
         }
-        false => format!("{left}, their noise being {}", length(whole.sigma)),
+        (true, false) => {
+            format!(
+                "{left}, no noise being stated, and what is left of neighbours is alike: the band is {:.1} times as wide for it",
+                shape.widened
+            )
+        }
+        (false, true) => format!("{left}, their noise being {}", length(whole.sigma)),
+        (false, false) => format!("{left}, no noise being stated; taken for {}", length(whole.sigma)),
     }
+}
+
+/// The model of a support function.
+pub(super) fn model_in_words(shape: &ShapeEstimate) -> String {
+    match shape.support.points().len() {
+        0 => format!("{} harmonics at most", shape.support.order()),
+        points => format!("a closed cubic spline through {points} points"),
+    }
+}
+
+pub(super) fn contradiction_in_words(found: &Contradiction) -> String {
+    let Contradiction { time, name, by_window, of_all } = found;
+    format!(
+        "all readings at once are no answer: they make {name} {:.6} ± {:.1e} at {time:.3} s, and a window that fits {:.6} ± {:.1e}",
+        of_all.value, of_all.deviation, by_window.value, by_window.deviation
+    )
+}
+
+/// Perimeter and area: of a body that was touched all round with their deviations, else what its contacts leave, whatever lies in the gaps. What is neither is not told.
+pub(super) fn sizes_in_words(
+    found: &Reconstruction,
+    shape: &ShapeEstimate,
+    square: &str,
+    digits: usize,
+) -> Vec<(&'static str, String)> {
+    let Some(extent) = shape.extent(&found.coverage) else {
+        return vec![("perimeter and area:", "not those of a convex body, not told".to_owned())];
+    };
+    let is_whole = found.coverage.gaps().is_empty();
+    let of = |value: Measured, [least, most]: [f64; 2], unit: &str| {
+        let is_within = (least..=most).contains(&value.value);
+        match (is_whole && is_within, most.is_finite()) {
+            (true, _) => format!("{:.digits$} {unit} ± {:.1e}", value.value, value.deviation),
+            (false, true) => {
+                format!("from {least:.6} to {most:.6} {unit}, by the contacts and the tangents there")
+            }
+            (false, false) => format!("at least {least:.6} {unit}, by the contacts"),
+        }
+    };
+    vec![
+        ("perimeter", of(shape.perimeter(), extent.perimeter, "m")),
+        ("area", of(shape.area(), extent.area, square)),
+    ]
 }
 
 fn measured(value: Measured) -> Value {
@@ -190,14 +241,34 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
     });
     let Some(shape) = &found.shape else { return Some(json) };
     let covered = |angle: f64| found.coverage.contains(angle);
-    json["mean_radius"] = finite(shape.support.mean);
-    json["harmonics"] = json!(shape.support.harmonics);
+    json["mean_radius"] = finite(shape.support.mean());
+    json["harmonics"] = json!(shape.support.harmonics());
     json["band"] = json!({
         "largest_where_touched": widest(found, shape, covered).map(finite),
         "largest": widest(found, shape, |_| true).map(finite),
     });
-    json["perimeter"] = measured(shape.perimeter());
-    json["area"] = measured(shape.area());
+    if !shape.support.points().is_empty() {
+        json["points"] = json!(shape.support.points());
+    }
+    if let Some(extent) = shape.extent(&found.coverage) {
+        // of a body that was not touched all round its contacts and tangents alone say something
+        let is_whole = found.coverage.gaps().is_empty();
+        let of = |value: Measured, [least, most]: [f64; 2]| {
+            let mut json = json!({ "at_least": finite(least), "at_most": finite(most) });
+            if is_whole && (least..=most).contains(&value.value) {
+                json["value"] = finite(value.value);
+                json["deviation"] = finite(value.deviation);
+            }
+            json
+        };
+        json["perimeter"] = of(shape.perimeter(), extent.perimeter);
+        json["area"] = of(shape.area(), extent.area);
+    }
+    if let Some(Contradiction { time, name, by_window, of_all }) = &found.contradiction {
+        json["contradiction"] = json!({
+            "time": finite(*time), "state": name, "window": measured(*by_window), "all_readings": measured(*of_all),
+        });
+    }
     json["convexity"] = convexity_json(&shape.convexity());
     json["convexity_within_band"] = convexity_json(&shape.convexity_within_band());
     json["chi_square"] = finite(shape.chi_square);
@@ -206,6 +277,7 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
     if let Some(whole) = &found.whole {
         json["misfit"] = finite(whole.misfit);
         json["noise"] = finite(whole.sigma);
+        json["noise_is_stated"] = json!(whole.stated);
         if let Some(gyration) = whole.gyration {
             json["rho"] = measured(gyration);
         }
@@ -214,7 +286,7 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
         json["error"] = json!({
             "largest": finite(largest),
             "root_mean_square": finite(rms),
-            "largest_over_mean_radius": finite(largest / shape.support.mean),
+            "largest_over_mean_radius": finite(largest / shape.support.mean()),
         });
     }
     Some(json)

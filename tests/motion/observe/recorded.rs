@@ -54,7 +54,7 @@ fn a_recording_gives_the_same_answers_as_the_simulation() {
         // where the body's frame is at first a recording does not tell: the outline is turned, and what does not turn is the same
         let [of_body, of_file] = [&mut simulated, &mut replayed].map(|found| {
             let shape = found.as_object_mut().unwrap().remove("shape").expect("the shape is estimated");
-            ["/area/value", "/perimeter/value", "/mean_radius"].map(|place| {
+            ["/area/at_least", "/perimeter/at_least", "/mean_radius"].map(|place| {
                 shape.pointer(place).and_then(Value::as_f64).unwrap_or_else(|| panic!("{place}: {shape}"))
             })
         });
