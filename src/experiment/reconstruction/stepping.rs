@@ -4,7 +4,6 @@
 //! equations that are the same for all unknowns but for what drives them: these are carried by two solutions and Simpson's rule, for hundreds of unknowns at the cost of a few. They are good to a millionth, which a search
 //! needs and a bound; the motion itself is good to the tolerance.
 
-use super::law::pose;
 use super::record::{Followed, INPUTS, Unknowns, WholeRecord, parts};
 
 /// Both ways over a span differ by no more than this, in rad and rad/s.
@@ -67,19 +66,10 @@ impl WholeRecord {
         }
     }
 
-    fn acceleration(&self, time: f64, [phi, rate]: [f64; 2], x: &Unknowns) -> f64 {
-        let palms = self.palms_at(time);
-        let support = palms.normals(phi).map(|angle| {
-            let [r, slope, second, _] = x.support.support(angle);
-            [r, slope, second]
-        });
-        pose(&palms, &support, rate, x.gyration, self.gravity).acceleration
-    }
-
     /// One step of Kutta's method.
     fn stepped(&self, [from, to]: [f64; 2], at: [f64; 2], x: &Unknowns) -> [f64; 2] {
         let step = to - from;
-        let rates = |time: f64, at: [f64; 2]| [at[1], self.acceleration(time, at, x)];
+        let rates = |time: f64, at: [f64; 2]| [at[1], self.pose(time, at[0], at[1], x).acceleration];
         let plus = |by: f64, slope: [f64; 2]| [at[0] + by * slope[0], at[1] + by * slope[1]];
         let first = rates(from, at);
         let second = rates(from + step / 2.0, plus(step / 2.0, first));

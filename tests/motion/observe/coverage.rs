@@ -148,7 +148,7 @@ fn study(family: Family, noise: f64, bodies: usize, seed: u64) -> Counts {
     counts
 }
 
-/// The coverage of many bodies; the counts stand in the book.
+/// The coverage of many bodies.
 #[test]
 #[ignore = "takes minutes to hours: a study"]
 fn shape_coverage() {
