@@ -80,12 +80,10 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
     let span = (highest - lowest).max(NO_DIFFERENCE);
     let at = |step: usize| lowest + span * step as f64 / SHADES as f64;
     let values = |step: usize| match step {
-        _ if everywhere => format!("standard deviation {:.3e} of the prior one", 10f64.powf(highest)),
-        step if step + 1 == SHADES => {
-            format!("standard deviation above {} of the prior one", power(at(step), span / 10.0))
-        }
+        _ if everywhere => format!("{:.3e} prior deviations", 10f64.powf(highest)),
+        step if step + 1 == SHADES => format!("above {} prior deviations", power(at(step), span / 10.0)),
         _ => format!(
-            "standard deviation {} to {} of the prior one",
+            "{} to {} prior deviations",
             power(at(step), span / 10.0),
             power(at(step + 1), span / 10.0)
         ),

@@ -250,6 +250,7 @@ mod tests {
             }],
             cases: (3, 1),
             out_of_reach: None,
+            interrupted: false,
             on_the_box: Some(Err("no box".to_owned())),
             seconds: 0.0,
         }
