@@ -6,29 +6,28 @@ use super::track::{Update, UpdateEnd};
 use super::window::{Window, WindowExpansion};
 use super::{Fit, MovingWindow, Newton, Order, TrustRegion, WindowSearch, cramer_rao};
 use argmin::core::{Executor, State, TerminationReason, TerminationStatus};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// With a robust loss so many times the steps are allowed.
 const ROBUST: u64 = 8;
 
 impl MovingWindow {
-    /// An attempt in a window; `belief` is what stays believed where there is none. With the differences of what was found.
-    pub(super) fn attempt_in(
-        &self,
-        task: &Task<'_>,
-        window: &Window<'_>,
-        belief: &[f64],
-    ) -> (Update, Option<DVector<f64>>) {
+    /// An attempt in a window; what it begins with, within its bounds, stays believed where there is no answer. With the differences of what was found.
+    pub(super) fn attempt_in(&self, task: &Task<'_>, window: &Window<'_>) -> (Update, Option<DVector<f64>>) {
         let begin = Instant::now();
         let mut left = None;
         let sizes = Self::sizes(task, window);
         let mut update = Update {
             from: window.times[0],
             to: window.times[window.times.len() - 1],
-            estimate: belief.to_vec(),
+            estimate: window.start[..task.estimated()].to_vec(),
             outputs: window.start[task.estimated()..].to_vec(),
             deviations: vec![f64::INFINITY; task.estimated()],
+            covariance: None,
+            at_bounds: Vec::new(),
+            seam: None,
             condition: f64::INFINITY,
             cost: f64::INFINITY,
             misfit: f64::INFINITY,
@@ -56,6 +55,7 @@ impl MovingWindow {
                 }
             }
         };
+        update.at_bounds = task.at_bounds(&update.estimate);
         update.seconds = begin.elapsed().as_secs_f64();
         (update, left)
     }
@@ -79,6 +79,8 @@ impl MovingWindow {
         let taken = if task.exact { task.full.states.len() - task.estimated() } else { 0 };
         let misfit = Misfit {
             differences,
+            slopes: Some(&expansion.slopes),
+            loss: window.loss.0,
             outputs: task.full.outputs.len(),
             relations: window.relations(),
             unknowns: window.free.len() + taken,
@@ -90,7 +92,8 @@ impl MovingWindow {
         match &window.weights {
             Some(weights) => {
                 let (computed, degrees) = (misfit.computed(), misfit.degrees());
-                weights.fit(differences, &expansion.slopes, computed, degrees, misfit.alarm)
+                let judged = (misfit.loss, misfit.alarm);
+                weights.fit(differences, &expansion.slopes, computed, degrees, judged)
             }
             None => misfit.fit(task.noise),
         }
@@ -102,7 +105,7 @@ impl MovingWindow {
         task: &Task<'_>,
         sigma: f64,
         window: &Window<'_>,
-        slopes: &nalgebra::DMatrix<f64>,
+        slopes: &DMatrix<f64>,
         sizes: &[f64],
         update: &mut Update,
     ) -> Option<UpdateEnd> {
@@ -116,6 +119,8 @@ impl MovingWindow {
             }
         }
         update.condition = bound.condition;
+        update.covariance =
+            bound.covariance.map(|own| Arc::new(of_all(&own, &window.free, window.start.len())));
         blind.then_some(UpdateEnd::Blind { weakest: bound.weakest })
     }
 
@@ -185,6 +190,17 @@ impl MovingWindow {
         };
         (end, Some(left))
     }
+}
+
+/// The covariance of all that is followed, from that of the unknowns.
+fn of_all(unknowns: &DMatrix<f64>, free: &[usize], states: usize) -> DMatrix<f64> {
+    let mut all = DMatrix::zeros(states, states);
+    for (i, row) in free.iter().enumerate() {
+        for (j, column) in free.iter().enumerate() {
+            all[(*row, *column)] = unknowns[(i, j)];
+        }
+    }
+    all
 }
 
 fn lost(error: argmin::core::Error, time: f64) -> UpdateEnd {

@@ -1,9 +1,10 @@
 //! The high-gain observer of Gauthier, Hammouri and Othman, which section 6.2 of the thesis names.
 
+use super::filtered::{Filtered, Innovation};
 use super::flow::advance;
 use super::model::{Formulas, InputSource};
 use super::task::{Observer, Task};
-use super::track::{SampleEstimate, Track};
+use super::track::Track;
 use super::{Learned, Lost, Model};
 use crate::expression::{NodeId, Symbol, gradient};
 use crate::number::{Duals, Refusal};
@@ -22,6 +23,10 @@ use std::collections::HashMap;
 ///
 /// Reference: J. P. Gauthier, H. Hammouri, S. Othman, A simple observer for nonlinear systems, IEEE TAC 37(6), 1992; for
 /// several outputs G. Bornard and H. Hammouri, CDC 1991.
+///
+/// It knows no covariance of its own. That of its error is carried beside it: with `F = df/dx - (dPhi/dx)^-1 K H` the error moves as `e' = F e + (dPhi/dx)^-1 K v` under
+/// errors `v` of the readings, from one sample to the next with `F` and `v` as they are at the first (C. F. Van Loan, Computing integrals involving the matrix
+/// exponential, IEEE TAC 23(3), 1978); it begins with a half of each size, as that of the Kalman filter does.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct HighGain {
@@ -35,6 +40,12 @@ impl Default for HighGain {
     }
 }
 
+/// The standard deviation of the first guess, relative to the sizes of what is sought.
+const PRIOR: f64 = 0.5;
+
+/// The least standard deviation that a reading is believed to have, in its unit.
+const LEAST: f64 = 1e-6;
+
 /// A matrix whose scaled condition is worse than this is taken to be singular.
 const SINGULAR: f64 = 1e9;
 
@@ -44,67 +55,77 @@ struct Canonical {
     lengths: Vec<usize>,
     /// The rows, and where their inputs come from.
     rows: Formulas,
+    /// The derivatives of the rates by the states, a row a state.
+    jacobian: Formulas,
     model: Model,
 }
 
 impl Observer for HighGain {
     fn observe(&self, task: &Task<'_>) -> Track {
-        let mut track = Track::default();
         let times = task.signals.times();
         let learned = Learned::before(task);
         let mut state = task.full_state(&learned.belief, 0);
-        if let Some((known, _)) = &learned.filter {
-            state = known.as_slice().to_vec();
+        let mut so_far = Filtered::begin(task, LEAST);
+        let deviations = DVector::from_vec(task.prior_deviations(PRIOR, task.sigma.max(LEAST)));
+        let mut covariance = DMatrix::from_diagonal(&deviations.map(|deviation| deviation * deviation));
+        if let Some((known, spread)) = &learned.filter {
+            (state, covariance) = (known.as_slice().to_vec(), spread.clone());
         }
         let canonical = match Canonical::new(task, &state) {
             Ok(canonical) => canonical,
             Err(why) => {
-                track.remarks.push(format!("no canonical form: {why}"));
-                return track;
+                return Track { remarks: vec![format!("no canonical form: {why}")], ..Track::default() };
             }
         };
-        let record = |time: f64, state: &[f64], row: usize, track: &mut Track| {
+        let record = |so_far: &mut Filtered<'_, '_>, state: &[f64], covariance: &DMatrix<f64>, row: usize| {
             // the outputs of the canonical form are states: they are what is read
             let read = task.readings(row);
             let seen = task.full.outputs.iter().map(|name| task.full.find(name).map(|place| state[place]));
-            let residual = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
-            track.estimates.push(SampleEstimate {
-                time,
-                state: state[..task.estimated()].to_vec(),
-                residual,
-            });
+            let residual: Vec<f64> = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
+            if row > 0 {
+                so_far.compare(&canonical.innovation(&residual, covariance, &so_far.reading_variances()));
+            }
+            so_far.believe(times[row], state, &covariance.diagonal(), residual);
         };
-        record(times[0], &state, 0, &mut track);
+        record(&mut so_far, &state, &covariance, 0);
         for row in 1..times.len() {
             if task.interrupted() {
                 break;
             }
+            let noise = so_far.reading_variances();
+            let carried =
+                canonical.carried(task, self.gain, &state, &covariance, &times[row - 1..=row], &noise);
             match self.step(task, &canonical, &state, times[row - 1], times[row]) {
                 Ok((there, seen)) => {
-                    state = there;
-                    track.unseen += usize::from(!seen);
+                    let mut held = DVector::from_vec(there);
+                    covariance = carried.unwrap_or_else(|| {
+                        DMatrix::from_diagonal_element(state.len(), state.len(), f64::INFINITY)
+                    });
+                    so_far.hold(times[row], &mut held, &covariance);
+                    state = held.as_slice().to_vec();
+                    so_far.track.unseen += usize::from(!seen);
                 }
                 Err(lost) => {
                     // what has run away does not come back
-                    track.remarks.push(format!("held from there on: {lost}"));
-                    track.unseen += times.len() - row;
+                    so_far.track.remarks.push(format!("held from there on: {lost}"));
+                    so_far.track.unseen += times.len() - row;
+                    let unknown = DVector::from_element(state.len(), f64::INFINITY);
                     for time in &times[row..] {
-                        let state = state[..task.estimated()].to_vec();
-                        track.estimates.push(SampleEstimate { time: *time, state, residual: Vec::new() });
+                        so_far.believe(*time, &state, &unknown, Vec::new());
                     }
                     break;
                 }
             }
-            record(times[row], &state, row, &mut track);
+            record(&mut so_far, &state, &covariance, row);
         }
+        let mut track = so_far.end();
         let lengths: Vec<String> = canonical.lengths.iter().map(ToString::to_string).collect();
         track.remarks.push(format!(
             "canonical form: the outputs and their derivatives, {} coordinates",
             lengths.join(" and ")
         ));
-        let belief = state[..task.estimated()].to_vec();
-        let filter = Some((DVector::from_vec(state), DMatrix::zeros(0, 0)));
-        track.hand_on(Learned { belief, filter, ..Learned::nothing(task) });
+        let state = DVector::from_vec(state);
+        track.hand_on(Learned::of_filter(task, &state, &covariance, &covariance.diagonal()));
         track
     }
 }
@@ -175,6 +196,11 @@ impl Canonical {
         }
         let (n, m) = (model.states.len(), model.outputs.len());
         let mut best: Option<(f64, Canonical)> = None;
+        let (rates, states) = (model.rate_nodes.clone(), model.symbols.clone());
+        let slopes: Vec<NodeId> =
+            rates.into_iter().flat_map(|rate| gradient(&mut model.system.graph, rate, &states)).collect();
+        let jacobian = model.formulas(&slopes, &HashMap::new(), task.signals);
+        let jacobian = jacobian.map_err(|error| error.to_string())?;
         for lengths in compositions(n, m) {
             let longest = lengths.iter().copied().max().unwrap_or(0);
             // a third derivative would need the second derivatives of the signals
@@ -183,7 +209,7 @@ impl Canonical {
             }
             let (rows, rates) = coordinate_rows(&mut model, &lengths);
             let rows = model.formulas(&rows, &rates, task.signals).map_err(|error| error.to_string())?;
-            let canonical = Canonical { lengths, rows, model: model.clone() };
+            let canonical = Canonical { lengths, rows, jacobian: jacobian.clone(), model: model.clone() };
             let condition =
                 canonical.matrix(task, task.signals.times()[0], state).map(|matrix| condition(&matrix, task));
             if let Some(condition) = condition.filter(|condition| *condition < SINGULAR)
@@ -207,6 +233,65 @@ impl Canonical {
         let values = program.run(&inputs, &mut Vec::new()).ok()?;
         let n = self.model.states.len();
         values.iter().all(|value| value.is_finite()).then(|| DMatrix::from_row_slice(n, n, &values))
+    }
+
+    /// The innovation of what is left at a sample.
+    fn innovation(&self, residual: &[f64], covariance: &DMatrix<f64>, noise: &DVector<f64>) -> Innovation {
+        let places: Vec<usize> = self.model.outputs.iter().filter_map(|name| self.model.find(name)).collect();
+        let own = covariance.select_rows(&places).select_columns(&places);
+        Innovation {
+            residual: DVector::from_column_slice(residual),
+            covariance: own + DMatrix::from_diagonal(noise),
+        }
+    }
+
+    /// The covariance of the error after a step; none where it has no value.
+    fn carried(
+        &self,
+        task: &Task<'_>,
+        gain: f64,
+        x: &[f64],
+        covariance: &DMatrix<f64>,
+        times: &[f64],
+        noise: &DVector<f64>,
+    ) -> Option<DMatrix<f64>> {
+        let (n, m) = (x.len(), self.model.outputs.len());
+        let program = self.jacobian.program.load(Duals::<f64>::default()).ok()?;
+        let inputs = inputs_at(task, &self.model, &self.jacobian, times[0], x);
+        let own = DMatrix::from_row_slice(n, n, &program.run(&inputs, &mut Vec::new()).ok()?);
+        // where the form is singular nothing is corrected
+        let pull = self.pull(task, times[0], x, gain).unwrap_or_else(|| DMatrix::zeros(n, m));
+        let mut both = DMatrix::zeros(n + m, n + m);
+        both.view_mut((0, 0), (n, n)).copy_from(&own);
+        both.view_mut((0, n), (n, m)).copy_from(&pull);
+        for (output, name) in self.model.outputs.iter().enumerate() {
+            let place = self.model.find(name)?;
+            for i in 0..n {
+                both[(i, place)] -= pull[(i, output)];
+            }
+        }
+        let moved = (both * (times[1] - times[0])).exp();
+        let (by_state, by_noise) = (moved.view((0, 0), (n, n)), moved.view((0, n), (n, m)));
+        let noise = DMatrix::from_diagonal(noise);
+        let carried = by_state * covariance * by_state.transpose() + by_noise * noise * by_noise.transpose();
+        carried.iter().all(|value| value.is_finite()).then_some(carried)
+    }
+
+    /// `(dPhi/dx)^-1 K`, a column an output; none where the form is singular.
+    fn pull(&self, task: &Task<'_>, time: f64, x: &[f64], gain: f64) -> Option<DMatrix<f64>> {
+        let matrix = self.matrix(task, time, x)?;
+        if condition(&matrix, task) > SINGULAR {
+            return None;
+        }
+        let mut right = DMatrix::zeros(x.len(), self.lengths.len());
+        let mut row = 0;
+        for (output, length) in self.lengths.iter().enumerate() {
+            for k in 1..=*length {
+                right[(row, output)] = binomial(*length, k) * gain.powi(k as i32);
+                row += 1;
+            }
+        }
+        matrix.lu().solve(&right)
     }
 
     /// `(dPhi/dx)^-1 K e`.

@@ -207,6 +207,14 @@ impl<'a> Task<'a> {
         state
     }
 
+    /// What of what is sought lies at a bound, by its place, and the bound.
+    pub(super) fn at_bounds(&self, sought: &[f64]) -> Vec<(usize, f64)> {
+        let at = |(place, (value, bounds)): (usize, (&f64, &[f64; 2]))| {
+            bounds.iter().find(|bound| *bound == value).map(|bound| (place, *bound))
+        };
+        sought.iter().zip(&self.bounds).enumerate().filter_map(at).collect()
+    }
+
     /// The standard deviations that a filter begins with: of what is sought a part of its size, none of what is clamped, and of outputs that
     /// are states the readings' own.
     pub(super) fn prior_deviations(&self, part: f64, sigma: f64) -> Vec<f64> {

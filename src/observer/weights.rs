@@ -12,6 +12,7 @@
 
 use super::chi_square::exceeded;
 use super::fit::{Fit, Noise, NoiseFrom, ReadingErrors};
+use super::loss::Loss;
 use super::sensitivity::Sensitivity;
 use super::task::Task;
 use super::{Lost, Signals};
@@ -201,23 +202,39 @@ impl Weights {
     /// What rounding and computation add may hang together in the worst way: that much is taken off before normal errors have to explain
     /// the rest, as where the errors are white. Differences are weighted anew for it, with the computation's part as an
     /// error of each: weights that know of none would make much of it.
+    ///
+    /// A robust loss leaves out what no normal error reaches; more of it than a tenth is no fit.
     pub fn fit(
         &self,
         left: &DVector<f64>,
         slopes: &DMatrix<f64>,
         computed: f64,
         degrees: usize,
-        alarm: f64,
+        (loss, alarm): (Loss, f64),
     ) -> Fit {
+        let mut left = left.clone();
+        let is_out = |value: &&mut f64| loss.is_outlier(**value, self.unit, computed);
+        let out = left.iter_mut().filter(is_out).map(|value| *value = 0.0).count();
+        let degrees = degrees.saturating_sub(out);
         let chi_square = left.norm_squared() / (self.unit * self.unit);
-        let rest = self.unexplained(left, slopes, computed).unwrap_or(f64::NAN);
+        let rest = self.unexplained(&left, slopes, computed).unwrap_or(f64::NAN);
         let probability = match rest {
             rest if rest <= 0.0 => 1.0,
             rest => exceeded(rest * rest, degrees as f64),
         };
-        let from = NoiseFrom::Stated;
-        let fits = degrees > 0 && probability >= alarm;
-        Fit { chi_square, degrees, probability, sigma: self.unit, from, fits }
+        let (sigma, from, readings) = (self.unit, NoiseFrom::Stated, left.len());
+        let fit = Fit {
+            chi_square,
+            degrees,
+            probability,
+            outliers: out,
+            readings,
+            neighbours: None,
+            sigma,
+            from,
+            fits: false,
+        };
+        Fit { fits: degrees > 0 && !fit.has_outliers() && probability >= alarm, ..fit }
     }
 
     fn unexplained(&self, left: &DVector<f64>, slopes: &DMatrix<f64>, computed: f64) -> Option<f64> {

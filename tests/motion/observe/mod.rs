@@ -5,12 +5,14 @@
 
 mod advice;
 mod advice_space;
+mod bars;
 mod broken;
 mod channels;
 mod circular;
 mod coefficients;
 mod columns;
 mod control_points;
+mod fitting;
 mod inherited;
 mod library;
 mod modes;
