@@ -53,6 +53,7 @@ mod track;
 mod trust_region;
 mod unscented;
 mod weights;
+mod whitening;
 mod window;
 
 pub use bound::CramerRaoBound;
