@@ -157,7 +157,7 @@ fn weights_are_linear_in_the_samples() {
             let slopes = DMatrix::from_fn(2 * count, 5, |i, j| ((i * j) as f64).sin());
             let weighted = weights.weighted(&differences);
             let slopes = weights.weighted_slopes(&slopes);
-            assert!(weights.fit(&weighted, &slopes, 1e-9, 2 * count - 5, 1e-3).fits);
+            assert!(weights.fit(&weighted, &slopes, 1e-9, 2 * count - 5, (Loss::Squares, 1e-3)).fits);
             begin.elapsed().as_secs_f64()
         };
         (0..3).map(|_| once()).fold(f64::INFINITY, f64::min)
