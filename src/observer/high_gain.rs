@@ -3,6 +3,7 @@
 use super::filtered::{Filtered, Innovation};
 use super::flow::advance;
 use super::model::{Formulas, InputSource};
+use super::spread::Spread;
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Model};
@@ -25,8 +26,9 @@ use std::collections::HashMap;
 /// several outputs G. Bornard and H. Hammouri, CDC 1991.
 ///
 /// It knows no covariance of its own. That of its error is carried beside it: with `F = df/dx - (dPhi/dx)^-1 K H` the error moves as `e' = F e + (dPhi/dx)^-1 K v` under
-/// errors `v` of the readings, from one sample to the next with `F` and `v` as they are at the first (C. F. Van Loan, Computing integrals involving the matrix
-/// exponential, IEEE TAC 23(3), 1978); it begins with a half of each size, as that of the Kalman filter does.
+/// the error `v` of the curve through the readings, from one sample to the next with `F` as it is at the first. The curve hangs on eight readings at a time, so that the errors
+/// of neighbouring steps are not independent: how far each of these eight has moved the state is carried too. The covariance begins with a half of each size, as that of the
+/// Kalman filter does.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct HighGain {
@@ -60,6 +62,15 @@ struct Canonical {
     model: Model,
 }
 
+/// Places on [-1, 1] and weights of Gauss and Legendre's rule, exact to degree nine: a curve through eight samples has degree seven.
+const GAUSS: [(f64, f64); 5] = [
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.0, 0.568_888_888_888_888_9),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+];
+
 impl Observer for HighGain {
     fn observe(&self, task: &Task<'_>) -> Track {
         let times = task.signals.times();
@@ -71,37 +82,38 @@ impl Observer for HighGain {
         if let Some((known, spread)) = &learned.filter {
             (state, covariance) = (known.as_slice().to_vec(), spread.clone());
         }
+        let noise = so_far.reading_variances();
+        let mut error = Spread::of_a_guess(covariance, noise, task.signals.carriers());
         let canonical = match Canonical::new(task, &state) {
             Ok(canonical) => canonical,
             Err(why) => {
                 return Track { remarks: vec![format!("no canonical form: {why}")], ..Track::default() };
             }
         };
-        let record = |so_far: &mut Filtered<'_, '_>, state: &[f64], covariance: &DMatrix<f64>, row: usize| {
+        let record = |so_far: &mut Filtered<'_, '_>, state: &[f64], error: &Spread, row: usize| {
             // the outputs of the canonical form are states: they are what is read
             let read = task.readings(row);
             let seen = task.full.outputs.iter().map(|name| task.full.find(name).map(|place| state[place]));
             let residual: Vec<f64> = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
             if row > 0 {
-                so_far.compare(&canonical.innovation(&residual, covariance, &so_far.reading_variances()));
+                let covariance = error.of_residual(&canonical.places(), task.signals.sample(row));
+                so_far.compare(&Innovation { residual: DVector::from_column_slice(&residual), covariance });
             }
-            so_far.believe(times[row], state, &covariance.diagonal(), residual);
+            so_far.believe(times[row], state, &error.covariance().diagonal(), residual);
         };
-        record(&mut so_far, &state, &covariance, 0);
+        record(&mut so_far, &state, &error, 0);
         for row in 1..times.len() {
             if task.interrupted() {
                 break;
             }
-            let noise = so_far.reading_variances();
-            let carried =
-                canonical.carried(task, self.gain, &state, &covariance, &times[row - 1..=row], &noise);
+            let carried = canonical.carry(task, self.gain, &state, &times[row - 1..=row], &mut error);
             match self.step(task, &canonical, &state, times[row - 1], times[row]) {
                 Ok((there, seen)) => {
                     let mut held = DVector::from_vec(there);
-                    covariance = carried.unwrap_or_else(|| {
-                        DMatrix::from_diagonal_element(state.len(), state.len(), f64::INFINITY)
-                    });
-                    so_far.hold(times[row], &mut held, &covariance);
+                    if carried.is_none() {
+                        error.forget();
+                    }
+                    so_far.hold(times[row], &mut held, &error.covariance());
                     state = held.as_slice().to_vec();
                     so_far.track.unseen += usize::from(!seen);
                 }
@@ -116,8 +128,9 @@ impl Observer for HighGain {
                     break;
                 }
             }
-            record(&mut so_far, &state, &covariance, row);
+            record(&mut so_far, &state, &error, row);
         }
+        let covariance = error.covariance();
         let mut track = so_far.end();
         let lengths: Vec<String> = canonical.lengths.iter().map(ToString::to_string).collect();
         track.remarks.push(format!(
@@ -235,46 +248,37 @@ impl Canonical {
         values.iter().all(|value| value.is_finite()).then(|| DMatrix::from_row_slice(n, n, &values))
     }
 
-    /// The innovation of what is left at a sample.
-    fn innovation(&self, residual: &[f64], covariance: &DMatrix<f64>, noise: &DVector<f64>) -> Innovation {
-        let places: Vec<usize> = self.model.outputs.iter().filter_map(|name| self.model.find(name)).collect();
-        let own = covariance.select_rows(&places).select_columns(&places);
-        Innovation {
-            residual: DVector::from_column_slice(residual),
-            covariance: own + DMatrix::from_diagonal(noise),
-        }
+    /// The places of the outputs among the states.
+    fn places(&self) -> Vec<usize> {
+        self.model.outputs.iter().filter_map(|name| self.model.find(name)).collect()
     }
 
-    /// The covariance of the error after a step; none where it has no value.
-    fn carried(
-        &self,
-        task: &Task<'_>,
-        gain: f64,
-        x: &[f64],
-        covariance: &DMatrix<f64>,
-        times: &[f64],
-        noise: &DVector<f64>,
-    ) -> Option<DMatrix<f64>> {
-        let (n, m) = (x.len(), self.model.outputs.len());
+    /// Carries the error over a step; nothing where it has no value.
+    fn carry(&self, task: &Task<'_>, gain: f64, x: &[f64], times: &[f64], error: &mut Spread) -> Option<()> {
+        let n = x.len();
         let program = self.jacobian.program.load(Duals::<f64>::default()).ok()?;
         let inputs = inputs_at(task, &self.model, &self.jacobian, times[0], x);
-        let own = DMatrix::from_row_slice(n, n, &program.run(&inputs, &mut Vec::new()).ok()?);
+        let mut own = DMatrix::from_row_slice(n, n, &program.run(&inputs, &mut Vec::new()).ok()?);
         // where the form is singular nothing is corrected
-        let pull = self.pull(task, times[0], x, gain).unwrap_or_else(|| DMatrix::zeros(n, m));
-        let mut both = DMatrix::zeros(n + m, n + m);
-        both.view_mut((0, 0), (n, n)).copy_from(&own);
-        both.view_mut((0, n), (n, m)).copy_from(&pull);
-        for (output, name) in self.model.outputs.iter().enumerate() {
-            let place = self.model.find(name)?;
-            for i in 0..n {
-                both[(i, place)] -= pull[(i, output)];
+        let pull = self.pull(task, times[0], x, gain);
+        let pull = pull.unwrap_or_else(|| DMatrix::zeros(n, self.model.outputs.len()));
+        for (output, place) in self.places().into_iter().enumerate() {
+            let mut column = own.column_mut(place);
+            column -= pull.column(output);
+        }
+        let step = times[1] - times[0];
+        let first = task.signals.first_carrier(times[0]);
+        let mut moved = vec![DMatrix::zeros(n, pull.ncols()); task.signals.carriers()];
+        for (place, weight) in GAUSS {
+            let time = times[0] + step * (1.0 + place) / 2.0;
+            let on = (&own * (times[1] - time)).exp() * &pull * (weight * step / 2.0);
+            for (moved, carries) in moved.iter_mut().zip(task.signals.weights_from(first, time)) {
+                *moved += &on * carries;
             }
         }
-        let moved = (both * (times[1] - times[0])).exp();
-        let (by_state, by_noise) = (moved.view((0, 0), (n, n)), moved.view((0, n), (n, m)));
-        let noise = DMatrix::from_diagonal(noise);
-        let carried = by_state * covariance * by_state.transpose() + by_noise * noise * by_noise.transpose();
-        carried.iter().all(|value| value.is_finite()).then_some(carried)
+        let by_state = (own * step).exp();
+        let is_finite = |matrix: &DMatrix<f64>| matrix.iter().all(|value| value.is_finite());
+        (is_finite(&by_state) && moved.iter().all(is_finite)).then(|| error.step(&by_state, first, moved))
     }
 
     /// `(dPhi/dx)^-1 K`, a column an output; none where the form is singular.

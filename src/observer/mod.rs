@@ -42,6 +42,7 @@ mod response;
 mod seam;
 mod sensitivity;
 mod signal;
+mod spread;
 mod starts;
 mod stiff_joints;
 mod suspect;
