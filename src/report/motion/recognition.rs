@@ -92,9 +92,9 @@ pub(super) fn recognition_section(found: &Recognition) -> Markup {
                             td { b { (body.name) } }
                             td { (standing(body)) }
                             @if body.fit.is_some() {
-                                td.number { (format!("{:.1e}", body.misfit)) }
-                                td.number { (measured(body.orientation)) }
-                                td.number { (measured(body.rate)) }
+                                td.n { (format!("{:.1e}", body.misfit)) }
+                                td.n { (measured(body.orientation)) }
+                                td.n { (measured(body.rate)) }
                             } @else {
                                 td {} td {} td {}
                             }

@@ -71,26 +71,26 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
                         td { b { (answer.method.name()) } }
                         @if let Some(last) = answer.track.last() {
                             @let truth = observed.experiment.truth_at(last.time);
-                            td.number { (format!("{:.3} s", last.time)) }
+                            td.n { (format!("{:.3} s", last.time)) }
                             @for (place, value) in last.state.iter().enumerate() {
-                                td.number { (format!("{value:.6}")) }
-                                @if known { td.number {
+                                td.n { (format!("{value:.6}")) }
+                                @if known { td.n {
                                     (truth.as_ref().map_or("-".to_owned(), |truth| format!("{:.1e}", (value - truth[place]).abs())))
                                 } }
-                                td.number { (last.deviations.get(place).map_or("-".to_owned(), |own| bound_in_words(*own))) }
+                                td.n { (last.deviations.get(place).map_or("-".to_owned(), |own| bound_in_words(*own))) }
                             }
                         } @else { td colspan=(1 + names.len() * if known { 3 } else { 2 }) { "it found nothing" } }
-                        td.number {
+                        td.n {
                             @if answer.track.updates.is_empty() { (tested(answer)) }
                             @else { (converged) " of " (answer.track.updates.len()) }
                         }
-                        @if let Some(pace) = pace(observed, answer) { td.words { (pace) } }
+                        @if let Some(pace) = pace(observed, answer) { td.w { (pace) } }
                     }
                 }
                 @if let (true, Some(truth)) = (known, last_truth(observed)) {
                     tr {
                         td { "true" } td {}
-                        @for value in truth { td.number { (format!("{value:.6}")) } td {} td {} }
+                        @for value in truth { td.n { (format!("{value:.6}")) } td {} td {} }
                         td {} @if timed { td {} }
                     }
                 }
@@ -155,27 +155,27 @@ fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
                     @let (value, deviation) = (update.estimate[place], update.deviations[place]);
                     tr {
                         @if place == 0 {
-                            td.number rowspan=(names.len()) { (format!("{:.3} to {:.3} s", update.from, update.to)) }
+                            td.n rowspan=(names.len()) { (format!("{:.3} to {:.3} s", update.from, update.to)) }
                             td rowspan=(names.len()) { (end_name(&update.end)) }
-                            td.number rowspan=(names.len()) {
+                            td.n rowspan=(names.len()) {
                                 (update.steps) @if update.troubled > 0 { " (" (update.troubled) " mended)" }
                             }
-                            @if timed { td.number rowspan=(names.len()) { (duration(update.seconds)) } }
+                            @if timed { td.n rowspan=(names.len()) { (duration(update.seconds)) } }
                         }
                         td { (state_name(observed, name)) }
-                        td.number { (format!("{value:.9}")) }
+                        td.n { (format!("{value:.9}")) }
                         @if known { @match &truth {
                             Some(truth) => {
-                                td.number { (format!("{:.9}", truth[place])) }
-                                td.number { (format!("{:.1e}", (value - truth[place]).abs())) }
+                                td.n { (format!("{:.9}", truth[place])) }
+                                td.n { (format!("{:.1e}", (value - truth[place]).abs())) }
                             }
                             None => { td { "-" } td { "-" } }
                         } }
-                        td.number {
+                        td.n {
                             (bound_in_words(deviation))
                             @if let Some((_, bound)) = update.at_bounds.iter().find(|own| own.0 == place) { ", held at " (bound) }
                         }
-                        @if known { td.number { @match &truth {
+                        @if known { td.n { @match &truth {
                             Some(truth) if deviation.is_finite() && deviation > 0.0 => {
                                 (format!("{:.1}", (value - truth[place]).abs() / deviation))
                             }
