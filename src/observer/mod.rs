@@ -36,6 +36,7 @@ mod objection;
 mod quick_step;
 pub(crate) mod record;
 mod response;
+mod restarts;
 mod sensitivity;
 mod signal;
 mod starts;

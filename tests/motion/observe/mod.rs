@@ -11,6 +11,7 @@ mod circular;
 mod coefficients;
 mod columns;
 mod control_points;
+mod ends;
 mod inherited;
 mod library;
 mod modes;
