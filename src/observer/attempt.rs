@@ -13,6 +13,9 @@ use std::time::Instant;
 /// With a robust loss so many times the steps are allowed.
 const ROBUST: u64 = 8;
 
+/// What was found is a size of its own where it is so many of its deviations or more.
+const SIGNIFICANT: f64 = 3.0;
+
 impl MovingWindow {
     /// An attempt in a window; what it begins with, within its bounds, stays believed where there is no answer. With the differences of what was found.
     pub(super) fn attempt_in(&self, task: &Task<'_>, window: &Window<'_>) -> (Update, Option<DVector<f64>>) {
@@ -45,13 +48,18 @@ impl MovingWindow {
             Err(lost) => UpdateEnd::Lost(lost),
             Ok(expansion) => {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
-                match self.see(task, task.sigma, window, &expansion.slopes, &sizes, &mut update) {
-                    Some(blind) => blind,
-                    None => {
-                        let (end, found) = self.search(task, window, guess, &sizes, &mut update);
-                        left = found;
-                        end
+                // where nothing is seen at the guess more may be seen where the search ends
+                let blind =
+                    self.see(task, task.sigma, window, (&expansion.slopes, &guess), &sizes, &mut update);
+                let (end, found) = self.search(task, window, guess, &sizes, &mut update);
+                left = found;
+                match (end, blind) {
+                    (UpdateEnd::Lost(_), Some(blind)) => {
+                        update.estimate = window.start[..task.estimated()].to_vec();
+                        update.outputs = window.start[task.estimated()..].to_vec();
+                        blind
                     }
+                    (end, _) => end,
                 }
             }
         };
@@ -99,22 +107,25 @@ impl MovingWindow {
         }
     }
 
-    /// Sets the bound; says so where something that is sought is not seen.
+    /// Sets the bound; says so where something that is sought is not seen: known no better than its size, which is that of the guess, or what was found
+    /// where that is significant.
     fn see(
         &self,
         task: &Task<'_>,
         sigma: f64,
         window: &Window<'_>,
-        slopes: &DMatrix<f64>,
+        (slopes, at): (&DMatrix<f64>, &DVector<f64>),
         sizes: &[f64],
         update: &mut Update,
     ) -> Option<UpdateEnd> {
         let bound = cramer_rao(slopes, sigma, sizes);
         let mut blind = false;
         update.deviations = vec![0.0; task.estimated()];
-        for ((place, deviation), size) in window.free.iter().zip(&bound.deviations).zip(sizes) {
+        let known = window.free.iter().zip(&bound.deviations).zip(sizes).zip(at.iter());
+        for (((place, deviation), size), value) in known {
             if let Some(own) = update.deviations.get_mut(*place) {
                 *own = *deviation;
+                let size = size.max(value.abs() / SIGNIFICANT);
                 blind |= deviation.is_nan() || *deviation > self.blind * size;
             }
         }
@@ -173,7 +184,8 @@ impl MovingWindow {
                 let (loss, sigma) = window.loss;
                 let left = window.weighted(expansion.left.clone());
                 update.discounted = left.iter().filter(|value| loss.is_discounted(**value, sigma)).count();
-                if let Some(blind) = self.see(task, fit.sigma, window, &expansion.slopes, sizes, update) {
+                let here = (&expansion.slopes, found);
+                if let Some(blind) = self.see(task, fit.sigma, window, here, sizes, update) {
                     update.estimate = window.start[..task.estimated()].to_vec();
                     update.outputs = window.start[task.estimated()..].to_vec();
                     return (blind, None);

@@ -39,6 +39,7 @@ mod propagated;
 mod quick_step;
 pub(crate) mod record;
 mod response;
+mod restarts;
 mod seam;
 mod sensitivity;
 mod signal;

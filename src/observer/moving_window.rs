@@ -11,6 +11,7 @@ use super::window::Window;
 use super::{Order, weights};
 use nalgebra::DMatrix;
 use serde::Deserialize;
+use std::cell::Cell;
 use std::ops::Range;
 
 /// How the smallest error of a window is sought.
@@ -64,14 +65,25 @@ impl Observer for MovingWindow {
     fn observe(&self, task: &Task<'_>) -> Track {
         let all = MovingWindow { window: task.signals.times().len(), ..*self };
         let windows = if task.whole { &all } else { self };
-        windows.observe_by(task, |belief, rows, clamped, learned| {
+        let began_anew = Cell::new(None);
+        let mut track = windows.observe_by(task, |belief, rows, clamped, learned| {
             let ask = !learned.is_asked;
             let update = match task.whole {
                 true => self.grown(task, belief, rows, clamped, ask),
                 false => self.update_and_ask(task, belief, rows, clamped, ask),
             };
+            let (update, is_other) = windows.restarted(task, update, belief, rows, clamped);
+            if is_other {
+                began_anew.set(Some(update.from));
+            }
             (update, Vec::new())
-        })
+        });
+        if let Some(from) = began_anew.get() {
+            track.remarks.push(format!(
+                "from {from:.3} s the search from the guess came to nothing, and one from another state of the ranges has found this"
+            ));
+        }
+        track
     }
 }
 

@@ -53,6 +53,8 @@ pub struct Task<'a> {
     pub learned: Option<Arc<Learned>>,
     /// What is known of the state at the first sample of a window from those before it.
     pub(super) arrival: Option<Arc<Arrival>>,
+    /// Whether a first window whose search comes to nothing is searched again from other states: within the bounds, or else the ranges of the file.
+    pub restarts: bool,
     /// The tolerance of the integration.
     pub tolerance: f64,
     /// Set from outside to stop: what is done by then is given back.
@@ -157,6 +159,7 @@ impl<'a> Task<'a> {
             alarm: None,
             learned: None,
             arrival: None,
+            restarts: false,
             tolerance: TOLERANCE,
             interrupt,
             source: Arc::new((system.clone(), wanted.clone())),

@@ -12,6 +12,7 @@ mod circular;
 mod coefficients;
 mod columns;
 mod control_points;
+mod ends;
 mod fitting;
 mod inherited;
 mod library;
