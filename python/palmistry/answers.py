@@ -339,7 +339,7 @@ class Observation(Answer):
 
     @property
     def track(self) -> Table | None:
-        """What was believed sample by sample: each state with its bound."""
+        """What was believed sample by sample: each state with its bound there, a standard deviation (NaN where there is none)."""
         return self._table("track")
 
     @property

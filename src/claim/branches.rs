@@ -5,7 +5,7 @@ use super::evidence::Kept;
 use super::existence::Existence;
 use super::identity::{OnOneBranch, decide_identity};
 use super::inequality::decide_relations;
-use super::multiple::follows;
+use super::irreducible::follows;
 use super::question::Question;
 use super::ranks::{decide_codistribution, decide_rank};
 use super::terms::{OnBranch, Terms};

@@ -8,7 +8,7 @@ use super::shards::{NO_WHOLE, Parts, Shards};
 use super::{Status, Unusable};
 use clap::Args;
 use palmistry::checker::VerdictFile;
-use palmistry::drops::where_it_drops;
+use palmistry::drops::{DropAnswer, where_it_drops_telling};
 use palmistry::evidence::rank_records;
 use palmistry::observability::SOLUTIONS_WORK;
 use palmistry::report::{
@@ -130,6 +130,7 @@ enum SoFar {
     /// Of each branch of the conditions of a file, in their order, what holds at almost all of its states.
     Rank(String, Vec<GenericOnBranch>),
     Values(Box<GlobalAnswer>),
+    Drops(Box<DropAnswer>),
 }
 
 impl SoFar {
@@ -146,6 +147,9 @@ impl SoFar {
             ),
             SoFar::Values(answer) => {
                 files.print(form, global_json(answer), || global_text(answer), Status::CutOff)
+            }
+            SoFar::Drops(answer) => {
+                files.print(form, drops_json(answer), || drops_text(answer), Status::CutOff)
             }
         }
     }
@@ -165,7 +169,7 @@ impl Rank {
     fn work(self, known: &dyn Fn(SoFar)) -> miette::Result<Status> {
         let mut system = System::read(&self.file)?;
         if self.where_it_drops {
-            return self.tell_where(&mut system);
+            return self.tell_where(&mut system, known);
         }
         if self.global {
             return self.tell_values(&mut system, known);
@@ -312,9 +316,10 @@ impl Rank {
     }
 
     /// The exact set on which the rank drops.
-    fn tell_where(&self, system: &mut System) -> miette::Result<Status> {
-        let answer =
-            where_it_drops(system, self.seed, &INTERRUPTED).map_err(|why| Unusable::report(why, ""))?;
+    fn tell_where(&self, system: &mut System, known: &dyn Fn(SoFar)) -> miette::Result<Status> {
+        let mut tell = |answer| known(SoFar::Drops(Box::new(answer)));
+        let answer = where_it_drops_telling(system, self.seed, &INTERRUPTED, &mut tell)
+            .map_err(|why| Unusable::report(why, ""))?;
         begin_to_tell();
         let status = if answer.is_exact() { Status::AsExpected } else { Status::CutOff };
         let (mut files, object) = (Files::default(), drops_json(&answer));

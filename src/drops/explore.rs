@@ -86,16 +86,27 @@ pub(super) struct Search<'a> {
     pub known: Vec<Polynomial>,
 }
 
+/// Is told each set on which the rank is lower, when it is found.
+pub(super) type Tell<'a> = dyn FnMut(&mut Algebra<'_>, &mut Search<'_>, &ShortCase) + 'a;
+
 impl Search<'_> {
     /// Follows all states to where their rank is known.
     ///
     /// # Errors
     /// In words, where something is out of reach.
     pub fn run(&mut self, algebra: &mut Algebra<'_>) -> Reach<Explored> {
+        self.run_telling(algebra, &mut |_, _, _| ())
+    }
+
+    /// The same, and tells what it finds; what is drawn for that changes nothing.
+    ///
+    /// # Errors
+    /// In words, where something is out of reach.
+    pub fn run_telling(&mut self, algebra: &mut Algebra<'_>, tell: &mut Tell<'_>) -> Reach<Explored> {
         let charts = algebra.charts().ok_or("there are too many angles")?;
         let mut found = Explored::default();
         for chart in charts {
-            self.chart(algebra, &chart, &mut found)?;
+            self.chart(algebra, &chart, &mut found, tell)?;
         }
         Ok(found)
     }
@@ -154,7 +165,13 @@ impl Search<'_> {
         Ok(found)
     }
 
-    fn chart(&mut self, algebra: &mut Algebra<'_>, chart: &Chart, found: &mut Explored) -> Reach<()> {
+    fn chart(
+        &mut self,
+        algebra: &mut Algebra<'_>,
+        chart: &Chart,
+        found: &mut Explored,
+        tell: &mut Tell<'_>,
+    ) -> Reach<()> {
         let Some(case) = self.asked_for(algebra, chart)? else {
             found.empty += 1;
             return Ok(());
@@ -183,8 +200,12 @@ impl Search<'_> {
                         found.full.push(*full);
                         open.extend(cases.into_iter().rev());
                     }
-                    Ok(Ranked::Short(short)) => found.short.push(short),
+                    Ok(Ranked::Short(short)) => {
+                        self.told(algebra, &short, tell);
+                        found.short.push(short);
+                    }
                     Ok(Ranked::Lower(cases, short)) => {
+                        self.told(algebra, &short, tell);
                         found.short.push(short);
                         open.extend(cases.into_iter().rev());
                     }
@@ -194,6 +215,14 @@ impl Search<'_> {
             }
         }
         Ok(())
+    }
+
+    fn told(&mut self, algebra: &mut Algebra<'_>, short: &ShortCase, tell: &mut Tell<'_>) {
+        if short.lower.is_ok() {
+            let rng = self.rng.clone();
+            tell(algebra, self, short);
+            self.rng = rng;
+        }
     }
 
     /// The rank on a set whose equations are all met.

@@ -15,7 +15,7 @@ use crate::observability::{Codistribution, Length, StateInWords, solve_condition
 use crate::system::{Assignment, System};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// A set on which the rank drops, or may.
@@ -79,6 +79,8 @@ pub struct DropAnswer {
     pub cases: (usize, usize),
     /// Why the set was not found; nothing where it was.
     pub out_of_reach: Option<String>,
+    /// Whether the search was interrupted: sets may be missing then, and are not merged where it was not waited for.
+    pub interrupted: bool,
     /// Where the sets are not known to be all: on how much of the sample box interval certificates prove the rank to be full, or why
     /// that is not known; nothing where they are.
     pub on_the_box: Option<Result<BoxShare, String>>,
@@ -98,8 +100,21 @@ impl DropAnswer {
 /// # Errors
 /// In words, where there is no codistribution.
 pub fn where_it_drops(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<DropAnswer, String> {
+    where_it_drops_telling(system, seed, interrupt, &mut |_| ())
+}
+
+/// The same, and tells what is known on the way: the rank at almost all states, then each set as it is found, not yet merged.
+///
+/// # Errors
+/// In words, where there is no codistribution.
+pub fn where_it_drops_telling(
+    system: &mut System,
+    seed: u64,
+    interrupt: &AtomicBool,
+    tell: &mut dyn FnMut(DropAnswer),
+) -> Result<DropAnswer, String> {
     let mentioned = mentioned_in_words(system);
-    let mut answer = with_angles(system, &mentioned, |system| drops_of(system, seed, interrupt))?;
+    let mut answer = with_angles(system, &mentioned, |system| drops_of(system, seed, interrupt, tell))?;
     if !answer.is_exact() && answer.rank == answer.dimension {
         let begin = Instant::now();
         answer.on_the_box = Some(share_of_the_box(system, interrupt));
@@ -173,7 +188,12 @@ pub(super) fn on_all_states(system: &System) -> Result<(), String> {
     Ok(())
 }
 
-fn drops_of(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<DropAnswer, String> {
+fn drops_of(
+    system: &mut System,
+    seed: u64,
+    interrupt: &AtomicBool,
+    tell: &mut dyn FnMut(DropAnswer),
+) -> Result<DropAnswer, String> {
     let begin = Instant::now();
     on_all_states(system)?;
     let initial = initial_values(system)?;
@@ -199,13 +219,22 @@ fn drops_of(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<Dr
         minors: Vec::new(),
         cases: (0, 0),
         out_of_reach: None,
+        interrupted: false,
         on_the_box: None,
         seconds: 0.0,
     };
+    let mut so_far = answer.clone();
+    (so_far.out_of_reach, so_far.interrupted) = (Some("it was interrupted".to_owned()), true);
+    tell(so_far.clone());
     let rows = Rows::of_words(system);
     let asked = Asked { rank, guards, conditions, ..Asked::default() };
     let found = prepared(system, rows, &asked, seed, interrupt, |algebra, search| {
-        let explored = &search.run(algebra)?;
+        let explored = &search.run_telling(algebra, &mut |algebra, search, short| {
+            let alone = Shown::alone(algebra, short);
+            so_far.sets.push(described(algebra, search, alone));
+            so_far.seconds = begin.elapsed().as_secs_f64();
+            tell(so_far.clone());
+        })?;
         answer.out_of_reach.clone_from(&explored.stopped);
         if explored.full.is_empty() && explored.short.is_empty() {
             answer.out_of_reach = Some("there is no state at which all terms exist".to_owned());
@@ -224,6 +253,7 @@ fn drops_of(system: &mut System, seed: u64, interrupt: &AtomicBool) -> Result<Dr
     if let Err(why) = found {
         answer.out_of_reach = Some(why);
     }
+    answer.interrupted = answer.out_of_reach.is_some() && interrupt.load(Ordering::Relaxed);
     answer.seconds = begin.elapsed().as_secs_f64();
     Ok(answer)
 }

@@ -12,6 +12,7 @@ mod channels;
 mod columns;
 mod groundwork;
 mod known_motion;
+mod mirrored;
 mod modes;
 mod past_poles;
 mod recognised;

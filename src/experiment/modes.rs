@@ -238,7 +238,10 @@ impl Experiment {
             for ((_, value), from) in own.question.guess.iter_mut().zip(start) {
                 *value = from;
             }
-            let track = own.observer(own.scene.observer.methods[0]).observe(&own.task(interrupt)?);
+            // these are the starts of a window
+            let mut task = own.task(interrupt)?;
+            task.restarts = false;
+            let track = own.observer(own.scene.observer.methods[0]).observe(&task);
             let Some(update) = track.updates.first() else { continue };
             if update.is_borne_out() {
                 return Ok((Some(update.clone()), track.last().map(|last| last.state.clone())));

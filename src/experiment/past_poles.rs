@@ -35,8 +35,8 @@ struct Alone<'a> {
 /// What it has found.
 struct Found {
     update: Update,
-    /// Sample by sample.
-    states: Vec<Vec<f64>>,
+    /// The states sample by sample, and their deviations.
+    moments: Vec<[Vec<f64>; 2]>,
 }
 
 impl Experiment {
@@ -131,11 +131,15 @@ impl Experiment {
         }
         let outputs = before.outputs.clone();
         track.updates[place] = Update { outputs, ..found.update };
+        // what met at these ends is there no longer
+        if let Some(next) = track.updates.get_mut(place + 1) {
+            next.seam = None;
+        }
         // the sample that two windows share belongs to the first of them
         let first = if rows.start == 0 { 0 } else { rows.start + 1 };
-        for (row, state) in rows.clone().zip(found.states) {
+        for (row, [state, deviations]) in rows.clone().zip(found.moments) {
             if let Some(own) = track.estimates.get_mut(row).filter(|_| row >= first) {
-                *own = SampleEstimate { time: own.time, state, residual: Vec::new() };
+                *own = SampleEstimate { time: own.time, state, deviations, residual: Vec::new() };
             }
         }
     }
@@ -179,7 +183,13 @@ impl Alone<'_> {
         let update = track.updates.iter().find(|update| update.is_borne_out()).ok_or(None)?;
         let estimate = part(&update.estimate);
         let deviations = part(&update.deviations);
-        let states = track.estimates.iter().map(|sample| part(&sample.state)).collect();
-        Ok(Found { update: Update { estimate, deviations, ..update.clone() }, states })
+        let known = |all: &[f64]| if all.is_empty() { Vec::new() } else { part(all) };
+        let moments = track.estimates.iter().map(|at| [part(&at.state), known(&at.deviations)]).collect();
+        let at = |(place, bound): &(usize, f64)| Some((sought.iter().position(|own| own == place)?, *bound));
+        let at_bounds = update.at_bounds.iter().filter_map(at).collect();
+        // the covariance and the seam are those of the other state
+        let (covariance, seam) = (None, None);
+        let update = Update { estimate, deviations, at_bounds, covariance, seam, ..update.clone() };
+        Ok(Found { update, moments })
     }
 }

@@ -89,8 +89,17 @@ mod tests {
 
     fn answer(name: &str, chi_square: f64, fits: bool) -> LibraryAnswer {
         let measured = Measured { value: 0.0, deviation: 0.0 };
-        let fit =
-            Fit { chi_square, degrees: 100, probability: 0.5, sigma: 1.0, from: NoiseFrom::Stated, fits };
+        let fit = Fit {
+            chi_square,
+            degrees: 100,
+            probability: 0.5,
+            outliers: 0,
+            readings: 100,
+            neighbours: None,
+            sigma: 1.0,
+            from: NoiseFrom::Stated,
+            fits,
+        };
         LibraryAnswer {
             name: name.to_owned(),
             orientation: measured,

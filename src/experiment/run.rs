@@ -212,6 +212,8 @@ impl Experiment {
         channels::tell(&self.scene, &mut task, self.scene.simulated.is_some(), self.simulated().is_some())?;
         let settings = &self.scene.observer;
         (task.inherit, task.whole, task.loss) = (settings.inherit, settings.whole, settings.loss);
+        // who gives no guess has other ways to begin anew
+        task.restarts = settings.guess != Guess::None;
         for (name, bounds) in self.names().into_iter().zip(&mut task.bounds) {
             *bounds = settings.bounds.get(name).copied().unwrap_or(*bounds);
         }
@@ -270,6 +272,7 @@ impl Experiment {
             let begin = Instant::now();
             let mut track = self.observer(method).observe(&task);
             self.pass_poles(method, &mut track, interrupt);
+            self.name_mirrors(&mut track);
             let seconds = begin.elapsed().as_secs_f64();
             answers.push(Answer { method, track, seconds, reconstruction: None });
             done(method);

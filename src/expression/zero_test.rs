@@ -60,6 +60,13 @@ pub fn identically_zero(
         // an angle is a number like others then, and its sine and cosine are unknowns beside it
         program = Program::with_unknown_functions(graph, roots, |_| false);
     }
+    let is_nonzero = |values: Vec<u64>| values.iter().position(|value| *value != 0).map(ZeroTest::Nonzero);
+    // what is not zero shows it at once, and needs no bound
+    match round(&program, rng).map(is_nonzero) {
+        Ok(None) => {}
+        Ok(Some(nonzero)) => return nonzero,
+        Err(stop) => return stop,
+    }
     let size = match sizes(&program) {
         Ok(sizes) => sizes.into_iter().fold(Size::default(), |a, (top, _)| Size {
             degree: a.degree.max(top.degree),
@@ -73,13 +80,10 @@ pub fn identically_zero(
             size.degree
         ));
     };
-    for _ in 0..rounds {
-        match round(&program, rng) {
-            Ok(values) => {
-                if let Some(index) = values.iter().position(|value| *value != 0) {
-                    return ZeroTest::Nonzero(index);
-                }
-            }
+    for _ in 1..rounds {
+        match round(&program, rng).map(is_nonzero) {
+            Ok(None) => {}
+            Ok(Some(nonzero)) => return nonzero,
             Err(stop) => return stop,
         }
     }

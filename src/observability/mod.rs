@@ -47,8 +47,8 @@ pub(crate) use equilibrate::WEIGHT_OF_ERRORS;
 #[cfg(test)]
 pub(crate) use equilibrate::equilibrate;
 pub use fibre::{
-    SecondPoint, Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion, WORK as SOLUTIONS_WORK,
-    solutions, solutions_telling,
+    Image, Mirror, SecondPoint, Solutions, SolutionsAnswer, SolutionsOf, SolutionsQuestion,
+    WORK as SOLUTIONS_WORK, mirrors, solutions, solutions_telling,
 };
 #[doc(hidden)]
 pub use flow::Flow;

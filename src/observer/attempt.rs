@@ -6,29 +6,31 @@ use super::track::{Update, UpdateEnd};
 use super::window::{Window, WindowExpansion};
 use super::{Fit, MovingWindow, Newton, Order, TrustRegion, WindowSearch, cramer_rao};
 use argmin::core::{Executor, State, TerminationReason, TerminationStatus};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// With a robust loss so many times the steps are allowed.
 const ROBUST: u64 = 8;
 
+/// What was found is a size of its own where it is so many of its deviations or more.
+const SIGNIFICANT: f64 = 3.0;
+
 impl MovingWindow {
-    /// An attempt in a window; `belief` is what stays believed where there is none. With the differences of what was found.
-    pub(super) fn attempt_in(
-        &self,
-        task: &Task<'_>,
-        window: &Window<'_>,
-        belief: &[f64],
-    ) -> (Update, Option<DVector<f64>>) {
+    /// An attempt in a window; what it begins with, within its bounds, stays believed where there is no answer. With the differences of what was found.
+    pub(super) fn attempt_in(&self, task: &Task<'_>, window: &Window<'_>) -> (Update, Option<DVector<f64>>) {
         let begin = Instant::now();
         let mut left = None;
         let sizes = Self::sizes(task, window);
         let mut update = Update {
             from: window.times[0],
             to: window.times[window.times.len() - 1],
-            estimate: belief.to_vec(),
+            estimate: window.start[..task.estimated()].to_vec(),
             outputs: window.start[task.estimated()..].to_vec(),
             deviations: vec![f64::INFINITY; task.estimated()],
+            covariance: None,
+            at_bounds: Vec::new(),
+            seam: None,
             condition: f64::INFINITY,
             cost: f64::INFINITY,
             misfit: f64::INFINITY,
@@ -46,16 +48,22 @@ impl MovingWindow {
             Err(lost) => UpdateEnd::Lost(lost),
             Ok(expansion) => {
                 (update.cost, update.misfit) = (expansion.cost, expansion.misfit());
-                match self.see(task, task.sigma, window, &expansion.slopes, &sizes, &mut update) {
-                    Some(blind) => blind,
-                    None => {
-                        let (end, found) = self.search(task, window, guess, &sizes, &mut update);
-                        left = found;
-                        end
+                // where nothing is seen at the guess more may be seen where the search ends
+                let blind =
+                    self.see(task, task.sigma, window, (&expansion.slopes, &guess), &sizes, &mut update);
+                let (end, found) = self.search(task, window, guess, &sizes, &mut update);
+                left = found;
+                match (end, blind) {
+                    (UpdateEnd::Lost(_), Some(blind)) => {
+                        update.estimate = window.start[..task.estimated()].to_vec();
+                        update.outputs = window.start[task.estimated()..].to_vec();
+                        blind
                     }
+                    (end, _) => end,
                 }
             }
         };
+        update.at_bounds = task.at_bounds(&update.estimate);
         update.seconds = begin.elapsed().as_secs_f64();
         (update, left)
     }
@@ -79,6 +87,8 @@ impl MovingWindow {
         let taken = if task.exact { task.full.states.len() - task.estimated() } else { 0 };
         let misfit = Misfit {
             differences,
+            slopes: Some(&expansion.slopes),
+            loss: window.loss.0,
             outputs: task.full.outputs.len(),
             relations: window.relations(),
             unknowns: window.free.len() + taken,
@@ -90,32 +100,38 @@ impl MovingWindow {
         match &window.weights {
             Some(weights) => {
                 let (computed, degrees) = (misfit.computed(), misfit.degrees());
-                weights.fit(differences, &expansion.slopes, computed, degrees, misfit.alarm)
+                let judged = (misfit.loss, misfit.alarm);
+                weights.fit(differences, &expansion.slopes, computed, degrees, judged)
             }
             None => misfit.fit(task.noise),
         }
     }
 
-    /// Sets the bound; says so where something that is sought is not seen.
+    /// Sets the bound; says so where something that is sought is not seen: known no better than its size, which is that of the guess, or what was found
+    /// where that is significant.
     fn see(
         &self,
         task: &Task<'_>,
         sigma: f64,
         window: &Window<'_>,
-        slopes: &nalgebra::DMatrix<f64>,
+        (slopes, at): (&DMatrix<f64>, &DVector<f64>),
         sizes: &[f64],
         update: &mut Update,
     ) -> Option<UpdateEnd> {
         let bound = cramer_rao(slopes, sigma, sizes);
         let mut blind = false;
         update.deviations = vec![0.0; task.estimated()];
-        for ((place, deviation), size) in window.free.iter().zip(&bound.deviations).zip(sizes) {
+        let known = window.free.iter().zip(&bound.deviations).zip(sizes).zip(at.iter());
+        for (((place, deviation), size), value) in known {
             if let Some(own) = update.deviations.get_mut(*place) {
                 *own = *deviation;
+                let size = size.max(value.abs() / SIGNIFICANT);
                 blind |= deviation.is_nan() || *deviation > self.blind * size;
             }
         }
         update.condition = bound.condition;
+        update.covariance =
+            bound.covariance.map(|own| Arc::new(of_all(&own, &window.free, window.start.len())));
         blind.then_some(UpdateEnd::Blind { weakest: bound.weakest })
     }
 
@@ -168,7 +184,8 @@ impl MovingWindow {
                 let (loss, sigma) = window.loss;
                 let left = window.weighted(expansion.left.clone());
                 update.discounted = left.iter().filter(|value| loss.is_discounted(**value, sigma)).count();
-                if let Some(blind) = self.see(task, fit.sigma, window, &expansion.slopes, sizes, update) {
+                let here = (&expansion.slopes, found);
+                if let Some(blind) = self.see(task, fit.sigma, window, here, sizes, update) {
                     update.estimate = window.start[..task.estimated()].to_vec();
                     update.outputs = window.start[task.estimated()..].to_vec();
                     return (blind, None);
@@ -185,6 +202,17 @@ impl MovingWindow {
         };
         (end, Some(left))
     }
+}
+
+/// The covariance of all that is followed, from that of the unknowns.
+fn of_all(unknowns: &DMatrix<f64>, free: &[usize], states: usize) -> DMatrix<f64> {
+    let mut all = DMatrix::zeros(states, states);
+    for (i, row) in free.iter().enumerate() {
+        for (j, column) in free.iter().enumerate() {
+            all[(*row, *column)] = unknowns[(i, j)];
+        }
+    }
+    all
 }
 
 fn lost(error: argmin::core::Error, time: f64) -> UpdateEnd {

@@ -77,7 +77,7 @@ impl MovingWindow {
                     }
                 };
             window.weights = Some(weights.clone());
-            let (next, left) = self.attempt_in(&own, &window, &before);
+            let (next, left) = self.attempt_in(&own, &window);
             update = next;
             steps += update.steps;
             troubled += update.troubled;

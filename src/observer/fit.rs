@@ -1,13 +1,18 @@
 //! Whether a misfit is what the errors of the readings explain.
 
 use super::chi_square::exceeded;
-use nalgebra::DVector;
+use super::correlation::Neighbours;
+use super::loss::Loss;
+use nalgebra::{DMatrix, DVector};
 
 /// A run says of a model that is right that it does not fit no more often than this.
 pub const FALSE_ALARMS: f64 = 1e-3;
 
 /// A misfit below this part of the readings is what interpolation between samples may leave: it tells nothing of the model.
-const COMPUTED: f64 = 1e-7;
+pub(super) const COMPUTED: f64 = 1e-7;
+
+/// More readings than this part of them are no outliers: the model is wrong.
+const MOST_OUTLIERS: f64 = 0.1;
 
 /// What is known of the errors of the readings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,9 +67,15 @@ pub struct Fit {
     pub chi_square: f64,
     /// Readings less unknowns.
     pub degrees: usize,
-    /// How likely a misfit is that is no better, were the model right: of one so large (chi-square) where the noise was
-    /// stated, of one whose neighbours are so alike (von Neumann's ratio) where it was not.
+    /// How likely a misfit is that is no better, were the model right: of one so large (chi-square), or whose neighbours agree so much, where the noise
+    /// was stated; of one whose neighbours are so alike (von Neumann's ratio) where it was not.
     pub probability: f64,
+    /// Readings that no normal error explains, and that a robust loss leaves out of the test.
+    pub outliers: usize,
+    /// Readings, these among them.
+    pub readings: usize,
+    /// The part of neighbours in the probability; none where they were not tested by themselves.
+    pub neighbours: Option<f64>,
     /// The standard deviation of a reading, in its unit.
     pub sigma: f64,
     /// Where it comes from.
@@ -73,9 +84,25 @@ pub struct Fit {
     pub fits: bool,
 }
 
+impl Fit {
+    /// Whether so many readings are beyond what normal errors reach that they are no outliers.
+    pub fn has_outliers(&self) -> bool {
+        self.outliers as f64 > MOST_OUTLIERS * self.readings as f64
+    }
+
+    /// Whether it is the neighbours that agree too much, more than that the residuals are large.
+    pub fn is_by_neighbours(&self) -> bool {
+        self.neighbours.is_some_and(|own| own <= self.probability)
+    }
+}
+
 /// What is compared: differences sample by sample, `outputs` of them each, after `unknowns` were fitted.
 pub(super) struct Misfit<'a> {
     pub differences: &'a DVector<f64>,
+    /// Their derivatives by what was fitted, where they are known.
+    pub slopes: Option<&'a DMatrix<f64>>,
+    /// How they were weighed.
+    pub loss: Loss,
     pub outputs: usize,
     /// So many of the first are no differences of readings: they are what was known before, in the same unit.
     pub relations: usize,
@@ -113,30 +140,57 @@ impl Misfit<'_> {
         }
     }
 
-    /// Against stated errors. The best state is no farther from the readings than the true one is, and rounding adds at most half a
-    /// resolution to each, however these roundings hang together: that much is taken off before normal errors have to explain
-    /// the rest.
+    /// Against stated errors: by the sum of the squares, and by how much neighbours agree.
+    ///
+    /// The best state is no farther from the readings than the true one is, and rounding adds at most half a resolution to each, however these
+    /// roundings hang together: that much is taken off before normal errors have to explain the rest.
+    ///
+    /// A robust loss leaves outliers out, which are told apart by what no normal error reaches, and takes a little less of the errors than least squares do
+    /// (`Loss::taken`); more outliers than [`MOST_OUTLIERS`] are no outliers.
     fn against(&self, normal: f64, rounding: f64) -> Fit {
-        let degrees = self.degrees();
         let sigma = (normal * normal + rounding * rounding / 12.0).sqrt();
-        let length = self.differences.norm();
-        let rounded = rounding / 2.0 * (self.differences.len() as f64).sqrt();
+        let coherent = rounding / 2.0 + self.computed();
+        let is_reading = |i: usize| i >= self.relations;
+        let is_out = |i: usize, value: f64| is_reading(i) && self.loss.is_outlier(value, sigma, coherent);
+        let kept: Vec<Option<f64>> = self
+            .differences
+            .iter()
+            .enumerate()
+            .map(|(i, value)| (!is_out(i, *value)).then_some(*value))
+            .collect();
+        let count = kept.iter().flatten().count();
+        let outliers = kept.len() - count;
+        let readings = kept.len().saturating_sub(self.relations);
+        let degrees = count.saturating_sub(self.unknowns);
+        let length = kept.iter().flatten().map(|value| value * value).sum::<f64>().sqrt();
         // what the computation adds is no error of a reading
-        let rest = length - rounded - self.computed() * (self.differences.len() as f64).sqrt();
-        let probability = match rest {
+        let rest = length - coherent * (count as f64).sqrt();
+        let taken = self.loss.taken();
+        let own = degrees as f64 + (1.0 - taken) * self.unknowns.min(count) as f64;
+        let large = match rest {
             rest if rest <= 0.0 => 1.0,
-            rest if normal > 0.0 => exceeded((rest / normal).powi(2), degrees as f64),
+            rest if normal > 0.0 => exceeded((rest / normal).powi(2), own),
             _ => 0.0,
         };
+        let alike = self.slopes.filter(|slopes| normal > 0.0 && slopes.nrows() == kept.len()).map(|slopes| {
+            let (residuals, outputs, relations) = (&kept[..], self.outputs, self.relations);
+            Neighbours { residuals, outputs, relations, slopes, taken, sigma, coherent }.probability()
+        });
+        let probability = alike.map_or(large, |alike| least_of([large, alike]));
         let chi_square = (length / sigma).powi(2);
-        Fit {
+        let from = NoiseFrom::Stated;
+        let fit = Fit {
             chi_square,
             degrees,
             probability,
+            outliers,
+            readings,
+            neighbours: alike,
             sigma,
-            from: NoiseFrom::Stated,
-            fits: degrees > 0 && probability >= self.alarm,
-        }
+            from,
+            fits: false,
+        };
+        Fit { fits: degrees > 0 && !fit.has_outliers() && probability >= self.alarm, ..fit }
     }
 
     /// By what is left itself: independent errors differ from their neighbours by twice their variance in the mean, the remains
@@ -151,7 +205,8 @@ impl Misfit<'_> {
         let computed = rms <= self.computed().max(self.least);
         let probability = if computed { 1.0 } else { self.independent() };
         let fits = degrees > 0 && probability >= self.alarm && rms.is_finite();
-        Fit { chi_square, degrees, probability, sigma, from, fits }
+        let readings = self.differences.len().saturating_sub(self.relations);
+        Fit { chi_square, degrees, probability, outliers: 0, readings, neighbours: None, sigma, from, fits }
     }
 
     /// The probability of neighbours so alike, the least over the outputs times their number.
@@ -179,12 +234,30 @@ impl Misfit<'_> {
     }
 }
 
+/// The probability that the least of two independent probabilities is no larger (L. H. C. Tippett, The Methods of Statistics, 1931).
+pub(super) fn least_of(two: [f64; 2]) -> f64 {
+    let least = two[0].min(two[1]);
+    if least.is_nan() { 0.0 } else { least * (2.0 - least) }
+}
+
 /// Whether differences of two outputs in turn are what stated errors explain, after so many unknowns were fitted: `size` is the root of the mean square
 /// of what was read, and the only test of a run may have all of its false alarms.
 pub(crate) fn explains(differences: &DVector<f64>, unknowns: usize, size: f64, noise: Noise) -> Fit {
     let alarm = FALSE_ALARMS;
-    Misfit { differences, outputs: 2, relations: 0, unknowns, size, alarm, least: 0.0, timing: 0.0 }
-        .fit(noise)
+    let (slopes, loss) = (None, Loss::Squares);
+    Misfit {
+        differences,
+        slopes,
+        loss,
+        outputs: 2,
+        relations: 0,
+        unknowns,
+        size,
+        alarm,
+        least: 0.0,
+        timing: 0.0,
+    }
+    .fit(noise)
 }
 
 #[cfg(test)]
@@ -201,6 +274,8 @@ mod tests {
     fn misfit(differences: &DVector<f64>, alarm: f64) -> Misfit<'_> {
         Misfit {
             differences,
+            slopes: None,
+            loss: Loss::Squares,
             outputs: 2,
             relations: 0,
             unknowns: 0,

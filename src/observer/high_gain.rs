@@ -1,9 +1,11 @@
 //! The high-gain observer of Gauthier, Hammouri and Othman, which section 6.2 of the thesis names.
 
+use super::filtered::{Filtered, Innovation};
 use super::flow::advance;
 use super::model::{Formulas, InputSource};
+use super::spread::Spread;
 use super::task::{Observer, Task};
-use super::track::{SampleEstimate, Track};
+use super::track::Track;
 use super::{Learned, Lost, Model};
 use crate::expression::{NodeId, Symbol, gradient};
 use crate::number::{Duals, Refusal};
@@ -22,6 +24,11 @@ use std::collections::HashMap;
 ///
 /// Reference: J. P. Gauthier, H. Hammouri, S. Othman, A simple observer for nonlinear systems, IEEE TAC 37(6), 1992; for
 /// several outputs G. Bornard and H. Hammouri, CDC 1991.
+///
+/// It knows no covariance of its own. That of its error is carried beside it: with `F = df/dx - (dPhi/dx)^-1 K H` the error moves as `e' = F e + (dPhi/dx)^-1 K v` under
+/// the error `v` of the curve through the readings, from one sample to the next with `F` as it is at the first. The curve hangs on eight readings at a time, so that the errors
+/// of neighbouring steps are not independent: how far each of these eight has moved the state is carried too. The covariance begins with a half of each size, as that of the
+/// Kalman filter does.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct HighGain {
@@ -35,6 +42,12 @@ impl Default for HighGain {
     }
 }
 
+/// The standard deviation of the first guess, relative to the sizes of what is sought.
+const PRIOR: f64 = 0.5;
+
+/// The least standard deviation that a reading is believed to have, in its unit.
+const LEAST: f64 = 1e-6;
+
 /// A matrix whose scaled condition is worse than this is taken to be singular.
 const SINGULAR: f64 = 1e9;
 
@@ -44,67 +57,88 @@ struct Canonical {
     lengths: Vec<usize>,
     /// The rows, and where their inputs come from.
     rows: Formulas,
+    /// The derivatives of the rates by the states, a row a state.
+    jacobian: Formulas,
     model: Model,
 }
 
+/// Places on [-1, 1] and weights of Gauss and Legendre's rule, exact to degree nine: a curve through eight samples has degree seven.
+const GAUSS: [(f64, f64); 5] = [
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.0, 0.568_888_888_888_888_9),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+];
+
 impl Observer for HighGain {
     fn observe(&self, task: &Task<'_>) -> Track {
-        let mut track = Track::default();
         let times = task.signals.times();
         let learned = Learned::before(task);
         let mut state = task.full_state(&learned.belief, 0);
-        if let Some((known, _)) = &learned.filter {
-            state = known.as_slice().to_vec();
+        let mut so_far = Filtered::begin(task, LEAST);
+        let deviations = DVector::from_vec(task.prior_deviations(PRIOR, task.sigma.max(LEAST)));
+        let mut covariance = DMatrix::from_diagonal(&deviations.map(|deviation| deviation * deviation));
+        if let Some((known, spread)) = &learned.filter {
+            (state, covariance) = (known.as_slice().to_vec(), spread.clone());
         }
+        let noise = so_far.reading_variances();
+        let mut error = Spread::of_a_guess(covariance, noise, task.signals.carriers());
         let canonical = match Canonical::new(task, &state) {
             Ok(canonical) => canonical,
             Err(why) => {
-                track.remarks.push(format!("no canonical form: {why}"));
-                return track;
+                return Track { remarks: vec![format!("no canonical form: {why}")], ..Track::default() };
             }
         };
-        let record = |time: f64, state: &[f64], row: usize, track: &mut Track| {
+        let record = |so_far: &mut Filtered<'_, '_>, state: &[f64], error: &Spread, row: usize| {
             // the outputs of the canonical form are states: they are what is read
             let read = task.readings(row);
             let seen = task.full.outputs.iter().map(|name| task.full.find(name).map(|place| state[place]));
-            let residual = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
-            track.estimates.push(SampleEstimate {
-                time,
-                state: state[..task.estimated()].to_vec(),
-                residual,
-            });
+            let residual: Vec<f64> = seen.zip(&read).filter_map(|(seen, read)| Some(seen? - read)).collect();
+            if row > 0 {
+                let covariance = error.of_residual(&canonical.places(), task.signals.sample(row));
+                so_far.compare(&Innovation { residual: DVector::from_column_slice(&residual), covariance });
+            }
+            so_far.believe(times[row], state, &error.covariance().diagonal(), residual);
         };
-        record(times[0], &state, 0, &mut track);
+        record(&mut so_far, &state, &error, 0);
         for row in 1..times.len() {
             if task.interrupted() {
                 break;
             }
+            let carried = canonical.carry(task, self.gain, &state, &times[row - 1..=row], &mut error);
             match self.step(task, &canonical, &state, times[row - 1], times[row]) {
                 Ok((there, seen)) => {
-                    state = there;
-                    track.unseen += usize::from(!seen);
+                    let mut held = DVector::from_vec(there);
+                    if carried.is_none() {
+                        error.forget();
+                    }
+                    so_far.hold(times[row], &mut held, &error.covariance());
+                    state = held.as_slice().to_vec();
+                    so_far.track.unseen += usize::from(!seen);
                 }
                 Err(lost) => {
                     // what has run away does not come back
-                    track.remarks.push(format!("held from there on: {lost}"));
-                    track.unseen += times.len() - row;
+                    so_far.track.remarks.push(format!("held from there on: {lost}"));
+                    so_far.track.unseen += times.len() - row;
+                    let unknown = DVector::from_element(state.len(), f64::INFINITY);
                     for time in &times[row..] {
-                        let state = state[..task.estimated()].to_vec();
-                        track.estimates.push(SampleEstimate { time: *time, state, residual: Vec::new() });
+                        so_far.believe(*time, &state, &unknown, Vec::new());
                     }
                     break;
                 }
             }
-            record(times[row], &state, row, &mut track);
+            record(&mut so_far, &state, &error, row);
         }
+        let covariance = error.covariance();
+        let mut track = so_far.end();
         let lengths: Vec<String> = canonical.lengths.iter().map(ToString::to_string).collect();
         track.remarks.push(format!(
             "canonical form: the outputs and their derivatives, {} coordinates",
             lengths.join(" and ")
         ));
-        let belief = state[..task.estimated()].to_vec();
-        let filter = Some((DVector::from_vec(state), DMatrix::zeros(0, 0)));
-        track.hand_on(Learned { belief, filter, ..Learned::nothing(task) });
+        let state = DVector::from_vec(state);
+        track.hand_on(Learned::of_filter(task, &state, &covariance, &covariance.diagonal()));
         track
     }
 }
@@ -175,6 +209,11 @@ impl Canonical {
         }
         let (n, m) = (model.states.len(), model.outputs.len());
         let mut best: Option<(f64, Canonical)> = None;
+        let (rates, states) = (model.rate_nodes.clone(), model.symbols.clone());
+        let slopes: Vec<NodeId> =
+            rates.into_iter().flat_map(|rate| gradient(&mut model.system.graph, rate, &states)).collect();
+        let jacobian = model.formulas(&slopes, &HashMap::new(), task.signals);
+        let jacobian = jacobian.map_err(|error| error.to_string())?;
         for lengths in compositions(n, m) {
             let longest = lengths.iter().copied().max().unwrap_or(0);
             // a third derivative would need the second derivatives of the signals
@@ -183,7 +222,7 @@ impl Canonical {
             }
             let (rows, rates) = coordinate_rows(&mut model, &lengths);
             let rows = model.formulas(&rows, &rates, task.signals).map_err(|error| error.to_string())?;
-            let canonical = Canonical { lengths, rows, model: model.clone() };
+            let canonical = Canonical { lengths, rows, jacobian: jacobian.clone(), model: model.clone() };
             let condition =
                 canonical.matrix(task, task.signals.times()[0], state).map(|matrix| condition(&matrix, task));
             if let Some(condition) = condition.filter(|condition| *condition < SINGULAR)
@@ -207,6 +246,56 @@ impl Canonical {
         let values = program.run(&inputs, &mut Vec::new()).ok()?;
         let n = self.model.states.len();
         values.iter().all(|value| value.is_finite()).then(|| DMatrix::from_row_slice(n, n, &values))
+    }
+
+    /// The places of the outputs among the states.
+    fn places(&self) -> Vec<usize> {
+        self.model.outputs.iter().filter_map(|name| self.model.find(name)).collect()
+    }
+
+    /// Carries the error over a step; nothing where it has no value.
+    fn carry(&self, task: &Task<'_>, gain: f64, x: &[f64], times: &[f64], error: &mut Spread) -> Option<()> {
+        let n = x.len();
+        let program = self.jacobian.program.load(Duals::<f64>::default()).ok()?;
+        let inputs = inputs_at(task, &self.model, &self.jacobian, times[0], x);
+        let mut own = DMatrix::from_row_slice(n, n, &program.run(&inputs, &mut Vec::new()).ok()?);
+        // where the form is singular nothing is corrected
+        let pull = self.pull(task, times[0], x, gain);
+        let pull = pull.unwrap_or_else(|| DMatrix::zeros(n, self.model.outputs.len()));
+        for (output, place) in self.places().into_iter().enumerate() {
+            let mut column = own.column_mut(place);
+            column -= pull.column(output);
+        }
+        let step = times[1] - times[0];
+        let first = task.signals.first_carrier(times[0]);
+        let mut moved = vec![DMatrix::zeros(n, pull.ncols()); task.signals.carriers()];
+        for (place, weight) in GAUSS {
+            let time = times[0] + step * (1.0 + place) / 2.0;
+            let on = (&own * (times[1] - time)).exp() * &pull * (weight * step / 2.0);
+            for (moved, carries) in moved.iter_mut().zip(task.signals.weights_from(first, time)) {
+                *moved += &on * carries;
+            }
+        }
+        let by_state = (own * step).exp();
+        let is_finite = |matrix: &DMatrix<f64>| matrix.iter().all(|value| value.is_finite());
+        (is_finite(&by_state) && moved.iter().all(is_finite)).then(|| error.step(&by_state, first, moved))
+    }
+
+    /// `(dPhi/dx)^-1 K`, a column an output; none where the form is singular.
+    fn pull(&self, task: &Task<'_>, time: f64, x: &[f64], gain: f64) -> Option<DMatrix<f64>> {
+        let matrix = self.matrix(task, time, x)?;
+        if condition(&matrix, task) > SINGULAR {
+            return None;
+        }
+        let mut right = DMatrix::zeros(x.len(), self.lengths.len());
+        let mut row = 0;
+        for (output, length) in self.lengths.iter().enumerate() {
+            for k in 1..=*length {
+                right[(row, output)] = binomial(*length, k) * gain.powi(k as i32);
+                row += 1;
+            }
+        }
+        matrix.lu().solve(&right)
     }
 
     /// `(dPhi/dx)^-1 K e`.

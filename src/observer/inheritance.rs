@@ -8,12 +8,12 @@
 
 use super::fit::NoiseFrom;
 use super::learned::{Arrival, Learned};
+use super::moving_window::Known;
 use super::task::Task;
 use super::trace::is_asked;
 use super::track::{Track, Update, UpdateEnd};
 use super::window::Window;
-use super::{MovingWindow, Order, weights};
-use nalgebra::{DMatrix, DVector};
+use super::{MovingWindow, Order, seam, weights};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -41,9 +41,13 @@ impl MovingWindow {
             let clamped: &[usize] = if is_first && row == 0 { &task.clamped } else { &[] };
             let mut start = task.full_state(&learned.belief, row);
             let (mut arrival, mut unseen) = (None, learned.unseen.take());
+            let before = learned.spread.take();
+            let mut covariance = before.as_ref().map(|before| Arc::new(before.as_read(task)));
+            let (mut is_tested, mut meets) = (false, None);
             // too few samples to compare are only followed, and seen if those before were
             if rows.len() >= fewest {
                 let grown = self.grown_by_unseen(task, &rows, unseen.as_deref(), &learned, anew, &mut track);
+                let is_grown = grown.is_some();
                 let (own, update, others) = match grown {
                     Some((before, update, others)) => {
                         rows.start -= before.rows;
@@ -66,13 +70,24 @@ impl MovingWindow {
                 learned.is_asked |= is_asked(&update);
                 learned.sees = !is_blind && !matches!(update.end, UpdateEnd::Lost(_));
                 start = [&update.estimate[..], &update.outputs].concat();
+                (covariance, is_tested) = (update.covariance.clone(), update.has_tested());
+                meets = before.filter(|_| !is_grown).map(|before| (before, update.is_heir));
                 let own = own.filter(|_| update.is_heir);
                 arrival = self.learn(own.as_ref().unwrap_or(task), &update, &rows, clamped);
                 self.note_bounds(task, &update, &mut track);
                 track.updates.push(update);
                 track.others.extend(others);
             }
-            learned.belief = self.follow(task, &start, &rows, learned.sees, &mut track);
+            let from =
+                Known { state: &start, covariance: covariance.as_deref(), sees: learned.sees, is_tested };
+            let followed = self.follow(task, &from, &rows, &mut track);
+            if let (Some((before, is_heir)), Some([first, _])) = (meets, &followed.ends)
+                && let Some(update) = track.updates.last_mut()
+            {
+                update.seam = seam::between(task, update.from, &before, first, is_heir);
+            }
+            learned.belief = followed.belief;
+            learned.spread = followed.ends.map(|[_, last]| Arc::new(last));
             (learned.arrival, learned.unseen) = (arrival, unseen);
             row = rows.end - 1;
         }
@@ -110,14 +125,11 @@ impl MovingWindow {
         (fresh, others)
     }
 
-    /// Says what lies at a bound that was told: its deviation is that of an unknown that is free.
+    /// Says what lies at a bound that was stated: its deviation is that of an unknown that is free.
     fn note_bounds(&self, task: &Task<'_>, update: &Update, track: &mut Track) {
-        for ((value, bounds), name) in update.estimate.iter().zip(&task.bounds).zip(&task.full.states) {
-            if let Some(bound) = bounds.iter().find(|bound| *bound == value) {
-                track
-                    .remarks
-                    .push(format!("from {:.3} s '{name}' is held at its bound {bound}", update.from));
-            }
+        for (place, bound) in &update.at_bounds {
+            let name = &task.full.states[*place];
+            track.remarks.push(format!("from {:.3} s '{name}' is held at its bound {bound}", update.from));
         }
     }
 }
@@ -145,28 +157,12 @@ impl Arrival {
 impl Learned {
     /// What is known before any sample is read.
     pub(super) fn nothing(task: &Task<'_>) -> Learned {
-        Learned::belief_alone(task.guess.clone())
+        Learned::belief_alone(task.within_bounds(task.guess.clone()))
     }
 
     /// What is known at the first sample of a task.
     pub(super) fn before(task: &Task<'_>) -> Learned {
         task.learned.as_ref().map_or_else(|| Learned::nothing(task), |learned| (**learned).clone())
-    }
-
-    /// Of a filter, with the covariance of its state.
-    pub(super) fn of_filter(
-        task: &Task<'_>,
-        state: &DVector<f64>,
-        spread: &DMatrix<f64>,
-        variances: DVector<f64>,
-    ) -> Learned {
-        let n = task.estimated();
-        Learned {
-            belief: state.as_slice()[..n].to_vec(),
-            deviations: Some(variances.iter().take(n).map(|variance| variance.max(0.0).sqrt()).collect()),
-            filter: Some((state.clone(), spread.clone())),
-            ..Learned::nothing(task)
-        }
     }
 }
 

@@ -14,7 +14,7 @@ impl Observer for Integration {
         let times = task.signals.times();
         let mut track = Track::default();
         let mut belief = Learned::before(task).belief;
-        track.estimates.push(SampleEstimate { time: times[0], state: belief.clone(), residual: Vec::new() });
+        track.estimates.push(unknown(times[0], belief.clone()));
         for (row, &time) in times.iter().enumerate().skip(1) {
             if task.interrupted() {
                 break;
@@ -28,9 +28,14 @@ impl Observer for Integration {
                     track.unseen += 1;
                 }
             }
-            track.estimates.push(SampleEstimate { time, state: belief.clone(), residual: Vec::new() });
+            track.estimates.push(unknown(time, belief.clone()));
         }
         track.hand_on(Learned { belief, ..Learned::nothing(task) });
         track
     }
+}
+
+/// A state of which nothing says how well it is known.
+fn unknown(time: f64, state: Vec<f64>) -> SampleEstimate {
+    SampleEstimate { time, state, deviations: Vec::new(), residual: Vec::new() }
 }

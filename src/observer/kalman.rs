@@ -1,5 +1,6 @@
 //! The extended Kalman filter, the field's usual choice.
 
+use super::filtered::{Filtered, Innovation};
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Order};
@@ -34,12 +35,11 @@ impl Observer for Kalman {
     fn observe(&self, task: &Task<'_>) -> Track {
         let times = task.signals.times();
         let n = task.full.states.len();
-        let mut track = Track::default();
         if let Some(why) = task.refuses_implicit() {
-            track.remarks.push(why);
-            return track;
+            return Track { remarks: vec![why], ..Track::default() };
         }
         let sigma = task.sigma.max(self.least_sigma);
+        let mut so_far = Filtered::begin(task, self.least_sigma);
         let learned = Learned::before(task);
         let mut state = DVector::from_vec(task.full_state(&learned.belief, 0));
         let deviations = DVector::from_vec(task.prior_deviations(self.prior, sigma));
@@ -48,32 +48,39 @@ impl Observer for Kalman {
         if let Some((known, spread)) = learned.filter {
             (state, covariance) = (known, spread);
         }
-        track.believe(times[0], state.as_slice(), task.estimated(), Vec::new());
+        so_far.believe(times[0], state.as_slice(), &covariance.diagonal(), Vec::new());
         for row in 1..times.len() {
             if task.interrupted() {
                 break;
             }
+            let step = times[row] - times[row - 1];
             match predict(task, &state, &times[row - 1..=row]) {
                 Ok((there, flow)) => {
                     state = there;
-                    let step = times[row] - times[row - 1];
                     covariance = &flow * covariance * flow.transpose();
                     for i in 0..n {
                         covariance[(i, i)] += drive(i) * step;
                     }
                 }
                 Err(lost) => {
-                    track.hold(&lost);
+                    so_far.track.hold(&lost);
                     let belief = state.as_slice()[..task.estimated()].to_vec();
                     state = DVector::from_vec(task.full_state(&belief, row));
-                    track.believe(times[row], state.as_slice(), task.estimated(), Vec::new());
+                    // what is held while the model is lost is known no longer
+                    let unknown = DVector::from_element(n, f64::INFINITY);
+                    so_far.believe(times[row], state.as_slice(), &unknown, Vec::new());
                     continue;
                 }
             }
-            let residual = correct(task, &mut state, &mut covariance, sigma, row);
-            track.believe(times[row], state.as_slice(), task.estimated(), residual.unwrap_or_default());
+            let noise = so_far.reading_variances();
+            let innovation = correct(task, &mut state, &mut covariance, &noise, row);
+            innovation.iter().for_each(|own| so_far.compare(own));
+            so_far.hold(times[row], &mut state, &covariance);
+            let residual = innovation.map(|own| own.residual.as_slice().to_vec()).unwrap_or_default();
+            so_far.believe(times[row], state.as_slice(), &covariance.diagonal(), residual);
         }
-        track.hand_on(Learned::of_filter(task, &state, &covariance, covariance.diagonal()));
+        let mut track = so_far.end();
+        track.hand_on(Learned::of_filter(task, &state, &covariance, &covariance.diagonal()));
         track
     }
 }
@@ -91,14 +98,14 @@ fn predict(
     Ok((DVector::from_vec(end.state), end.slopes))
 }
 
-/// Corrects a state by what is read; gives what was expected minus what was read, or nothing where that cannot be told.
+/// Corrects a state by what is read, whose errors have these variances; gives the innovation, or nothing where that cannot be told.
 fn correct(
     task: &Task<'_>,
     state: &mut DVector<f64>,
     covariance: &mut DMatrix<f64>,
-    sigma: f64,
+    variances: &DVector<f64>,
     row: usize,
-) -> Option<Vec<f64>> {
+) -> Option<Innovation> {
     let free: Vec<usize> = (0..state.len()).collect();
     let here = task
         .full_flow()
@@ -108,13 +115,13 @@ fn correct(
     let read = task.readings(row);
     let residual = DVector::from_fn(read.len(), |i, _| here.outputs[i] - read[i]);
     let h = &here.output_slopes;
-    let noise = DMatrix::from_diagonal_element(read.len(), read.len(), sigma * sigma);
+    let noise = DMatrix::from_diagonal(variances);
     let innovation = h * &*covariance * h.transpose() + &noise;
-    let gain = Cholesky::new(innovation)?.solve(&(h * &*covariance)).transpose();
+    let gain = Cholesky::new(innovation.clone())?.solve(&(h * &*covariance)).transpose();
     *state -= &gain * &residual;
     // Joseph's form: stays symmetric and positive whatever the rounding
     let rest = DMatrix::identity(state.len(), state.len()) - &gain * h;
     let corrected = &rest * &*covariance * rest.transpose() + &gain * noise * gain.transpose();
     *covariance = (&corrected + corrected.transpose()) * 0.5;
-    Some(residual.as_slice().to_vec())
+    Some(Innovation { residual, covariance: innovation })
 }

@@ -37,6 +37,23 @@ pub struct Learned {
     pub(super) filter: Option<(DVector<f64>, DMatrix<f64>)>,
     /// The samples before that told too little.
     pub(super) unseen: Option<Arc<Unseen>>,
+    /// Where the last window ended, and how well that is known.
+    pub(super) spread: Option<Arc<Spread>>,
+}
+
+/// How well a state is known at a sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spread {
+    /// The state, with the outputs that are followed.
+    pub state: Vec<f64>,
+    /// The covariance of its errors.
+    pub covariance: DMatrix<f64>,
+    /// The covariance of its errors, a row a state, with those of this sample's readings, a column an output.
+    pub by_reading: DMatrix<f64>,
+    /// By how many deviations rounding and computation may have moved it, however they hang together.
+    pub coherent: f64,
+    /// Whether the readings bore it out, and their noise was stated.
+    pub is_tested: bool,
 }
 
 /// Windows that told too little of the state: the next one takes their samples as well.
@@ -52,7 +69,16 @@ impl Learned {
     /// A state that is believed, and nothing of how well it is known.
     pub(crate) fn belief_alone(belief: Vec<f64>) -> Learned {
         let (sees, is_asked) = (true, false);
-        Learned { belief, deviations: None, sees, is_asked, arrival: None, filter: None, unseen: None }
+        Learned {
+            belief,
+            deviations: None,
+            sees,
+            is_asked,
+            arrival: None,
+            filter: None,
+            unseen: None,
+            spread: None,
+        }
     }
 
     /// How many samples before this one the next window takes as well, because they told too little alone.

@@ -1,5 +1,6 @@
 //! How misfits are weighed: by their squares, or so that a few that are far off say no more than that.
 
+use super::chi_square::exceeded;
 use serde::Deserialize;
 
 /// What is made as small as it can be.
@@ -16,6 +17,9 @@ pub enum Loss {
 /// The corner at which an estimate from normal errors has 95 percent of the efficiency of least squares.
 pub const CORNER: f64 = 1.345;
 
+/// So many standard deviations no error of a window reaches by chance: one in 16,000 is larger.
+const OUTLIER: f64 = 4.0;
+
 impl Loss {
     /// The residual whose square is twice the loss of a difference, and its derivative by the difference; `sigma` is the standard deviation of
     /// a reading.
@@ -30,12 +34,23 @@ impl Loss {
         }
     }
 
-    /// The difference as the test of fit counts it: no more than up to the corner.
-    pub(super) fn counted(self, difference: f64, sigma: f64) -> f64 {
+    /// Whether a difference is one that no normal error reaches, and that is left out of the test of fit; `coherent` is what rounding and computation
+    /// may add. Least squares leave nothing out.
+    pub(super) fn is_outlier(self, difference: f64, sigma: f64, coherent: f64) -> bool {
         match self {
-            Loss::Huber(corner) => difference.clamp(-corner * sigma, corner * sigma),
-            Loss::Squares => difference,
+            Loss::Huber(corner) => difference.abs() > OUTLIER.max(corner) * sigma + coherent,
+            Loss::Squares => false,
         }
+    }
+
+    /// By how much the sum of the squares of normal errors falls for each unknown that is fitted: `2 - b/a^2` with `b` the mean of the square of the
+    /// loss's derivative and `a` that of its second one, for `b/a^2` is the variance of the estimate over that of least squares.
+    pub(super) fn taken(self) -> f64 {
+        let Loss::Huber(corner) = self else { return 1.0 };
+        let beyond = exceeded(corner * corner, 1.0);
+        let density = (-corner * corner / 2.0).exp() / std::f64::consts::TAU.sqrt();
+        let square = 1.0 - beyond - 2.0 * corner * density + corner * corner * beyond;
+        2.0 - square / (1.0 - beyond).powi(2)
     }
 
     /// Whether a difference is beyond the corner.
@@ -95,7 +110,12 @@ mod tests {
         assert!((residual * residual / 2.0 - 2.5).abs() < 1e-15 && residual < 0.0);
         assert!((residual * slope + 1.0).abs() < 1e-15);
         assert_eq!(loss.residual(0.5, 1.0), (0.5, 1.0));
-        assert_eq!(loss.counted(-3.0, 1.0), -1.0);
+        assert!(!loss.is_outlier(-3.0, 1.0, 0.0) && loss.is_outlier(-4.5, 1.0, 0.0));
+        assert!(!loss.is_outlier(-4.5, 1.0, 1.0) && !Loss::Squares.is_outlier(1e3, 1.0, 0.0));
+        // at Huber's own corner the efficiency is 0.95
+        assert!(
+            (Loss::Huber(CORNER).taken() - (2.0 - 1.0 / 0.95)).abs() < 1e-4 && Loss::Squares.taken() == 1.0
+        );
         assert_eq!(Loss::Squares.residual(9.0, 1.0), (9.0, 1.0));
     }
 }

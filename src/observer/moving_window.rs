@@ -2,12 +2,16 @@
 //! it best, from there on by the equations.
 
 use super::fit::{FALSE_ALARMS, Noise};
+use super::learned::Spread;
+use super::propagated::{deviations, spread};
 use super::task::{Observer, Task};
 use super::trace::{is_asked, suspects};
 use super::track::{SampleEstimate, Track, Update, UpdateEnd};
 use super::window::Window;
 use super::{Order, weights};
+use nalgebra::DMatrix;
 use serde::Deserialize;
+use std::cell::Cell;
 use std::ops::Range;
 
 /// How the smallest error of a window is sought.
@@ -61,14 +65,25 @@ impl Observer for MovingWindow {
     fn observe(&self, task: &Task<'_>) -> Track {
         let all = MovingWindow { window: task.signals.times().len(), ..*self };
         let windows = if task.whole { &all } else { self };
-        windows.observe_by(task, |belief, rows, clamped, learned| {
+        let began_anew = Cell::new(None);
+        let mut track = windows.observe_by(task, |belief, rows, clamped, learned| {
             let ask = !learned.is_asked;
             let update = match task.whole {
                 true => self.grown(task, belief, rows, clamped, ask),
                 false => self.update_and_ask(task, belief, rows, clamped, ask),
             };
+            let (update, is_other) = windows.restarted(task, update, belief, rows, clamped);
+            if is_other {
+                began_anew.set(Some(update.from));
+            }
             (update, Vec::new())
-        })
+        });
+        if let Some(from) = began_anew.get() {
+            track.remarks.push(format!(
+                "from {from:.3} s the search from the guess came to nothing, and one from another state of the ranges has found this"
+            ));
+        }
+        track
     }
 }
 
@@ -186,7 +201,7 @@ impl MovingWindow {
     ) -> Update {
         let from = |belief: &[f64]| {
             let window = Self::window(task, belief, rows, clamped);
-            self.attempt_in(task, &window, belief).0
+            self.attempt_in(task, &window).0
         };
         let update = from(belief);
         let shorter = rows.start..rows.start + rows.len() / 2;
@@ -231,31 +246,56 @@ impl MovingWindow {
         Update { steps: steps + update.steps, seconds: seconds + update.seconds, ..update }
     }
 
-    /// The moments of some rows from a state at the first of them; gives what is believed of what is sought at the last.
+    /// The moments of some rows from a state at the first of them, with the covariance that it is known with, where it is.
     pub(super) fn follow(
         &self,
         task: &Task<'_>,
-        start: &[f64],
+        from: &Known<'_>,
         rows: &std::ops::Range<usize>,
-        sees: bool,
         track: &mut Track,
-    ) -> Vec<f64> {
+    ) -> Followed {
         let times = &task.signals.times()[rows.clone()];
         // the sample that two windows share has its moment by now
         let skipped = usize::from(!track.estimates.is_empty());
-        let belief = &start[..task.estimated()];
-        let followed =
-            if sees { task.full_flow().follow(start, &[], times, Order::Value) } else { Ok(Vec::new()) };
+        let sought = task.estimated();
+        let belief = &from.state[..sought];
+        // columns that err move the state after the first sample by errors that this covariance does not have
+        let carried = from.covariance.filter(|_| weights::noisy_columns(task).is_empty());
+        let (free, order): (Vec<usize>, Order) = match carried {
+            Some(covariance) => {
+                let varies = |place: &usize| covariance.column(*place).iter().any(|value| *value != 0.0);
+                ((0..covariance.ncols()).filter(varies).collect(), Order::First)
+            }
+            None => (Vec::new(), Order::Value),
+        };
+        let follow = |free: &[usize], order| task.full_flow().follow(from.state, free, times, order);
+        let followed = match from.sees {
+            // derivatives may grow beyond all numbers where the state does not
+            true => follow(&free, order).or_else(|_| follow(&[], Order::Value)),
+            false => Ok(Vec::new()),
+        };
+        let carried = carried.filter(|_| {
+            followed.as_ref().is_ok_and(|all| all.iter().all(|at| at.slopes.ncols() == free.len()))
+        });
         if let Ok(samples) = &followed
-            && let Some(last) = samples.last()
+            && let (Some(first), Some(last)) = (samples.first(), samples.last())
         {
-            for (sample, row) in samples.iter().zip(rows.clone()).skip(skipped) {
+            let own = carried.map(|covariance| covariance.select_rows(&free).select_columns(&free));
+            for (place, (sample, row)) in samples.iter().zip(rows.clone()).enumerate().skip(skipped) {
                 let read = task.readings(row);
                 let residual = sample.outputs.iter().zip(&read).map(|(seen, read)| seen - read).collect();
-                let state = sample.state[..task.estimated()].to_vec();
-                track.estimates.push(SampleEstimate { time: sample.time, state, residual });
+                let state = sample.state[..sought].to_vec();
+                let deviations = match (&own, from.covariance) {
+                    (Some(own), _) => deviations(sample, own, sought),
+                    (None, Some(all)) if place == 0 => (0..sought).map(|i| all[(i, i)].sqrt()).collect(),
+                    _ => Vec::new(),
+                };
+                track.estimates.push(SampleEstimate { time: sample.time, state, deviations, residual });
             }
-            return last.state[..task.estimated()].to_vec();
+            let ends = own.map(|own| {
+                [first, last].map(|sample| spread(task, sample, &own, samples.len(), from.is_tested))
+            });
+            return Followed { belief: last.state[..sought].to_vec(), ends };
         }
         if let Err(lost) = followed {
             track.remarks.push(format!("the model could not be followed: {lost}"));
@@ -271,8 +311,29 @@ impl MovingWindow {
         };
         let end = states.last().cloned().unwrap_or_else(|| belief.to_vec());
         for (state, time) in states.into_iter().zip(times).skip(skipped) {
-            track.estimates.push(SampleEstimate { time: *time, state, residual: Vec::new() });
+            let deviations = vec![f64::INFINITY; sought];
+            track.estimates.push(SampleEstimate { time: *time, state, deviations, residual: Vec::new() });
         }
-        end
+        Followed { belief: end, ends: None }
     }
+}
+
+/// Where some rows begin.
+pub(super) struct Known<'a> {
+    /// The state with the outputs that are followed.
+    pub state: &'a [f64],
+    /// Its covariance, where there is one.
+    pub covariance: Option<&'a DMatrix<f64>>,
+    /// Whether the readings told it.
+    pub sees: bool,
+    /// Whether they bore it out against a noise that was stated.
+    pub is_tested: bool,
+}
+
+/// What came of following it.
+pub(super) struct Followed {
+    /// What is believed of what is sought at the last row.
+    pub belief: Vec<f64>,
+    /// How well the state is known at the first and the last row, where it is.
+    pub ends: Option<[Spread; 2]>,
 }

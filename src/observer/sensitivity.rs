@@ -20,17 +20,44 @@ type Number = DualSVec64<AT_ONCE>;
 /// Fractions of the time from a sample to the next at which the equations are evaluated.
 const FRACTIONS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
-/// The derivatives of what is expected in a window by the samples of some columns.
+/// The derivatives of what is expected in a window by the samples of some columns: step by step, as a recursion for the error of the state, so that
+/// what is done with them grows as the number of samples.
 #[derive(Clone, Debug)]
 pub(super) struct Sensitivity {
-    /// A row an expected value, sample by sample; a column a sample, those of one column of the signals together.
-    pub slopes: DMatrix<f64>,
+    /// What each sample of the window sees of the state's error and of its own readings' errors.
+    pub samples: Vec<Seen>,
+    /// From each sample of the window to the next.
+    pub steps: Vec<Step>,
     /// The columns, by their places in the signals.
     pub columns: Vec<usize>,
     /// The first row of the signals that takes part.
     pub first: usize,
     /// How many rows take part.
     pub rows: usize,
+    /// How many states are followed.
+    pub states: usize,
+    /// How many samples carry a curve at a time.
+    pub points: usize,
+}
+
+/// What is expected of the outputs at a sample, by the errors.
+#[derive(Clone, Debug)]
+pub(super) struct Seen {
+    /// A row an output, a column a state.
+    pub by_states: DMatrix<f64>,
+    /// A row an output, a column one of the columns of the signals at this very sample.
+    pub by_columns: DMatrix<f64>,
+    /// The sample, counted from the first row that takes part.
+    pub own: usize,
+    /// The first of the samples that carry the curves from here on, counted alike.
+    pub start: usize,
+}
+
+/// The error of the state after a step: by the error before it, and by those of the samples that carry the curves in it.
+#[derive(Clone, Debug)]
+pub(super) struct Step {
+    /// A row a state; a column a state, and then `points` for each column of the signals.
+    pub response: DMatrix<f64>,
 }
 
 /// Derivatives of rates and outputs by states and columns, at one time.
@@ -61,40 +88,80 @@ impl Sensitivity {
         let first = signals.first_carrier(times[0]);
         let end = signals.first_carrier(times[times.len() - 1]) + points;
         let (rows, n, k) = (end - first, start.len(), columns.len());
-        let outputs = flow.model.outputs.len();
-        let mut slopes = DMatrix::zeros(outputs * times.len(), k * rows);
-        let mut states = DMatrix::zeros(n, k * rows);
         let linear: Vec<Linear> = along
             .iter()
             .map(|sample| linearise(flow, sample.time, &sample.state, &columns))
             .collect::<Result<_, _>>()?;
-        for (i, time) in times.iter().enumerate() {
+        let seen = |(i, time): (usize, &f64)| {
             let here = &linear[i * FRACTIONS.len()];
-            let mut expected = &here.by_states[1] * &states;
-            let sample = signals.times().partition_point(|other| other < time) - first;
-            for column in 0..k {
-                let mut own = expected.column_mut(column * rows + sample);
-                own += here.by_columns[1].column(column);
+            Seen {
+                by_states: here.by_states[1].clone(),
+                by_columns: here.by_columns[1].clone(),
+                own: signals.times().partition_point(|other| other < time) - first,
+                start: signals.first_carrier(*time) - first,
             }
-            slopes.rows_mut(i * outputs, outputs).copy_from(&expected);
-            let Some(next) = times.get(i + 1) else { break };
-            let start = signals.first_carrier(*time);
-            let step = &linear[i * FRACTIONS.len()..=(i + 1) * FRACTIONS.len()];
-            let response = response(step, next - time, n, k, points, |part| {
-                signals.weights_from(start, time + part * (next - time))
-            });
-            states = response.columns(0, n) * &states;
-            for column in 0..k {
-                let mut own = states.columns_mut(column * rows + start - first, points);
-                own += response.columns(n + column * points, points);
-            }
-        }
-        Ok(Sensitivity { slopes, columns, first, rows })
+        };
+        let samples = times.iter().enumerate().map(seen).collect();
+        let step = |(i, pair): (usize, &[f64])| {
+            let start = signals.first_carrier(pair[0]);
+            let along = &linear[i * FRACTIONS.len()..=(i + 1) * FRACTIONS.len()];
+            let weights = |part: f64| signals.weights_from(start, pair[0] + part * (pair[1] - pair[0]));
+            Step { response: response(along, pair[1] - pair[0], n, k, points, weights) }
+        };
+        let steps = times.windows(2).enumerate().map(step).collect();
+        Ok(Sensitivity { samples, steps, columns, first, rows, states: n, points })
     }
 
     /// What some errors of the samples change in what is expected.
     pub fn times(&self, errors: &DVector<f64>) -> DVector<f64> {
-        &self.slopes * errors
+        let mut state = DVector::zeros(self.states);
+        let mut expected = Vec::new();
+        for (i, seen) in self.samples.iter().enumerate() {
+            let own = DVector::from_fn(self.columns.len(), |column, _| errors[column * self.rows + seen.own]);
+            expected.extend((&seen.by_states * &state + &seen.by_columns * own).iter());
+            let Some(step) = self.steps.get(i) else { break };
+            let mut next = step.response.columns(0, self.states) * &state;
+            for column in 0..self.columns.len() {
+                let own = errors.rows(column * self.rows + seen.start, self.points);
+                next += step.response.columns(self.states + column * self.points, self.points) * own;
+            }
+            state = next;
+        }
+        DVector::from_vec(expected)
+    }
+
+    /// The transposed of it: how much each error of the samples changes a sum of what is expected, with these weights.
+    pub fn transposed_times(&self, weights: &DVector<f64>) -> DVector<f64> {
+        let outputs = self.samples.first().map_or(0, |seen| seen.by_states.nrows());
+        let mut errors = DVector::zeros(self.columns.len() * self.rows);
+        let mut pull = DVector::zeros(self.states);
+        for (i, seen) in self.samples.iter().enumerate().rev() {
+            if let Some(step) = self.steps.get(i) {
+                let back = step.response.tr_mul(&pull);
+                for column in 0..self.columns.len() {
+                    for j in 0..self.points {
+                        errors[column * self.rows + seen.start + j] +=
+                            back[self.states + column * self.points + j];
+                    }
+                }
+                pull = back.rows(0, self.states).into_owned();
+            }
+            let own = weights.rows(i * outputs, outputs);
+            pull += seen.by_states.tr_mul(&own);
+            let direct = seen.by_columns.tr_mul(&own);
+            for column in 0..self.columns.len() {
+                errors[column * self.rows + seen.own] += direct[column];
+            }
+        }
+        errors
+    }
+
+    /// All of it as a matrix: a row an expected value, sample by sample; a column a sample, those of one column of the signals together.
+    #[cfg(test)]
+    pub fn dense(&self) -> DMatrix<f64> {
+        let count = self.columns.len() * self.rows;
+        let unit = |place: usize| DVector::from_fn(count, |i, _| f64::from(u8::from(i == place)));
+        DMatrix::from_columns(&(0..count).map(|place| self.times(&unit(place))).collect::<Vec<_>>())
     }
 }
 
@@ -232,6 +299,7 @@ mod tests {
         let columns = vec![signals.find("a").unwrap(), signals.find("u").unwrap()];
         let found = Sensitivity::of(&flow, &start, &times, columns.clone()).unwrap();
         assert_eq!((found.first, found.rows), (3, 19));
+        let slopes = found.dense();
         let expected = |signals: &Signals| -> DVector<f64> {
             let flow = ModelFlow { signals, ..flow };
             let samples = flow.follow(&start, &[], &times, Order::Value).unwrap();
@@ -248,7 +316,7 @@ mod tests {
                 };
                 let slope = (moved(STEP) - moved(-STEP)) / (2.0 * STEP);
                 let own = row.checked_sub(found.first).filter(|row| *row < found.rows);
-                let own = own.map(|row| found.slopes.column(place * found.rows + row).into_owned());
+                let own = own.map(|row| slopes.column(place * found.rows + row).into_owned());
                 let own = own.unwrap_or_else(|| DVector::zeros(slope.len()));
                 largest = largest.max(slope.amax());
                 worst = worst.max((slope - own).amax());

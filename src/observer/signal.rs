@@ -137,6 +137,11 @@ impl Signals {
         }
     }
 
+    /// The place of a row among all samples, those that are not shown included.
+    pub(super) fn sample(&self, row: usize) -> usize {
+        self.shown.start + row
+    }
+
     /// How many samples carry the curve at a time.
     pub(super) fn carriers(&self) -> usize {
         self.points

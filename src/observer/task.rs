@@ -53,6 +53,8 @@ pub struct Task<'a> {
     pub learned: Option<Arc<Learned>>,
     /// What is known of the state at the first sample of a window from those before it.
     pub(super) arrival: Option<Arc<Arrival>>,
+    /// Whether a first window whose search comes to nothing is searched again from other states: within the bounds, or else the ranges of the file.
+    pub restarts: bool,
     /// The tolerance of the integration.
     pub tolerance: f64,
     /// Set from outside to stop: what is done by then is given back.
@@ -157,6 +159,7 @@ impl<'a> Task<'a> {
             alarm: None,
             learned: None,
             arrival: None,
+            restarts: false,
             tolerance: TOLERANCE,
             interrupt,
             source: Arc::new((system.clone(), wanted.clone())),
@@ -205,6 +208,14 @@ impl<'a> Task<'a> {
             *value = value.max(*low).min(*high);
         }
         state
+    }
+
+    /// What of what is sought lies at a bound, by its place, and the bound.
+    pub(super) fn at_bounds(&self, sought: &[f64]) -> Vec<(usize, f64)> {
+        let at = |(place, (value, bounds)): (usize, (&f64, &[f64; 2]))| {
+            bounds.iter().find(|bound| *bound == value).map(|bound| (place, *bound))
+        };
+        sought.iter().zip(&self.bounds).enumerate().filter_map(at).collect()
     }
 
     /// The standard deviations that a filter begins with: of what is sought a part of its size, none of what is clamped, and of outputs that

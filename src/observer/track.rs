@@ -1,9 +1,11 @@
 //! What an observer gives back: what it believed sample by sample, and how its updates ended.
 
 use super::Lost;
-use super::fit::Fit;
+use super::fit::{Fit, NoiseFrom};
 use super::learned::Learned;
 use super::suspect::Suspect;
+use super::together::{Innovations, Seam, Tested, Together};
+use nalgebra::DMatrix;
 use std::sync::Arc;
 
 /// What an observer believes at a sample.
@@ -13,6 +15,9 @@ pub struct SampleEstimate {
     pub time: f64,
     /// What is sought.
     pub state: Vec<f64>,
+    /// The standard deviation of each, in its unit: by windows the bound of Cramér and Rao of the window, carried along the flow to this sample;
+    /// of a filter by its covariance. Infinite where the readings do not tell it; empty where the observer has none.
+    pub deviations: Vec<f64>,
     /// The outputs that the model expected minus those that were read; empty where the observer compares none.
     pub residual: Vec<f64>,
 }
@@ -49,6 +54,12 @@ pub struct Update {
     pub outputs: Vec<f64>,
     /// The least standard deviation that each entry of the estimate could have.
     pub deviations: Vec<f64>,
+    /// The covariance of all that is followed, what is sought first: what was not changed has none. Nothing where something is not seen.
+    pub covariance: Option<Arc<DMatrix<f64>>>,
+    /// What of the estimate lies at a bound that was stated, by its place, and the bound: there the deviation is that of an unknown that is free.
+    pub at_bounds: Vec<(usize, f64)>,
+    /// How far it is from where the window before it ended, where both tell.
+    pub seam: Option<Seam>,
     /// The condition of the sensitivities, scaled.
     pub condition: f64,
     /// The error of the output, `k` of 4.77, there.
@@ -80,6 +91,24 @@ impl Update {
         fits && matches!(self.end, UpdateEnd::Converged | UpdateEnd::Stuck)
     }
 
+    /// Whether the readings bear it out, and against a noise that was stated.
+    pub(super) fn has_tested(&self) -> bool {
+        self.is_borne_out() && self.fit.is_some_and(|fit| fit.from == NoiseFrom::Stated)
+    }
+
+    /// Takes part in the tests of all windows together, where it was tested at all.
+    pub fn count_in(&self, tested: &mut Tested) {
+        let is_at_best =
+            !matches!(self.end, UpdateEnd::Blind { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent);
+        let fit = self.fit.filter(|fit| is_at_best && fit.from != NoiseFrom::Computation);
+        if let Some(fit) = fit {
+            tested.window(fit.probability);
+        }
+        if let Some(seam) = self.seam {
+            tested.seam(seam);
+        }
+    }
+
     /// Whether the best state that was found leaves more than the errors of the readings explain.
     pub fn is_contradicted(&self) -> bool {
         let fails = self.fit.is_some_and(|fit| !fit.fits);
@@ -98,6 +127,8 @@ pub struct Track {
     pub others: Vec<Update>,
     /// Samples at which it could not see, or not follow its model, and held or integrated instead.
     pub unseen: usize,
+    /// Whether the innovations of a filter are what its covariance and the noise of the readings explain; none of other methods.
+    pub innovations: Option<Innovations>,
     /// What else is to be said.
     pub remarks: Vec<String>,
     /// What is handed to whoever goes on from the last sample.
@@ -105,11 +136,6 @@ pub struct Track {
 }
 
 impl Track {
-    /// Adds what a filter believes at a sample, of so many states that are sought.
-    pub(super) fn believe(&mut self, time: f64, state: &[f64], sought: usize, residual: Vec<f64>) {
-        self.estimates.push(SampleEstimate { time, state: state[..sought].to_vec(), residual });
-    }
-
     /// Notes that the model could not be followed to a sample, where a filter then holds what it believed.
     pub(super) fn hold(&mut self, lost: &Lost) {
         if self.unseen == 0 {
@@ -123,9 +149,16 @@ impl Track {
         self.estimates.last()
     }
 
-    /// Whether one of its updates is contradicted by the readings.
+    /// The test of all windows together, and of each against the one before it; nothing of fewer than two.
+    pub fn together(&self) -> Option<Together> {
+        let mut tested = Tested::default();
+        self.updates.iter().for_each(|update| update.count_in(&mut tested));
+        tested.together()
+    }
+
+    /// Whether one of its updates is contradicted by the readings, or all of them together are, or a seam.
     pub fn is_contradicted(&self) -> bool {
-        self.updates.iter().any(Update::is_contradicted)
+        self.updates.iter().any(Update::is_contradicted) || self.together().is_some_and(|all| !all.fits)
     }
 
     /// Whether one of its updates is borne out by the readings, and none is contradicted: of methods that work by windows.

@@ -37,8 +37,8 @@ impl TrustRegion {
         TrustRegion { sizes, refused: 0, lambda, growth, here: None, converged: false, stuck: false }
     }
 
-    /// The next step; between bounds where there are some: what lies at one and is pushed against it stays there, and a step ends at the first
-    /// bound of each unknown.
+    /// The next step; between bounds where there are some, by a set of those that hold (J. Nocedal, S. J. Wright, Numerical Optimization, 2006, section 16.5): what lies at one
+    /// and is pushed against it stays there, what would go beyond one ends there, and all else takes the best step that is left to it.
     fn within(
         &self,
         problem: &Problem<Window<'_>>,
@@ -49,18 +49,32 @@ impl TrustRegion {
         if bounds.is_empty() {
             return gauss_newton(here, &self.sizes, self.lambda);
         }
-        let mut free = here.clone();
-        for (i, [low, high]) in bounds.iter().enumerate() {
-            let pushed =
-                (guess[i] <= *low && here.gradient[i] > 0.0) || (guess[i] >= *high && here.gradient[i] < 0.0);
-            if pushed {
+        let pushed = |i: usize| {
+            let [low, high] = bounds[i];
+            (guess[i] <= low && here.gradient[i] > 0.0) || (guess[i] >= high && here.gradient[i] < 0.0)
+        };
+        let mut held: Vec<Option<f64>> = (0..bounds.len()).map(|i| pushed(i).then_some(0.0)).collect();
+        loop {
+            let mut free = here.clone();
+            for (i, step) in held.iter().enumerate() {
+                let Some(step) = step else { continue };
+                free.differences.axpy(*step, &here.slopes.column(i), 1.0);
                 free.slopes.column_mut(i).fill(0.0);
             }
+            let own = gauss_newton(&free, &self.sizes, self.lambda)?;
+            let step = DVector::from_fn(own.len(), |i, _| held[i].unwrap_or(own[i]));
+            let mut is_within = true;
+            for (i, [low, high]) in bounds.iter().enumerate() {
+                let there = guess[i] + step[i];
+                if held[i].is_none() && (there < *low || there > *high) {
+                    held[i] = Some(there.clamp(*low, *high) - guess[i]);
+                    is_within = false;
+                }
+            }
+            if is_within {
+                return Some(step);
+            }
         }
-        let step = gauss_newton(&free, &self.sizes, self.lambda)?;
-        Some(DVector::from_fn(step.len(), |i, _| {
-            (guess[i] + step[i]).clamp(bounds[i][0], bounds[i][1]) - guess[i]
-        }))
     }
 
     /// How much smaller `2k/dt` should be after a step, by the linear model.
@@ -100,8 +114,9 @@ impl Solver<Window<'_>, Iteration> for TrustRegion {
         while self.lambda < STRONGEST {
             let Some(step) = self.within(problem, &here, &guess) else { break };
             let short = length(&step, &self.sizes);
-            let tried: Result<WindowExpansion, Lost> =
-                problem.problem("expansions", |window| Ok(window.expand(&(&guess + &step), Order::First)))?;
+            let tried: Result<WindowExpansion, Lost> = problem.problem("expansions", |window| {
+                Ok(window.expand(&window.held(&guess + &step), Order::First))
+            })?;
             if let Ok(there) = tried {
                 let gain = here.differences.norm_squared() - there.differences.norm_squared();
                 let ratio = gain / self.foretold(&here, &step);
@@ -110,7 +125,8 @@ impl Solver<Window<'_>, Iteration> for TrustRegion {
                     self.lambda *= if ratio.is_finite() { shrink.clamp(1e-3, 2.0) } else { 1.0 };
                     self.growth = 2.0;
                     self.converged = settled(short, here.cost, there.cost);
-                    let state = state.param(guess + step).cost(there.cost).gradient(there.gradient.clone());
+                    let there_is = problem.problem("steps", |window| Ok(window.held(&guess + &step)))?;
+                    let state = state.param(there_is).cost(there.cost).gradient(there.gradient.clone());
                     self.here = Some(there);
                     return Ok((state, None));
                 }

@@ -1,5 +1,6 @@
 //! The unscented Kalman filter: no derivative is taken, points about the estimate are followed instead.
 
+use super::filtered::{Filtered, Innovation};
 use super::task::{Observer, Task};
 use super::track::Track;
 use super::{Learned, Lost, Order};
@@ -89,12 +90,11 @@ impl Observer for Unscented {
     fn observe(&self, task: &Task<'_>) -> Track {
         let times = task.signals.times();
         let n = task.full.states.len();
-        let mut track = Track::default();
         if let Some(why) = task.refuses_implicit() {
-            track.remarks.push(why);
-            return track;
+            return Track { remarks: vec![why], ..Track::default() };
         }
         let sigma = task.sigma.max(self.least_sigma);
+        let mut so_far = Filtered::begin(task, self.least_sigma);
         let learned = Learned::before(task);
         let mut state = DVector::from_vec(task.full_state(&learned.belief, 0));
         let deviations = DVector::from_vec(task.prior_deviations(self.prior, sigma));
@@ -105,7 +105,7 @@ impl Observer for Unscented {
         let mut first = 0;
         if let Some((known, spread)) = learned.filter {
             (state, root, first) = (known, spread, 1);
-            track.believe(times[0], state.as_slice(), task.estimated(), Vec::new());
+            so_far.believe(times[0], state.as_slice(), &variances(&root), Vec::new());
         }
         for row in first..times.len() {
             if task.interrupted() {
@@ -116,27 +116,35 @@ impl Observer for Unscented {
                 match self.predict(task, &state, &root, &drive, &times[row - 1..=row]) {
                     Ok((there, spread)) => (state, root) = (there, spread),
                     Err(lost) => {
-                        track.hold(&lost);
+                        so_far.track.hold(&lost);
                         let belief = state.as_slice()[..task.estimated()].to_vec();
                         state = DVector::from_vec(task.full_state(&belief, row));
-                        track.believe(times[row], state.as_slice(), task.estimated(), Vec::new());
+                        // what is held while the model is lost is known no longer
+                        let unknown = DVector::from_element(n, f64::INFINITY);
+                        so_far.believe(times[row], state.as_slice(), &unknown, Vec::new());
                         continue;
                     }
                 }
             }
-            let residual = match self.correct(task, &state, &root, sigma, row) {
-                Some((there, spread, residual)) => {
-                    (state, root) = (there, spread);
-                    residual
-                }
-                None => Vec::new(),
-            };
-            track.believe(times[row], state.as_slice(), task.estimated(), residual);
+            let mut residual = Vec::new();
+            let noise = so_far.reading_variances().map(f64::sqrt);
+            if let Some((there, spread, innovation)) = self.correct(task, &state, &root, &noise, row) {
+                (state, root) = (there, spread);
+                so_far.compare(&innovation);
+                residual = innovation.residual.as_slice().to_vec();
+            }
+            so_far.hold(times[row], &mut state, &(&root * root.transpose()));
+            so_far.believe(times[row], state.as_slice(), &variances(&root), residual);
         }
-        let variances = (&root * root.transpose()).diagonal();
-        track.hand_on(Learned::of_filter(task, &state, &root, variances));
+        let mut track = so_far.end();
+        track.hand_on(Learned::of_filter(task, &state, &root, &variances(&root)));
         track
     }
+}
+
+/// The variances of a state, from the factor of its covariance.
+fn variances(root: &DMatrix<f64>) -> DVector<f64> {
+    (root * root.transpose()).diagonal()
 }
 
 impl Unscented {
@@ -165,15 +173,15 @@ impl Unscented {
         Ok((mean, root))
     }
 
-    /// State and factor after a reading, and what was expected minus what was read; none where that cannot be told.
+    /// State and factor after a reading whose errors have these deviations, and the innovation; none where that cannot be told.
     fn correct(
         &self,
         task: &Task<'_>,
         state: &DVector<f64>,
         root: &DMatrix<f64>,
-        sigma: f64,
+        deviations: &DVector<f64>,
         row: usize,
-    ) -> Option<(DVector<f64>, DMatrix<f64>, Vec<f64>)> {
+    ) -> Option<(DVector<f64>, DMatrix<f64>, Innovation)> {
         let points = Points::about(state, root, self.kappa);
         let time = &task.signals.times()[row..=row];
         let mut seen = Vec::with_capacity(points.points.len());
@@ -185,7 +193,7 @@ impl Unscented {
         let expected = points.mean(&seen);
         let outputs = points.deviations(&seen, &expected);
         let states = points.deviations(&points.points, state);
-        let noise = DMatrix::from_diagonal_element(read.len(), read.len(), sigma);
+        let noise = DMatrix::from_diagonal(deviations);
         let innovation = factor(&[outputs.clone(), noise.clone()])?;
         // gain = Pxy (S S^T)^-1, from the right by its two triangles
         let cross = &states * outputs.transpose();
@@ -195,6 +203,7 @@ impl Unscented {
         let corrected = state - &gain * &residual;
         let root = factor(&[states - &gain * outputs, &gain * noise])?;
         let is_finite = corrected.iter().all(|value| value.is_finite());
-        is_finite.then(|| (corrected, root, residual.as_slice().to_vec()))
+        let innovation = Innovation { residual, covariance: &innovation * innovation.transpose() };
+        is_finite.then_some((corrected, root, innovation))
     }
 }

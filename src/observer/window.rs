@@ -42,7 +42,7 @@ pub struct WindowExpansion {
     pub left: DVector<f64>,
     /// The same, weighted where they have weights: what the error is made of.
     pub differences: DVector<f64>,
-    /// The same as the test of fit counts them: where the loss is no square none counts for more than the corner.
+    /// The same as they are where the loss is no square, by which the test of fit judges.
     pub counted: DVector<f64>,
     /// Their derivatives, n by p, weighted as they are.
     pub slopes: DMatrix<f64>,
@@ -67,6 +67,14 @@ impl Window<'_> {
     /// The unknowns of a state.
     pub fn unknowns(&self, state: &[f64]) -> DVector<f64> {
         DVector::from_iterator(self.free.len(), self.free.iter().map(|place| state[*place]))
+    }
+
+    /// Unknowns within their bounds: what is at one is so to the last digit.
+    pub(super) fn held(&self, mut unknowns: DVector<f64>) -> DVector<f64> {
+        for (value, [low, high]) in unknowns.iter_mut().zip(&self.bounds) {
+            *value = value.max(*low).min(*high);
+        }
+        unknowns
     }
 
     /// The first state with these unknowns.
@@ -189,11 +197,7 @@ impl Window<'_> {
         let relations = self.relations();
         let counted = DVector::from_iterator(
             relations + counted.len() - skipped,
-            differences
-                .iter()
-                .take(relations)
-                .copied()
-                .chain(counted.iter().skip(skipped).map(|value| loss.counted(*value, sigma))),
+            differences.iter().take(relations).copied().chain(counted.iter().skip(skipped).copied()),
         );
         let step = self.step();
         let end = samples.last();

@@ -4,6 +4,7 @@
   if (!form) return;
   const entries = [...list.querySelectorAll('article')], heads = [...list.querySelectorAll('h3')];
   const order = [...list.children], texts = new Map();
+  for (const entry of entries) entry.dataset.w ??= 'proved';
   // an entry is of the file under whose name it stands
   let of = '';
   for (const each of order) each.dataset.f = of = each.dataset.f ?? of;

@@ -80,12 +80,10 @@ pub(crate) fn map(map: &Map, title: &str, units: [Option<&str>; 2]) -> String {
     let span = (highest - lowest).max(NO_DIFFERENCE);
     let at = |step: usize| lowest + span * step as f64 / SHADES as f64;
     let values = |step: usize| match step {
-        _ if everywhere => format!("standard deviation {:.3e} of the prior one", 10f64.powf(highest)),
-        step if step + 1 == SHADES => {
-            format!("standard deviation above {} of the prior one", power(at(step), span / 10.0))
-        }
+        _ if everywhere => format!("{:.3e} prior deviations", 10f64.powf(highest)),
+        step if step + 1 == SHADES => format!("above {} prior deviations", power(at(step), span / 10.0)),
         _ => format!(
-            "standard deviation {} to {} of the prior one",
+            "{} to {} prior deviations",
             power(at(step), span / 10.0),
             power(at(step + 1), span / 10.0)
         ),
@@ -239,9 +237,17 @@ pub(crate) fn slope(slope: &Slope, title: &str, unit: Option<&str>) -> String {
             let points = slope.distance.iter().zip(&slope.values);
             points.filter_map(|(d, point)| Some((*d, of(point.as_ref()?)))).collect()
         };
+        // of lines that lie on each other, as those of measured states do at 1, one is drawn
+        let mut drawn: Vec<Vec<Option<(i32, i32)>>> = Vec::new();
         for index in 0..slope.names.len() {
-            let colour = LINES[index % LINES.len()];
-            for run in series(&|point| point[index]).split(|(_, value)| value.is_infinite()) {
+            let (colour, line) = (LINES[index % LINES.len()], series(&|point| point[index]));
+            let place = |point: &(f64, f64)| point.1.is_finite().then(|| chart.backend_coord(point));
+            let places = line.iter().map(place).collect();
+            if drawn.contains(&places) {
+                continue;
+            }
+            drawn.push(places);
+            for run in line.split(|(_, value)| value.is_infinite()) {
                 chart.draw_series(LineSeries::new(run.iter().copied(), colour.stroke_width(1)))?;
             }
         }
@@ -281,6 +287,9 @@ const LINES: [RGBColor; 4] =
 /// The stripes of a line, which are as wide as a finger.
 const STRIPES: usize = 8;
 
+/// More names of one value are said as all others.
+const MOST_NAMED: usize = 3;
+
 /// A stripe around every few distances, and what stands there; neighbours are one where all distances between them have the same
 /// values, those that have no stripe too.
 fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -> Vec<Hover> {
@@ -298,7 +307,13 @@ fn columns(slope: &Slope, place: impl Fn(f64) -> i32, [top, bottom]: [i32; 2]) -
                     None => groups.push((value, vec![name])),
                 }
             }
-            let texts = groups.iter().map(|(value, names)| format!("{} {value}", names.join(", ")));
+            // the most that share a value come last, and need no names
+            groups.sort_by_key(|(_, names)| names.len() > MOST_NAMED);
+            let texts = groups.iter().enumerate().map(|(place, (value, names))| {
+                let are_others = names.len() > MOST_NAMED && place + 1 == groups.len() && place > 0;
+                let names = if are_others { "all others".to_owned() } else { names.join(", ") };
+                format!("{names} {value}")
+            });
             texts.collect::<Vec<_>>().join("; ")
         }
     };
@@ -476,8 +491,8 @@ mod tests {
             let path = found.split("<path stroke=").find(|path| path.contains(&format!("<title>{title}")));
             assert!(path.is_some_and(|path| path.contains(&format!("d=\"m{x} 0h1"))), "{title}: {found}");
         };
-        cell("standard deviation 1", 0);
-        cell("standard deviation above", 1);
+        cell("1.0e0 to", 0);
+        cell("above", 1);
         cell(INFINITE_TEXT, 2);
         cell("a pole", 3);
         for word in [">well<", ">poorly<", ">infinite<", ">pole<"] {

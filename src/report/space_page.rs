@@ -85,10 +85,10 @@ pub fn space_page(observed: &SpaceObserved<'_>) -> String {
                             thead { tr { th { "" } th { "recovered" } th { "true" } th { "error" } th { "bound" } } }
                             tbody { @for entry in &all { tr {
                                 td { (entry.name) ", " (entry.unit) }
-                                td.number { (format!("{:.8}", entry.recovered)) }
-                                td.number { (entry.truth.map_or("-".to_owned(), |truth| format!("{truth:.8}"))) }
-                                td.number { (entry.truth.map_or("-".to_owned(), |truth| format!("{:.1e}", (entry.recovered - truth).abs()))) }
-                                td.number { (format!("{:.1e}", entry.bound)) }
+                                td.n { (format!("{:.8}", entry.recovered)) }
+                                td.n { (entry.truth.map_or("-".to_owned(), |truth| format!("{truth:.8}"))) }
+                                td.n { (entry.truth.map_or("-".to_owned(), |truth| format!("{:.1e}", (entry.recovered - truth).abs()))) }
+                                td.n { (format!("{:.1e}", entry.bound)) }
                             } } }
                         } }
                     }

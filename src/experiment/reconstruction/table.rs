@@ -35,7 +35,7 @@ impl Reconstruction {
 impl Experiment {
     /// What was believed sample by sample: each sought state of an answer with its bound (`r1`, `r1_bound`, ...), whether the body was `seen` (1 or 0), and, where all
     /// readings were explained at once, that motion with its bounds (`whole_phi0`, `whole_omega0`, `whole_r1`, `whole_r2`) and centre of mass. A bound is a standard deviation. Those of an
-    /// answer are its window's at the window's first sample; where there is none they are not a number.
+    /// answer are its window's, carried along the flow to each sample, or a filter's own; where there is none they are not a number.
     ///
     /// # Errors
     /// None that an experiment could bring about.
@@ -46,13 +46,12 @@ impl Experiment {
     ) -> Result<Record, RecordError> {
         let (track, names) = (&answer.track, self.names());
         let times: Vec<f64> = track.estimates.iter().map(|moment| moment.time).collect();
-        let window =
-            |time: f64| track.updates.iter().rfind(|update| update.from < time).or(track.updates.first());
         let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
         for (place, name) in names.iter().enumerate() {
-            let bound = |time: f64| window(time).map_or(f64::NAN, |update| update.deviations[place]);
+            let bounds =
+                track.estimates.iter().map(|at| at.deviations.get(place).copied().unwrap_or(f64::NAN));
             columns.push(((*name).to_owned(), track.estimates.iter().map(|at| at.state[place]).collect()));
-            columns.push((format!("{name}_bound"), times.iter().map(|time| bound(*time)).collect()));
+            columns.push((format!("{name}_bound"), bounds.collect()));
         }
         let seen = track.estimates.iter();
         let seen = seen.map(|at| f64::from(u8::from(track.updates.is_empty() || !at.residual.is_empty())));

@@ -240,8 +240,7 @@ pub(super) struct ModeKeys {
     pub known: BTreeMap<String, f64>,
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
-    #[serde(default)]
-    pub guess: BTreeMap<String, f64>,
+    pub guess: Option<GuessKeys>,
     #[serde(default)]
     pub bounds: BTreeMap<String, [f64; 2]>,
 }

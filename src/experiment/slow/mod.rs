@@ -16,6 +16,7 @@ mod outline;
 mod patches;
 mod quadrature;
 mod readings;
+mod returns;
 mod run;
 mod scene;
 mod segments;

@@ -54,6 +54,11 @@ impl Sampled {
         [-self.first[0] * x + self.first[1] * height, self.second[0] * x - self.second[1] * height]
     }
 
+    /// The height of the centre of mass, both radii given.
+    pub fn height(&self, [r1, r2]: [f64; 2]) -> f64 {
+        (self.second[0] * r1 + self.first[0] * r2) / self.opening[0]
+    }
+
     /// `d_1` and `d_2` by 3.18 and 3.19.
     pub fn tangential(&self, [r1, r2]: [f64; 2]) -> [f64; 2] {
         let [sine, cosine] = self.opening;

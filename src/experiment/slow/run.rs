@@ -8,6 +8,7 @@ use super::local::derivative;
 use super::patches::{Arrangement, arrangements};
 use super::quadrature::{SlowTrack, by_quadrature};
 use super::readings::SlowReadings;
+use super::returns::led_on;
 use super::scene::SlowScene;
 use super::segments::{FoundJump, found_jumps, from_segments};
 use super::start::{EXACT, Vote, from_nothing, from_nothing_briefly, votes};
@@ -16,7 +17,7 @@ use crate::experiment::simulation::{deviation, normal, outline};
 use crate::mechanics::Palm;
 use crate::mechanics::moving::{DEFAULT_TOLERANCE, Drive, MovingScene, Shape, Trajectory};
 use crate::mechanics::resting::follow_resting;
-use crate::observer::{FaultRules, Record};
+use crate::observer::Record;
 use crate::system::ReadError;
 use miette::Diagnostic;
 use rand::SeedableRng;
@@ -142,7 +143,8 @@ impl SlowExperiment {
         let timed = |seconds: &mut f64, begin: Instant| *seconds = begin.elapsed().as_secs_f64();
         let mut seconds = [f64::NAN; 3];
         let begin = Instant::now();
-        let together = from_any(readings, interrupt).map(|found| with_kinks(readings, found, interrupt));
+        let together = from_any(readings, interrupt)
+            .map(|found| led_on(readings, with_kinks(readings, found, interrupt)));
         timed(&mut seconds[0], begin);
         done("all readings at once");
         let explained = together.as_ref().is_some_and(|found| found.explains(EXACT));
@@ -247,7 +249,9 @@ pub(super) fn readings_of(trajectory: &Trajectory, noise: f64, resolution: f64, 
 /// Readings of a file. Rates of the palms are differentiated: the angles are known well.
 fn recorded(scene: &SlowScene, file: &Path) -> Result<SlowReadings, ReadError> {
     let names = COLUMNS.map(|name| scene.columns.get(name).map_or(name, String::as_str));
-    let found = Record::read_checked(file, &names, &FaultRules::default()).map_err(|error| {
+    let mut rules = scene.faults.clone();
+    rules.resolution.extend(names[2..].iter().map(|name| ((*name).to_owned(), scene.resolution)));
+    let found = Record::read_checked(file, &names, &rules).map_err(|error| {
         let help = error.help().map(|help| help.to_string()).unwrap_or_default();
         scene.error_at(
             "data",

@@ -4,6 +4,7 @@ use super::super::scene::Body;
 use super::super::scene::place::Places;
 use super::families::Family;
 use crate::mechanics::moving::Course;
+use crate::observer::FaultRules;
 use crate::system::{Problem, ReadError};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -61,6 +62,8 @@ pub struct SlowScene {
     pub record: Option<PathBuf>,
     /// What the recording calls the columns `phi1`, `phi2`, `s1`, `s2`.
     pub columns: BTreeMap<String, String>,
+    /// `[data] on_fault` and `spike`: how faulty rows of a recording are found, and what is done about them.
+    pub faults: FaultRules,
     /// `[study]`.
     pub study: Option<SlowStudy>,
     pub(super) name: String,

@@ -320,10 +320,7 @@ impl<'a> Together<'a> {
         let expanded = if self.kinks > 0 { EXPANDED } else { outline.order() };
         let support = outline.expanded(expanded);
         let inverse = if self.kinks > 0 { outline.by_own(expanded) * inverse } else { inverse };
-        let height =
-            self.sampled.iter().zip(&radii).map(|(sampled, [r1, r2])| {
-                (sampled.second[0] * r1 + sampled.first[0] * r2) / sampled.opening[0]
-            });
+        let height = self.sampled.iter().zip(&radii).map(|(sampled, radii)| sampled.height(*radii));
         SlowShape {
             track: SlowTrack { height: height.collect(), phi0: at.phi0.clone(), radii },
             misfit: (chi_square / (2 * rows) as f64).sqrt() * self.sigma,

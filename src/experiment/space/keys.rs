@@ -10,6 +10,7 @@ use crate::experiment::solid::FEWEST;
 use crate::foreign::name_of;
 use crate::mechanics::moving::{Course, PushedPalm};
 use crate::mechanics::spatial::{SpatialDrive, SpatialPalm};
+use crate::observer::{FaultRules, OnFault};
 use crate::system::{Problem, ReadError, load};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -100,6 +101,14 @@ struct DataKeys {
     record: PathBuf,
     #[serde(default)]
     columns: BTreeMap<String, String>,
+    #[serde(default)]
+    on_fault: OnFault,
+    #[serde(default = "usual_spike")]
+    spike: f64,
+}
+
+fn usual_spike() -> f64 {
+    FaultRules::default().spike
 }
 
 #[derive(Default, Deserialize)]
@@ -208,12 +217,20 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SpaceS
     }
     let observer = checked_observer(&keys.observer, &wrong)?;
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
+    let mut faults = FaultRules::default();
     let (record, columns) = match keys.data {
-        // standard input is in no folder
-        Some(data) if data.record == Path::new("-") => (Some(data.record), data.columns),
-        Some(data) => (Some(folder.join(&data.record)), data.columns),
+        Some(data) => {
+            (faults.on_fault, faults.spike) = (data.on_fault, data.spike);
+            // standard input is in no folder
+            let is_stream = data.record == Path::new("-");
+            (Some(if is_stream { data.record } else { folder.join(&data.record) }), data.columns)
+        }
         None => (None, BTreeMap::new()),
     };
+    if faults.spike.is_nan() || faults.spike <= 0.0 {
+        let message = format!("it has to be above zero, and is {}", faults.spike);
+        return Err(wrong.at("data.spike", message, "give a number of usual departures: 8 is usual"));
+    }
     if let Some(unknown) = columns.keys().find(|name| !COLUMNS.contains(&name.as_str())) {
         let message = format!("'{unknown}' is no column that is known here");
         let help = format!("known are {}", COLUMNS.join(", "));
@@ -240,6 +257,7 @@ fn checked(keys: Keys, places: &Places, name: &str, text: &str) -> Result<SpaceS
         sensor: SpaceSensor { noise, resolution, torque_noise },
         record,
         columns,
+        faults,
         observer,
         name: name.to_owned(),
         text: text.to_owned(),

@@ -68,7 +68,7 @@ impl SpaceReadings {
         let needed: Vec<&str> = (0..COLUMNS.len()).filter(is_needed).map(name).collect();
         let of_contacts = (0..COLUMNS.len()).filter(|place| [3, 4].contains(&(place % OF_A_PALM)));
         let resolution = of_contacts.map(|place| (name(place).to_owned(), scene.sensor.resolution)).collect();
-        let rules = FaultRules { resolution, ..FaultRules::default() };
+        let rules = FaultRules { resolution, ..scene.faults.clone() };
         let found = Record::read_checked(file, &needed, &rules).map_err(|error| {
             let help = error.help().map(|help| help.to_string()).unwrap_or_default();
             let also = "columns with other names are named in [data] columns = { p1 = \"...\" }";

@@ -3,6 +3,7 @@
 use super::super::scene::place::Places;
 use super::readings::SpaceSensor;
 use crate::mechanics::spatial::{SolidForm, SpatialDrive, SpatialPalm};
+use crate::observer::FaultRules;
 use crate::system::{Problem, ReadError};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -60,6 +61,8 @@ pub struct SpaceScene {
     pub record: Option<PathBuf>,
     /// What the recording calls its columns.
     pub columns: BTreeMap<String, String>,
+    /// `[data] on_fault` and `spike`: how faulty rows of a recording are found, and what is done about them.
+    pub faults: FaultRules,
     /// `[observer]`.
     pub observer: SpaceObserver,
     pub(super) name: String,

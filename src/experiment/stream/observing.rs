@@ -5,7 +5,7 @@ use super::told::{StreamAnswer, StreamTally, WindowReport};
 use crate::experiment::channels::known_sensors;
 use crate::experiment::run::Experiment;
 use crate::experiment::scene::{Method, SceneError};
-use crate::observer::{FALSE_ALARMS, Learned, Signals, Task};
+use crate::observer::{FALSE_ALARMS, Learned, Signals, Task, Tested};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -25,7 +25,13 @@ pub struct SoFar {
 impl SoFar {
     pub fn of(experiment: &Experiment) -> SoFar {
         let methods = &experiment.scene.observer.methods;
-        let tally = |method: &Method| StreamTally { method: *method, updates: 0, fit: 0, contradicted: 0 };
+        let tally = |method: &Method| StreamTally {
+            method: *method,
+            updates: 0,
+            fit: 0,
+            contradicted: 0,
+            tested: Tested::default(),
+        };
         SoFar {
             windows: 0,
             learned: vec![None; methods.len()],
@@ -180,6 +186,7 @@ impl<'a> Observing<'a> {
             let track = self.experiment.observer(tally.method).observe(&task);
             tally.updates += track.updates.len();
             tally.fit += track.updates.iter().filter(|update| update.is_borne_out()).count();
+            track.updates.iter().for_each(|update| update.count_in(&mut tally.tested));
             tally.contradicted += track.updates.iter().filter(|update| update.is_contradicted()).count();
             answers.push(StreamAnswer {
                 method: tally.method,

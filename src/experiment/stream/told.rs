@@ -2,7 +2,7 @@
 
 use crate::experiment::run::Experiment;
 use crate::experiment::scene::Method;
-use crate::observer::{Fault, SampleEstimate, Update};
+use crate::observer::{Fault, SampleEstimate, Tested, Update};
 
 /// What arrives.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,6 +81,15 @@ pub struct StreamTally {
     pub fit: usize,
     /// Those that converged and do not fit.
     pub contradicted: usize,
+    /// All of them together, and where they meet.
+    pub tested: Tested,
+}
+
+impl StreamTally {
+    /// Whether an update is contradicted, or all of them together are.
+    pub fn is_contradicted(&self) -> bool {
+        self.contradicted > 0 || self.tested.together().is_some_and(|all| !all.fits)
+    }
 }
 
 impl StreamEnd {
@@ -90,6 +99,6 @@ impl StreamEnd {
         self.observers
             .iter()
             .filter(|tally| tally.method.is_by_windows())
-            .all(|tally| tally.contradicted == 0 && (tally.fit > 0 || (!is_whole && tally.updates == 0)))
+            .all(|tally| !tally.is_contradicted() && (tally.fit > 0 || (!is_whole && tally.updates == 0)))
     }
 }

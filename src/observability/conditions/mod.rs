@@ -10,6 +10,7 @@
 
 mod circular;
 mod implicit;
+mod sampled;
 mod single;
 mod turns;
 mod vanishing;

@@ -2,6 +2,7 @@
 //! taken apart into its factors.
 
 use super::circular::circular;
+use super::sampled::{changes_its_sign, has_both_signs};
 use super::vanishing::{
     all_vanish, enclosed_constant, inside_no_function, is_a_constant_but_zero, test, vanishes,
 };
@@ -155,6 +156,7 @@ pub(super) fn is_nowhere_zero(system: &mut System, left: NodeId, right: NodeId, 
     let difference = system.graph.sub(left, right);
     let is_angle = system.angle_test();
     system.graph.reachable([difference]).len() <= LONGEST_TOUCHING
+        && !changes_its_sign(system, difference, guards)
         && holds_by_signs(
             &mut system.graph,
             Guard { node: difference, need: Need::NotZero },
@@ -176,7 +178,8 @@ pub(super) fn touching(system: &mut System, left: NodeId, right: NodeId) -> Way 
     let has_corners = system.graph.reachable([difference]).iter().any(|id| {
         matches!(system.graph.node(*id), Node::Apply(Function::Sqrt | Function::Asin | Function::Acos, _))
     });
-    if has_corners || system.graph.reachable([difference]).len() > LONGEST_TOUCHING {
+    let is_too_long = system.graph.reachable([difference]).len() > LONGEST_TOUCHING;
+    if has_corners || is_too_long || has_both_signs(system, difference) {
         return Way::Unknown;
     }
     let is_angle = system.angle_test();

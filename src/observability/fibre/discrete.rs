@@ -135,6 +135,13 @@ pub(super) fn exchanges(model: &Model) -> Vec<Exchange> {
     search.found.into_iter().collect()
 }
 
+/// The maps that change signs alone, of cosines and sines as well, but the one that changes nothing.
+pub(super) fn changes_of_sign(model: &Model, fixed: Vec<bool>) -> Vec<Exchange> {
+    let mut search = Search { model, fixed, found: BTreeSet::new(), steps: 0 };
+    search.signs(&(0..model.variables.len()).collect::<Vec<_>>());
+    search.found.into_iter().collect()
+}
+
 fn hash(value: &impl Hash) -> u64 {
     let mut hasher = DefaultHasher::new();
     value.hash(&mut hasher);

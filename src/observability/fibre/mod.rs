@@ -24,6 +24,7 @@ mod discrete;
 mod eliminate;
 mod exact;
 mod jets;
+mod mirror;
 mod model;
 mod monomials;
 mod point;
@@ -41,6 +42,7 @@ use crate::system::{Assignment, System, UnknownKind};
 use count::count;
 use dashu::rational::RBig;
 use discrete::{Exchange, exchanges, in_words, values_of_expression, values_of_variable};
+pub use mirror::{Image, Mirror, mirrors};
 use model::Model;
 use std::sync::atomic::AtomicBool;
 

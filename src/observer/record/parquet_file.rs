@@ -2,8 +2,9 @@
 //! and may lack values; columns of other types, and numbers that mean dates or decimals, are known by name only.
 
 use super::table::Table;
-use super::{Cell, LONGEST_FILE, MOST_CELLS, Record, RecordError, Row, metadata};
+use super::{Cell, LONGEST_FILE, MOST_CELLS, ROOM, Record, RecordError, Row, metadata};
 use crate::file::read_bytes;
+use crate::foreign::{Budget, Spent};
 use bytes::Bytes;
 use parquet::basic::{ConvertedType, Repetition, Type as Physical};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -55,6 +56,9 @@ const DAMAGED: &str = "it is damaged";
 
 fn table(file: Bytes) -> Result<Table, String> {
     let words = |e: ParquetError| e.to_string();
+    let room = Budget::new(ROOM);
+    let too_large = |spent: Spent| format!("its numbers are too many: {spent}");
+    room.bytes(file.len()).map_err(too_large)?;
     let reader = SerializedFileReader::new(file).map_err(words)?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let mut table = Table::default();
@@ -72,6 +76,9 @@ fn table(file: Bytes) -> Result<Table, String> {
         if rows.saturating_mul(columns.max(1) as u64) > MOST_CELLS {
             return Err(format!("it promises {count} rows of {columns} columns"));
         }
+        // the columns of a group, and what becomes of them
+        let row = 2 * columns * size_of::<Cell>() + 2 * size_of::<Row>();
+        room.bytes((count as usize).saturating_mul(row)).map_err(too_large)?;
         let columns: Vec<Vec<Cell>> = (0..table.names.len())
             .map(|index| match table.foreign.contains_key(&index) {
                 true => Ok(Vec::new()),

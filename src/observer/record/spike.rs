@@ -10,6 +10,9 @@
 //! 1e-9 of the largest value. A value that departs by more than the threshold times this is a spike, the worst among
 //! its neighbours first; it is taken out and the rest is judged anew, until no more are found.
 //!
+//! A fault returns to where it was, and a jump stays: what a body does that falls from one stable pose into another is none. So a value that lies between its neighbours is no
+//! spike, nor one at a jump between two smooth stretches that belongs to either ([`stays`]).
+//!
 //! What follows: a spike has to be larger among the five readings at either end, which are foretold less well; with
 //! fewer than [`FEWEST`] readings there is no judgement; where a quarter of the readings or more are spikes, they are
 //! what is usual; a reading between two spikes can be taken for one too; several wrong readings in a row that agree are
@@ -53,7 +56,10 @@ pub(super) fn spikes(series: &[(f64, f64)], threshold: f64, resolution: f64) -> 
             .map(|(at, (_, known))| known.unwrap_or_else(|| departure(&points, at)))
             .collect();
         let usual = usual_departure(&departures).max(floor);
-        let score = |at: usize| departures[at] / usual.max(change_nearby(&points, at) / 10.0);
+        let score = |at: usize| match stays(&points, at) {
+            true => 0.0,
+            false => departures[at] / usual.max(change_nearby(&points, at) / 10.0),
+        };
         let scores: Vec<f64> = (0..points.len()).map(score).collect();
         // the worst first: a reading with spikes on either side of it has yet to be foretold without them
         let nearby = |at: usize, reach: usize| at.saturating_sub(reach)..(at + reach + 1).min(scores.len());
@@ -73,6 +79,25 @@ pub(super) fn spikes(series: &[(f64, f64)], threshold: f64, resolution: f64) -> 
             .collect();
     }
     found
+}
+
+/// Whether a value goes where the values after it are, as a body does that falls into another stable pose: it lies between its neighbours, or it is at a jump from one
+/// smooth stretch to another and belongs to one of them. A fault returns.
+fn stays(points: &[(f64, f64)], at: usize) -> bool {
+    let (Some(before), Some(after)) = (at.checked_sub(1), points.get(at + 1)) else { return false };
+    let (value, before, after) = (points[at].1, points[before].1, after.1);
+    if (value - before) * (after - value) > 0.0 {
+        return true;
+    }
+    let gap = (after - before).abs();
+    let largest = |side: &[(f64, f64)]| {
+        side.windows(2)
+            .map(|pair| (pair[1].1 - pair[0].1).abs())
+            .fold(None, |most: Option<f64>, change| Some(most.map_or(change, |most| most.max(change))))
+    };
+    let sides = [&points[at.saturating_sub(SIDE)..at], &points[at + 1..(at + 1 + SIDE).min(points.len())]];
+    let are_smooth = sides.iter().all(|side| largest(side).is_some_and(|change| SMOOTH * change <= gap));
+    are_smooth && (value - before).abs().min((value - after).abs()) <= gap / 2.0
 }
 
 /// The upper quartile of the departures, in terms of the standard deviation of white noise.
@@ -128,6 +153,10 @@ fn foretell(points: &[(f64, f64)], time: f64) -> (f64, f64) {
     }
     (foretold, f64::sqrt(variance))
 }
+
+/// Readings of a stretch on either side of a jump, and by how much the jump exceeds the changes among them.
+const SIDE: usize = 3;
+const SMOOTH: f64 = 4.0;
 
 /// The usual change from one reading to the next among the three on either side, without the reading itself.
 fn change_nearby(points: &[(f64, f64)], at: usize) -> f64 {
@@ -209,6 +238,31 @@ mod tests {
         assert_eq!(indices(&sampled(200, |t| (t - 0.7).abs())), [0usize; 0]);
         assert_eq!(indices(&sampled(200, |t| if t < 0.7 { 0.2 } else { 0.9 })), [0usize; 0]);
         assert_eq!(indices(&sampled(200, |t| (7.0 * t) % 3.0)), [0usize; 0]);
+    }
+
+    /// A body that comes to a fold goes as the root of the time that is left, and then falls: nothing of that is a spike, whether it is exact, rounded or noisy, and a
+    /// fault right beside it is one.
+    #[test]
+    fn a_jump_behind_a_fold_is_no_spike_and_hides_none() {
+        let falls = |fold: f64, after: f64| {
+            sampled(160, move |t| match fold - t {
+                left if left > 0.0 => 0.05 + 0.03 * left.sqrt() + 0.01 * t,
+                _ => after + 0.02 * (3.0 * t).sin(),
+            })
+        };
+        for (fold, after) in [(0.7, 0.2), (0.711, -0.1), (0.7001, 0.03), (0.7065, 1.5)] {
+            let exact = falls(fold, after);
+            assert_eq!(indices(&exact), [0usize; 0], "{fold} {after}");
+            let grid = 1e-4;
+            let rounded: Vec<_> = exact.iter().map(|(t, v)| (*t, (v / grid).round() * grid)).collect();
+            assert_eq!(spikes(&rounded, 8.0, grid), [], "{fold} {after}");
+            let at = exact.iter().position(|(t, _)| *t >= fold).unwrap();
+            for wrong in [at - 2, at - 1, at, at + 1] {
+                let mut series = exact.clone();
+                series[wrong].1 += 5.0;
+                assert_eq!(indices(&series), [wrong], "{fold} {after}");
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What plotters draws, element by element: how each looks, and its part of a path.
 
-use super::track::{simplified, track};
+use super::track::{Stretch, simplified};
 
 /// Left, top, right, bottom, in pixels.
 pub(super) type Corners = [i32; 4];
@@ -8,10 +8,15 @@ pub(super) type Corners = [i32; 4];
 /// A shape that is drawn.
 pub(super) struct Shape {
     pub look: Look,
-    /// Its part of a path.
-    pub part: String,
+    pub part: Part,
     /// Around everything that it covers.
     pub corners: Corners,
+}
+
+/// What of a shape is written down.
+pub(super) enum Part {
+    Words(String),
+    Path(Stretch),
 }
 
 fn around(points: &[(i32, i32)]) -> Corners {
@@ -116,7 +121,7 @@ impl Element<'_> {
         }
     }
 
-    fn look_and_part(&self) -> Option<(Look, String)> {
+    fn look_and_part(&self) -> Option<(Look, Part)> {
         let opacity = match self.attribute("opacity") {
             "" => "1".to_owned(),
             other => other.to_owned(),
@@ -128,20 +133,23 @@ impl Element<'_> {
             "" => "1".to_owned(),
             width => width.to_owned(),
         };
-        let outline = |path: String| match fill {
-            "none" => (look(Kind::Stroke(lined()), stroke), path),
-            _ => (look(Kind::Fill, fill), path),
+        let outline = |path: Stretch| match fill {
+            "none" => (look(Kind::Stroke(lined()), stroke), Part::Path(path)),
+            _ => (look(Kind::Fill, fill), Part::Path(path)),
         };
         Some(match self.tag {
             "rect" => {
                 let [x, y, width, height] = ["x", "y", "width", "height"].map(|name| self.number(name));
-                outline(format!("M{x} {y}h{width}v{height}h{}z", -width))
+                outline(Stretch::around((x, y), format!("h{width}v{height}h{}z", -width)))
             }
             "line" => {
                 let ends = [("x1", "y1"), ("x2", "y2")].map(|(x, y)| (self.number(x), self.number(y)));
-                (look(Kind::Stroke(lined()), stroke), track(&ends))
+                (look(Kind::Stroke(lined()), stroke), Part::Path(Stretch::through(&ends)))
             }
-            "polyline" => (look(Kind::Stroke(lined()), stroke), track(&simplified(&self.points()))),
+            "polyline" => {
+                let line = Stretch::through(&simplified(&self.points()));
+                (look(Kind::Stroke(lined()), stroke), Part::Path(line))
+            }
             "polygon" => {
                 let mut points = self.points();
                 // all one way around, so that shapes of one path that overlap do not cut holes
@@ -150,15 +158,17 @@ impl Element<'_> {
                 if around < 0 {
                     points.reverse();
                 }
-                (look(Kind::Fill, fill), track(&points) + "z")
+                (look(Kind::Fill, fill), Part::Path(Stretch::through(&points).closed()))
             }
             "circle" => {
                 let [x, y, r] = ["cx", "cy", "r"].map(|name| self.number(name));
                 let twice = 2 * r;
                 if fill != "none" {
-                    return Some((look(Kind::Dots(twice), fill), format!("M{x} {y}h0")));
+                    let dot = Stretch::around((x, y), "h0".to_owned());
+                    return Some((look(Kind::Dots(twice), fill), Part::Path(dot)));
                 }
-                outline(format!("M{} {y}a{r} {r} 0 1 1 {twice} 0a{r} {r} 0 1 1-{twice} 0z", x - r))
+                let around = format!("a{r} {r} 0 1 1 {twice} 0a{r} {r} 0 1 1-{twice} 0z");
+                outline(Stretch::around((x - r, y), around))
             }
             "text" => self.words(&look),
             _ => return None,
@@ -173,7 +183,7 @@ impl Element<'_> {
         self.attribute("points").split_whitespace().filter_map(pair).collect()
     }
 
-    fn words(&self, look: &impl Fn(Kind, &str) -> Look) -> (Look, String) {
+    fn words(&self, look: &impl Fn(Kind, &str) -> Look) -> (Look, Part) {
         // plotters takes a font's height for 1.24 of its size
         let size = (self.attribute("font-size").parse::<f64>().unwrap_or(10.0) * 1.24).round();
         let [x, y] = [self.number("x"), self.number("y")];
@@ -196,6 +206,6 @@ impl Element<'_> {
                 )
             }
         };
-        (look(kind, self.attribute("fill")), placed)
+        (look(kind, self.attribute("fill")), Part::Words(placed))
     }
 }

@@ -1,13 +1,25 @@
 //! Shapes of one look put together wherever that changes nothing: a shape may be drawn earlier than it was where it touches nothing
 //! that was drawn in between.
 
-use super::element::{Corners, Kind, Look, Shape};
+use super::element::{Corners, Kind, Look, Part, Shape};
 
 /// Shapes of one look.
 pub(super) struct Layer {
     pub look: Look,
     pub drawn: String,
+    /// Where its path ends.
+    end: Option<(i32, i32)>,
     places: Vec<Corners>,
+}
+
+impl Layer {
+    fn add(&mut self, part: &Part, corners: Corners) {
+        match part {
+            Part::Words(words) => self.drawn.push_str(words),
+            Part::Path(stretch) => self.end = Some(stretch.write(self.end, &mut self.drawn)),
+        }
+        self.places.push(corners);
+    }
 }
 
 /// Layers that are seen as the shapes one after the other are.
@@ -18,13 +30,11 @@ pub(super) fn layers(shapes: impl Iterator<Item = Shape>) -> Vec<Layer> {
         if look.kind == Kind::Stroke("1".to_owned()) && look.colour == "#FFFFFF" {
             continue;
         }
-        match home(&found, &look, &corners) {
-            Some(place) => {
-                found[place].drawn.push_str(&part);
-                found[place].places.push(corners);
-            }
-            None => found.push(Layer { look, drawn: part, places: vec![corners] }),
-        }
+        let place = home(&found, &look, &corners).unwrap_or_else(|| {
+            found.push(Layer { look, drawn: String::new(), end: None, places: Vec::new() });
+            found.len() - 1
+        });
+        found[place].add(&part, corners);
     }
     found
 }
@@ -51,7 +61,7 @@ mod tests {
 
     fn shape(colour: &str, corners: Corners) -> Shape {
         let look = Look { kind: Kind::Fill, colour: colour.to_owned(), opacity: "1".to_owned() };
-        Shape { look, part: colour.to_owned(), corners }
+        Shape { look, part: Part::Words(colour.to_owned()), corners }
     }
 
     /// A red square beside a blue one joins the red one before it; one on the blue one stays on it.

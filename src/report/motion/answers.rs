@@ -1,6 +1,6 @@
 //! What observers made of an experiment, as JSON and as text.
 
-use crate::experiment::{Answer, Experiment, Studied, error};
+use crate::experiment::{Answer, Experiment, Guess, Studied, error};
 use crate::mechanics::moving::Ended;
 use crate::observer::{Fault, Update, UpdateEnd};
 use crate::report::axis::unit_of;
@@ -9,6 +9,7 @@ use crate::report::motion::fit::{finite, fit_in_words, noise_from, suspect_json,
 use crate::report::motion::recognition::{recognition_json, recognition_text};
 use crate::report::motion::reconstruction::{shape_json, shape_text};
 use crate::report::motion::studies::{studies_json, studies_text};
+use crate::report::motion::verdicts::{innovations_json, together_json, verdict_lines};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -85,10 +86,11 @@ pub(super) fn states(observed: &Observed<'_>, time: f64, recovered: &[f64], boun
         let mut state = json!({ "recovered": finite(recovered[i]) });
         if let Some(truth) = &truth {
             state["true"] = json!(truth[i]);
-            state["error"] = finite(error(recovered[i], truth[i]));
+            state["error"] = finite((recovered[i] - truth[i]).abs());
+            state["relative_error"] = finite(error(recovered[i], truth[i]));
         }
-        if let Some(bounds) = bounds {
-            state["bound"] = finite(bounds[i]);
+        if let Some(bound) = bounds.and_then(|bounds| bounds.get(i)) {
+            state["bound"] = finite(*bound);
         }
         states.insert(name.to_owned(), state);
     }
@@ -126,6 +128,18 @@ pub(super) fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
     }
     if update.discounted > 0 {
         found["discounted"] = json!(update.discounted);
+        found["outliers"] = json!(update.fit.map_or(0, |fit| fit.outliers));
+    }
+    let names = observed.experiment.names();
+    for (place, bound) in &update.at_bounds {
+        found["states"][names[*place]]["at_bound"] = json!(bound);
+    }
+    if let Some(seam) = &update.seam {
+        found["seam"] = json!({
+            "chi_square": finite(seam.chi_square),
+            "degrees_of_freedom": seam.degrees,
+            "probability": seam.probability,
+        });
     }
     if !update.suspects.is_empty() {
         found["suspects"] = update
@@ -164,21 +178,26 @@ fn sensor_json(experiment: &Experiment) -> Value {
 
 /// An experiment as JSON: true and recovered states, errors, the bound of Cramér and Rao, iterations and time.
 ///
-/// An `error` is relative, or absolute where the truth is less than a millionth; a `bound` is a standard deviation in the unit of its
-/// state, for the readings' own errors or, where they have none, for errors of 1e-9 (contacts: a nanometre); what is not seen has none.
+/// An `error` is `|recovered - true|` in the unit of its state, as a `bound` is, a standard deviation for the readings' own errors or, where they have
+/// none, for errors of 1e-9 (contacts: a nanometre); what is not seen has none. A `relative_error` is absolute where the truth is less than a millionth.
 pub fn observe_json(observed: &Observed<'_>) -> Value {
     let experiment = observed.experiment;
     let times = experiment.signals.times();
     let answers = observed.answers.iter().map(|answer| {
         let updates = answer.track.updates.iter().map(|update| update_json(observed, update));
         let end = answer.track.last().map(
-            |last| json!({ "time": last.time, "states": states(observed, last.time, &last.state, None) }),
+            |last| {
+                let bounds = Some(&last.deviations[..]);
+                json!({ "time": last.time, "states": states(observed, last.time, &last.state, bounds) })
+            },
         );
         json!({
             "method": answer.method.name(),
             "seconds": answer.seconds,
             "unseen_samples": answer.track.unseen,
             "remarks": answer.track.remarks,
+            "together": together_json(answer.track.together()),
+            "innovations": innovations_json(&answer.track),
             "updates": updates.collect::<Vec<_>>(),
             "fits_as_well": answer.track.others.iter().map(|other| update_json(observed, other)).collect::<Vec<_>>(),
             "end": end,
@@ -193,7 +212,8 @@ pub fn observe_json(observed: &Observed<'_>) -> Value {
         "samples": times.len(),
         "duration": times.last(),
         "sensor": sensor_json(experiment),
-        "first_guess": guess,
+        "first_guess": if experiment.scene.observer.guess == Guess::None { Value::Null } else { json!(guess) },
+        "begins_at": guess,
         "clamped": experiment.question.clamped,
         "told": experiment.question.known,
         "faults": fault_lines(&experiment.faults),
@@ -259,6 +279,7 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
     for line in fault_lines(&experiment.faults) {
         let _ = writeln!(text, "  {line}");
     }
+    text.push_str(units_in_words(experiment));
     for answer in observed.answers {
         let is_timed = !answer.seconds.is_nan();
         let time = if is_timed { format!(": {:.3} s", answer.seconds) } else { String::new() };
@@ -272,15 +293,16 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
             };
             let (from, steps, fit) = (update.from, update.steps, fit_in_words(update));
             let _ = writeln!(text, "  from {from:.3} s: {standing} after {steps} steps{fit}{time}");
-            let bounds = Some(&update.deviations[..]);
-            state_lines(&mut text, observed, &names, update.from, &update.estimate, bounds);
+            let known = Beside { bounds: &update.deviations, at_bounds: &update.at_bounds };
+            state_lines(&mut text, observed, &names, update.from, &update.estimate, known);
             for line in suspects_in_words(update) {
                 let _ = writeln!(text, "    {line}");
             }
         }
         if let Some(last) = answer.track.last() {
             let _ = writeln!(text, "  at the end, {:.3} s:", last.time);
-            state_lines(&mut text, observed, &names, last.time, &last.state, None);
+            let known = Beside { bounds: &last.deviations, at_bounds: &[] };
+            state_lines(&mut text, observed, &names, last.time, &last.state, known);
         }
         if answer.track.unseen > 0 {
             let _ = writeln!(text, "  not seen for {} of {samples} samples", answer.track.unseen);
@@ -292,14 +314,11 @@ pub fn observe_text(observed: &Observed<'_>) -> String {
                 other.from,
                 fit_in_words(other).replacen(" and fits", "", 1)
             );
-            state_lines(
-                &mut text,
-                observed,
-                &names,
-                other.from,
-                &other.estimate,
-                Some(&other.deviations[..]),
-            );
+            let known = Beside { bounds: &other.deviations, at_bounds: &other.at_bounds };
+            state_lines(&mut text, observed, &names, other.from, &other.estimate, known);
+        }
+        for line in verdict_lines(&answer.track) {
+            let _ = writeln!(text, "  {line}");
         }
         for remark in &answer.track.remarks {
             let _ = writeln!(text, "  {remark}");
@@ -336,18 +355,38 @@ pub(super) fn state_lines(
     names: &[&str],
     time: f64,
     recovered: &[f64],
-    bounds: Option<&[f64]>,
+    known: Beside<'_>,
 ) {
     let truth = observed.experiment.truth_at(time);
     for (i, name) in names.iter().enumerate() {
         let name = state_name(observed, name);
         let _ = write!(text, "    {name:<8} {:>15.9}", recovered[i]);
         if let Some(truth) = &truth {
-            let _ = write!(text, "  true {:>15.9}  error {:.1e}", truth[i], error(recovered[i], truth[i]));
+            let _ = write!(text, "  true {:>15.9}  error {:.1e}", truth[i], (recovered[i] - truth[i]).abs());
         }
-        if let Some(bounds) = bounds {
-            let _ = write!(text, "  bound {:.1e}", bounds[i]);
+        if let Some(bound) = known.bounds.get(i) {
+            let _ = write!(text, "  bound {bound:.1e}");
+        }
+        if let Some((_, bound)) = known.at_bounds.iter().find(|(place, _)| *place == i) {
+            let _ = write!(text, "  held at its bound {bound}");
         }
         text.push('\n');
+    }
+}
+
+/// What is known beside recovered states: their standard deviations, which may be none, and those that are held at a bound.
+#[derive(Clone, Copy)]
+pub(super) struct Beside<'a> {
+    pub bounds: &'a [f64],
+    pub at_bounds: &'a [(usize, f64)],
+}
+
+/// In what unit errors and bounds are printed.
+fn units_in_words(experiment: &Experiment) -> &'static str {
+    match experiment.simulated().is_some() {
+        true => {
+            "error: |recovered - true|; bound: a standard deviation; both absolute, in the unit of the state\n"
+        }
+        false => "bound: a standard deviation, absolute, in the unit of the state\n",
     }
 }

@@ -90,9 +90,9 @@ pub(super) fn closure_section(closure: &Closure) -> Markup {
                     @for setting in &closure.settings {
                         tr {
                             td { (setting.read) }
-                            td.number { (setting.unknowns.len()) }
-                            td.number { (setting.without.rank) }
-                            td.number { (setting.with.rank) }
+                            td.n { (setting.unknowns.len()) }
+                            td.n { (setting.without.rank) }
+                            td.n { (setting.with.rank) }
                             td { (listed(&setting.gained())) }
                             td { (listed(&setting.not_told())) }
                         }

@@ -17,6 +17,16 @@ pub(super) fn noise_from(from: NoiseFrom) -> &'static str {
     }
 }
 
+/// A probability with its digits, however small.
+pub(super) fn p_in_words(probability: f64) -> String {
+    match probability {
+        p if p <= 0.0 => "p below 1e-300".to_owned(),
+        p if p < 1e-3 => format!("p = {p:.1e}"),
+        p if p < 0.1 => format!("p = {p:.4}"),
+        p => format!("p = {p:.2}"),
+    }
+}
+
 /// How an update fits, to be put behind how it ended; empty where that was not found out.
 pub(super) fn fit_in_words(update: &Update) -> String {
     let Some(fit) = &update.fit else { return String::new() };
@@ -29,7 +39,7 @@ pub(super) fn fit_in_words(update: &Update) -> String {
 
 fn explained(fit: &Fit) -> String {
     match fit.from {
-        NoiseFrom::Stated => format!(" (probability {:.2})", fit.probability),
+        NoiseFrom::Stated => format!(" ({})", p_in_words(fit.probability)),
         NoiseFrom::Misfit => format!(" (noise estimated from the misfit: {:.1e})", fit.sigma),
         NoiseFrom::Computation => String::new(),
     }
@@ -40,10 +50,20 @@ pub(super) fn unexplained(update: &Update, fit: &Fit) -> String {
     let (misfit, probability) = (update.misfit, fit.probability);
     match fit.from {
         _ if fit.degrees == 0 => "there are no more readings than unknowns".to_owned(),
+        NoiseFrom::Stated if fit.has_outliers() => {
+            format!("{} readings are beyond what normal errors reach, more than a tenth", fit.outliers)
+        }
+        NoiseFrom::Stated if fit.is_by_neighbours() => format!(
+            "a misfit of {misfit:.1e} for a noise of {:.1e}, whose neighbours agree too much for independent errors: {}",
+            fit.sigma,
+            p_in_words(probability)
+        ),
         NoiseFrom::Stated => {
-            let bound =
-                if probability > 0.0 { format!("{probability:.1e}") } else { "below 1e-300".to_owned() };
-            format!("a misfit of {misfit:.1e} for a noise of {:.1e} has the probability {bound}", fit.sigma)
+            format!(
+                "a misfit of {misfit:.1e} for a noise of {:.1e} has {}",
+                fit.sigma,
+                p_in_words(probability)
+            )
         }
         _ => format!(
             "what is left, {misfit:.1e}, is no noise (neighbours so alike have the probability {probability:.1e})"
@@ -112,4 +132,15 @@ pub(super) fn suspect_json(names: &[&str], suspect: &Suspect) -> Value {
         "shifts": shifts,
         "would_explain": { "error": finite(suspect.explains.0), "chi_square": finite(suspect.explains.1) },
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::p_in_words;
+
+    #[test]
+    fn a_probability_has_its_digits() {
+        let words = [0.43, 0.0021, 2.1e-7, 0.0].map(p_in_words);
+        assert_eq!(words, ["p = 0.43", "p = 0.0021", "p = 2.1e-7", "p below 1e-300"]);
+    }
 }

@@ -19,6 +19,7 @@ pub(super) mod studies;
 pub(super) mod studies_section;
 pub(super) mod study_plot;
 pub(super) mod table;
+mod verdicts;
 
 pub use answers::{Observed, ended_in_words, observe_json, observe_text};
 pub use modes::{modes_json, modes_text};

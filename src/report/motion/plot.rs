@@ -64,7 +64,20 @@ fn range(truth: &[(f64, f64)], curves: &[Curve]) -> (f64, f64) {
     (low - room, high + room)
 }
 
-/// One state over time: true, and as each method recovered it, with two standard deviations of the bound at each update.
+/// About so many samples have a bound in a picture, beside those where windows begin.
+const BOUNDS: usize = 40;
+
+/// Time, value and standard deviation of a state, where an answer has them: where windows begin, and at samples between.
+fn bounds(answer: &Answer, place: usize) -> Vec<(f64, f64, f64)> {
+    let (estimates, updates) = (&answer.track.estimates, &answer.track.updates);
+    let begins = updates.iter().map(|update| (update.from, update.estimate[place], update.deviations[place]));
+    let step = (estimates.len() / BOUNDS).max(1);
+    let between = estimates.iter().skip(step / 2).step_by(step);
+    let between = between.filter_map(|at| Some((at.time, at.state[place], *at.deviations.get(place)?)));
+    begins.chain(between).filter(|(_, _, deviation)| deviation.is_finite()).collect()
+}
+
+/// One state over time: true, and as each method recovered it, with two standard deviations of the bound.
 pub(super) fn state(observed: &Observed<'_>, place: usize) -> String {
     let names = observed.experiment.names();
     let Some(name) = names.get(place) else { return String::new() };
@@ -77,12 +90,9 @@ pub(super) fn state(observed: &Observed<'_>, place: usize) -> String {
     let range = range(&truth, &curves);
     let mut bars = Vec::new();
     for answer in observed.answers {
-        for update in &answer.track.updates {
-            let (value, deviation) = (update.estimate[place], update.deviations[place]);
-            if deviation.is_finite() {
-                let ends = (value - 2.0 * deviation, value + 2.0 * deviation);
-                bars.push((Shown::Method(answer.method), update.from, ends.0, ends.1));
-            }
+        for (time, value, deviation) in bounds(answer, place) {
+            let ends = (value - 2.0 * deviation, value + 2.0 * deviation);
+            bars.push((Shown::Method(answer.method), time, ends.0, ends.1));
         }
     }
     if !truth.is_empty() {
@@ -118,7 +128,7 @@ fn decades(curves: &[Curve], also: impl Iterator<Item = f64>) -> (f64, f64) {
     (low - room.floor(), high + room.ceil())
 }
 
-/// The distance of each method's values from the truth over time, logarithmic, with the bound at each update. None without a truth.
+/// The distance of each method's values from the truth over time, logarithmic, with the bound. None without a truth.
 pub(super) fn errors(observed: &Observed<'_>, place: usize) -> Option<String> {
     let names = observed.experiment.names();
     let name = names.get(place)?;
@@ -132,8 +142,8 @@ pub(super) fn errors(observed: &Observed<'_>, place: usize) -> Option<String> {
     let curves: Vec<Curve> = observed.answers.iter().map(error).collect();
     let mut dots = Vec::new();
     for answer in observed.answers {
-        let seen = answer.track.updates.iter().map(|update| (update.from, update.deviations[place]));
-        let seen = seen.filter(|(_, deviation)| deviation.is_finite() && *deviation > 0.0);
+        let seen = bounds(answer, place).into_iter().map(|(time, _, deviation)| (time, deviation));
+        let seen = seen.filter(|(_, deviation)| *deviation > 0.0);
         dots.extend(
             logarithms(seen).into_iter().map(|(time, value)| (Shown::Method(answer.method), time, value)),
         );

@@ -1,6 +1,6 @@
 //! Which of several known bodies was read, as text, JSON and for the page.
 
-use super::fit::finite;
+use super::fit::{finite, p_in_words};
 use crate::experiment::{LibraryAnswer, Recognition, RecognitionVerdict};
 use crate::shape::Measured;
 use maud::{Markup, html};
@@ -29,10 +29,8 @@ fn in_words(found: &Recognition) -> String {
 fn standing(body: &LibraryAnswer) -> String {
     let Some(fit) = body.fit else { return "no motion of it could be followed".to_owned() };
     let fits = if fit.fits { "fits" } else { "does not fit" };
-    format!(
-        "{fits} (probability {:.2}), chi-square {:.1} of {}",
-        fit.probability, fit.chi_square, fit.degrees
-    )
+    let (square, degrees) = (fit.chi_square, fit.degrees);
+    format!("{fits} ({}), chi-square {square:.1} of {degrees}", p_in_words(fit.probability))
 }
 
 fn measured(number: Measured) -> String {
@@ -94,9 +92,9 @@ pub(super) fn recognition_section(found: &Recognition) -> Markup {
                             td { b { (body.name) } }
                             td { (standing(body)) }
                             @if body.fit.is_some() {
-                                td.number { (format!("{:.1e}", body.misfit)) }
-                                td.number { (measured(body.orientation)) }
-                                td.number { (measured(body.rate)) }
+                                td.n { (format!("{:.1e}", body.misfit)) }
+                                td.n { (measured(body.orientation)) }
+                                td.n { (measured(body.rate)) }
                             } @else {
                                 td {} td {} td {}
                             }

@@ -1,6 +1,6 @@
 //! An experiment as a part of a page: pictures first, then what each observer found, in tables and in words.
 
-use crate::experiment::{Channel, NOMINAL, SceneOutline, error, shown};
+use crate::experiment::{Channel, Guess, NOMINAL, SceneOutline, error, shown};
 use crate::mechanics::Palm;
 use crate::report::motion::answers::{Observed, ended_in_words, fault_lines, noise_unit};
 use crate::report::motion::frames::{frames, recovered_outline};
@@ -129,7 +129,9 @@ pub(super) fn summary(observed: &Observed<'_>) -> Markup {
             "Model: " (experiment.system.title) "."
         }
         p {
-            "Sought, with the first guesses: " code { (guesses.collect::<Vec<_>>().join(", ")) }
+            @if scene.observer.guess == Guess::None { "Sought without a first guess, from what the readings themselves tell at first: " }
+            @else { "Sought, with the first guesses: " }
+            code { (guesses.collect::<Vec<_>>().join(", ")) }
             @if !experiment.question.clamped.is_empty() {
                 "; held at its guess in the first window: " code { (experiment.question.clamped.join(", ")) }
             }
@@ -282,12 +284,13 @@ pub(super) fn state_pictures(observed: &Observed<'_>) -> Markup {
             figcaption {
                 @if known {
                     "Each state, true (broad grey line) and recovered; a good observer hides in the grey. "
-                    "Beside it the error, in decades: " b { "circles are the bound of Cramér and Rao" } " at the first sample of each "
-                    "window, below which no unbiased estimate can stay on average. "
+                    "Beside it the error, in decades: " b { "circles are the bound of Cramér and Rao" } ", carried along the flow from the "
+                    "first sample of each window, below which no unbiased estimate can stay on average, and of filters their own "
+                    "standard deviation. "
                 } @else { "Each state as each method recovered it. " }
                 "Faint vertical lines are where windows meet; bars, where they are long enough to be seen, are two standard deviations "
                 "of the bound to either side. Values far outside are cut off. A window's estimate holds for its first sample; from "
-                "there the equations carry it on."
+                "there the equations carry it on, and its bound with it."
             }
         }
     }

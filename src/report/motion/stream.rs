@@ -1,8 +1,11 @@
 //! What observers make of a stream: a line of JSON or some lines of text a window, and the end.
 
 use crate::experiment::{StreamAnswer, StreamEnd, WindowReport};
-use crate::report::motion::answers::{Observed, end_name, fault_lines, state_lines, states, update_json};
+use crate::report::motion::answers::{
+    Beside, Observed, end_name, fault_lines, state_lines, states, update_json,
+};
 use crate::report::motion::fit::{fit_in_words, suspects_in_words};
+use crate::report::motion::verdicts::{together_in_words, together_json};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -11,8 +14,8 @@ pub fn stream_json(report: &WindowReport<'_>) -> Value {
     let observed = Observed::of(report.experiment, &[]);
     let answer = |answer: &StreamAnswer| {
         let end = answer.end.as_ref().map(|last| {
-            let deviations = answer.deviations.as_deref();
-            json!({ "time": last.time, "states": states(&observed, last.time, &last.state, deviations) })
+            let bounds = Some(&last.deviations[..]);
+            json!({ "time": last.time, "states": states(&observed, last.time, &last.state, bounds) })
         });
         json!({
             "method": answer.method.name(),
@@ -44,6 +47,7 @@ pub fn stream_end_json(end: &StreamEnd, interrupted: bool) -> Value {
             "updates": tally.updates,
             "fit": tally.fit,
             "do_not_fit": tally.contradicted,
+            "together": together_json(tally.tested.together()),
         })
     };
     let mut found = json!({
@@ -92,16 +96,16 @@ pub fn stream_text(report: &WindowReport<'_>, is_timed: bool) -> String {
                 ),
             };
             let _ = writeln!(text, "  from {:.6} s: {standing}", update.from);
-            let bounds = Some(&update.deviations[..]);
-            state_lines(&mut text, &observed, &names, update.from, &update.estimate, bounds);
+            let known = Beside { bounds: &update.deviations, at_bounds: &update.at_bounds };
+            state_lines(&mut text, &observed, &names, update.from, &update.estimate, known);
             for line in suspects_in_words(update) {
                 let _ = writeln!(text, "    {line}");
             }
         }
         if let Some(last) = &answer.end {
             let _ = writeln!(text, "  at {:.6} s:", last.time);
-            let bounds = answer.deviations.as_deref();
-            state_lines(&mut text, &observed, &names, last.time, &last.state, bounds);
+            let known = Beside { bounds: &last.deviations, at_bounds: &[] };
+            state_lines(&mut text, &observed, &names, last.time, &last.state, known);
         }
         for remark in &answer.remarks {
             let _ = writeln!(text, "  {remark}");
@@ -115,6 +119,11 @@ pub fn stream_end_text(end: &StreamEnd) -> String {
     let mut text = format!("{} windows of {} rows; faulty rows: {}", end.windows, end.rows, end.faults);
     for tally in end.observers.iter().filter(|tally| tally.updates > 0) {
         let _ = write!(text, "; {}: {} of {} updates fit", tally.method.name(), tally.fit, tally.updates);
+    }
+    for tally in &end.observers {
+        if let Some(all) = tally.tested.together().filter(|all| !all.fits) {
+            let _ = write!(text, "\n{}: {}", tally.method.name(), together_in_words(&all));
+        }
     }
     if let Some(why) = &end.cut_off {
         let _ = write!(text, "\ncut off: {why}; what was answered until then stands");

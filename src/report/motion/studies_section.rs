@@ -67,12 +67,12 @@ fn noise_table(observed: &Observed<'_>) -> Markup {
                 @for name in &names { th { (name) ", rms error" } th { "bound" @if let Some(unit) = unit_of(&observed.experiment.system, name) { ", " (unit) } } th { "ratio" } }
             } }
             tbody { @for level in &observed.studied.noise { tr {
-                td.number { (format!("{:.1e}", level.noise)) }
-                td.number { (level.converged) " of " (level.seeds) }
+                td.n { (format!("{:.1e}", level.noise)) }
+                td.n { (level.converged) " of " (level.seeds) }
                 @for (error, bound) in level.errors.iter().zip(&level.bounds) {
-                    td.number { (format!("{error:.2e}")) }
-                    td.number { @if bound.is_finite() { (format!("{bound:.2e}")) } @else { "not seen" } }
-                    td.number { @if bound.is_finite() && *bound > 0.0 { (format!("{:.2}", error / bound)) } @else { "-" } }
+                    td.n { (format!("{error:.2e}")) }
+                    td.n { @if bound.is_finite() { (format!("{bound:.2e}")) } @else { "not seen" } }
+                    td.n { @if bound.is_finite() && *bound > 0.0 { (format!("{:.2}", error / bound)) } @else { "-" } }
                 }
             } } }
         } }

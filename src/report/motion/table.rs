@@ -1,9 +1,10 @@
 //! What each observer found, as tables: at the end, update by update, and what it could not see.
 
-use crate::experiment::{Answer, error};
+use crate::experiment::Answer;
 use crate::observer::{Update, UpdateEnd};
 use crate::report::motion::answers::{Observed, end_name, state_name};
-use crate::report::motion::fit::{suspects_in_words, unexplained};
+use crate::report::motion::fit::{p_in_words, suspects_in_words, unexplained};
+use crate::report::motion::verdicts::{innovations_in_words, verdict_lines};
 use maud::{Markup, html};
 
 /// More updates than these are in the JSON only.
@@ -60,7 +61,7 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
         div.scroll { table {
             thead { tr {
                 th { "method" } th { "at" }
-                @for name in &names { th { (state_name(observed, name)) } @if known { th { "error" } } }
+                @for name in &names { th { (state_name(observed, name)) } @if known { th { "error" } } th { "bound" } }
                 th { "updates that converged and fit" } @if timed { th { "time" } }
             } }
             tbody {
@@ -70,35 +71,50 @@ pub(super) fn ends(observed: &Observed<'_>) -> Markup {
                         td { b { (answer.method.name()) } }
                         @if let Some(last) = answer.track.last() {
                             @let truth = observed.experiment.truth_at(last.time);
-                            td.number { (format!("{:.3} s", last.time)) }
+                            td.n { (format!("{:.3} s", last.time)) }
                             @for (place, value) in last.state.iter().enumerate() {
-                                td.number { (format!("{value:.6}")) }
-                                @if known { td.number {
-                                    (truth.as_ref().map_or("-".to_owned(), |truth| format!("{:.1e}", error(*value, truth[place]))))
+                                td.n { (format!("{value:.6}")) }
+                                @if known { td.n {
+                                    (truth.as_ref().map_or("-".to_owned(), |truth| format!("{:.1e}", (value - truth[place]).abs())))
                                 } }
+                                td.n { (last.deviations.get(place).map_or("-".to_owned(), |own| bound_in_words(*own))) }
                             }
-                        } @else { td colspan=(1 + names.len() * if known { 2 } else { 1 }) { "it found nothing" } }
-                        td.number {
-                            @if answer.track.updates.is_empty() { "-" }
+                        } @else { td colspan=(1 + names.len() * if known { 3 } else { 2 }) { "it found nothing" } }
+                        td.n {
+                            @if answer.track.updates.is_empty() { (tested(answer)) }
                             @else { (converged) " of " (answer.track.updates.len()) }
                         }
-                        @if let Some(pace) = pace(observed, answer) { td.words { (pace) } }
+                        @if let Some(pace) = pace(observed, answer) { td.w { (pace) } }
                     }
                 }
                 @if let (true, Some(truth)) = (known, last_truth(observed)) {
                     tr {
                         td { "true" } td {}
-                        @for value in truth { td.number { (format!("{value:.6}")) } td {} }
+                        @for value in truth { td.n { (format!("{value:.6}")) } td {} td {} }
                         td {} @if timed { td {} }
                     }
                 }
             }
         } }
         p.remark {
-            @if known { "An error is relative, or absolute where the truth is less than a millionth. " }
+            @if known { "Errors and bounds are absolute, in the unit of the state; a bound is a standard deviation. " }
+            @else { "A bound is a standard deviation, in the unit of the state. " }
             @if timed { "Times are wall times of this run." }
         }
     }
+}
+
+/// Whether a method without updates passes a test of its own.
+fn tested(answer: &Answer) -> String {
+    match answer.track.innovations {
+        Some(own) if own.fits => format!("innovations pass ({})", p_in_words(own.probability)),
+        Some(own) => format!("innovations do not pass ({})", p_in_words(own.probability)),
+        None => "nothing tests it".to_owned(),
+    }
+}
+
+fn bound_in_words(value: f64) -> String {
+    if value.is_finite() { format!("{value:.1e}") } else { "not seen".to_owned() }
 }
 
 fn last_truth(observed: &Observed<'_>) -> Option<Vec<f64>> {
@@ -126,7 +142,6 @@ fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
     let names = observed.experiment.names();
     let timed = is_timed(observed);
     let known = observed.experiment.simulated().is_some();
-    let bound = |value: f64| if value.is_finite() { format!("{value:.1e}") } else { "not seen".to_owned() };
     html! {
         div.scroll { table {
             thead { tr {
@@ -140,24 +155,27 @@ fn update_table(observed: &Observed<'_>, answer: &Answer) -> Markup {
                     @let (value, deviation) = (update.estimate[place], update.deviations[place]);
                     tr {
                         @if place == 0 {
-                            td.number rowspan=(names.len()) { (format!("{:.3} to {:.3} s", update.from, update.to)) }
+                            td.n rowspan=(names.len()) { (format!("{:.3} to {:.3} s", update.from, update.to)) }
                             td rowspan=(names.len()) { (end_name(&update.end)) }
-                            td.number rowspan=(names.len()) {
+                            td.n rowspan=(names.len()) {
                                 (update.steps) @if update.troubled > 0 { " (" (update.troubled) " mended)" }
                             }
-                            @if timed { td.number rowspan=(names.len()) { (duration(update.seconds)) } }
+                            @if timed { td.n rowspan=(names.len()) { (duration(update.seconds)) } }
                         }
                         td { (state_name(observed, name)) }
-                        td.number { (format!("{value:.9}")) }
+                        td.n { (format!("{value:.9}")) }
                         @if known { @match &truth {
                             Some(truth) => {
-                                td.number { (format!("{:.9}", truth[place])) }
-                                td.number { (format!("{:.1e}", (value - truth[place]).abs())) }
+                                td.n { (format!("{:.9}", truth[place])) }
+                                td.n { (format!("{:.1e}", (value - truth[place]).abs())) }
                             }
                             None => { td { "-" } td { "-" } }
                         } }
-                        td.number { (bound(deviation)) }
-                        @if known { td.number { @match &truth {
+                        td.n {
+                            (bound_in_words(deviation))
+                            @if let Some((_, bound)) = update.at_bounds.iter().find(|own| own.0 == place) { ", held at " (bound) }
+                        }
+                        @if known { td.n { @match &truth {
                             Some(truth) if deviation.is_finite() && deviation > 0.0 => {
                                 (format!("{:.1}", (value - truth[place]).abs() / deviation))
                             }
@@ -209,15 +227,43 @@ pub(super) fn notes(observed: &Observed<'_>) -> Markup {
             ));
         }
         lines.extend(answer.track.remarks.iter().map(|remark| format!("{name}: {remark}")));
+        let fails = answer.track.innovations.filter(|own| !own.fits);
+        lines.extend(fails.map(|own| format!("{name}: {}", innovations_in_words(&own))));
+        if answer.track.updates.is_empty() && answer.track.innovations.is_none() {
+            lines.push(format!("{name}: nothing that it believes is compared with what was read"));
+        }
+        if answer.track.together().is_some_and(|all| !all.fits) {
+            lines.extend(verdict_lines(&answer.track).into_iter().map(|line| format!("{name}: {line}")));
+        }
     }
     html! {
         @if lines.is_empty() {
-            p { "Every update converged and fits, and there was no sample at which a method could not see." }
+            p { (all_is_well(observed)) }
         } @else {
             details open[lines.len() <= 12] {
                 summary { "what they could not see or not do, and other remarks: " (lines.len()) }
                 ul { @for line in &lines { li { (line) } } }
             }
+        }
+    }
+}
+
+/// What is said where nothing is wrong, of those methods that have it.
+fn all_is_well(observed: &Observed<'_>) -> String {
+    let answers = || observed.answers.iter();
+    let updates = answers().any(|answer| !answer.track.updates.is_empty());
+    let filters = answers().any(|answer| answer.track.innovations.is_some());
+    let both = [
+        updates.then_some("Every update converged and fits"),
+        filters.then_some("the innovations of every filter pass the chi-square test"),
+    ];
+    let said: Vec<&str> = both.into_iter().flatten().collect();
+    match said.is_empty() {
+        true => "No method was tested.".to_owned(),
+        false => {
+            let said = said.join(", and ");
+            let first = said[..1].to_uppercase();
+            format!("{first}{}; there was no sample at which a method could not see.", &said[1..])
         }
     }
 }

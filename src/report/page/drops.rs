@@ -85,14 +85,14 @@ fn sets(sets: &[DropSet]) -> Markup {
                 @for set in sets {
                     tr {
                         td { (place(set)) }
-                        td.number { @if !set.exactly { "at most " } b { (set.rank) } }
+                        td.n { @if !set.exactly { "at most " } b { (set.rank) } }
                         td {
                             @match error_bound(set.log2_error).as_str() {
                                 "0" => { "certain" }
                                 bound => { "error below " (raised(bound)) }
                             }
                         }
-                        td.words {
+                        td.w {
                             @if let Some(state) = &set.state { (at(state)) }
                             @else if !set.exists { "no state of it was found, and there may be none" }
                         }
@@ -110,7 +110,7 @@ fn open(sets: &[DropSet]) -> Markup {
             thead { tr { th { "set" } th { "why it is open" } } }
             tbody {
                 @for set in sets.iter().take(MOST) {
-                    tr { td { (place(set)) } td.words { (set.open.as_deref().unwrap_or_default()) } }
+                    tr { td { (place(set)) } td.w { (set.open.as_deref().unwrap_or_default()) } }
                 }
             }
         } }
@@ -143,7 +143,7 @@ fn minors(minors: &[UsedMinor]) -> Markup {
                     @for minor in minors.iter().take(MOST) {
                         tr {
                             td { @if minor.equations.is_empty() { "all states" } @else { (listed(&minor.equations, SHORT)) } }
-                            td.words { (minor.rows.join(", ")) }
+                            td.w { (minor.rows.join(", ")) }
                             td { (product(&minor.factors)) }
                         }
                     }
@@ -250,6 +250,7 @@ mod tests {
             }],
             cases: (3, 1),
             out_of_reach: None,
+            interrupted: false,
             on_the_box: Some(Err("no box".to_owned())),
             seconds: 0.0,
         }

@@ -187,10 +187,10 @@ fn ranks(ranks: &[SetRank]) -> Markup {
                                 td { (unseen(answer, false).join("; ")) }
                                 td { b { (ranks_in_words(answer, true)) } }
                                 td { (unseen(answer, true).join("; ")) }
-                                td.words { @for words in distinct_words(answer) { div { (words) } } }
-                                td.number { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
-                                td.number { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
-                                td.number { (least_observable(answer)) }
+                                td.w { @for words in distinct_words(answer) { div { (words) } } }
+                                td.n { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
+                                td.n { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
+                                td.n { (least_observable(answer)) }
                             }
                             Err(why) => { td colspan="8" { (why) } }
                         }
@@ -232,14 +232,14 @@ fn printed(found: &PrintedExpression, outcomes: &[Outcome]) -> Markup {
             tbody {
                 @for value in &found.values {
                     tr {
-                        td.words { (value.point) }
-                        td.number { (value.printed) }
-                        td.number { (value.certified.decimal) }
-                        td.number { (value.digits_that_agree) }
-                        td.number { (format!("{:+.2e}", value.error)) }
+                        td.w { (value.point) }
+                        td.n { (value.printed) }
+                        td.n { (value.certified.decimal) }
+                        td.n { (value.digits_that_agree) }
+                        td.n { (format!("{:+.2e}", value.error)) }
                         @match &value.study {
                             Ok(study) => {
-                                td.number {
+                                td.n {
                                     (format!("{:+.1e}", study.errors.first().copied().unwrap_or(0.0))) " to "
                                     (format!("{:+.1e}", study.errors.last().copied().unwrap_or(0.0)))
                                     ", rms " (format!("{:.1e}", study.deviation()))
@@ -278,8 +278,8 @@ fn printed(found: &PrintedExpression, outcomes: &[Outcome]) -> Markup {
                 tbody {
                     @for outcome in poles {
                         tr {
-                            td.words { (formula(&outcome.statement)) }
-                            td.words { (outcome.word()) ": " (explain(&outcome.verdict)) }
+                            td.w { (formula(&outcome.statement)) }
+                            td.w { (outcome.word()) ": " (explain(&outcome.verdict)) }
                         }
                     }
                 }
@@ -308,9 +308,9 @@ fn derivatives(found: &DerivativesFound) -> Markup {
                 thead { tr { th { "order" } th { "largest relative difference" } th { "states" } } }
                 tbody { @for route in &found.routes {
                     tr {
-                        td.number { (route.order) }
-                        td.number { (format!("{:.1e}", route.largest_difference)) }
-                        td.number { (route.states) }
+                        td.n { (route.order) }
+                        td.n { (format!("{:.1e}", route.largest_difference)) }
+                        td.n { (route.states) }
                     }
                 } }
             }

@@ -66,6 +66,7 @@ pub fn drops_json(answer: &DropAnswer) -> Value {
         "cases": answer.cases.0,
         "empty": answer.cases.1,
         "out_of_reach": answer.out_of_reach,
+        "interrupted": answer.interrupted,
         "on_the_box": answer.on_the_box.as_ref().map(box_json),
         "seconds": answer.seconds,
     })
@@ -126,6 +127,9 @@ pub fn drops_text(answer: &DropAnswer) -> String {
         let _ = writeln!(out, "undecided {}: {why}", place(&set.equations, &set.unless));
     }
     match (&answer.out_of_reach, answer.is_exact()) {
+        (Some(why), _) if !answer.sets.is_empty() => {
+            let _ = writeln!(out, "these sets may not be all: {why}");
+        }
         (Some(why), _) => {
             let _ = writeln!(out, "where the rank drops was not found: {why}");
         }

@@ -5,6 +5,7 @@
 
 mod advice;
 mod advice_space;
+mod bars;
 mod broken;
 mod channels;
 mod circular;
@@ -12,6 +13,8 @@ mod coefficients;
 mod columns;
 mod control_points;
 mod coverage;
+mod ends;
+mod fitting;
 mod inherited;
 mod library;
 mod modes;

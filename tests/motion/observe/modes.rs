@@ -47,6 +47,22 @@ fn each_window_has_its_mode_and_one_across_has_none() {
     }
 }
 
+/// The middle of the sample box may be asked for by its word, as of a scene; that there is no guess may not.
+#[test]
+fn a_mode_may_begin_in_the_middle_of_its_sample_box() {
+    let folder = folder();
+    let text = point(folder.path());
+    let own = text.replace("bounds = {", "guess = \"sample\"\nbounds = {");
+    let of = |text: &str| {
+        let windows = experiment(text).run_modes(&NEVER, &|| ()).unwrap();
+        windows.iter().map(|window| window.chosen).collect::<Vec<_>>()
+    };
+    assert_eq!(of(&own), of(&text));
+    let none = text.replace("bounds = {", "guess = \"none\"\nbounds = {");
+    let error = Scene::parse("scene.toml", &none).unwrap_err().to_string();
+    assert!(error.contains("'none' is no first guess of a mode"), "{error}");
+}
+
 /// The same by the program: fields, status, and what modes do not go with.
 #[test]
 fn the_program_tells_modes() {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// What only one knows that has moved the body itself.
-const TRUTH: [&str; 5] = ["true", "error", "simulation", "contacts", "reconstruction"];
+const TRUTH: [&str; 6] = ["true", "error", "relative_error", "simulation", "contacts", "reconstruction"];
 
 fn without_truth(value: &mut Value) {
     match value {

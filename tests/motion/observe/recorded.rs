@@ -29,7 +29,7 @@ fn without_truth(value: &mut Value) {
     crate::common::without_times(value);
     match value {
         Value::Object(map) => {
-            map.retain(|key, _| !["true", "error", "simulation"].contains(&key.as_str()));
+            map.retain(|key, _| !["true", "error", "relative_error", "simulation"].contains(&key.as_str()));
             map.values_mut().for_each(without_truth);
         }
         Value::Array(list) => list.iter_mut().for_each(without_truth),

@@ -207,6 +207,9 @@ fn what_is_known_before_the_end_is_kept() {
     for key in ["generic", "unknowns", "degrees_of_freedom_left"] {
         assert_eq!(found["branches"][0][key], whole[key]);
     }
+    let drops = ["rank", "proofs/moll2002/circular_palms_rank.proof", "--where-it-drops"];
+    let found = kept(&drops, &|found| found["rank"].is_number());
+    assert_eq!((&found["exact"], &found["rank"]), (&false.into(), &10.into()));
 }
 
 /// Outputs whose values are met by very many states, beside a product of which nothing else is seen.

@@ -4,6 +4,7 @@ use super::super::keys::{GuessKeys, ModeKeys, ObserverKeys};
 use super::super::{CurvatureStudy, Guess, ModeSettings, ObserverSettings, Study};
 use super::{Checks, MOST_SAMPLES, Problem, Source};
 use crate::observer::{CalibrationKind, Loss};
+use std::collections::BTreeMap;
 
 /// The most bounds that a map over curvatures may hold.
 const MOST_BOUNDS: usize = 1_000_000;
@@ -123,11 +124,25 @@ impl Checks<'_> {
                 return Err(self.wrong(&own, message, "give the least value first; inf is none"));
             }
         }
-        for (name, value) in &keys.guess {
+        let guess = match keys.guess {
+            Some(GuessKeys::Values(values)) => values,
+            None => BTreeMap::new(),
+            // the middle of the sample box is where a mode begins of which no values are given
+            Some(GuessKeys::Word(word)) if word == "sample" => BTreeMap::new(),
+            Some(GuessKeys::Word(word)) => {
+                let help = "write guess = \"sample\" (the middle of the sample box), or a table of values";
+                return Err(self.wrong(
+                    &place("guess"),
+                    format!("'{word}' is no first guess of a mode"),
+                    help,
+                ));
+            }
+        };
+        for (name, value) in &guess {
             self.sought(&place(&format!("guess.{name}")), name, &keys.estimate)?;
             self.finite(&place(&format!("guess.{name}")), *value)?;
         }
-        let ModeKeys { name, model, estimate, known, inputs, bounds, guess } = keys;
+        let ModeKeys { name, model, estimate, known, inputs, bounds, .. } = keys;
         Ok(ModeSettings { name, model, estimate, known, inputs, bounds, guess })
     }
 

@@ -1,0 +1,64 @@
+//! How well a window's state is known at all of its samples: its covariance carried along the flow.
+//!
+//! With `F` the derivative of the state at a sample by the unknowns of the first one, the state there has the covariance `F P F^T` (A. H. Jazwinski, Stochastic
+//! Processes and Filtering Theory, 1970, section 5.3): the bound of Cramér and Rao for what is a function of the unknowns.
+
+use super::flow::Sample;
+use super::learned::Spread;
+use super::task::Task;
+use nalgebra::DMatrix;
+
+/// The deviations of what is sought at a sample, from the covariance of the unknowns.
+pub(super) fn deviations(sample: &Sample, covariance: &DMatrix<f64>, sought: usize) -> Vec<f64> {
+    let carried = &sample.slopes * covariance;
+    let variance = |i: usize| carried.row(i).dot(&sample.slopes.row(i));
+    (0..sought).map(|i| variance(i).max(0.0).sqrt()).collect()
+}
+
+/// How well the whole state is known at a sample; `readings` is how many stand behind it.
+pub(super) fn spread(
+    task: &Task<'_>,
+    sample: &Sample,
+    covariance: &DMatrix<f64>,
+    readings: usize,
+    is_tested: bool,
+) -> Spread {
+    let carried = &sample.slopes * covariance;
+    Spread {
+        state: sample.state.clone(),
+        covariance: &carried * sample.slopes.transpose(),
+        by_reading: &carried * sample.output_slopes.transpose(),
+        coherent: coherent(task, sample, readings),
+        is_tested,
+    }
+}
+
+/// By how many deviations rounding and computation may move an estimate from so many readings: each by no more than half a resolution, however they hang together.
+fn coherent(task: &Task<'_>, sample: &Sample, readings: usize) -> f64 {
+    let one = |(output, value): (usize, &f64)| {
+        let errors = task.output_errors(output);
+        let own = errors.rounding / 2.0 + task.timing + super::fit::COMPUTED * value.abs();
+        if errors.are_none() { 0.0 } else { own / errors.variance().sqrt() }
+    };
+    sample.outputs.iter().enumerate().map(one).fold(0.0, f64::max) * (readings as f64).sqrt()
+}
+
+impl Spread {
+    /// The covariance with which samples are followed from here where outputs are taken as they are read: they err as their readings do.
+    pub(super) fn as_read(&self, task: &Task<'_>) -> DMatrix<f64> {
+        let mut covariance = self.covariance.clone();
+        let sought = task.estimated();
+        for place in sought..task.full.states.len() {
+            let own = task.full.outputs.iter().position(|name| *name == task.full.states[place]);
+            for other in 0..task.full.states.len() {
+                let together = match own {
+                    Some(output) if other < sought => self.by_reading[(other, output)],
+                    Some(output) if other == place => task.output_errors(output).variance(),
+                    _ => 0.0,
+                };
+                (covariance[(place, other)], covariance[(other, place)]) = (together, together);
+            }
+        }
+        covariance
+    }
+}

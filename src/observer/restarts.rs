@@ -1,0 +1,124 @@
+//! Where the search of a first window comes to nothing: searches from other states, within what is said of where the state lies.
+//!
+//! A search goes down into the basin in which it begins. Where its end does not explain the readings it begins again: in the middle of the bounds or the file's
+//! ranges, and then at points that fill them evenly (J. H. Halton, 1960). The first end that explains the readings is the answer. Where three
+//! searches have come to one least error that does not, the model has no other that they would find, and they stop.
+
+use super::multiple_shooting::LAST_STEPS;
+use super::starts::range;
+use super::task::Task;
+use super::track::{Update, UpdateEnd};
+use super::{MovingWindow, WindowSearch};
+use std::ops::Range;
+
+/// So many other states are tried, at most.
+const STARTS: usize = 12;
+
+/// So many other searches that come to the same error end them.
+const AGREE: usize = 2;
+
+/// Two errors are the same that differ by less than this part.
+const SAME: f64 = 1e-4;
+
+const BASES: [usize; 10] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29];
+
+/// A number in [0, 1), evenly filling it (Halton).
+fn filling(mut number: usize, base: usize) -> f64 {
+    let (mut part, mut sum) = (1.0, 0.0);
+    while number > 0 {
+        part /= base as f64;
+        sum += part * (number % base) as f64;
+        number /= base;
+    }
+    sum
+}
+
+/// Within what something that is sought lies: its bounds, and else the range that the file says.
+fn within(task: &Task<'_>, place: usize) -> Option<[f64; 2]> {
+    let [low, high] = task.bounds.get(place).copied().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    if low.is_finite() && high.is_finite() {
+        return Some([low, high]);
+    }
+    let ([from, to], _) = range(task, place).filter(|(_, is_own)| *is_own)?;
+    let [from, to] = [from.max(low), to.min(high)];
+    (from < to).then_some([from, to])
+}
+
+/// The states from which a search begins again, the middle first.
+fn starts(task: &Task<'_>, belief: &[f64], clamped: &[usize]) -> Vec<Vec<f64>> {
+    let ranges: Vec<Option<[f64; 2]>> = (0..task.estimated())
+        .map(|place| within(task, place).filter(|_| !clamped.contains(&place)))
+        .collect();
+    if ranges.iter().all(Option::is_none) {
+        return Vec::new();
+    }
+    let start = |number: usize| -> Vec<f64> {
+        let value = |(place, believed): (usize, &f64)| match ranges[place] {
+            Some([low, high]) => {
+                let part = if number == 0 { 0.5 } else { filling(number, BASES[place % BASES.len()]) };
+                low + part * (high - low)
+            }
+            None => *believed,
+        };
+        belief.iter().enumerate().map(value).collect()
+    };
+    let all = (0..STARTS).map(start);
+    all.filter(|start| start != belief).collect()
+}
+
+impl MovingWindow {
+    /// An update, or what another search has found where that comes to nothing: only where nothing was known before the window, and the task allows it.
+    /// With whether it was another one.
+    pub(super) fn restarted(
+        &self,
+        task: &Task<'_>,
+        update: Update,
+        belief: &[f64],
+        rows: &Range<usize>,
+        clamped: &[usize],
+    ) -> (Update, bool) {
+        let is_known = rows.start > 0 || task.learned.is_some();
+        if !task.restarts || is_known || !self.came_to_nothing(&update) {
+            return (update, false);
+        }
+        let searching =
+            MovingWindow { method: WindowSearch::TrustRegion, steps: self.steps.max(LAST_STEPS), ..*self };
+        let (mut least, mut agree) = (least_error(&update), 0);
+        for start in starts(task, belief, clamped) {
+            if task.interrupted() || agree >= AGREE {
+                break;
+            }
+            let found = searching.update_and_ask(task, &start, rows, clamped, false);
+            if found.is_borne_out() {
+                let own = MovingWindow { steps: searching.steps, ..*self };
+                let again = own.update_and_ask(task, &found.estimate, rows, clamped, true);
+                return (if again.is_borne_out() { again } else { found }, true);
+            }
+            let Some(error) = least_error(&found) else { continue };
+            match least {
+                Some(known) if (error - known).abs() <= SAME * known => agree += 1,
+                Some(known) if error > known => {}
+                _ => (least, agree) = (Some(error), 0),
+            }
+        }
+        (update, false)
+    }
+
+    /// Whether a search is at an end that is no answer. What explains the readings without telling what is sought is one: another basin would be another
+    /// explanation, and not the better one. A search whose few steps are spent is at no end.
+    fn came_to_nothing(&self, update: &Update) -> bool {
+        let explains = update.fit.is_some_and(|fit| fit.fits);
+        match update.end {
+            UpdateEnd::Converged => false,
+            UpdateEnd::StepsSpent => !explains && self.steps >= LAST_STEPS,
+            UpdateEnd::Lost(_) => true,
+            UpdateEnd::DoesNotFit | UpdateEnd::Stuck | UpdateEnd::Blind { .. } => !explains,
+        }
+    }
+}
+
+/// The error at the end of a search, where that is a least one.
+fn least_error(update: &Update) -> Option<f64> {
+    let is_least = matches!(update.end, UpdateEnd::DoesNotFit | UpdateEnd::Stuck);
+    Some(update.cost).filter(|cost| is_least && cost.is_finite())
+}
