@@ -45,7 +45,9 @@ pub use past_poles::EQUATIONS;
 pub use recognised::{LibraryAnswer, Recognition, RecognitionVerdict};
 #[doc(hidden)]
 pub use reconstruction::{on_palm, shown, turned};
-pub use recovered::{Contradiction, Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample};
+pub use recovered::{
+    Apart, Contradiction, Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample,
+};
 #[doc(hidden)]
 pub use run::error;
 pub use run::{Answer, Experiment};

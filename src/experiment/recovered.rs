@@ -17,6 +17,17 @@ pub struct Reconstruction {
     pub whole: Option<WholeMotion>,
     /// Where a motion that explains all readings at once is no answer, because windows that fit say otherwise.
     pub contradiction: Option<Contradiction>,
+    /// Where no motion was sought that explains all readings at once, because its samples are too far apart.
+    pub apart: Option<Apart>,
+}
+
+/// Samples between which more happens than is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Apart {
+    /// The mean time between two, in s.
+    pub between: f64,
+    /// In which gravity moves a body of this size: the root of its mean radius over gravity's acceleration, in s.
+    pub scale: f64,
 }
 
 /// What a window says of a state, and all readings at once.

@@ -21,7 +21,7 @@ mod whole;
 #[doc(hidden)]
 pub use track::{on_palm, shown, turned};
 
-use super::recovered::{Reconstruction, TouchTrack, WholeMotion, WholeSample};
+use super::recovered::{Apart, Reconstruction, TouchTrack, WholeMotion, WholeSample};
 use super::run::{Answer, Experiment};
 use super::scene::{Method, SceneError};
 use super::simulation::deviation;
@@ -36,24 +36,34 @@ use whole::Told;
 const BELIEVED: f64 = 1e-3;
 const BELIEVED_NOISE: f64 = 5.0;
 
+/// What became of all readings at once.
+enum Whole {
+    Told(WholeRecord, Told),
+    Apart(Apart),
+}
+
 impl Experiment {
     /// The shape that the readings tell, with what the answers found as the beginning. None where the model is not one of two palms with the outputs `s1` and `s2` and
     /// the sought states `r1` and `r2`, or there is no answer.
     pub fn reconstruct(&self, answers: &[Answer], interrupt: &AtomicBool) -> Option<Reconstruction> {
         let answer = shown(answers)?;
         let track = track::touch_track(self, answer)?;
-        let mut contradiction = None;
-        if let Some((record, told)) = self.whole_record(&track, interrupt) {
-            let whole = whole_motion(&record, &told);
-            contradiction = agreement::contradiction(&self.names(), answer, &whole);
-            if contradiction.is_none() {
-                let coverage = coverage(&record, &told.best);
-                let (shape, whole) = (Some(told.best.shape), Some(whole));
-                return Some(Reconstruction { track, shape, coverage, whole, contradiction });
+        let (mut contradiction, mut apart) = (None, None);
+        match self.whole_record(&track, interrupt) {
+            Some(Whole::Told(record, told)) => {
+                let whole = whole_motion(&record, &told);
+                contradiction = agreement::contradiction(&self.names(), answer, &whole);
+                if contradiction.is_none() {
+                    let coverage = coverage(&record, &told.best);
+                    let (shape, whole) = (Some(told.best.shape), Some(whole));
+                    return Some(Reconstruction { track, shape, coverage, whole, contradiction, apart });
+                }
             }
+            Some(Whole::Apart(found)) => apart = Some(found),
+            None => (),
         }
         let (shape, coverage) = from_track(&track, !answer.track.updates.is_empty());
-        Some(Reconstruction { track, shape, coverage, whole: None, contradiction })
+        Some(Reconstruction { track, shape, coverage, whole: None, contradiction, apart })
     }
 
     /// What every observer makes of the readings, as [`Experiment::run`], and the shape that they tell, which stands with the answer that
@@ -84,17 +94,20 @@ impl Experiment {
     }
 
     /// Shape and motion from all readings at once, where the palms are flat and a body between them explains the readings.
-    fn whole_record(&self, track: &TouchTrack, interrupt: &AtomicBool) -> Option<(WholeRecord, Told)> {
+    fn whole_record(&self, track: &TouchTrack, interrupt: &AtomicBool) -> Option<Whole> {
         if track.forms.iter().any(|form| *form != Palm::Flat) {
             return None;
         }
         let stated = deviation(self.scene.sensor.noise, self.scene.sensor.resolution);
         let mut record = WholeRecord::of(self, stated)?;
         let starts = record.starts(self, track);
+        if !starts.is_empty() && starts.iter().all(|start| record.takes_too_many_steps(start)) {
+            return Some(Whole::Apart(record.apart(&starts[0])));
+        }
         let told = record.tell(&starts, stated, interrupt)?;
         let mean = told.best.shape.support.mean();
         let most = (BELIEVED * mean).max(BELIEVED_NOISE * stated);
-        (told.best.misfit <= most && mean > 0.0).then_some((record, told))
+        (told.best.misfit <= most && mean > 0.0).then_some(Whole::Told(record, told))
     }
 }
 

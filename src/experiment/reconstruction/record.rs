@@ -1,5 +1,6 @@
 //! What a whole record tells of a body between flat palms: the readings of both contacts, the palms as they move, and what follows from a shape.
 
+use super::super::recovered::Apart;
 use super::law::{PalmsAt, Pose, pose};
 use crate::observer::Signals;
 use crate::shape::{ShapeEstimate, SupportFunction};
@@ -42,7 +43,7 @@ pub(super) struct Unknowns {
 
 /// One sample of a motion that follows from unknowns. Rows are derivatives by the free unknowns: where they are free the rate and the logarithm of the radius of
 /// gyration, and the coefficients.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Followed {
     pub phi: f64,
     pub rate: f64,
@@ -154,6 +155,13 @@ impl WholeRecord {
             }
         }
         row
+    }
+
+    /// How far the samples are apart, and what a body of such a size needs to move.
+    pub fn apart(&self, x: &Unknowns) -> Apart {
+        let whole = self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first);
+        let between = whole / (self.times.len().max(2) - 1) as f64;
+        Apart { between, scale: (x.support.mean() / self.gravity).abs().sqrt() }
     }
 
     /// The unknowns that a shape and a rate give.

@@ -12,6 +12,19 @@ const TOLERANCE: f64 = 1e-11;
 /// A span is halved this often at most.
 const DEPTH: u32 = 16;
 
+/// Steps at most over a record, and for each of its samples: smooth motion takes one or two from one sample to the next, a kink some sixteen.
+const MOST_STEPS: usize = 20_000;
+const STEPS_A_SAMPLE: usize = 50;
+
+/// Why a motion cannot be followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Unfollowed {
+    /// It has no finite acceleration, or one that jumps.
+    Lost,
+    /// It takes too many steps.
+    Steps,
+}
+
 /// Angle and rate, and their derivatives by the free unknowns; none where they are not wanted.
 #[derive(Clone)]
 struct Moving {
@@ -24,19 +37,30 @@ type Matrix = [[f64; 2]; 2];
 impl WholeRecord {
     /// The motion from the first sample over so many; with its derivatives, if wanted. None where it cannot be followed.
     pub fn follow(&self, x: &Unknowns, rows: usize, derivatives: bool) -> Option<Vec<Followed>> {
+        self.followed(x, rows, derivatives).ok()
+    }
+
+    /// Whether so much happens between samples that a motion is not followed: as where their times are in another unit.
+    pub fn takes_too_many_steps(&self, x: &Unknowns) -> bool {
+        self.followed(x, self.times.len(), false) == Err(Unfollowed::Steps)
+    }
+
+    fn followed(&self, x: &Unknowns, rows: usize, derivatives: bool) -> Result<Vec<Followed>, Unfollowed> {
         let p = if derivatives { self.head() + x.support.coefficients().len() } else { 0 };
         let mut state = Moving { at: [self.phi, x.rate], slopes: [vec![0.0; p], vec![0.0; p]] };
         if p > 0 && self.rate.is_none() {
             state.slopes[1][0] = 1.0;
         }
+        let mut steps = MOST_STEPS.max(STEPS_A_SAMPLE * self.times.len());
         let mut followed = Vec::with_capacity(rows);
         for i in 0..rows.min(self.times.len()) {
             if i > 0 {
-                state = self.advanced(x, [self.times[i - 1], self.times[i]], &state, DEPTH)?;
+                let span = [self.times[i - 1], self.times[i]];
+                state = self.advanced(x, span, &state, (DEPTH, &mut steps))?;
             }
             followed.push(self.sample(i, &state, x));
         }
-        Some(followed)
+        Ok(followed)
     }
 
     fn sample(&self, i: usize, state: &Moving, x: &Unknowns) -> Followed {
@@ -78,8 +102,15 @@ impl WholeRecord {
         [0, 1].map(|i: usize| at[i] + step / 6.0 * (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]))
     }
 
-    /// The state at the end of a span; none where it cannot be followed.
-    fn advanced(&self, x: &Unknowns, span: [f64; 2], state: &Moving, depth: u32) -> Option<Moving> {
+    /// The state at the end of a span, which may be halved so often and take so many steps.
+    fn advanced(
+        &self,
+        x: &Unknowns,
+        span: [f64; 2],
+        state: &Moving,
+        (depth, steps): (u32, &mut usize),
+    ) -> Result<Moving, Unfollowed> {
+        *steps = steps.checked_sub(1).ok_or(Unfollowed::Steps)?;
         let [from, to] = span;
         let middle = f64::midpoint(from, to);
         let whole = self.stepped(span, state.at, x);
@@ -88,21 +119,19 @@ impl WholeRecord {
         let off = [0, 1].map(|i: usize| end[i] - whole[i]);
         let most = off[0].abs().max(off[1].abs());
         if !most.is_finite() {
-            return None;
+            return Err(Unfollowed::Lost);
         }
         if most > TOLERANCE {
-            if depth == 0 {
-                return None;
-            }
-            let half = self.advanced(x, [from, middle], state, depth - 1)?;
-            return self.advanced(x, [middle, to], &half, depth - 1);
+            let depth = depth.checked_sub(1).ok_or(Unfollowed::Lost)?;
+            let half = self.advanced(x, [from, middle], state, (depth, steps))?;
+            return self.advanced(x, [middle, to], &half, (depth, steps));
         }
         let at = [0, 1].map(|i: usize| end[i] + off[i] / 15.0);
         let slopes = match state.slopes[0].is_empty() {
             true => state.slopes.clone(),
             false => self.carried(x, [from, middle, to], [state.at, half, at], &state.slopes),
         };
-        Some(Moving { at, slopes })
+        Ok(Moving { at, slopes })
     }
 
     /// The derivatives at the end of a span, by what is linear about the motion at its beginning, middle and end.

@@ -3,8 +3,8 @@
 use crate::report::motion::answers::Observed;
 use crate::report::motion::outline_plot::{band_picture, outline_picture};
 use crate::report::motion::reconstruction::{
-    EXPLAINED, contradiction_in_words, convexity_in_words, from_in_words, gaps, length, misfit_in_words,
-    model_in_words, reconstruction, sizes_in_words, truth, widened_in_words, widest,
+    EXPLAINED, apart_in_words, contradiction_in_words, convexity_in_words, from_in_words, gaps, length,
+    misfit_in_words, model_in_words, reconstruction, sizes_in_words, truth, widened_in_words, widest,
 };
 use crate::report::motion::shape::support_error;
 use maud::{Markup, PreEscaped, html};
@@ -34,6 +34,7 @@ pub(super) fn shape_section(observed: &Observed<'_>) -> Markup {
             @for (name, size) in sizes_in_words(found, shape, "m²", 6) { (name) " " (size) "; " }
             "the function is " (convexity_in_words(shape))
             @if let Some(contradiction) = &found.contradiction { "; " (contradiction_in_words(contradiction)) }
+            @if let Some(apart) = &found.apart { "; " (apart_in_words(apart)) }
             @match &found.whole {
                 Some(whole) => { "; " (misfit_in_words(whole, shape)) }
                 None if shape.widened > EXPLAINED => { "; " (widened_in_words(shape)) }

@@ -1,6 +1,8 @@
 //! The shape that an experiment tells, in words and as JSON.
 
-use crate::experiment::{Answer, Contradiction, Experiment, Reconstruction, WholeMotion, error, shown};
+use crate::experiment::{
+    Answer, Apart, Contradiction, Experiment, Reconstruction, WholeMotion, error, shown,
+};
 use crate::mechanics::moving::Shape;
 use crate::report::motion::fit::finite;
 use crate::report::motion::shape::support_error;
@@ -119,6 +121,9 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
     if let Some(contradiction) = &found.contradiction {
         let _ = writeln!(text, "  {}", contradiction_in_words(contradiction));
     }
+    if let Some(apart) = &found.apart {
+        let _ = writeln!(text, "  {}", apart_in_words(apart));
+    }
     if let Some(whole) = &found.whole {
         let _ = writeln!(text, "  {}", misfit_in_words(whole, shape));
         if let Some(gyration) = whole.gyration {
@@ -183,6 +188,17 @@ pub(super) fn contradiction_in_words(found: &Contradiction) -> String {
     format!(
         "all readings at once are no answer: they make {name} {:.6} ± {:.1e} at {time:.3} s, and a window that fits {:.6} ± {:.1e}",
         of_all.value, of_all.deviation, by_window.value, by_window.deviation
+    )
+}
+
+pub(super) fn apart_in_words(found: &Apart) -> String {
+    let Apart { between, scale } = found;
+    let why = match between > scale {
+        true => " Are the times in another unit than s, as milliseconds?",
+        false => "",
+    };
+    format!(
+        "all readings at once are no answer: samples are {between:.3} s apart, more happens between them than is followed, and gravity moves a body of this size in {scale:.3} s.{why}"
     )
 }
 
@@ -268,6 +284,9 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
         json["contradiction"] = json!({
             "time": finite(*time), "state": name, "window": measured(*by_window), "all_readings": measured(*of_all),
         });
+    }
+    if let Some(Apart { between, scale }) = &found.apart {
+        json["apart"] = json!({ "between": finite(*between), "scale": finite(*scale) });
     }
     json["convexity"] = convexity_json(&shape.convexity());
     json["convexity_within_band"] = convexity_json(&shape.convexity_within_band());
