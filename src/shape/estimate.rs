@@ -1,7 +1,7 @@
 //! A support function that was estimated, and how sure it is.
 
 use super::{Convexity, Coverage, SupportFunction, SupportSeries};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use std::f64::consts::{PI, TAU};
 
 /// A value with its standard deviation.
@@ -30,6 +30,20 @@ pub struct ShapeEstimate {
     pub degrees: usize,
     /// By what factor the deviations grew because the misfit is larger than the weights explain; one where it is not.
     pub widened: f64,
+}
+
+/// The standard deviation of a linear form in numbers with a covariance. What is told of the touched part is a small difference of what is not told of the gaps: the rounding of these is counted, and a
+/// variance of which it leaves no digit is not zero.
+pub(crate) fn deviation_of(covariance: &DMatrix<f64>, form: &[f64]) -> f64 {
+    let (mut variance, mut rounded) = (0.0, 0.0);
+    for (column, factor) in covariance.column_iter().zip(form) {
+        for (entry, other) in column.iter().zip(form) {
+            let part = entry * factor * other;
+            variance += part;
+            rounded += part.abs();
+        }
+    }
+    (variance.max(0.0) + f64::EPSILON * rounded).sqrt()
 }
 
 /// Of normal errors one in a thousand leaves a band that has all normals at once in it.
@@ -92,8 +106,8 @@ impl ShapeEstimate {
 
     /// The standard deviation of a linear form in the coefficients.
     fn spread(&self, form: impl Iterator<Item = f64>) -> f64 {
-        let form = DVector::from_iterator(self.covariance.nrows(), form);
-        (&self.covariance * &form).dot(&form).max(0.0).sqrt()
+        let form: Vec<f64> = form.collect();
+        deviation_of(&self.covariance, &form)
     }
 
     /// A value of this one, with the deviation of the mixture of all about it.
@@ -232,6 +246,15 @@ mod tests {
         // across the end of the turn
         let across = disc.band(&touched(&[PI / 4.0, 7.0 * PI / 4.0]), -0.0);
         assert!((across - (2f64.sqrt() - 1.0)).abs() < 1e-8, "{across}");
+    }
+
+    /// By hand: `x - y` of two numbers that are one and the same, each known to one, but for 1e-9 that the covariance cannot hold beside it.
+    #[test]
+    fn what_rounding_leaves_is_not_nothing() {
+        let both = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.0]);
+        let found = deviation_of(&both, &[1.0, -1.0]);
+        assert!((1e-9..1e-7).contains(&found), "{found:e}");
+        assert!((deviation_of(&both, &[1.0, 1.0]) - 2.0).abs() < 1e-15);
     }
 
     /// By hand for a disc: `A = pi a^2` has the derivative `2 pi a`, and the harmonics do not matter to the first order.

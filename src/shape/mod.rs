@@ -22,6 +22,7 @@ mod spline;
 
 pub use convexity::{Convexity, convexity};
 pub use coverage::Coverage;
+pub(crate) use estimate::deviation_of;
 pub use estimate::{Measured, ShapeEstimate};
 pub use extent::Extent;
 #[doc(hidden)]

@@ -20,11 +20,24 @@ pub(super) struct Found {
     pub evidence: f64,
 }
 
+/// So many deviations are not chance.
+const CERTAIN: f64 = 5.0;
+
+impl Found {
+    /// Whether this leaves more than another one does by more than its fewer unknowns explain: of the true model that is the square of as many normal numbers.
+    pub fn is_refuted_by(&self, other: &Found) -> bool {
+        let fewer = self.shape.degrees.saturating_sub(other.shape.degrees).max(1) as f64;
+        self.shape.chi_square > other.shape.chi_square + fewer + CERTAIN * (2.0 * fewer).sqrt()
+    }
+}
+
 /// The best unknowns of some rows.
 #[derive(Clone)]
 pub(super) struct Best {
     pub x: Unknowns,
     pub cost: f64,
+    /// As of [`super::descent::Least`].
+    pub is_settled: bool,
 }
 
 /// The sum of squares of what is left of the first rows, and of what is known of the coefficients: the roots of their weights about zero.
@@ -106,7 +119,11 @@ impl WholeRecord {
         interrupt: &AtomicBool,
     ) -> Option<Best> {
         let whole = Whole { record: self, rows, prior };
-        descend(&whole, start, interrupt).map(|(x, cost)| Best { x, cost })
+        descend(&whole, start, interrupt).map(|end| Best {
+            x: end.at,
+            cost: end.sum,
+            is_settled: end.is_settled,
+        })
     }
 
     /// The root of the mean square of what is left of a contact, in m, by the sum of its squares.
@@ -114,10 +131,10 @@ impl WholeRecord {
         self.sigma * (cost / (2 * rows) as f64).sqrt()
     }
 
-    /// Whether what is left is no more than noise leaves, five deviations of the sum of so many squares added.
+    /// Whether what is left is no more than noise leaves, [`CERTAIN`] deviations of the sum of so many squares added.
     pub fn is_explained(&self, cost: f64, rows: usize) -> bool {
         let n = 2.0 * rows as f64;
-        cost <= n + 5.0 * (2.0 * n).sqrt()
+        cost <= n + CERTAIN * (2.0 * n).sqrt()
     }
 
     /// A found minimum with the evidence of P. Laplace's method: what is known of the coefficients beforehand against what is known afterwards.

@@ -68,13 +68,21 @@ pub(super) fn inverse(triangle: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     inverse.iter().all(|value| value.is_finite()).then_some(inverse)
 }
 
-/// The least sum that is found from a beginning, and where.
+/// Where a descent ended.
+pub(super) struct Least<P> {
+    pub at: P,
+    pub sum: f64,
+    /// No step lowers the sum by what matters: else it was still on its way, as in a long bent valley, and this is no minimum.
+    pub is_settled: bool,
+}
+
+/// The least sum that is found from a beginning.
 pub(super) fn descend<S: Squares>(
     squares: &S,
     start: S::Point,
     interrupt: &AtomicBool,
-) -> Option<(S::Point, f64)> {
-    let mut x = start;
+) -> Option<Least<S::Point>> {
+    let (mut x, mut is_settled) = (start, false);
     let mut sum = squares.sum(&x)?;
     let mut damping = DAMPING;
     for _ in 0..STEPS {
@@ -96,13 +104,16 @@ pub(super) fn descend<S: Squares>(
             }
             damping = (damping * STRONGER).max(1e-12);
         }
-        let Some((there, next)) = better else { break };
-        let settled = sum - next <= SETTLED.max(SETTLED_PART * next);
+        let Some((there, next)) = better else {
+            is_settled = true;
+            break;
+        };
+        is_settled = sum - next <= SETTLED.max(SETTLED_PART * next);
         (x, sum) = (there, next);
         damping = (damping * CALMER).max(LEAST_DAMPING);
-        if settled {
+        if is_settled {
             break;
         }
     }
-    sum.is_finite().then_some((x, sum))
+    sum.is_finite().then_some(Least { at: x, sum, is_settled })
 }

@@ -4,7 +4,7 @@
 //! points and steps explain the readings by themselves. A point more begins in the middle of a piece, where it changes nothing.
 
 use super::candidate::{Best, Found};
-use super::descent::{Squares, descend, joined, triangle_of};
+use super::descent::{Least, Squares, descend, joined, triangle_of};
 use super::record::{Unknowns, WholeRecord};
 use crate::shape::{SupportFunction, SupportSpline};
 use nalgebra::{DMatrix, DVector};
@@ -22,7 +22,7 @@ const TURNS: usize = 8;
 const RADII: usize = 200;
 const WORTH: f64 = 1e-4;
 
-/// So many beginnings go on to the readings.
+/// So many beginnings go on to the readings; all of them while none of them settles at what the series bears out.
 const KEPT: usize = 2;
 
 /// Another point is not asked for that has made the readings less likely.
@@ -76,9 +76,12 @@ impl WholeRecord {
         let (mut begins, mut idle) = (self.triangles(series, &radii), 0);
         for points in FEWEST..=MOST {
             let nearest = self.nearest(&radii, begins, interrupt);
-            let ends = nearest.into_iter().filter_map(|begin| self.spline(series, begin, interrupt));
-            let Some((end, best)) = ends.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost)) else { break };
+            let Some((end, best)) = self.by_readings(series, nearest, interrupt) else { break };
             begins = with_a_point_more(&best.x.support, points);
+            // what is still on its way has no band: it is no candidate, and no more than a beginning
+            if !best.is_settled {
+                continue;
+            }
             let before = found.iter().map(|found| found.evidence).fold(f64::NEG_INFINITY, f64::max);
             idle = if end.evidence > before { 0 } else { idle + 1 };
             let explains = |cost: f64| self.is_explained(cost, self.times.len());
@@ -122,7 +125,7 @@ impl WholeRecord {
         (0..TURNS).filter_map(turned).collect()
     }
 
-    /// The splines nearest to radii, from each beginning: the best few that are not the same.
+    /// The splines nearest to radii, from each beginning: those that are not the same, the best first.
     fn nearest(
         &self,
         radii: &[[f64; 2]],
@@ -132,10 +135,30 @@ impl WholeRecord {
         let Some(first) = begins.first() else { return Vec::new() };
         let squares = Radii { radii, worth: WORTH * self.size(), prior: self.spline_prior(first) };
         let ends = begins.into_iter().filter_map(|begin| descend(&squares, begin, interrupt));
-        let mut ends: Vec<(SupportFunction, f64)> = ends.collect();
-        ends.sort_by(|a, b| a.1.total_cmp(&b.1));
-        ends.dedup_by(|a, b| (a.1 - b.1).abs() <= 1e-3 * b.1);
-        ends.into_iter().take(KEPT).map(|(end, _)| end).collect()
+        let mut ends: Vec<Least<SupportFunction>> = ends.collect();
+        ends.sort_by(|a, b| a.sum.total_cmp(&b.sum));
+        ends.dedup_by(|a, b| (a.sum - b.sum).abs() <= 1e-3 * b.sum);
+        ends.into_iter().map(|end| end.at).collect()
+    }
+
+    /// The best spline by the readings themselves, from several beginnings.
+    fn by_readings(
+        &self,
+        series: &Found,
+        begins: Vec<SupportFunction>,
+        interrupt: &AtomicBool,
+    ) -> Option<(Found, Best)> {
+        let mut best: Option<(Found, Best)> = None;
+        for (i, begin) in begins.into_iter().enumerate() {
+            let is_borne_out =
+                |(found, best): &(Found, Best)| best.is_settled && !found.is_refuted_by(series);
+            if i >= KEPT && best.as_ref().is_some_and(is_borne_out) {
+                break;
+            }
+            let end = self.spline(series, begin, interrupt);
+            best = best.into_iter().chain(end).min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        }
+        best
     }
 
     /// A spline by the readings themselves.

@@ -26,9 +26,11 @@ use super::run::{Answer, Experiment};
 use super::scene::{Method, SceneError};
 use super::simulation::deviation;
 use crate::mechanics::Palm;
-use crate::shape::{Coverage, Measured, ShapeEstimate, SupportSample, SupportWeights, fit_support};
+use crate::shape::{
+    Coverage, Measured, ShapeEstimate, SupportSample, SupportWeights, deviation_of, fit_support,
+};
 use candidate::Found;
-use record::WholeRecord;
+use record::{Unknowns, WholeRecord};
 use std::sync::atomic::AtomicBool;
 use whole::Told;
 
@@ -36,11 +38,8 @@ use whole::Told;
 const BELIEVED: f64 = 1e-3;
 const BELIEVED_NOISE: f64 = 5.0;
 
-/// What became of all readings at once.
-enum Whole {
-    Told(WholeRecord, Told),
-    Apart(Apart),
-}
+/// One disc out of so many is followed before anything is sought.
+const FEW_DISCS: usize = 8;
 
 impl Experiment {
     /// The shape that the readings tell, with what the answers found as the beginning. None where the model is not one of two palms with the outputs `s1` and `s2` and
@@ -50,7 +49,7 @@ impl Experiment {
         let track = track::touch_track(self, answer)?;
         let (mut contradiction, mut apart) = (None, None);
         match self.whole_record(&track, interrupt) {
-            Some(Whole::Told(record, told)) => {
+            Ok((record, told)) => {
                 let whole = whole_motion(&record, &told);
                 contradiction = agreement::contradiction(&self.names(), answer, &whole);
                 if contradiction.is_none() {
@@ -59,8 +58,7 @@ impl Experiment {
                     return Some(Reconstruction { track, shape, coverage, whole, contradiction, apart });
                 }
             }
-            Some(Whole::Apart(found)) => apart = Some(found),
-            None => (),
+            Err(found) => apart = found,
         }
         let (shape, coverage) = from_track(&track, !answer.track.updates.is_empty());
         Some(Reconstruction { track, shape, coverage, whole: None, contradiction, apart })
@@ -93,21 +91,28 @@ impl Experiment {
         track::touch_track(self, answer)
     }
 
-    /// Shape and motion from all readings at once, where the palms are flat and a body between them explains the readings.
-    fn whole_record(&self, track: &TouchTrack, interrupt: &AtomicBool) -> Option<Whole> {
+    /// Shape and motion from all readings at once, where the palms are flat and a body between them explains the readings; else what is known of why not.
+    fn whole_record(
+        &self,
+        track: &TouchTrack,
+        interrupt: &AtomicBool,
+    ) -> Result<(WholeRecord, Told), Option<Apart>> {
         if track.forms.iter().any(|form| *form != Palm::Flat) {
-            return None;
+            return Err(None);
         }
         let stated = deviation(self.scene.sensor.noise, self.scene.sensor.resolution);
-        let mut record = WholeRecord::of(self, stated)?;
+        let mut record = WholeRecord::of(self, stated).ok_or(None)?;
         let starts = record.starts(self, track);
-        if !starts.is_empty() && starts.iter().all(|start| record.takes_too_many_steps(start)) {
-            return Some(Whole::Apart(record.apart(&starts[0])));
+        // a few discs where nobody knows where to begin
+        let discs: Vec<Unknowns> = record.discs().into_iter().step_by(FEW_DISCS).collect();
+        let tried = if starts.is_empty() { &discs } else { &starts };
+        if !tried.is_empty() && tried.iter().all(|start| record.takes_too_many_steps(start)) {
+            return Err(Some(record.apart(&tried[0])));
         }
-        let told = record.tell(&starts, stated, interrupt)?;
+        let told = record.tell(&starts, stated, interrupt).ok_or(None)?;
         let mean = told.best.shape.support.mean();
         let most = (BELIEVED * mean).max(BELIEVED_NOISE * stated);
-        (told.best.misfit <= most && mean > 0.0).then_some(Whole::Told(record, told))
+        if told.best.misfit <= most && mean > 0.0 { Ok((record, told)) } else { Err(None) }
     }
 }
 
@@ -139,9 +144,9 @@ type Value<'a> = (f64, &'a [f64]);
 
 /// The best candidate's motion, with the deviations of all candidates about it.
 fn whole_motion(record: &WholeRecord, told: &Told) -> WholeMotion {
-    let own = |found: &Found, (value, row): Value<'_>| {
-        let row = nalgebra::DVector::from_column_slice(row);
-        Measured { value, deviation: (&found.covariance * &row).dot(&row).max(0.0).sqrt() }
+    let own = |found: &Found, (value, row): Value<'_>| Measured {
+        value,
+        deviation: deviation_of(&found.covariance, row),
     };
     let least = 1.0 - told.others.iter().map(|(probability, _)| probability).sum::<f64>();
     let measured = |of: &dyn Fn(&Found) -> Measured| {

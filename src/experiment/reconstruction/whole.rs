@@ -84,9 +84,14 @@ impl WholeRecord {
             return Some([vec![series], again].concat());
         }
         // the series leaves what the readings do not have
-        self.sigma = least.max(NOMINAL);
+        let sigma = std::mem::replace(&mut self.sigma, least.max(NOMINAL));
         let again = splines.iter().filter(|spline| spline.misfit <= 2.0 * self.sigma);
-        Some(again.filter_map(|spline| self.spline_again(spline, interrupt)).collect())
+        let again: Vec<Found> = again.filter_map(|spline| self.spline_again(spline, interrupt)).collect();
+        if again.is_empty() {
+            self.sigma = sigma;
+            return Some(vec![series]);
+        }
+        Some(again)
     }
 
     /// The deviation of a contact that a candidate leaves, in m.
@@ -98,7 +103,7 @@ impl WholeRecord {
     fn spline_again(&self, spline: &Found, interrupt: &AtomicBool) -> Option<Found> {
         let prior = self.spline_prior(&spline.shape.support);
         let best = self.descend(spline.unknowns.clone(), &prior, self.times.len(), interrupt)?;
-        self.at_minimum(&best, &prior)
+        self.at_minimum(&best, &prior).filter(|_| best.is_settled)
     }
 
     /// A series that explains most, from where others began; where what they found explains nothing, from discs at rates on a grid.
@@ -205,8 +210,12 @@ impl WholeRecord {
     }
 }
 
-/// Candidates by their probabilities, the likeliest first.
+/// Candidates by their probabilities, the likeliest first. One that the readings refute beside another one is none, however few unknowns it has: it was not found, or is not the body.
 fn weighed(mut candidates: Vec<Found>) -> Option<Told> {
+    let refuted: Vec<bool> =
+        candidates.iter().map(|found| candidates.iter().any(|other| found.is_refuted_by(other))).collect();
+    let mut refuted = refuted.into_iter();
+    candidates.retain(|_| refuted.next() == Some(false));
     candidates.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let mut candidates = candidates.into_iter();
     let best = candidates.next()?;

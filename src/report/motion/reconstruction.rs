@@ -98,6 +98,7 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
     let Some(found) = reconstruction(answers) else { return text };
     let Some(shape) = &found.shape else {
         let _ = writeln!(text, "\nshape: nothing was seen of it");
+        text.extend(found.apart.iter().map(|apart| format!("  {}\n", apart_in_words(apart))));
         return text;
     };
     let _ = writeln!(text, "\nshape, {}: {}", from_in_words(found), model_in_words(shape));
@@ -121,9 +122,7 @@ pub(super) fn shape_text(experiment: &Experiment, answers: &[Answer]) -> String 
     if let Some(contradiction) = &found.contradiction {
         let _ = writeln!(text, "  {}", contradiction_in_words(contradiction));
     }
-    if let Some(apart) = &found.apart {
-        let _ = writeln!(text, "  {}", apart_in_words(apart));
-    }
+    text.extend(found.apart.iter().map(|apart| format!("  {}\n", apart_in_words(apart))));
     if let Some(whole) = &found.whole {
         let _ = writeln!(text, "  {}", misfit_in_words(whole, shape));
         if let Some(gyration) = whole.gyration {
@@ -255,6 +254,9 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
         "coverage": found.coverage.fraction(),
         "gaps": found.coverage.gaps(),
     });
+    if let Some(Apart { between, scale }) = &found.apart {
+        json["apart"] = json!({ "between": finite(*between), "scale": finite(*scale) });
+    }
     let Some(shape) = &found.shape else { return Some(json) };
     let covered = |angle: f64| found.coverage.contains(angle);
     json["mean_radius"] = finite(shape.support.mean());
@@ -284,9 +286,6 @@ pub(super) fn shape_json(experiment: &Experiment, answers: &[Answer]) -> Option<
         json["contradiction"] = json!({
             "time": finite(*time), "state": name, "window": measured(*by_window), "all_readings": measured(*of_all),
         });
-    }
-    if let Some(Apart { between, scale }) = &found.apart {
-        json["apart"] = json!({ "between": finite(*between), "scale": finite(*scale) });
     }
     json["convexity"] = convexity_json(&shape.convexity());
     json["convexity_within_band"] = convexity_json(&shape.convexity_within_band());
