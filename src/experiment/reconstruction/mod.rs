@@ -101,7 +101,7 @@ impl Experiment {
             return Err(None);
         }
         let stated = deviation(self.scene.sensor.noise, self.scene.sensor.resolution);
-        let mut record = WholeRecord::of(self, stated).ok_or(None)?;
+        let Some(mut record) = WholeRecord::of(self, stated) else { return Err(None) };
         let starts = record.starts(self, track);
         // a few discs where nobody knows where to begin
         let discs: Vec<Unknowns> = record.discs().into_iter().step_by(FEW_DISCS).collect();
@@ -109,7 +109,7 @@ impl Experiment {
         if !tried.is_empty() && tried.iter().all(|start| record.takes_too_many_steps(start)) {
             return Err(Some(record.apart(&tried[0])));
         }
-        let told = record.tell(&starts, stated, interrupt).ok_or(None)?;
+        let Some(told) = record.tell(&starts, stated, interrupt) else { return Err(None) };
         let mean = told.best.shape.support.mean();
         let most = (BELIEVED * mean).max(BELIEVED_NOISE * stated);
         if told.best.misfit <= most && mean > 0.0 { Ok((record, told)) } else { Err(None) }
