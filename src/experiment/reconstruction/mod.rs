@@ -30,16 +30,13 @@ use crate::shape::{
     Coverage, Measured, ShapeEstimate, SupportSample, SupportWeights, deviation_of, fit_support,
 };
 use candidate::Found;
-use record::{Unknowns, WholeRecord};
+use record::WholeRecord;
 use std::sync::atomic::AtomicBool;
 use whole::Told;
 
 /// All readings at once are believed whose misfit is below this part of the mean radius, or a few times the noise: else it is another model.
 const BELIEVED: f64 = 1e-3;
 const BELIEVED_NOISE: f64 = 5.0;
-
-/// One disc out of so many is followed before anything is sought.
-const FEW_DISCS: usize = 8;
 
 impl Experiment {
     /// The shape that the readings tell, with what the answers found as the beginning. None where the model is not one of two palms with the outputs `s1` and `s2` and
@@ -103,11 +100,11 @@ impl Experiment {
         let stated = deviation(self.scene.sensor.noise, self.scene.sensor.resolution);
         let Some(mut record) = WholeRecord::of(self, stated) else { return Err(None) };
         let starts = record.starts(self, track);
-        // a few discs where nobody knows where to begin
-        let discs: Vec<Unknowns> = record.discs().into_iter().step_by(FEW_DISCS).collect();
-        let tried = if starts.is_empty() { &discs } else { &starts };
-        if !tried.is_empty() && tried.iter().all(|start| record.takes_too_many_steps(start)) {
-            return Err(Some(record.apart(&tried[0])));
+        let round = record.nearly_round();
+        if let Some(first) = round.first()
+            && starts.iter().chain(&round).all(|start| record.takes_too_many_steps(start))
+        {
+            return Err(Some(record.apart(first)));
         }
         let Some(told) = record.tell(&starts, stated, interrupt) else { return Err(None) };
         let mean = told.best.shape.support.mean();

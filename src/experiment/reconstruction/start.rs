@@ -23,6 +23,10 @@ const DISC_ORDER: usize = 3;
 const RATES: u32 = 40;
 const FASTEST: f64 = 2.0;
 
+/// A body that is a little longer than wide has this part of its mean radius as its second harmonic; so many rates of the grid are one of the few.
+const LONGER: f64 = 0.1;
+const FEW_RATES: usize = 10;
+
 impl WholeRecord {
     /// The readings of an experiment between flat palms; none where one of them is missing. `sigma` is the standard deviation of a contact.
     pub fn of(experiment: &Experiment, sigma: f64) -> Option<WholeRecord> {
@@ -90,6 +94,17 @@ impl WholeRecord {
         let rates = self.rate.map_or_else(|| rates.collect::<Vec<f64>>(), |rate| vec![rate]);
         let disc = |rate| Unknowns { rate, gyration, support: support.clone().into() };
         rates.into_iter().map(disc).collect()
+    }
+
+    /// A few bodies that are a little longer than wide and turn at rates on the grid: by these it is seen whether samples are near enough to each other. No force turns a disc, whatever the time between them.
+    pub fn nearly_round(&self) -> Vec<Unknowns> {
+        let longer = |mut disc: Unknowns| {
+            let mean = disc.support.mean();
+            let harmonics = vec![[0.0; 2], [LONGER * mean, 0.0]];
+            disc.support = SupportSeries { mean, harmonics }.into();
+            disc
+        };
+        self.discs().into_iter().step_by(FEW_RATES).map(longer).collect()
     }
 
     fn start(&self, samples: &[SupportSample], rate: Option<f64>, gyration: Option<f64>) -> Option<Unknowns> {
