@@ -110,10 +110,10 @@ impl MultipleShooting {
         clamped: &[usize],
     ) -> Vec<Update> {
         let begin = Instant::now();
-        let (found, is_all) = self.shot(task, belief, rows, clamped);
+        let found = self.shot(task, belief, rows, clamped);
         let half = rows.start..rows.start + rows.len() / 2 + 1;
         let is_long = half.len() * task.full.outputs.len() > FEWEST * task.full.states.len();
-        if found.iter().any(Update::is_borne_out) || !is_long || is_all || task.interrupted() {
+        if found.iter().any(Update::is_borne_out) || !is_long || task.interrupted() {
             return found;
         }
         let shorter = self.solutions(task, belief, &half, clamped);
@@ -132,19 +132,13 @@ impl MultipleShooting {
         updates
     }
 
-    /// The same, from the whole window alone; and whether there is no more to be found, because nothing explains the readings: several starts have come to
-    /// one state, and it leaves more than noise does even where the segments need not join.
-    fn shot(
-        &self,
-        task: &Task<'_>,
-        belief: &[f64],
-        rows: &Range<usize>,
-        clamped: &[usize],
-    ) -> (Vec<Update>, bool) {
+    /// The same, from the whole window alone. Where several starts have come to one state that explains too little, the others are not followed to their ends: they
+    /// have come to no less.
+    fn shot(&self, task: &Task<'_>, belief: &[f64], rows: &Range<usize>, clamped: &[usize]) -> Vec<Update> {
         let begin = Instant::now();
         let segments = self.segments(task, belief, rows, clamped);
         if segments.moving.is_empty() {
-            return (vec![self.end(task, belief, rows, clamped)], false);
+            return vec![self.end(task, belief, rows, clamped)];
         }
         let bounds = [true, false].map(|are_signs_kept| bounds(task, are_signs_kept));
         let spreads = segments.spread.iter().map(|spread| (task.sigma / spread).powi(2));
@@ -190,7 +184,7 @@ impl MultipleShooting {
         if let Some(update) = updates.first_mut() {
             update.seconds = begin.elapsed().as_secs_f64();
         }
-        (updates, is_all)
+        updates
     }
 
     pub(super) fn segments<'t>(
