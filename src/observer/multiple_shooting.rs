@@ -151,16 +151,16 @@ impl MultipleShooting {
                 true => (first_nodes(task, &segments, &bounds[start % 2], told, start), &bounds[start % 2]),
                 false => (inversion::nodes(task, &segments, &bounds[0], told)?, &bounds[1]),
             };
-            seek(&segments, nodes, bounds, enough, &|| task.interrupted()).ok()
+            Some((start, seek(&segments, nodes, bounds, enough, &|| task.interrupted()).ok()?))
         };
         let all = starts + usize::from(self.shooting.derivatives);
-        let found: Vec<Option<Found>> = (0..all).into_par_iter().map(one).collect();
-        let mut found: Vec<Found> = found.into_iter().flatten().collect();
-        found.sort_by(|a, b| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
+        let found: Vec<Option<(usize, Found)>> = (0..all).into_par_iter().map(one).collect();
+        let mut found: Vec<(usize, Found)> = found.into_iter().flatten().collect();
+        found.sort_by(|(_, a), (_, b)| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
         let (mut updates, mut is_all): (Vec<Update>, bool) = (Vec::new(), false);
         let mut tried: Vec<Vec<f64>> = Vec::new();
         let is_one_misfit = is_one_misfit(&segments, &found, enough);
-        for found in found {
+        for (_, found) in found {
             if is_all || tried.len() >= MOST_ENDS || (task.interrupted() && !updates.is_empty()) {
                 break;
             }
@@ -243,16 +243,18 @@ impl MultipleShooting {
     }
 }
 
-/// Whether so many starts as [`AGREE`] have come to the best state, which leaves more of the segments' readings than is enough of any: joined they leave no less.
-fn is_one_misfit(segments: &Segments<'_>, found: &[Found], enough: f64) -> bool {
-    let Some(best) = found.first() else { return false };
+/// Whether so many starts as [`AGREE`] have come to the best state, which leaves more of the segments' readings than is enough of any: joined they leave no less. Starts that
+/// keep signs do not count: what stops them may be that.
+fn is_one_misfit(segments: &Segments<'_>, found: &[(usize, Found)], enough: f64) -> bool {
+    let Some((_, best)) = found.first() else { return false };
     let readings = segments.measured.iter().map(Vec::len).sum::<usize>().max(1);
     let error = |found: &Found| found.misfit + found.gaps;
     let is_there = |other: &&Found| {
         let step = segments.step_between(&best.nodes, &other.nodes);
         (error(other) - error(best)).abs() <= AGREE.1 * error(best) && step.longest() <= AGREE.1
     };
-    best.misfit / readings as f64 > AGREE.2 * enough && found.iter().filter(is_there).count() >= AGREE.0
+    let free = found.iter().filter(|(start, _)| start % 2 == 1).map(|(_, found)| found);
+    best.misfit / readings as f64 > AGREE.2 * enough && free.filter(is_there).count() >= AGREE.0
 }
 
 /// Whether two states are one: within a part of the sizes, or some deviations; angles but for whole turns.
