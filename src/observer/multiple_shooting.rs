@@ -24,7 +24,7 @@ use std::time::Instant;
 pub struct Shooting {
     /// Segments of a window, at most; no segment is shorter than from one sample to the next.
     pub segments: usize,
-    /// How often it starts: from the guess and from states of the sample box, each second one with signs kept.
+    /// How often it starts: from the guess and from states of the sample box, each second one with signs kept; and once more from the middle of the box.
     pub starts: usize,
     /// Whether it starts from inverted Lie derivatives of the outputs as well, where the system is observable by them.
     pub derivatives: bool,
@@ -147,13 +147,17 @@ impl MultipleShooting {
         let one = |start: usize| {
             let told = (belief, rows, clamped);
             // the last one is that of the derivatives: signs are kept where they are inverted, and not in the search
-            let (nodes, bounds) = match start < starts {
-                true => (first_nodes(task, &segments, &bounds[start % 2], told, start), &bounds[start % 2]),
+            let (nodes, bounds) = match start <= starts {
+                true => {
+                    let own = &bounds[start % 2];
+                    (first_nodes(task, &segments, own, told, (start, starts)), own)
+                }
                 false => (inversion::nodes(task, &segments, &bounds[0], told)?, &bounds[1]),
             };
             Some((start, seek(&segments, nodes, bounds, enough, &|| task.interrupted()).ok()?))
         };
-        let all = starts + usize::from(self.shooting.derivatives);
+        // the middle of the box is one more
+        let all = starts + 1 + usize::from(self.shooting.derivatives);
         let found: Vec<Option<(usize, Found)>> = (0..all).into_par_iter().map(one).collect();
         let mut found: Vec<(usize, Found)> = found.into_iter().flatten().collect();
         found.sort_by(|(_, a), (_, b)| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
