@@ -80,7 +80,8 @@ mod tests {
         assert_eq!(returns(&track(&|_| 0.0)), []);
         assert_eq!(returns(&track(&|row| if row < 30 { 0.0 } else { 1.9 })), []);
         assert_eq!(returns(&track(&|row| if row == 30 { 1.92 } else { 0.0 })), [one]);
-        assert_eq!(returns(&track(&|row| if two.contains(&row) { -1.2 } else { 0.0 })), [two.clone()]);
+        let found = returns(&track(&|row| if two.contains(&row) { -1.2 } else { 0.0 }));
+        assert_eq!(found, [two]);
         // it falls on, and it falls back much later
         assert_eq!(
             returns(&track(&|row| 1.5 * (f64::from(u8::from(row > 20)) + f64::from(u8::from(row > 22))))),
