@@ -24,7 +24,7 @@ use std::time::Instant;
 pub struct Shooting {
     /// Segments of a window, at most; no segment is shorter than from one sample to the next.
     pub segments: usize,
-    /// How often it starts: from the guess and from states of the sample box, each second one with signs kept; and once more from the middle of the box.
+    /// How often it starts: from the guess and from states of the sample box, each second one with signs kept.
     pub starts: usize,
     /// Whether it starts from inverted Lie derivatives of the outputs as well, where the system is observable by them.
     pub derivatives: bool,
@@ -56,9 +56,6 @@ const MOST_ENDS: usize = 4;
 
 /// A mean square of the differences, in units of the spreads, that is enough for a search, beside what noise leaves.
 const ENOUGH: f64 = 1e-8;
-
-/// So many starts that come to one place, within this part of its error and of the sizes, and to a mean square so many times as large as enough, have found all that there is.
-const AGREE: (usize, f64, f64) = (3, 1e-2, 2.0);
 
 /// A window is halved as long as a half has so many readings for each unknown.
 const FEWEST: usize = 4;
@@ -132,8 +129,7 @@ impl MultipleShooting {
         updates
     }
 
-    /// The same, from the whole window alone. Where several starts have come to one state that explains too little, the others are not followed to their ends: they
-    /// have come to no less.
+    /// The same, from the whole window alone.
     fn shot(&self, task: &Task<'_>, belief: &[f64], rows: &Range<usize>, clamped: &[usize]) -> Vec<Update> {
         let begin = Instant::now();
         let segments = self.segments(task, belief, rows, clamped);
@@ -147,25 +143,20 @@ impl MultipleShooting {
         let one = |start: usize| {
             let told = (belief, rows, clamped);
             // the last one is that of the derivatives: signs are kept where they are inverted, and not in the search
-            let (nodes, bounds) = match start <= starts {
-                true => {
-                    let own = &bounds[start % 2];
-                    (first_nodes(task, &segments, own, told, (start, starts)), own)
-                }
+            let (nodes, bounds) = match start < starts {
+                true => (first_nodes(task, &segments, &bounds[start % 2], told, start), &bounds[start % 2]),
                 false => (inversion::nodes(task, &segments, &bounds[0], told)?, &bounds[1]),
             };
-            Some((start, seek(&segments, nodes, bounds, enough, &|| task.interrupted()).ok()?))
+            seek(&segments, nodes, bounds, enough, &|| task.interrupted()).ok()
         };
-        // the middle of the box is one more
-        let all = starts + 1 + usize::from(self.shooting.derivatives);
-        let found: Vec<Option<(usize, Found)>> = (0..all).into_par_iter().map(one).collect();
-        let mut found: Vec<(usize, Found)> = found.into_iter().flatten().collect();
-        found.sort_by(|(_, a), (_, b)| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
-        let (mut updates, mut is_all): (Vec<Update>, bool) = (Vec::new(), false);
+        let all = starts + usize::from(self.shooting.derivatives);
+        let found: Vec<Option<Found>> = (0..all).into_par_iter().map(one).collect();
+        let mut found: Vec<Found> = found.into_iter().flatten().collect();
+        found.sort_by(|a, b| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
+        let mut updates: Vec<Update> = Vec::new();
         let mut tried: Vec<Vec<f64>> = Vec::new();
-        let is_one_misfit = is_one_misfit(&segments, &found, enough);
-        for (_, found) in found {
-            if is_all || tried.len() >= MOST_ENDS || (task.interrupted() && !updates.is_empty()) {
+        for found in found {
+            if tried.len() >= MOST_ENDS || (task.interrupted() && !updates.is_empty()) {
                 break;
             }
             let state = segments.state(&found.nodes, 0)[..task.estimated()].to_vec();
@@ -176,12 +167,11 @@ impl MultipleShooting {
             tried.push(state);
             update.steps += found.steps;
             update.troubled += found.refused;
-            is_all = is_one_misfit && update.end == UpdateEnd::DoesNotFit;
             if !updates.iter().any(|other| is_one(task, other, &update)) {
                 updates.push(update);
             }
         }
-        if !is_all && !updates.iter().any(Update::is_borne_out) {
+        if !updates.iter().any(Update::is_borne_out) {
             updates.push(self.end(task, belief, rows, clamped));
         }
         let mut updates = best_first(task, updates);
@@ -245,20 +235,6 @@ impl MultipleShooting {
             base,
         }
     }
-}
-
-/// Whether so many starts as [`AGREE`] have come to the best state, which leaves more of the segments' readings than is enough of any: joined they leave no less. Starts that
-/// keep signs do not count: what stops them may be that.
-fn is_one_misfit(segments: &Segments<'_>, found: &[(usize, Found)], enough: f64) -> bool {
-    let Some((_, best)) = found.first() else { return false };
-    let readings = segments.measured.iter().map(Vec::len).sum::<usize>().max(1);
-    let error = |found: &Found| found.misfit + found.gaps;
-    let is_there = |other: &&Found| {
-        let step = segments.step_between(&best.nodes, &other.nodes);
-        (error(other) - error(best)).abs() <= AGREE.1 * error(best) && step.longest() <= AGREE.1
-    };
-    let free = found.iter().filter(|(start, _)| start % 2 == 1).map(|(_, found)| found);
-    best.misfit / readings as f64 > AGREE.2 * enough && free.filter(is_there).count() >= AGREE.0
 }
 
 /// Whether two states are one: within a part of the sizes, or some deviations; angles but for whole turns.

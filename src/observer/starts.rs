@@ -48,19 +48,18 @@ pub(super) fn bounds(task: &Task<'_>, are_signs_kept: bool) -> Bounds {
     Bounds { first, later }
 }
 
-/// Where a start begins: from the guess, from a state of the sample box, or, after so many of these, from the middle of the box; what is read is taken as it is read.
+/// Where a start begins: from the guess, or from a state of the sample box; what is read is taken as it is read.
 pub(super) fn first_nodes(
     task: &Task<'_>,
     segments: &Segments<'_>,
     bounds: &Bounds,
     (belief, rows, clamped): (&[f64], &Range<usize>, &[usize]),
-    (start, starts): (usize, usize),
+    start: usize,
 ) -> Nodes {
     let mut random = ChaCha8Rng::seed_from_u64(start as u64);
     let mut state = task.full_state(belief, rows.start);
     for (place, value) in state.iter_mut().enumerate() {
-        let drawn = random.random::<f64>();
-        let part = if start == starts { 0.5 } else { drawn };
+        let part = random.random::<f64>();
         if start > 0
             && place < task.estimated()
             && !clamped.contains(&place)
