@@ -57,9 +57,6 @@ const MOST_ENDS: usize = 4;
 /// A mean square of the differences, in units of the spreads, that is enough for a search, beside what noise leaves.
 const ENOUGH: f64 = 1e-8;
 
-/// So many starts that come to one place, within this part of its error and of the sizes, and to a mean square so many times as large as enough, have found all that there is.
-const AGREE: (usize, f64, f64) = (3, 1e-2, 2.0);
-
 /// A window is halved as long as a half has so many readings for each unknown.
 const FEWEST: usize = 4;
 
@@ -110,10 +107,10 @@ impl MultipleShooting {
         clamped: &[usize],
     ) -> Vec<Update> {
         let begin = Instant::now();
-        let (found, is_all) = self.shot(task, belief, rows, clamped);
+        let found = self.shot(task, belief, rows, clamped);
         let half = rows.start..rows.start + rows.len() / 2 + 1;
         let is_long = half.len() * task.full.outputs.len() > FEWEST * task.full.states.len();
-        if found.iter().any(Update::is_borne_out) || !is_long || is_all || task.interrupted() {
+        if found.iter().any(Update::is_borne_out) || !is_long || task.interrupted() {
             return found;
         }
         let shorter = self.solutions(task, belief, &half, clamped);
@@ -132,19 +129,12 @@ impl MultipleShooting {
         updates
     }
 
-    /// The same, from the whole window alone; and whether there is no more to be found, because nothing explains the readings: several starts have come to
-    /// one state, and it leaves more than noise does even where the segments need not join.
-    fn shot(
-        &self,
-        task: &Task<'_>,
-        belief: &[f64],
-        rows: &Range<usize>,
-        clamped: &[usize],
-    ) -> (Vec<Update>, bool) {
+    /// The same, from the whole window alone.
+    fn shot(&self, task: &Task<'_>, belief: &[f64], rows: &Range<usize>, clamped: &[usize]) -> Vec<Update> {
         let begin = Instant::now();
         let segments = self.segments(task, belief, rows, clamped);
         if segments.moving.is_empty() {
-            return (vec![self.end(task, belief, rows, clamped)], false);
+            return vec![self.end(task, belief, rows, clamped)];
         }
         let bounds = [true, false].map(|are_signs_kept| bounds(task, are_signs_kept));
         let spreads = segments.spread.iter().map(|spread| (task.sigma / spread).powi(2));
@@ -163,11 +153,10 @@ impl MultipleShooting {
         let found: Vec<Option<Found>> = (0..all).into_par_iter().map(one).collect();
         let mut found: Vec<Found> = found.into_iter().flatten().collect();
         found.sort_by(|a, b| (a.misfit + a.gaps).total_cmp(&(b.misfit + b.gaps)));
-        let (mut updates, mut is_all): (Vec<Update>, bool) = (Vec::new(), false);
+        let mut updates: Vec<Update> = Vec::new();
         let mut tried: Vec<Vec<f64>> = Vec::new();
-        let is_one_misfit = is_one_misfit(&segments, &found, enough);
         for found in found {
-            if is_all || tried.len() >= MOST_ENDS || (task.interrupted() && !updates.is_empty()) {
+            if tried.len() >= MOST_ENDS || (task.interrupted() && !updates.is_empty()) {
                 break;
             }
             let state = segments.state(&found.nodes, 0)[..task.estimated()].to_vec();
@@ -178,19 +167,18 @@ impl MultipleShooting {
             tried.push(state);
             update.steps += found.steps;
             update.troubled += found.refused;
-            is_all = is_one_misfit && update.end == UpdateEnd::DoesNotFit;
             if !updates.iter().any(|other| is_one(task, other, &update)) {
                 updates.push(update);
             }
         }
-        if !is_all && !updates.iter().any(Update::is_borne_out) {
+        if !updates.iter().any(Update::is_borne_out) {
             updates.push(self.end(task, belief, rows, clamped));
         }
         let mut updates = best_first(task, updates);
         if let Some(update) = updates.first_mut() {
             update.seconds = begin.elapsed().as_secs_f64();
         }
-        (updates, is_all)
+        updates
     }
 
     pub(super) fn segments<'t>(
@@ -247,18 +235,6 @@ impl MultipleShooting {
             base,
         }
     }
-}
-
-/// Whether so many starts as [`AGREE`] have come to the best state, which leaves more of the segments' readings than is enough of any: joined they leave no less.
-fn is_one_misfit(segments: &Segments<'_>, found: &[Found], enough: f64) -> bool {
-    let Some(best) = found.first() else { return false };
-    let readings = segments.measured.iter().map(Vec::len).sum::<usize>().max(1);
-    let error = |found: &Found| found.misfit + found.gaps;
-    let is_there = |other: &&Found| {
-        let step = segments.step_between(&best.nodes, &other.nodes);
-        (error(other) - error(best)).abs() <= AGREE.1 * error(best) && step.longest() <= AGREE.1
-    };
-    best.misfit / readings as f64 > AGREE.2 * enough && found.iter().filter(is_there).count() >= AGREE.0
 }
 
 /// Whether two states are one: within a part of the sizes, or some deviations; angles but for whole turns.

@@ -14,6 +14,9 @@ use std::ops::Range;
 /// So many other states are tried, at most.
 const STARTS: usize = 12;
 
+/// No more steps are taken in all of them: near poles each is dear.
+const MOST_STEPS: u64 = 2 * LAST_STEPS;
+
 /// So many other searches that come to the same error end them.
 const AGREE: usize = 2;
 
@@ -83,12 +86,15 @@ impl MovingWindow {
         }
         let searching =
             MovingWindow { method: WindowSearch::TrustRegion, steps: self.steps.max(LAST_STEPS), ..*self };
-        let (mut least, mut agree) = (least_error(&update), 0);
+        let (mut least, mut agree, mut steps) = (least_error(&update), 0, 0);
         for start in starts(task, belief, clamped) {
-            if task.interrupted() || agree >= AGREE {
+            if task.interrupted() || agree >= AGREE || steps >= MOST_STEPS {
                 break;
             }
             let found = searching.update_and_ask(task, &start, rows, clamped, false);
+            // of a search that met a pole nobody knows how far it came
+            let is_lost = matches!(found.end, UpdateEnd::Lost(_));
+            steps += if is_lost { LAST_STEPS / 2 } else { found.steps };
             if found.is_borne_out() {
                 let own = MovingWindow { steps: searching.steps, ..*self };
                 let again = own.update_and_ask(task, &found.estimate, rows, clamped, true);

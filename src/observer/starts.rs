@@ -8,9 +8,6 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::ops::Range;
 
-/// The start that begins in the middle of the sample box, with signs kept.
-const MIDDLE: usize = 2;
-
 /// The range from which a state is drawn, and whether the file says it; none where there is no such state.
 pub(super) fn range(task: &Task<'_>, place: usize) -> Option<([f64; 2], bool)> {
     let system = &task.source.0;
@@ -51,7 +48,7 @@ pub(super) fn bounds(task: &Task<'_>, are_signs_kept: bool) -> Bounds {
     Bounds { first, later }
 }
 
-/// Where a start begins: from the guess, from the middle of the sample box, or from a state of it; what is read is taken as it is read.
+/// Where a start begins: from the guess, or from a state of the sample box; what is read is taken as it is read.
 pub(super) fn first_nodes(
     task: &Task<'_>,
     segments: &Segments<'_>,
@@ -62,9 +59,7 @@ pub(super) fn first_nodes(
     let mut random = ChaCha8Rng::seed_from_u64(start as u64);
     let mut state = task.full_state(belief, rows.start);
     for (place, value) in state.iter_mut().enumerate() {
-        let drawn = random.random::<f64>();
-        // one is in the middle, wherever the guess is
-        let part = if start == MIDDLE { 0.5 } else { drawn };
+        let part = random.random::<f64>();
         if start > 0
             && place < task.estimated()
             && !clamped.contains(&place)

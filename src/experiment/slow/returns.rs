@@ -76,10 +76,12 @@ mod tests {
         let smooth = |row: usize| 0.3 * (0.1 * row as f64).sin();
         let track =
             |added: &dyn Fn(usize) -> f64| (0..60).map(|row| smooth(row) + added(row)).collect::<Vec<_>>();
+        let (one, two) = (30..31, 30..32);
         assert_eq!(returns(&track(&|_| 0.0)), []);
         assert_eq!(returns(&track(&|row| if row < 30 { 0.0 } else { 1.9 })), []);
-        assert_eq!(returns(&track(&|row| if row == 30 { 1.92 } else { 0.0 })), [30..31]);
-        assert_eq!(returns(&track(&|row| if (30..32).contains(&row) { -1.2 } else { 0.0 })), [30..32]);
+        assert_eq!(returns(&track(&|row| if row == 30 { 1.92 } else { 0.0 })), [one]);
+        let found = returns(&track(&|row| if two.contains(&row) { -1.2 } else { 0.0 }));
+        assert_eq!(found, [two]);
         // it falls on, and it falls back much later
         assert_eq!(
             returns(&track(&|row| 1.5 * (f64::from(u8::from(row > 20)) + f64::from(u8::from(row > 22))))),

@@ -238,7 +238,7 @@ mod tests {
             Ok(())
         });
         assert!(found.contains("aria-label=\"a &quot;b&quot;\""), "{found}");
-        assert!(found.contains("<path fill=\"#c8283c\" d=\"M1 2h10v10h-10zm19 0h10v10h-10z\"><title>from 1 &lt; 2</title></path>"), "{found}");
+        assert!(found.contains("<path fill=\"#c8283c\" d=\"M1 2h10v10h-10zM20 2h10v10h-10z\"><title>from 1 &lt; 2</title></path>"), "{found}");
         assert!(
             found.contains("<path fill=\"none\" stroke=\"currentColor\" d=\"M0 0l5 3-1 1\"/>"),
             "{found}"

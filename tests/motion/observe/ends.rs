@@ -56,7 +56,7 @@ fn table(header: &str, rows: impl Iterator<Item = Vec<f64>>) -> String {
 /// The first update, and whether it is borne out.
 fn first(found: &Value) -> (&Value, bool) {
     let update = &found["observers"][0]["updates"][0];
-    (update, update["end"] == "converged")
+    (update, update["standing"] == "converged")
 }
 
 /// How many of its bounds a state of an update is off.
@@ -107,7 +107,7 @@ fn what_cannot_be_seen_is_decided_where_a_search_ends() {
                  methods = [\"trust-region\"]\nestimate = [\"x\", \"k\", \"b\", \"c\"]\nguess = { x = 1, k = 1, b = 0.1, c = 0.1 }\n\
                  window = 60\nsteps = 50\n";
     let (_, found) = observe(&write(&folder, "scene.toml", scene), &[]);
-    assert_eq!(first(&found).0["end"], "cannot see", "{found}");
+    assert_eq!(first(&found).0["standing"], "cannot see", "{found}");
 }
 
 /// Susceptible and infectious parts of a population with unknown rates, from guesses anywhere in the box: every one arrives.

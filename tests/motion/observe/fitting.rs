@@ -106,7 +106,7 @@ fn hardened(time: f64) -> f64 {
 fn a_tenth_of_the_readings_may_be_outliers() {
     let off = |every: usize| {
         move |i: usize, _: f64, value: f64| {
-            value + if i % every == 3 { 1.0 - 2.0 * f64::from(u8::from(i % 2 == 0)) } else { 0.0 }
+            value + if i % every == 3 { 1.0 - 2.0 * f64::from(u8::from(i.is_multiple_of(2))) } else { 0.0 }
         }
     };
     for (every, fits) in [(20, true), (7, false)] {
