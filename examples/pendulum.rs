@@ -4,7 +4,7 @@
 //! ```text
 //! acceleration: proved
 //! energy: refuted
-//!   at phi = sin = 5/13, cos = -12/13, omega = -1, k = 3, c = 1/10: -1/10 is not 0
+//!   at phi = sin = 24/145, cos = -143/145, omega = -1, k = 3, c = 1/10: -1/10 is not 0
 //! observable: proved
 //! phi = phi
 //! Lf phi = omega
