@@ -16,10 +16,10 @@ use palmistry::report::{
     global_json, global_text, rank_json, rank_so_far_json, rank_so_far_text, rank_text,
 };
 use palmistry::sweep::{
-    GenericOnBranch, GlobalAnswer, MOST_DIGITS, RankError, RankPart, RankPreparation, StateRow, StateTable,
-    answer_solutions_telling, shard_of,
+    AccessibilityAnswer, GenericOnBranch, GlobalAnswer, MOST_DIGITS, RankError, RankPart, RankPreparation,
+    StateRow, StateTable, answer_accessibility_telling, answer_solutions_telling, shard_of,
 };
-use palmistry::{RankQuestion, System, answer_accessibility};
+use palmistry::{RankQuestion, System};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -131,6 +131,7 @@ enum SoFar {
     Rank(String, Vec<GenericOnBranch>),
     Values(Box<GlobalAnswer>),
     Drops(Box<DropAnswer>),
+    Accessible(Box<AccessibilityAnswer>),
 }
 
 impl SoFar {
@@ -150,6 +151,9 @@ impl SoFar {
             }
             SoFar::Drops(answer) => {
                 files.print(form, drops_json(answer), || drops_text(answer), Status::CutOff)
+            }
+            SoFar::Accessible(answer) => {
+                files.print(form, accessibility_json(answer), || accessibility_text(answer), Status::CutOff)
             }
         }
     }
@@ -190,7 +194,7 @@ impl Rank {
             progress: &|done| bar.set_position(done),
         };
         if self.accessible {
-            return accessible(&mut system, question, &bar, self.json);
+            return accessible(&mut system, question, &bar, known, self.json);
         }
         let nothing_asked = self.samples.is_none() && self.order.is_none() && self.verdicts.is_none();
         let asked = RankPreparation::fingerprint(&system, question, nothing_asked);
@@ -337,9 +341,11 @@ fn accessible(
     system: &mut System,
     question: &RankQuestion<'_>,
     bar: &indicatif::ProgressBar,
+    known: &dyn Fn(SoFar),
     json: bool,
 ) -> miette::Result<Status> {
-    let answer = answer_accessibility(system, question);
+    let mut tell = |answer| known(SoFar::Accessible(Box::new(answer)));
+    let answer = answer_accessibility_telling(system, question, &mut tell);
     bar.finish_and_clear();
     let answer = answer.map_err(|why| Unusable::report(why.to_string(), ""))?;
     begin_to_tell();

@@ -221,6 +221,18 @@ impl<A: Arithmetic> Loaded<'_, A> {
         inputs: &[A::Number],
         registers: &mut Vec<A::Number>,
     ) -> Result<Vec<A::Number>, Failure> {
+        Ok(self.run_in(inputs, registers)?.cloned().collect())
+    }
+
+    /// The same where they lie in the registers: nothing is copied.
+    ///
+    /// # Errors
+    /// As [`Loaded::run`].
+    pub fn run_in<'r>(
+        &self,
+        inputs: &[A::Number],
+        registers: &'r mut Vec<A::Number>,
+    ) -> Result<impl Iterator<Item = &'r A::Number>, Failure> {
         let arithmetic = &self.arithmetic;
         registers.clear();
         for (operation, &node) in self.program.operations.iter().zip(&self.program.origins) {
@@ -246,7 +258,8 @@ impl<A: Arithmetic> Loaded<'_, A> {
                 }
             }
         }
-        Ok(self.program.outputs.iter().map(|index| registers[*index as usize].clone()).collect())
+        let registers: &'r [A::Number] = registers;
+        Ok(self.program.outputs.iter().map(|index| &registers[*index as usize]))
     }
 
     /// The factor of an operation's divisor that may be zero: through products, powers and quotients to the sum or

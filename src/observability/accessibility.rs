@@ -60,6 +60,19 @@ pub struct BracketMinor {
     pub entries: Vec<NodeId>,
 }
 
+/// What is known while brackets are still being taken.
+#[derive(Clone, Debug)]
+pub struct BracketsSoFar {
+    /// The names of those that raised the rank, the drift left out.
+    pub needed: Vec<String>,
+    /// The most fields in a bracket that was taken.
+    pub order: usize,
+    /// The rank of all; longer brackets may raise it.
+    pub whole: RankBounds,
+    /// The rank without the drift itself.
+    pub strong: RankBounds,
+}
+
 /// A field, or a bracket of fields.
 #[derive(Clone, Debug)]
 struct Motion {
@@ -92,7 +105,7 @@ pub struct Accessibility {
 
 impl Accessibility {
     /// Takes brackets at a generic state that satisfies `conditions` (values for solved symbols) until they add nothing, or of
-    /// up to `order` fields beyond the first.
+    /// up to `order` fields beyond the first; `tell` hears of each length what is known by then.
     ///
     /// # Errors
     /// Where no field moves the states, every state is a pole or an angle is met outside sines and cosines.
@@ -100,6 +113,7 @@ impl Accessibility {
         system: &mut System,
         conditions: &Assignment,
         order: Option<usize>,
+        tell: &mut dyn FnMut(BracketsSoFar),
     ) -> Result<Accessibility, CodistributionError> {
         system.require_motion().map_err(CodistributionError::NoMotion)?;
         let columns = Accessibility::columns_of(system);
@@ -130,6 +144,10 @@ impl Accessibility {
         let longest = order.unwrap_or(full);
         let (mut taken, mut stop) = (1, Stop::Order);
         for length in 2..=longest.saturating_add(1) {
+            let strong = bounds(system, &rows, conditions, (None, around.strong))?;
+            let whole = RankBounds { at_least: strong.at_least, ..around.whole };
+            let needed = basis.iter().map(|place| motions[*place].name.clone()).collect();
+            tell(BracketsSoFar { needed, order: taken, whole, strong });
             if basis.len() == full {
                 stop = Stop::Full;
                 break;
@@ -357,6 +375,6 @@ fn around(
         })
         .map(|(symbol, value)| (*symbol, *value))
         .collect();
-    let found = Accessibility::new(system, &kept, order)?;
+    let found = Accessibility::new(system, &kept, order, &mut |_| ())?;
     Ok(Around { whole: found.whole, strong: found.strong })
 }

@@ -116,8 +116,7 @@ impl Locus {
             sources.insert(symbol, source(system, symbol, fixed.get(&symbol))?);
         }
         let (avoid, avoid_nodes) = avoided(system, branch, &sources, is_angle);
-        let mut conditions = branch.steps.clone();
-        conditions.extend(branch.assumed.iter().map(|guard| guard.text(&system.graph)));
+        let mut conditions = branch.in_words(system);
         conditions
             .extend(fixed.iter().map(|(symbol, value)| format!("{} = {value}", system.symbol_name(*symbol))));
         Ok(Locus {

@@ -30,7 +30,7 @@ mod singular;
 mod state;
 mod symmetry;
 
-pub use accessibility::{Accessibility, BracketMinor, RankBounds};
+pub use accessibility::{Accessibility, BracketMinor, BracketsSoFar, RankBounds};
 #[doc(hidden)]
 pub use codistribution::OWN_ROWS;
 pub use codistribution::{Codistribution, Frame, Length, Word};

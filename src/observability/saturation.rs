@@ -56,6 +56,8 @@ pub enum Stop {
     TooMany,
     /// No Lie derivatives were asked for.
     NotTaken,
+    /// The user did not wait for longer ones.
+    Interrupted,
 }
 
 /// What bounds a rank from above.

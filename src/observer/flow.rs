@@ -64,11 +64,17 @@ pub struct ModelFlow<'a> {
     pub signals: &'a Signals,
     /// The relative and absolute error of a step.
     pub tolerance: f64,
+    /// The part of the tolerance below which the estimated error of a single step from one sample to the next has to be: a longer one is left
+    /// to the integrator that refines. [`CAREFUL`] where errors add up over a recording, one where they do not.
+    pub quick: f64,
 }
 
 /// The equations are evaluated no more often than this between two samples (one step takes thirteen times): who needs
 /// more has met a pole.
 const MOST_EVALUATIONS: usize = 3000;
+
+/// A step that is not refined errs by this part of what is tolerated, so that a thousand of them err by no more than one that is.
+pub const CAREFUL: f64 = 1e-3;
 
 /// The unknowns that one call can carry.
 pub const MOST_UNKNOWNS: usize = 32;
@@ -119,17 +125,17 @@ impl ModelFlow<'_> {
         let arithmetic = Duals::<J>::default;
         let rates = model.rates.program.load(arithmetic()).map_err(|refusal| refuse(times[0], refusal))?;
         let seen = model.seen.program.load(arithmetic()).map_err(|refusal| refuse(times[0], refusal))?;
-        let registers = RefCell::new(Vec::new());
+        let (registers, room) = (RefCell::new(Vec::new()), RefCell::new((Vec::new(), Vec::new())));
         type LoadedFormulas<'l, J> = crate::expression::Loaded<'l, Duals<J>>;
-        let evaluate = |formulas: &Formulas, loaded: &LoadedFormulas<'_, J>, time, y: &[f64]| {
+        let input = |source: &InputSource, y: &[f64], given: &[f64]| match *source {
+            InputSource::State(place) => J::unpack(&y[place * J::LENGTH..(place + 1) * J::LENGTH]),
+            InputSource::Column(place) | InputSource::Rate(place) => J::constant(given[place]),
+        };
+        let seen_at = |time: f64, y: &[f64]| {
             let mut given = vec![0.0; model.columns.len()];
             self.signals.at(&model.columns, time, &mut given);
-            let input = |source: &InputSource| match *source {
-                InputSource::State(place) => J::unpack(&y[place * J::LENGTH..(place + 1) * J::LENGTH]),
-                InputSource::Column(place) | InputSource::Rate(place) => J::constant(given[place]),
-            };
-            let inputs: Vec<J> = formulas.sources.iter().map(input).collect();
-            loaded.run(&inputs, &mut registers.borrow_mut())
+            let inputs: Vec<J> = model.seen.sources.iter().map(|source| input(source, y, &given)).collect();
+            seen.run(&inputs, &mut registers.borrow_mut())
         };
         let evaluate_at = |formulas: &Formulas, loaded: &LoadedFormulas<'_, J>, time: J, states: &[J]| {
             let given = self.signals.along(&model.columns, time);
@@ -142,8 +148,7 @@ impl ModelFlow<'_> {
         };
         // what is expected of the outputs at a sample: of those that are late what they were before
         let expected = |time: f64, y: &[f64]| -> Result<Vec<J>, Lost> {
-            let mut values =
-                evaluate(&model.seen, &seen, time, y).map_err(|error| refuse(time, error.refusal))?;
+            let mut values = seen_at(time, y).map_err(|error| refuse(time, error.refusal))?;
             if model.delays.iter().all(Option::is_none) {
                 return Ok(values);
             }
@@ -161,10 +166,16 @@ impl ModelFlow<'_> {
             Ok(values)
         };
         let failure: Cell<Option<(f64, Refusal)>> = Cell::new(None);
-        let right_hand_side =
-            |time: f64, y: &[f64], dy: &mut [f64]| match evaluate(&model.rates, &rates, time, y) {
+        // the equations of motion are evaluated most: in the same room each time
+        let right_hand_side = |time: f64, y: &[f64], dy: &mut [f64]| {
+            let (given, inputs) = &mut *room.borrow_mut();
+            given.resize(model.columns.len(), 0.0);
+            self.signals.at(&model.columns, time, given);
+            inputs.clear();
+            inputs.extend(model.rates.sources.iter().map(|source| input(source, y, given)));
+            match rates.run_in(inputs, &mut registers.borrow_mut()) {
                 Ok(values) => {
-                    for (value, places) in values.iter().zip(dy.chunks_mut(J::LENGTH)) {
+                    for (value, places) in values.zip(dy.chunks_mut(J::LENGTH)) {
                         value.pack(places);
                     }
                 }
@@ -172,7 +183,8 @@ impl ModelFlow<'_> {
                     failure.set(Some((time, error.refusal)));
                     dy.fill(f64::NAN);
                 }
-            };
+            }
+        };
 
         let mut y = vec![0.0; start.len() * J::LENGTH];
         for (place, value) in start.iter().enumerate() {
@@ -188,7 +200,7 @@ impl ModelFlow<'_> {
         for (i, time) in times.iter().enumerate() {
             if i > 0 {
                 failure.set(None);
-                if quick.take(&right_hand_side, times[i - 1], *time, &mut y, self.tolerance) {
+                if quick.take(&right_hand_side, times[i - 1], *time, &mut y, self.quick * self.tolerance) {
                     let values = expected(*time, &y)?;
                     samples.push(sample(*time, start.len(), free.len(), size, &y, &values));
                     continue;

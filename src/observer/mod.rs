@@ -68,7 +68,7 @@ pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom, ReadingErrors};
 pub use flow::Lost;
 pub(crate) use flow::advance;
 #[doc(hidden)]
-pub use flow::{ModelFlow, Order, Sample};
+pub use flow::{CAREFUL, ModelFlow, Order, Sample};
 pub use high_gain::HighGain;
 pub use integration::Integration;
 pub use kalman::Kalman;

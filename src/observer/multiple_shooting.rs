@@ -48,8 +48,9 @@ pub struct MultipleShooting {
 /// Steps of the region of trust that are allowed at the end of a search.
 pub const LAST_STEPS: u64 = 50;
 
-/// The tolerance of the integration while nodes are sought.
-const TOLERANCE: f64 = 1e-8;
+/// The tolerance of the integration while nodes are sought, in parts of one, or of the smallest size of a state where that is less: a hundredth of the
+/// difference that ends the search.
+const TOLERANCE: f64 = 1e-6;
 
 /// Of the states that were found, so many of the best ones that are not one are followed to their end.
 const MOST_ENDS: usize = 4;
@@ -220,18 +221,24 @@ impl MultipleShooting {
             let size = sampled.or(own).unwrap_or(0.0).max(column().unwrap_or(0.0));
             if size > 0.0 { size } else { 1.0 }
         };
+        let sizes: Vec<f64> = (0..base.len()).map(size).collect();
+        let least = sizes.iter().copied().fold(1.0, f64::min);
         let steps = rows.len() - 1;
         let count = self.shooting.segments.clamp(1, steps.max(1));
         let joint = |i: usize| steps * i / count;
         Segments {
-            flow: super::ModelFlow { tolerance: TOLERANCE.max(task.tolerance), ..task.full_flow() },
+            flow: super::ModelFlow {
+                tolerance: (TOLERANCE * least).max(task.tolerance),
+                quick: 1.0,
+                ..task.full_flow()
+            },
             times: &times[rows.clone()],
             spread: spread.collect(),
             measured: read,
             rows: (0..count).map(|i| joint(i)..joint(i + 1) + 1).collect(),
             moving,
             constant,
-            sizes: (0..base.len()).map(size).collect(),
+            sizes,
             base,
         }
     }

@@ -1,6 +1,7 @@
 //! What every observer is given: signals, models of what made them, and what is known beside them.
 
 use super::fit::Noise;
+use super::flow::CAREFUL;
 use super::learned::{Arrival, Learned};
 use super::loss::Loss;
 use super::track::Track;
@@ -193,7 +194,7 @@ impl<'a> Task<'a> {
     }
 
     pub(super) fn full_flow(&self) -> ModelFlow<'_> {
-        ModelFlow { model: &self.full, signals: self.signals, tolerance: self.tolerance }
+        ModelFlow { model: &self.full, signals: self.signals, tolerance: self.tolerance, quick: CAREFUL }
     }
 
     /// The full state at a sample: what is sought as it is believed, the outputs as they are read there.
@@ -264,7 +265,12 @@ impl<'a> Task<'a> {
         sought: &[f64],
         rows: std::ops::Range<usize>,
     ) -> Result<Vec<Vec<f64>>, Lost> {
-        let flow = ModelFlow { model: &self.reduced, signals: self.signals, tolerance: self.tolerance };
+        let flow = ModelFlow {
+            model: &self.reduced,
+            signals: self.signals,
+            tolerance: self.tolerance,
+            quick: CAREFUL,
+        };
         let samples = flow.follow(sought, &[], &self.signals.times()[rows], Order::Value)?;
         Ok(samples.into_iter().map(|sample| sample.state).collect())
     }

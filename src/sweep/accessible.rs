@@ -7,7 +7,8 @@ use super::question::{RankError, guarded, held_parameters};
 use super::states::{SweepOptions, SweepReport};
 use crate::expression::{NodeId, Symbol};
 use crate::observability::{
-    Accessibility, CodistributionError, Locus, RankBounds, Stop, parse_condition, solve_conditions,
+    Accessibility, BracketsSoFar, CodistributionError, Locus, RankBounds, Stop, parse_condition,
+    solve_conditions,
 };
 use crate::system::{FieldRole, System};
 use dashu::rational::RBig;
@@ -17,6 +18,7 @@ use std::sync::atomic::Ordering;
 const STATES_OF_A_MINOR: u64 = 5;
 
 /// What was found on one branch of the conditions.
+#[derive(Clone)]
 pub struct AccessibilityBranch {
     /// The conditions, solved, in words.
     pub conditions: Vec<String>,
@@ -32,11 +34,12 @@ pub struct AccessibilityBranch {
     pub whole: RankBounds,
     /// That of the strong accessibility distribution.
     pub strong: RankBounds,
-    /// The rank of the brackets that were taken at the sampled states, the drift among them.
-    pub sampled: SweepReport,
+    /// The rank of the brackets that were taken at the sampled states, the drift among them; none where it did not come to that.
+    pub sampled: Option<SweepReport>,
 }
 
 /// What was found.
+#[derive(Clone)]
 pub struct AccessibilityAnswer {
     /// The file.
     pub file: String,
@@ -53,9 +56,9 @@ pub struct AccessibilityAnswer {
 }
 
 impl AccessibilityAnswer {
-    /// Whether a sweep was stopped early.
+    /// Whether it was stopped early.
     pub fn interrupted(&self) -> bool {
-        self.branches.iter().any(|branch| branch.sampled.interrupted)
+        self.branches.iter().any(|branch| branch.sampled.as_ref().is_none_or(|sampled| sampled.interrupted))
     }
 
     /// Whether the ranks at almost all states are known on every branch.
@@ -89,6 +92,18 @@ pub fn answer_accessibility(
     system: &mut System,
     question: &RankQuestion<'_>,
 ) -> Result<AccessibilityAnswer, RankError> {
+    answer_accessibility_telling(system, question, &mut |_| ())
+}
+
+/// The same; `tell` hears what is known before the end, each time more than before.
+///
+/// # Errors
+/// As [`answer_accessibility`].
+pub fn answer_accessibility_telling(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    tell: &mut dyn FnMut(AccessibilityAnswer),
+) -> Result<AccessibilityAnswer, RankError> {
     if system.states.is_empty() {
         return Err(RankError::NothingToSee(system.name.clone()));
     }
@@ -101,7 +116,16 @@ pub fn answer_accessibility(
         equations.extend(parse_condition(text).map_err(RankError::Condition)?);
     }
     let branches = solve_conditions(system, &equations)?;
-    let (mut answers, known) = (Vec::new(), system.known.clone());
+    let columns = Accessibility::columns_of(system);
+    let mut answer = AccessibilityAnswer {
+        file: system.name.clone(),
+        title: system.title.clone(),
+        fields: system.roles(),
+        seed: question.seed,
+        coordinates: columns.into_iter().map(|symbol| system.symbol_name(symbol).to_owned()).collect(),
+        branches: Vec::new(),
+    };
+    let known = system.known.clone();
     for branch in branches {
         for symbol in question.fixed.keys() {
             if branch.values.contains_key(symbol) {
@@ -110,7 +134,23 @@ pub fn answer_accessibility(
         }
         branch.check_codistribution(system).map_err(RankError::Condition)?;
         let conditions = held_conditions(system, question, &branch);
-        let found = Accessibility::new(system, &conditions, question.order)?;
+        let held = held_parameters(system, question, &branch.values, std::iter::empty());
+        let in_words = branch.in_words(system);
+        let mut tell_of = |found: BracketsSoFar| {
+            let mut so_far = answer.clone();
+            so_far.branches.push(AccessibilityBranch {
+                conditions: in_words.clone(),
+                held: held.clone(),
+                brackets: found.needed,
+                order: found.order,
+                stop: Stop::Interrupted,
+                whole: found.whole,
+                strong: found.strong,
+                sampled: None,
+            });
+            tell(so_far);
+        };
+        let found = Accessibility::new(system, &conditions, question.order, &mut tell_of)?;
         let leave = |system: &mut System, columns: &[Symbol]| {
             system.known = system.states.iter().copied().filter(|state| !columns.contains(state)).collect();
         };
@@ -155,26 +195,18 @@ pub fn answer_accessibility(
             };
         let (whole, strong) = (shown(system, found.whole, false)?, shown(system, found.strong, true)?);
         system.known = known.clone();
-        answers.push(AccessibilityBranch {
+        answer.branches.push(AccessibilityBranch {
             conditions: locus.conditions.clone(),
-            held: held_parameters(system, question, &branch.values, std::iter::empty()),
+            held,
             brackets: found.needed.iter().map(|place| found.names[*place].clone()).collect(),
             order: found.order,
             stop: found.stop,
             whole,
             strong,
-            sampled,
+            sampled: Some(sampled),
         });
     }
-    let columns = Accessibility::columns_of(system);
-    Ok(AccessibilityAnswer {
-        file: system.name.clone(),
-        title: system.title.clone(),
-        fields: system.roles(),
-        seed: question.seed,
-        coordinates: columns.into_iter().map(|symbol| system.symbol_name(symbol).to_owned()).collect(),
-        branches: answers,
-    })
+    Ok(answer)
 }
 
 /// The system as far as its motion goes: what its outputs need to exist is nothing that matters here.

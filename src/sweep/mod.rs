@@ -34,7 +34,9 @@ mod stream;
 mod table;
 mod unseen;
 
-pub use accessible::{AccessibilityAnswer, AccessibilityBranch, answer_accessibility};
+pub use accessible::{
+    AccessibilityAnswer, AccessibilityBranch, answer_accessibility, answer_accessibility_telling,
+};
 pub use asked::RankQuestion;
 pub use certainty::Certainty;
 pub(crate) use cover::{NoCover, in_order};

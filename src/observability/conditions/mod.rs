@@ -59,6 +59,14 @@ pub struct Solution {
     pub unsolved: Vec<UnsolvedBranch>,
 }
 
+impl Branch {
+    /// What holds on it: how its conditions were solved, and what was assumed of the rest.
+    pub fn in_words(&self, system: &System) -> Vec<String> {
+        let assumed = self.assumed.iter().map(|guard| guard.text(&system.graph));
+        self.steps.iter().cloned().chain(assumed).collect()
+    }
+}
+
 /// A branch some conditions of which could not be solved.
 #[derive(Clone, Debug, Default)]
 pub struct UnsolvedBranch {

@@ -5,7 +5,7 @@ use super::generic::finite;
 use super::seen::{part_text, place_text};
 use crate::observability::RankBounds;
 use crate::report::names::{fields_json, fields_text, values_json, values_text};
-use crate::sweep::{AccessibilityAnswer, AccessibilityBranch, UnseenDirection};
+use crate::sweep::{AccessibilityAnswer, AccessibilityBranch, SweepReport, UnseenDirection};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -20,7 +20,7 @@ fn bounds_json(bounds: &RankBounds) -> Value {
 }
 
 fn branch_json(branch: &AccessibilityBranch) -> Value {
-    let mut sampled = sweep_json(&branch.sampled);
+    let mut sampled = branch.sampled.as_ref().map_or(Value::Null, sweep_json);
     if let Some(fields) = sampled.as_object_mut()
         && let Some(unseen) = fields.remove("unseen")
     {
@@ -91,7 +91,9 @@ pub fn accessibility_text(answer: &AccessibilityAnswer) -> String {
         let _ = writeln!(out, "brackets that were needed: {}", branch.brackets.join(", "));
         let _ =
             writeln!(out, "brackets of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
-        sampled_text(branch, &mut out);
+        if let Some(report) = &branch.sampled {
+            sampled_text(branch, report, &mut out);
+        }
     }
     out.trim_end().to_owned()
 }
@@ -114,8 +116,7 @@ fn differential_text(direction: &UnseenDirection) -> String {
     text
 }
 
-fn sampled_text(branch: &AccessibilityBranch, out: &mut String) {
-    let report = &branch.sampled;
+fn sampled_text(branch: &AccessibilityBranch, report: &SweepReport, out: &mut String) {
     let _ = writeln!(out, "the brackets that were taken, at sampled states");
     if report.samples == 0 {
         let _ = writeln!(out, "  no state could be decided");

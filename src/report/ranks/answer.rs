@@ -119,6 +119,7 @@ pub(crate) fn stop_text(stop: Stop) -> &'static str {
         Stop::Order => "the longest words that were allowed",
         Stop::TooMany => "there are too many longer words",
         Stop::NotTaken => "none were asked for",
+        Stop::Interrupted => "interrupted",
     }
 }
 

@@ -84,6 +84,59 @@ fn a_scene_has_no_markup_either() {
     assert!(page.contains("Content-Security-Policy"));
 }
 
+/// The columns of a recording, CSV or Parquet, with markup and codes of terminals as names: in pages of what fits, of faults, and in messages.
+#[test]
+fn columns_of_recordings_act_nowhere() {
+    let folder = folder();
+    write(
+        &folder,
+        "m.proof",
+        "system \"m\"\nstate x\nparam k = 1\ndrift f\n  x' = -k*x\noutput x\nclaim 1: x = x\n",
+    );
+    let harm = format!("{}\\u001b[2J\\nconfirmed", MARKUP.replace('"', "'"));
+    let scene = |name: &str| {
+        format!(
+            "title = \"t\"\nmodel = \"m.proof\"\nduration = 1\nsamples = 41\n[start]\nx = 1\n[columns]\nx = \"{name}\"\n\
+             [data]\non_fault = \"skip\"\n[observer]\nmethods = [\"trust-region\"]\nestimate = [\"x\"]\nguess_off = 0.1\nwindow = 10\n"
+        )
+    };
+    let harmful = write(&folder, "harmful.toml", scene(&harm));
+    let other = write(&folder, "other.toml", scene("nowhere"));
+    let run = |arguments: &[&str]| {
+        let output = palmistry(arguments);
+        let said = text(&output);
+        assert!(!said.contains(|c: char| c.is_control() && c != '\n'), "{arguments:?}: {said:?}");
+        assert!(
+            !said.lines().any(|line| line.trim_start().starts_with("confirmed")),
+            "{arguments:?}: {said}"
+        );
+        (output, said)
+    };
+    for name in ["x.csv", "x.parquet"] {
+        let file = folder.path().join(name);
+        let file = file.to_str().unwrap();
+        run(&["observe", harmful.to_str().unwrap(), "--record", file]);
+        if name == "x.csv" {
+            let table = std::fs::read_to_string(file).unwrap();
+            let last = table.lines().nth(20).unwrap();
+            let broken = format!("{},<b>oops\u{1b}[2J", last.split(',').next().unwrap());
+            std::fs::write(file, table.replacen(last, &broken, 1)).unwrap();
+        }
+        let out = folder.path().join(format!("out of {name}"));
+        let run_of = ["observe", harmful.to_str().unwrap(), "--data", file, "--out", out.to_str().unwrap()];
+        let (output, said) = run(&run_of);
+        assert!(output.status.code().is_some_and(|code| code != 2), "{said}");
+        let page = std::fs::read_to_string(out.join("index.html")).unwrap_or_else(|_| panic!("{said}"));
+        for act in ["<img", "<script>alert", "<b>oops", "\u{1b}"] {
+            assert!(!page.contains(act), "{act}: {}", page.split(act).next().unwrap().len());
+        }
+        // the names of what is there are in the message that misses another one
+        let (output, said) = run(&["observe", other.to_str().unwrap(), "--data", file]);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("nowhere") && said.contains("img src=x"), "{said}");
+    }
+}
+
 /// Names and titles with the codes of terminals, ends of lines and marks of direction: nothing that is printed has any of them.
 #[test]
 fn nothing_acts_on_a_terminal() {

@@ -210,6 +210,14 @@ fn what_is_known_before_the_end_is_kept() {
     let drops = ["rank", "proofs/moll2002/circular_palms_rank.proof", "--where-it-drops"];
     let found = kept(&drops, &|found| found["rank"].is_number());
     assert_eq!((&found["exact"], &found["rank"]), (&false.into(), &10.into()));
+    let moved = ["rank", "proofs/moll2002/general.proof", "--accessible", "--samples", "100000000"];
+    let found = kept(&moved, &|found| found["branches"][0].is_object());
+    let strong = &found["branches"][0]["strong_accessibility"];
+    let dimension = found["dimension"].as_u64().unwrap();
+    let (least, most) = (strong["at_least"].as_u64().unwrap(), strong["at_most"].as_u64().unwrap());
+    assert!((1..=dimension).contains(&least) && (least..=dimension).contains(&most), "{found}");
+    let brackets = found["branches"][0]["brackets"].as_array().unwrap();
+    assert!(!brackets.is_empty() && brackets.len() as u64 <= dimension, "{found}");
 }
 
 /// Outputs whose values are met by very many states, beside a product of which nothing else is seen.
