@@ -3,6 +3,7 @@
 use super::expression::{ForeignExpr, Span};
 use super::model::{ForeignModel, ForeignOutput, ForeignRate};
 use super::script::{Dialect, Parser, Syntax, SyntaxKind, Token, TokenKind, meaning, tokens};
+use crate::foreign::Budget;
 use crate::system::Problem;
 use std::collections::BTreeSet;
 
@@ -15,8 +16,8 @@ struct Found {
 }
 
 /// Reads the model of a file, or the one of several that has a name or number.
-pub(super) fn read(text: &str, which: Option<&str>) -> Result<ForeignModel, Problem> {
-    let (words, comments) = tokens(text, Dialect::Julia)?;
+pub(super) fn read(text: &str, which: Option<&str>, budget: &Budget) -> Result<ForeignModel, Problem> {
+    let (words, comments) = tokens(text, Dialect::Julia, budget)?;
     let found = models(&words);
     if found.is_empty() {
         return super::toolkit::read(text, &words, &comments);

@@ -180,7 +180,7 @@ fn read(name: &str, text: &str, question: &ImportQuestion) -> Result<ImportedMod
     let which = question.model.as_deref();
     let budget = Budget::new(ALLOWANCE);
     let mut model = match format {
-        ForeignFormat::Julia => julia::read(&text, which),
+        ForeignFormat::Julia => julia::read(&text, which, &budget),
         ForeignFormat::Sbml => sbml::read(&text, &budget),
         ForeignFormat::StrikePy => scripts::read(&text, Dialect::Python, which, &budget),
         ForeignFormat::StrikeGoldd => scripts::read(&text, Dialect::Matlab, which, &budget),

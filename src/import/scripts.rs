@@ -46,7 +46,7 @@ pub(super) fn read(
     which: Option<&str>,
     budget: &Budget,
 ) -> Result<ForeignModel, Problem> {
-    let (words, comments) = tokens(text, dialect)?;
+    let (words, comments) = tokens(text, dialect, budget)?;
     let mut script = Script {
         workspace: ScriptWorkspace::new(budget),
         dialect,

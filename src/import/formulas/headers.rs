@@ -1,6 +1,7 @@
 //! Lines such as `states: x, y` that say what formulas do not.
 
 use super::pieces::symbol;
+use crate::foreign::Budget;
 use crate::import::expression::Span;
 use crate::import::script::{Dialect, Parser, Syntax, tokens};
 use crate::system::Problem;
@@ -49,9 +50,9 @@ pub(super) fn without_headers(text: &str) -> Result<(String, BTreeMap<&'static s
 }
 
 /// The expressions of a header, at their places.
-pub(super) fn expressions_in(text: &str, span: &Span) -> Result<Vec<Syntax>, Problem> {
+pub(super) fn expressions_in(text: &str, span: &Span, budget: &Budget) -> Result<Vec<Syntax>, Problem> {
     let masked: String = format!("{}{}", " ".repeat(span.start), &text[span.clone()]);
-    let (words, _) = tokens(&masked, Dialect::Printed)?;
+    let (words, _) = tokens(&masked, Dialect::Printed, budget)?;
     let mut parser = Parser::new(&words, Dialect::Printed);
     let mut list = Vec::new();
     while !parser.at_end() {
@@ -63,9 +64,9 @@ pub(super) fn expressions_in(text: &str, span: &Span) -> Result<Vec<Syntax>, Pro
     Ok(list)
 }
 
-pub(super) fn names_in(text: &str, span: Option<&Span>) -> Result<Vec<String>, Problem> {
+pub(super) fn names_in(text: &str, span: Option<&Span>, budget: &Budget) -> Result<Vec<String>, Problem> {
     let Some(span) = span else { return Ok(Vec::new()) };
-    let list = expressions_in(text, span)?;
+    let list = expressions_in(text, span, budget)?;
     list.iter()
         .map(|one| {
             symbol(one).ok_or_else(|| {

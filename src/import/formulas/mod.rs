@@ -38,14 +38,14 @@ pub(in crate::import) fn read(
     budget: &Budget,
 ) -> Result<ForeignModel, Problem> {
     let (body, headers) = without_headers(text)?;
-    let (words, comments) = tokens(&body, Dialect::Printed)?;
+    let (words, comments) = tokens(&body, Dialect::Printed, budget)?;
     let mut reading = Reading::new(budget);
     for (header, list) in [("states", &mut reading.states), ("parameters", &mut reading.parameters)] {
-        list.extend(names_in(text, headers.get(header))?);
+        list.extend(names_in(text, headers.get(header), budget)?);
     }
-    reading.known = names_in(text, headers.get("known"))?;
-    reading.inputs = names_in(text, headers.get("inputs"))?;
-    reading.unknown_inputs = names_in(text, headers.get("unknown inputs"))?;
+    reading.known = names_in(text, headers.get("known"), budget)?;
+    reading.inputs = names_in(text, headers.get("inputs"), budget)?;
+    reading.unknown_inputs = names_in(text, headers.get("unknown inputs"), budget)?;
     if !roles.states.is_empty() {
         reading.states = roles.states.clone();
     }
@@ -59,11 +59,13 @@ pub(in crate::import) fn read(
         }
     }
     if let Some(span) = headers.get("outputs") {
-        reading.outputs =
-            expressions_in(text, span)?.iter().map(|one| reading.value(one)).collect::<Result<_, _>>()?;
+        reading.outputs = expressions_in(text, span, budget)?
+            .iter()
+            .map(|one| reading.value(one))
+            .collect::<Result<_, _>>()?;
     }
     for wanted in &roles.outputs {
-        let (words, _) = tokens(wanted, Dialect::Printed)?;
+        let (words, _) = tokens(wanted, Dialect::Printed, budget)?;
         let mut parser = Parser::new(&words, Dialect::Printed);
         let one = parser.expression().and_then(|one| match parser.at_end() {
             true => reading.value(&one),

@@ -1,6 +1,7 @@
 //! Foreign text in words: numbers, names, texts and signs; comments kept aside.
 
 use super::super::expression::Span;
+use crate::foreign::Budget;
 use crate::system::Problem;
 
 /// Whose text it is.
@@ -59,13 +60,19 @@ const SIGNS: [&str; 47] = [
 /// Comments with the places where they begin.
 pub(in crate::import) type Comments = Vec<(usize, String)>;
 
-/// The words of a text, and its comments with their places.
+/// The words of a text, each a node of the budget, and its comments with their places.
 ///
 /// # Errors
-/// A character that begins nothing, or a text that does not end.
-pub(in crate::import) fn tokens(text: &str, dialect: Dialect) -> Result<(Vec<Token>, Comments), Problem> {
+/// A character that begins nothing, a text that does not end, or too many words.
+pub(in crate::import) fn tokens(
+    text: &str,
+    dialect: Dialect,
+    budget: &Budget,
+) -> Result<(Vec<Token>, Comments), Problem> {
     let mut reading = Reading { text, dialect, at: 0, tokens: Vec::new(), comments: Vec::new() };
     reading.all()?;
+    let paid = budget.nodes(reading.tokens.len());
+    paid.map_err(|spent| crate::import::too_much(&(0..text.len().min(1)), spent))?;
     Ok((reading.tokens, reading.comments))
 }
 

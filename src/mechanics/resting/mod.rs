@@ -29,4 +29,4 @@ pub use crate::mechanics::moving::Jump;
 pub use follow::follow_resting;
 pub use plan::{PlanError, plan_3_14};
 pub use poses::{BalancedPose, descend, stable_poses, stationary_poses};
-pub use potential::{Potential, SupportFunction, contacts_at_rest, potential};
+pub use potential::{ConvexBody, Potential, contacts_at_rest, potential};

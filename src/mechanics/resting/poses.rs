@@ -3,7 +3,7 @@
 //! The slope of the potential is followed over cells of half a degree. Where its own slope changes sign within a cell the extremum is found first, so that two equilibria
 //! that lie in one cell (as they do near a fold) are both found. What can be missed are two extrema of the slope in one cell: detail of the outline finer than that.
 
-use super::potential::SupportFunction;
+use super::potential::ConvexBody;
 use std::f64::consts::TAU;
 
 /// Cells of a turn.
@@ -22,7 +22,7 @@ pub struct BalancedPose {
 }
 
 /// First and second derivative of the potential by `phi0`.
-pub(super) fn slope<B: SupportFunction + ?Sized>(body: &B, phi0: f64, palms: [f64; 2]) -> [f64; 2] {
+pub(super) fn slope<B: ConvexBody + ?Sized>(body: &B, phi0: f64, palms: [f64; 2]) -> [f64; 2] {
     let all = super::potential::normals(phi0, palms).map(|angle| body.support(angle));
     let [phi1, phi2] = palms;
     let (a, b, c) = ((phi1 + phi2).sin(), phi1.sin(), phi2.sin());
@@ -92,7 +92,7 @@ fn cut(at: &dyn Fn(f64) -> [f64; 2], a: Node, b: Node) -> ([Node; 3], usize) {
 /// Every equilibrium over the turn, by its angle from zero to a turn, stable and unstable ones in alternation.
 ///
 /// None at all where the potential does not change with the turn, as that of a disc about its middle.
-pub fn stationary_poses<B: SupportFunction + ?Sized>(body: &B, palms: [f64; 2]) -> Vec<BalancedPose> {
+pub fn stationary_poses<B: ConvexBody + ?Sized>(body: &B, palms: [f64; 2]) -> Vec<BalancedPose> {
     let at = |phi0: f64| slope(body, phi0, palms);
     let node = |i: usize| {
         let phi0 = TAU * i as f64 / CELLS as f64;
@@ -117,7 +117,7 @@ pub fn stationary_poses<B: SupportFunction + ?Sized>(body: &B, palms: [f64; 2]) 
 }
 
 /// Every stable pose, by its angle from zero to a turn: all minima of the potential, at palms where `sin phi2` is positive.
-pub fn stable_poses<B: SupportFunction + ?Sized>(body: &B, palms: [f64; 2]) -> Vec<f64> {
+pub fn stable_poses<B: ConvexBody + ?Sized>(body: &B, palms: [f64; 2]) -> Vec<f64> {
     let all = stationary_poses(body, palms).into_iter();
     all.filter(|at| at.stiffness > 0.0).map(|at| at.phi0).collect()
 }
@@ -131,7 +131,7 @@ pub(super) struct Descent {
     pub convex: bool,
 }
 
-pub(super) fn descent<B: SupportFunction + ?Sized>(body: &B, palms: [f64; 2], from: f64) -> Option<Descent> {
+pub(super) fn descent<B: ConvexBody + ?Sized>(body: &B, palms: [f64; 2], from: f64) -> Option<Descent> {
     let at = |phi0: f64| slope(body, phi0, palms);
     let mut a = Node { phi0: from, value: at(from) };
     let mut convex = a.value[1] > 0.0;
@@ -162,6 +162,6 @@ pub(super) fn descent<B: SupportFunction + ?Sized>(body: &B, palms: [f64; 2], fr
 
 /// The minimum to which a body falls that is released in a pose: the next one downhill, however far, not taken into the first turn. None where there is no way down, as
 /// for a disc about its middle, or the palms' angles are none.
-pub fn descend<B: SupportFunction + ?Sized>(body: &B, palms: [f64; 2], from: f64) -> Option<f64> {
+pub fn descend<B: ConvexBody + ?Sized>(body: &B, palms: [f64; 2], from: f64) -> Option<f64> {
     descent(body, palms, from).map(|found| found.phi0).filter(|phi0| phi0.is_finite())
 }

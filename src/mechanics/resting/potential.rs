@@ -5,19 +5,19 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::{Add, Mul};
 
 /// A body as this module sees it. Closures from an angle to `[h, h', h'']` are bodies, too.
-pub trait SupportFunction: Sync {
+pub trait ConvexBody: Sync {
     /// The support function about the centre of mass and its first two derivatives, `[h, h', h'']` in metres, at the outward normal with this angle in the
     /// body's frame, in radians. It has the period of a turn, and `h + h''` is positive.
     fn support(&self, angle: f64) -> [f64; 3];
 }
 
-impl SupportFunction for Shape {
+impl ConvexBody for Shape {
     fn support(&self, angle: f64) -> [f64; 3] {
         Shape::support(self, angle)
     }
 }
 
-impl<F: Fn(f64) -> [f64; 3] + Sync> SupportFunction for F {
+impl<F: Fn(f64) -> [f64; 3] + Sync> ConvexBody for F {
     fn support(&self, angle: f64) -> [f64; 3] {
         self(angle)
     }
@@ -90,7 +90,7 @@ pub(super) fn normals(phi0: f64, [phi1, phi2]: [f64; 2]) -> [f64; 2] {
 }
 
 /// The height of the centre of mass with its first and second derivatives by `phi0`, `phi1`, `phi2`; not finite where `sin phi2` vanishes.
-pub fn potential<B: SupportFunction + ?Sized>(body: &B, phi0: f64, palms: [f64; 2]) -> Potential {
+pub fn potential<B: ConvexBody + ?Sized>(body: &B, phi0: f64, palms: [f64; 2]) -> Potential {
     let [phi1, phi2] = palms;
     let support = normals(phi0, palms).map(|angle| body.support(angle));
     let sine_of = |angle: f64, weights: [f64; 3]| {
@@ -120,11 +120,7 @@ pub struct RestingContacts {
 }
 
 /// The contacts of a body in a pose, in equilibrium or not.
-pub fn contacts_at_rest<B: SupportFunction + ?Sized>(
-    body: &B,
-    phi0: f64,
-    palms: [f64; 2],
-) -> RestingContacts {
+pub fn contacts_at_rest<B: ConvexBody + ?Sized>(body: &B, phi0: f64, palms: [f64; 2]) -> RestingContacts {
     let [phi1, phi2] = palms;
     let support = normals(phi0, palms).map(|angle| body.support(angle));
     let ([r1, r2], d) = ([support[0][0], support[1][0]], [-support[0][1], -support[1][1]]);
