@@ -59,85 +59,43 @@
 
 #![warn(missing_docs)]
 
-// Each module is a floor and imports only from those above it here.
+// Each is a crate under `crates/`, or a module of one, and knows only those above it here: their manifests say so.
 
-// what strangers wrote: how it is shown, how much of it is taken in
 #[doc(hidden)]
-pub mod foreign;
+pub use palmistry_io::{file, foreign};
 
-// files: read within bounds, written whole or not at all
+pub use palmistry_math::{expression, number};
+
+pub use palmistry_lang as system;
+
+pub use palmistry_import as import;
+
+pub use palmistry_checker as checker;
+
+pub use palmistry_rank::{observability, sweep};
+
+pub use palmistry_prove::{certificate, claim};
 #[doc(hidden)]
-pub mod file;
+pub use palmistry_prove::{drops, evidence};
 
-// what a value can be
-pub mod number;
-
-// the shape of a convex body from what was touched of it
-pub mod shape;
-
-// from text to a shared graph of expressions, its derivative, its value
-pub mod expression;
-
-// a system, and how it is read from a proof file
-pub mod system;
-
-// models of other programs, as proof files
-pub mod import;
-
-// what was found, evaluated again by code that shares nothing with what found it
-pub mod checker;
-
-// inequalities: signs, sums of squares, boxes
-pub(crate) mod inequality;
-
-// Lie derivatives, codistribution, conditions
-pub mod observability;
-
-// the rank at many states
-pub mod sweep;
-
-// full rank on boxes
-pub mod certificate;
-
-// the exact sets on which a rank drops
 #[doc(hidden)]
-pub mod drops;
+pub use palmistry_bodies::mechanics;
+pub use palmistry_bodies::{pose_surface, shape};
 
-// what verdicts rest on, written down for the checker
+pub use palmistry_observe as observer;
+
+pub use palmistry_scenes as experiment;
+
+pub use palmistry_workbench::paper;
 #[doc(hidden)]
-pub mod evidence;
+pub use palmistry_workbench::tradeoff;
 
-// claims, the engines that decide them, verdicts
-pub mod claim;
-
-// real bodies between real palms, a second witness for the physics
-#[doc(hidden)]
-pub mod mechanics;
-
-// the surface of stable poses of a body between slow palms
-pub mod pose_surface;
-
-// states recovered from what is measured
-pub mod observer;
-
-// speed against accuracy, the extremes
-#[doc(hidden)]
-pub mod tradeoff;
-
-// bodies, sensors and observers together: scenes
-pub mod experiment;
-
-// a folder of claims, sets, pictures and scenes taken through everything below
-pub mod paper;
-
-// the page, the plots, the JSON
 #[cfg(feature = "report")]
-pub mod report;
+pub use palmistry_report as report;
 
-// what an editor asks while a file is written
 #[cfg(feature = "cli")]
 #[doc(hidden)]
-pub mod lsp;
+pub use palmistry_lsp as lsp;
 
 pub use certificate::certify;
 pub use claim::{

@@ -1,0 +1,254 @@
+//! Foreign expressions in our language, exactly, with no more brackets than it takes.
+
+use super::expression::{ForeignExpr, ForeignKind, ForeignOrder};
+use super::names::ForeignNames;
+use dashu::base::Sign;
+use dashu::integer::{IBig, UBig};
+use dashu::rational::RBig;
+use palmistry_io::foreign::Budget;
+use palmistry_lang::Problem;
+
+/// How strongly what is written holds together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Power,
+    Primary,
+}
+
+/// The text of an expression without cases.
+pub(super) fn text(
+    expression: &ForeignExpr,
+    names: &ForeignNames,
+    budget: &Budget,
+) -> Result<String, Problem> {
+    if expression.depth() > super::expression::DEEPEST * 2 {
+        let problem = Problem::new(&expression.span, "this is nested too deeply", "this");
+        return Err(problem.help("give inner parts names of their own"));
+    }
+    let text = written(expression, names)?.0;
+    budget.bytes(text.len()).map_err(|spent| super::too_much(&expression.span, spent))?;
+    Ok(text)
+}
+
+fn written(expression: &ForeignExpr, names: &ForeignNames) -> Result<(String, Binding), Problem> {
+    Ok(match &expression.kind {
+        ForeignKind::Number(value) => number(value),
+        ForeignKind::Pi => ("pi".to_owned(), Binding::Primary),
+        ForeignKind::Name(name) => (names.ours(name).to_owned(), Binding::Primary),
+        ForeignKind::Sum(terms) => {
+            let mut out = String::new();
+            for (at, (subtracted, term)) in terms.iter().enumerate() {
+                let (text, binding) = written(term, names)?;
+                // a minus in front of a term is the sign of the term
+                let (text, negative) = match text.strip_prefix('-') {
+                    Some(rest) if binding >= Binding::Product => (rest.to_owned(), !*subtracted),
+                    // adding to a sum changes nothing in it
+                    _ if binding == Binding::Sum && (at > 0 || *subtracted) => {
+                        (format!("({text})"), *subtracted)
+                    }
+                    _ => (text, *subtracted),
+                };
+                match (at, negative) {
+                    (0, false) => {}
+                    (0, true) => out.push('-'),
+                    (_, false) => out.push_str(" + "),
+                    (_, true) => out.push_str(" - "),
+                }
+                out.push_str(&text);
+            }
+            // one term with a minus is a product, as far as brackets are concerned
+            let binding = if terms.len() == 1 { Binding::Product } else { Binding::Sum };
+            (out, binding)
+        }
+        ForeignKind::Product(factors) => {
+            let (mut out, mut negative) = (String::new(), false);
+            let is_one = |factor: &ForeignExpr| {
+                factor.as_number().is_some_and(|n| *n == RBig::ONE || *n == RBig::from(-1))
+            };
+            for (divided, factor) in factors {
+                // a factor of minus one is a sign
+                if is_one(factor) && factors.iter().any(|(divided, other)| !divided && !is_one(other)) {
+                    negative ^= factor.as_number().is_some_and(|n| *n != RBig::ONE);
+                    continue;
+                }
+                let at = out.len();
+                let (text, binding) = written(factor, names)?;
+                let (text, binding) = match text.strip_prefix('-') {
+                    Some(rest) if binding == Binding::Product => {
+                        negative = !negative;
+                        (rest.to_owned(), binding)
+                    }
+                    _ => (text, binding),
+                };
+                // what is divided by holds together; a product in front or behind a factor is one with it
+                let brackets = binding == Binding::Sum || *divided && binding <= Binding::Product;
+                let text = if brackets { format!("({text})") } else { text };
+                match (at, divided) {
+                    (0, false) => {}
+                    (0, true) => out.push_str("1/"),
+                    (_, false) => out.push('*'),
+                    (_, true) => out.push('/'),
+                }
+                out.push_str(&text);
+            }
+            (format!("{}{out}", if negative { "-" } else { "" }), Binding::Product)
+        }
+        ForeignKind::Power(base, exponent) => {
+            let (base, holds) = written(base, names)?;
+            let base = if holds < Binding::Primary { format!("({base})") } else { base };
+            let (exponent, holds) = written(exponent, names)?;
+            let exponent = if holds < Binding::Primary { format!("({exponent})") } else { exponent };
+            (format!("{base}^{exponent}"), Binding::Power)
+        }
+        ForeignKind::Call(name, arguments) => {
+            let list = arguments
+                .iter()
+                .map(|one| Ok(written(one, names)?.0))
+                .collect::<Result<Vec<_>, Problem>>()?;
+            (format!("{name}({})", list.join(", ")), Binding::Primary)
+        }
+        ForeignKind::Case { .. } => {
+            return Err(Problem::new(&expression.span, "these cases cannot be written", "this"));
+        }
+    })
+}
+
+/// An exact number: a decimal where it is a short one, else a fraction.
+fn number(value: &RBig) -> (String, Binding) {
+    let negative = value.sign() == Sign::Negative;
+    let size = if negative { -value } else { value.clone() };
+    let (text, binding) = match decimal(&size) {
+        Some(text) => (text, Binding::Primary),
+        None => (format!("{}/{}", size.numerator(), size.denominator()), Binding::Product),
+    };
+    if negative { (format!("-{text}"), Binding::Product) } else { (text, binding) }
+}
+
+/// A number that is not negative in digits, with a point or a power of ten, if it has no more than some.
+fn decimal(value: &RBig) -> Option<String> {
+    if value.is_int() {
+        let digits = value.numerator().to_string();
+        let significant = digits.trim_end_matches('0');
+        return Some(match digits.len() - significant.len() {
+            zeros if zeros > 6 && significant.len() < 20 => format!("{significant}e{zeros}"),
+            _ => digits,
+        });
+    }
+    // the denominator is 2^a 5^b
+    let (mut rest, mut twos, mut fives) = (value.denominator().clone(), 0_usize, 0_usize);
+    let (two, five) = (UBig::from(2_u8), UBig::from(5_u8));
+    while (&rest % &two) == UBig::ZERO && twos < 4096 {
+        rest /= &two;
+        twos += 1;
+    }
+    while (&rest % &five) == UBig::ZERO && fives < 4096 {
+        rest /= &five;
+        fives += 1;
+    }
+    if rest != UBig::ONE {
+        return None;
+    }
+    let places = twos.max(fives);
+    let scaled = value * RBig::from(IBig::from(10).pow(places));
+    let digits = scaled.numerator().to_string();
+    Some(if digits.len() > places {
+        format!("{}.{}", &digits[..digits.len() - places], &digits[digits.len() - places..])
+    } else if places <= 6 {
+        format!("0.{}{digits}", "0".repeat(places - digits.len()))
+    } else {
+        // the point behind the first digit
+        let (first, rest) = digits.split_at(1);
+        let point = if rest.is_empty() { "" } else { "." };
+        format!("{first}{point}{rest}e-{}", places + 1 - digits.len())
+    })
+}
+
+/// Whether two expressions are written alike.
+fn same(one: &ForeignExpr, other: &ForeignExpr) -> bool {
+    let parts = |list: &[(bool, ForeignExpr)], others: &[(bool, ForeignExpr)]| {
+        list.len() == others.len() && list.iter().zip(others).all(|((a, x), (b, y))| a == b && same(x, y))
+    };
+    match (&one.kind, &other.kind) {
+        (ForeignKind::Sum(a), ForeignKind::Sum(b)) | (ForeignKind::Product(a), ForeignKind::Product(b)) => {
+            parts(a, b)
+        }
+        (ForeignKind::Power(a, x), ForeignKind::Power(b, y)) => same(a, b) && same(x, y),
+        (ForeignKind::Call(f, a), ForeignKind::Call(g, b)) => {
+            f == g && a.len() == b.len() && a.iter().zip(b).all(|(x, y)| same(x, y))
+        }
+        (ForeignKind::Number(a), ForeignKind::Number(b)) => a == b,
+        (ForeignKind::Name(a), ForeignKind::Name(b)) => a == b,
+        (ForeignKind::Pi, ForeignKind::Pi) => true,
+        _ => false,
+    }
+}
+
+/// Whether one expression is the other with a minus.
+fn opposite(one: &ForeignExpr, other: &ForeignExpr) -> bool {
+    let negated = |a: &ForeignExpr, b: &ForeignExpr| match &a.kind {
+        ForeignKind::Sum(terms) => matches!(terms.as_slice(), [(true, only)] if same(only, b)),
+        ForeignKind::Product(factors) => {
+            matches!(factors.as_slice(), [(false, minus), (false, only)]
+                if minus.as_number() == Some(&RBig::from(-1)) && same(only, b))
+        }
+        _ => false,
+    };
+    negated(one, other) || negated(other, one)
+}
+
+/// A case without a case.
+pub(super) enum Written {
+    /// By `abs`, `min` or `max`: each value stands in it once.
+    Once(ForeignExpr),
+    /// By `sign`: both values stand in it twice. It is right where both exist everywhere: off the surface on which the sides are
+    /// equal it is then the same, and that surface is thin.
+    BySign(ForeignExpr),
+}
+
+/// A case by `abs`, `min`, `max`, or by `sign`; `whole` is where it stands.
+pub(super) fn without_case(
+    whole: &ForeignExpr,
+    sides: &(ForeignExpr, ForeignExpr),
+    order: ForeignOrder,
+    values: &(ForeignExpr, ForeignExpr),
+) -> Written {
+    let span = &whole.span;
+    let (then, otherwise) = values;
+    // where the first of these is the greater one
+    let (high, low) = match order {
+        ForeignOrder::Greater | ForeignOrder::AtLeast => (&sides.0, &sides.1),
+        ForeignOrder::Less | ForeignOrder::AtMost => (&sides.1, &sides.0),
+    };
+    let of_two = |name: &'static str| {
+        Written::Once(ForeignExpr::new(ForeignKind::Call(name, vec![then.clone(), otherwise.clone()]), span))
+    };
+    if same(then, high) && same(otherwise, low) {
+        return of_two("max");
+    }
+    if same(then, low) && same(otherwise, high) {
+        return of_two("min");
+    }
+    let zero = |one: &ForeignExpr| one.as_number() == Some(&RBig::ZERO);
+    let absolute = |of: &ForeignExpr| of.clone().under("abs");
+    if opposite(then, otherwise) {
+        if zero(low) && same(then, high) || zero(high) && same(otherwise, low) {
+            return Written::Once(absolute(if zero(low) { then } else { low }));
+        }
+        // where x is less than zero x, and else -x
+        if zero(high) && same(then, low) || zero(low) && same(otherwise, high) {
+            return Written::Once(absolute(if zero(high) { low } else { high }).negative());
+        }
+    }
+    // then where high > low: (then + otherwise)/2 + sign(high - low)*(then - otherwise)/2
+    let two = || ForeignExpr::integer(2, span);
+    let distance = if zero(low) { high.clone() } else { high.clone().minus(low.clone()) };
+    let sign = distance.under("sign");
+    let (middle, half) = match (zero(then), zero(otherwise)) {
+        (true, _) => (otherwise.clone(), otherwise.clone().negative()),
+        (_, true) => (then.clone(), then.clone()),
+        _ => (then.clone().plus(otherwise.clone()), then.clone().minus(otherwise.clone())),
+    };
+    Written::BySign(middle.over(two()).plus(sign.times(half).over(two())))
+}

@@ -1,0 +1,516 @@
+//! SBML, levels 2 and 3: species that react in compartments, and rules.
+//!
+//! A species means its concentration in formulas, or its amount where the file says so (`hasOnlySubstanceUnits`). Reactions change
+//! amounts: a concentration changes by the rate divided by the size of its compartment, and by the change of that size.
+
+mod kinetics;
+mod mathml;
+mod xml;
+
+use super::expression::{ForeignExpr, Span};
+use super::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
+use dashu::rational::RBig;
+use kinetics::{Reaction, Species, Taken};
+use mathml::{Formulas, text_of};
+use palmistry_io::foreign::Budget;
+use palmistry_lang::Problem;
+use palmistry_math::number::parse_decimal;
+use roxmltree::Node;
+use std::collections::{BTreeMap, BTreeSet};
+use xml::{child, document, elements, is, listed, place, required, says};
+
+/// Reads a model.
+pub(super) fn read(text: &str, budget: &Budget) -> Result<ForeignModel, Problem> {
+    let document = document(text, budget)?;
+    let root = document.root_element();
+    if !is(root, "sbml") {
+        return Err(Problem::new(&place(root), "this is no SBML", "the first element")
+            .help("an SBML file begins with <sbml level=\"...\">"));
+    }
+    let level = root.attribute("level").unwrap_or_default().trim();
+    if !matches!(level, "2" | "3") {
+        return Err(Problem::new(&place(root), format!("SBML of level '{level}' is not read"), "this")
+            .help("convert it to level 2 or 3, by libSBML for instance"));
+    }
+    refuse_packages(root)?;
+    let model = child(root, "model").ok_or_else(|| {
+        Problem::new(&place(root), "the file has no model", "this").help("an SBML file has <model> in it")
+    })?;
+    refuse(model)?;
+    Reading::of(model, level == "3", budget)?.model(model)
+}
+
+/// What changes the meaning of a model and is not read.
+fn refuse(model: Node<'_, '_>) -> Result<(), Problem> {
+    let named = |node: Node<'_, '_>| {
+        node.attribute("id").or(node.attribute("variable")).map_or(String::new(), |id| format!(" '{id}'"))
+    };
+    if let Some(event) = listed(model, "listOfEvents").into_iter().next() {
+        return Err(Problem::new(&place(event), format!("the event{} is not read", named(event)), "this")
+            .help("events change states in jumps: take them out, and look at the time between them"));
+    }
+    for rule in listed(model, "listOfRules") {
+        if is(rule, "algebraicRule") {
+            return Err(Problem::new(&place(rule), "algebraic rules are not read", "this rule")
+                .help("solve it for one of its variables, and write an assignment rule"));
+        }
+    }
+    for reaction in listed(model, "listOfReactions") {
+        if says(reaction, "fast", false) {
+            return Err(Problem::new(
+                &place(reaction),
+                format!("the reaction{} is fast: that is not read", named(reaction)),
+                "this",
+            )
+            .help("fast reactions are equations between states: eliminate them"));
+        }
+    }
+    Ok(())
+}
+
+/// Packages of level 3 that change what the core says.
+fn refuse_packages(root: Node<'_, '_>) -> Result<(), Problem> {
+    let needed = root.attributes().find(|attribute| {
+        attribute.name() == "required"
+            && attribute.namespace().is_some()
+            && matches!(attribute.value().trim(), "true" | "1")
+    });
+    match needed {
+        Some(attribute) => {
+            let package = attribute.namespace().unwrap_or_default();
+            let name = package
+                .trim_end_matches(|c: char| c.is_ascii_digit() || matches!(c, '/' | 'v'))
+                .rsplit('/')
+                .next();
+            let message = format!(
+                "the package '{}' changes what the model means, and is not read",
+                name.unwrap_or(package)
+            );
+            Err(Problem::new(&place(root), message, "this").help("export the model as core SBML"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// What a rule says of a variable.
+struct Rule {
+    is_rate: bool,
+    value: ForeignExpr,
+    span: Span,
+}
+
+struct Compartment {
+    id: String,
+    size: Option<RBig>,
+    /// Points have no size, and species there no concentration.
+    is_point: bool,
+}
+
+struct Reading<'b> {
+    formulas: Formulas<'b>,
+    compartments: Vec<Compartment>,
+    species: Vec<Species>,
+    parameters: Vec<(String, Option<RBig>)>,
+    /// In the order of the file.
+    rules: Vec<(String, Rule)>,
+    beginnings: Vec<(String, ForeignExpr)>,
+    reactions: Vec<Reaction>,
+    index: Index,
+}
+
+/// Where things stand in the lists of a model, by their ids; the first one of each id.
+#[derive(Default)]
+struct Index {
+    compartments: BTreeMap<String, usize>,
+    species: BTreeMap<String, usize>,
+    parameters: BTreeSet<String>,
+    rules: BTreeMap<String, usize>,
+}
+
+/// The first place of each id.
+fn places<'i>(ids: impl Iterator<Item = &'i String>) -> BTreeMap<String, usize> {
+    let mut found = BTreeMap::new();
+    for (at, id) in ids.enumerate() {
+        found.entry(id.clone()).or_insert(at);
+    }
+    found
+}
+
+/// A number in an attribute.
+fn value_of(node: Node<'_, '_>, name: &str) -> Result<Option<RBig>, Problem> {
+    let Some(text) = node.attribute(name).map(str::trim) else { return Ok(None) };
+    if matches!(text, "NaN" | "INF" | "-INF") {
+        return Ok(None);
+    }
+    match (!text.contains('/')).then(|| parse_decimal(text)).flatten() {
+        Some(value) => Ok(Some(value)),
+        None => Err(Problem::new(&place(node), format!("{name}=\"{text}\" is no number"), "this")
+            .help("write a decimal")),
+    }
+}
+
+/// Whether a compartment is a point without a size. In level 3 it may have one all the same, and a concentration there is an
+/// amount by that size.
+fn is_point(node: Node<'_, '_>, is_level_3: bool) -> Result<bool, Problem> {
+    let has_no_dimension = match node.attribute("spatialDimensions").map(str::trim) {
+        None => false,
+        Some(text) => parse_decimal(text).is_some_and(|dimensions| dimensions == RBig::ZERO),
+    };
+    Ok(has_no_dimension && !(is_level_3 && value_of(node, "size")?.is_some()))
+}
+
+impl<'b> Reading<'b> {
+    fn of(model: Node<'_, '_>, is_level_3: bool, budget: &'b Budget) -> Result<Reading<'b>, Problem> {
+        let ids: BTreeSet<&str> = model.descendants().filter_map(|node| node.attribute("id")).collect();
+        let time = ["time", "t", "clock"]
+            .into_iter()
+            .find(|name| !ids.contains(name))
+            .unwrap_or("time_of_the_model");
+        let mut formulas = Formulas { functions: BTreeMap::new(), time: time.to_owned(), budget };
+        for function in listed(model, "listOfFunctionDefinitions") {
+            let (name, definition) = function_definition(function, &formulas)?;
+            formulas.functions.insert(name, definition);
+        }
+        let compartments = listed(model, "listOfCompartments")
+            .into_iter()
+            .map(|node| {
+                Ok(Compartment {
+                    id: required(node, "id")?.to_owned(),
+                    size: value_of(node, "size")?,
+                    is_point: is_point(node, is_level_3)?,
+                })
+            })
+            .collect::<Result<Vec<_>, Problem>>()?;
+        let factor = model.attribute("conversionFactor");
+        let species = listed(model, "listOfSpecies")
+            .into_iter()
+            .map(|node| Species::read(node, factor))
+            .collect::<Result<Vec<_>, _>>()?;
+        let parameters = listed(model, "listOfParameters")
+            .into_iter()
+            .map(|node| Ok((required(node, "id")?.to_owned(), value_of(node, "value")?)))
+            .collect::<Result<Vec<_>, Problem>>()?;
+        let index = Index {
+            compartments: places(compartments.iter().map(|one| &one.id)),
+            species: places(species.iter().map(|one| &one.id)),
+            parameters: parameters.iter().map(|(id, _)| id.clone()).collect(),
+            rules: BTreeMap::new(),
+        };
+        let mut reading = Reading {
+            index,
+            formulas,
+            compartments,
+            species,
+            parameters,
+            rules: Vec::new(),
+            beginnings: Vec::new(),
+            reactions: Vec::new(),
+        };
+        reading.read_rules(model)?;
+        reading.read_beginnings(model)?;
+        if is_level_3 {
+            // a size may come from a rule as well
+            let begun: BTreeSet<&str> = reading.beginnings.iter().map(|(id, _)| id.as_str()).collect();
+            for one in &mut reading.compartments {
+                let has_size = reading.index.rules.contains_key(&one.id) || begun.contains(one.id.as_str());
+                one.is_point &= !has_size;
+            }
+        }
+        let names = ids.into_iter().map(str::to_owned).collect();
+        let mut taken = Taken { names, ..Taken::default() };
+        let shared = kinetics::shared_local_names(model);
+        for node in listed(model, "listOfReactions") {
+            let reaction = Reaction::read(node, &reading.formulas, is_level_3, &shared, &mut taken)?;
+            reading.reactions.push(reaction);
+        }
+        Ok(reading)
+    }
+
+    fn math(&self, node: Node<'_, '_>) -> Result<ForeignExpr, Problem> {
+        let math = child(node, "math").ok_or_else(|| {
+            Problem::new(&place(node), format!("'{}' has no formula", node.tag_name().name()), "this")
+                .help("write <math>")
+        })?;
+        self.formulas.meaning(math)
+    }
+
+    /// Whether rules may be about it.
+    fn has(&self, id: &str) -> bool {
+        self.index.compartments.contains_key(id)
+            || self.index.species.contains_key(id)
+            || self.index.parameters.contains(id)
+    }
+
+    fn read_rules(&mut self, model: Node<'_, '_>) -> Result<(), Problem> {
+        for node in listed(model, "listOfRules") {
+            let is_rate = is(node, "rateRule");
+            if !is_rate && !is(node, "assignmentRule") {
+                continue;
+            }
+            let variable = required(node, "variable")?.to_owned();
+            let twice = self.index.rules.contains_key(&variable);
+            if twice || !self.has(&variable) {
+                let message = match twice {
+                    true => format!("'{variable}' has two rules"),
+                    false => format!(
+                        "the rule is about '{variable}', which is no species, compartment or parameter"
+                    ),
+                };
+                return Err(Problem::new(&place(node), message, "this rule")
+                    .help("rules about stoichiometries are not read; write the number into the reaction"));
+            }
+            let rule = Rule { is_rate, value: self.math(node)?, span: place(node) };
+            self.index.rules.insert(variable.clone(), self.rules.len());
+            self.rules.push((variable, rule));
+        }
+        Ok(())
+    }
+
+    fn read_beginnings(&mut self, model: Node<'_, '_>) -> Result<(), Problem> {
+        for node in listed(model, "listOfInitialAssignments") {
+            let symbol = required(node, "symbol")?.to_owned();
+            if !self.has(&symbol) {
+                return Err(Problem::new(
+                    &place(node),
+                    format!("'{symbol}' is no species, compartment or parameter"),
+                    "this",
+                )
+                .help("assignments to stoichiometries are not read; write the number into the reaction"));
+            }
+            let value = self.math(node)?;
+            self.beginnings.push((symbol, value));
+        }
+        Ok(())
+    }
+
+    fn rule(&self, id: &str) -> Option<&Rule> {
+        self.index.rules.get(id).map(|at| &self.rules[*at].1)
+    }
+
+    fn compartment(&self, id: &str) -> Option<&Compartment> {
+        self.index.compartments.get(id).map(|at| &self.compartments[*at])
+    }
+
+    fn model(self, node: Node<'_, '_>) -> Result<ForeignModel, Problem> {
+        let title = node.attribute("name").or(node.attribute("id")).map(str::to_owned);
+        let mut model = ForeignModel { title, source: source(node), ..ForeignModel::default() };
+        for (id, rule) in &self.rules {
+            match rule.is_rate {
+                true => model.states.push(ForeignRate {
+                    name: id.clone(),
+                    rate: rule.value.clone(),
+                    span: rule.span.clone(),
+                }),
+                false => model.definitions.push((id.clone(), rule.value.clone())),
+            }
+        }
+        self.add_reactions(&mut model)?;
+        // laws stand in the order of the file, above the rates; states too
+        let order: BTreeMap<&str, usize> =
+            self.species.iter().enumerate().map(|(at, one)| (one.id.as_str(), at)).collect();
+        model.states.sort_by_key(|state| order.get(state.name.as_str()).copied().unwrap_or(usize::MAX));
+        self.add_constants(&mut model)?;
+        self.outputs(&mut model);
+        let mut uses_time = false;
+        let mut look =
+            |value: &ForeignExpr| value.names(&mut |name, _| uses_time |= name == self.formulas.time);
+        model.states.iter().for_each(|state| look(&state.rate));
+        model.definitions.iter().for_each(|(_, value)| look(value));
+        if uses_time {
+            model.add_clock(&self.formulas.time);
+        }
+        self.refuse_unknown_names(&model)?;
+        let unknown: Vec<&str> =
+            model.constants.iter().filter(|c| c.is_unknown).map(|c| c.name.as_str()).collect();
+        if !unknown.is_empty() {
+            model.remarks.push("all parameters are taken to be unknown, and all beginnings: --unknown says otherwise of parameters".to_owned());
+        }
+        Ok(model)
+    }
+
+    /// What does not change: sizes, species that are held, parameters.
+    fn add_constants(&self, model: &mut ForeignModel) -> Result<(), Problem> {
+        let moved: BTreeSet<String> = model.states.iter().map(|state| state.name.clone()).collect();
+        let ruled = |id: &str| self.rule(id).is_some() || moved.contains(id);
+        let mut constants = Vec::new();
+        let constant = |name: &str, value: Option<RBig>, is_unknown: bool| ForeignConstant {
+            name: name.to_owned(),
+            value,
+            is_unknown,
+            may_be_unknown: is_unknown,
+        };
+        for one in self.compartments.iter().filter(|one| !ruled(&one.id)) {
+            constants.push(constant(&one.id, one.size.clone(), false));
+        }
+        let mut held = Vec::new();
+        for one in self.species.iter().filter(|one| !ruled(&one.id)) {
+            let size = self.compartment(&one.compartment).and_then(|own| own.size.clone());
+            constants.push(constant(&one.id, one.beginning(size.as_ref()), false));
+            held.push(one.id.as_str());
+        }
+        if !held.is_empty() {
+            model.remarks.push(format!("species that are held are known constants: {}", held.join(", ")));
+        }
+        for (id, value) in self.parameters.iter().filter(|(id, _)| !ruled(id)) {
+            constants.push(constant(id, value.clone(), true));
+        }
+        for (id, value) in self.reactions.iter().flat_map(|reaction| &reaction.local) {
+            constants.push(constant(id, value.clone(), true));
+        }
+        // what begins as a formula of constants is one of them by that formula
+        let mut fixed: BTreeSet<String> = constants.iter().map(|constant| constant.name.clone()).collect();
+        fixed.extend(self.rules.iter().filter(|(_, rule)| !rule.is_rate).map(|(id, _)| id.clone()));
+        let mut states_begin = false;
+        let mut moving = BTreeMap::new();
+        let mut assigned = BTreeSet::new();
+        for (id, value) in &self.beginnings {
+            if moved.contains(id) {
+                states_begin = true;
+                continue;
+            }
+            let mut bad = None;
+            value.names(&mut |name, span| {
+                if !fixed.contains(name) || self.depends_on_states(name, &moved, &mut moving) {
+                    bad = Some((name.to_owned(), span.clone()));
+                }
+            });
+            if let Some((name, span)) = bad {
+                return Err(Problem::new(
+                    &span,
+                    format!("'{id}' begins by the value of '{name}', which moves"),
+                    "this",
+                )
+                .help(format!(
+                    "give '{id}' a value of its own, or make it unknown by taking the assignment out"
+                )));
+            }
+            assigned.insert(id.as_str());
+            model.definitions.push((id.clone(), value.clone()));
+        }
+        if states_begin {
+            model.remarks.push(
+                "initial assignments of states are not taken over: a rank is asked of all beginnings"
+                    .to_owned(),
+            );
+        }
+        constants.retain(|constant| !assigned.contains(constant.name.as_str()));
+        model.constants = constants;
+        Ok(())
+    }
+
+    /// Whether what a name stands for moves; `known` are the names of which that is known, those that are being looked at among them:
+    /// what is defined by itself counts as moving.
+    fn depends_on_states(
+        &self,
+        name: &str,
+        moved: &BTreeSet<String>,
+        known: &mut BTreeMap<String, bool>,
+    ) -> bool {
+        if moved.contains(name) || name == self.formulas.time {
+            return true;
+        }
+        if let Some(moves) = known.get(name) {
+            return *moves;
+        }
+        known.insert(name.to_owned(), true);
+        let mut found = false;
+        if let Some(rule) = self.rule(name).filter(|rule| !rule.is_rate) {
+            rule.value.names(&mut |inner, _| found = found || self.depends_on_states(inner, moved, known));
+        }
+        known.insert(name.to_owned(), found);
+        found
+    }
+
+    /// SBML has no outputs: assignments that nothing else uses are what the author looks at, else all species.
+    fn outputs(&self, model: &mut ForeignModel) {
+        let mut used = BTreeSet::new();
+        let mut look = |value: &ForeignExpr| {
+            value.names(&mut |name, _| {
+                used.insert(name.to_owned());
+            });
+        };
+        model.states.iter().for_each(|state| look(&state.rate));
+        model.definitions.iter().for_each(|(_, value)| look(value));
+        let free = self.rules.iter().filter(|(id, rule)| !rule.is_rate && !used.contains(id));
+        let mut names: Vec<String> = free.map(|(id, _)| id.clone()).collect();
+        if names.is_empty() {
+            let is_species = |name: &&ForeignRate| self.index.species.contains_key(&name.name);
+            names = model.states.iter().filter(is_species).map(|state| state.name.clone()).collect();
+            if names.is_empty() {
+                names = model.states.iter().map(|state| state.name.clone()).collect();
+            }
+            model.remarks.push(
+                "SBML has no outputs: all species that move are measured here; --output says otherwise"
+                    .to_owned(),
+            );
+        } else {
+            model.remarks.push(
+                "SBML has no outputs: what assignment rules say and nothing uses is measured here; --output says otherwise".to_owned(),
+            );
+        }
+        model.outputs = names
+            .into_iter()
+            .map(|name| ForeignOutput { name: None, value: ForeignExpr::name(name, &(0..0)) })
+            .collect();
+    }
+
+    fn refuse_unknown_names(&self, model: &ForeignModel) -> Result<(), Problem> {
+        let known: BTreeSet<String> = model.all_names().into_iter().collect();
+        let mut bad = None;
+        let mut look = |value: &ForeignExpr| {
+            value.names(&mut |name, span| {
+                if !known.contains(name) && bad.is_none() {
+                    bad = Some((name.to_owned(), span.clone()));
+                }
+            });
+        };
+        model.states.iter().for_each(|state| look(&state.rate));
+        model.definitions.iter().for_each(|(_, value)| look(value));
+        match bad {
+            Some((name, span)) => {
+                Err(Problem::new(&span, format!("nothing says what '{name}' is"), "this name")
+                    .help("names are those of compartments, species, parameters, functions and reactions"))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// A function of the model: its name, its arguments and what it is of them.
+fn function_definition(
+    node: Node<'_, '_>,
+    formulas: &Formulas,
+) -> Result<(String, (Vec<String>, ForeignExpr)), Problem> {
+    let id = required(node, "id")?.to_owned();
+    let unread = || {
+        Problem::new(&place(node), format!("the function '{id}' cannot be read"), "this")
+            .help("a function is a <lambda>")
+    };
+    let lambda = child(node, "math").and_then(|math| {
+        let math = child(math, "semantics").unwrap_or(math);
+        child(math, "lambda")
+    });
+    let lambda = lambda.ok_or_else(unread)?;
+    let bound =
+        elements(lambda).filter(|one| is(*one, "bvar")).filter_map(|one| child(one, "ci")).map(text_of);
+    let bound: Vec<String> = bound.collect();
+    let body = elements(lambda).find(|one| !is(*one, "bvar")).ok_or_else(unread)?;
+    let body = formulas.meaning_of(body)?;
+    Ok((id, (bound, body)))
+}
+
+/// Where a model comes from: its id, and the papers that its annotation names.
+fn source(model: Node<'_, '_>) -> Option<String> {
+    let mut parts: Vec<String> = model.attribute("id").map(str::to_owned).into_iter().collect();
+    let annotation = child(model, "annotation")?;
+    let described = annotation.descendants().filter(|node| is(*node, "isDescribedBy"));
+    for item in described.flat_map(|node| node.descendants()).filter(|node| is(*node, "li")) {
+        let Some(resource) = item.attributes().find(|attribute| attribute.name() == "resource") else {
+            continue;
+        };
+        let tail =
+            resource.value().trim_start_matches("urn:miriam:").trim_start_matches("http://identifiers.org/");
+        parts.push(tail.trim_start_matches("https://identifiers.org/").replace("%2F", "/").replace('/', ":"));
+    }
+    (!parts.is_empty()).then(|| parts.join(", "))
+}

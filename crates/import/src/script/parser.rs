@@ -1,0 +1,437 @@
+//! From words to syntax, with the precedences of each language: `-x^2` is the same in all of them, `2^3^2` is not.
+
+mod lists;
+
+use super::super::expression::{DEEPEST, Span};
+use super::syntax::{Syntax, SyntaxKind};
+use super::tokens::{Dialect, Token, TokenKind};
+use palmistry_lang::Problem;
+use palmistry_math::number::parse_decimal;
+
+/// Which bracket is the innermost one that is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bracket {
+    Round,
+    Square,
+    Curly,
+}
+
+/// Reads syntax from words.
+pub(crate) struct Parser<'a> {
+    tokens: &'a [Token],
+    at: usize,
+    dialect: Dialect,
+    open: Vec<Bracket>,
+    depth: usize,
+}
+
+type Parsed = Result<Syntax, Problem>;
+
+fn joined(kind: SyntaxKind, begin: &Span, end: usize) -> Syntax {
+    Syntax { kind, span: begin.start..end }
+}
+
+impl<'a> Parser<'a> {
+    /// A parser of words, of which the last one is the end.
+    pub fn new(tokens: &'a [Token], dialect: Dialect) -> Parser<'a> {
+        Parser { tokens, at: 0, dialect, open: Vec::new(), depth: 0 }
+    }
+
+    /// The next word.
+    pub fn peek(&self) -> &'a Token {
+        &self.tokens[self.at.min(self.tokens.len() - 1)]
+    }
+
+    /// A word further on.
+    pub fn ahead(&self, by: usize) -> &'a Token {
+        &self.tokens[(self.at + by).min(self.tokens.len() - 1)]
+    }
+
+    /// Takes the next word.
+    pub fn next(&mut self) -> &'a Token {
+        let token = self.peek();
+        self.at += 1;
+        token
+    }
+
+    /// How many words were taken.
+    pub fn position(&self) -> usize {
+        self.at
+    }
+
+    /// Goes to a word.
+    pub fn go_to(&mut self, position: usize) {
+        self.at = position;
+    }
+
+    pub fn at_end(&self) -> bool {
+        self.peek().kind == TokenKind::End
+    }
+
+    /// Takes a sign if it is the next word.
+    pub fn take(&mut self, sign: &str) -> bool {
+        let found = self.peek().is(sign);
+        self.at += usize::from(found);
+        found
+    }
+
+    fn expect(&mut self, sign: &str) -> Result<(), Problem> {
+        if self.take(sign) { Ok(()) } else { Err(self.unexpected(&format!("'{sign}'"))) }
+    }
+
+    /// The error that something else stands here.
+    pub fn unexpected(&self, wanted: &str) -> Problem {
+        let token = self.peek();
+        let found = match &token.kind {
+            TokenKind::End => "the text ends".to_owned(),
+            _ => format!("'{}' stands there", token.text),
+        };
+        Problem::new(&token.span, format!("expected {wanted}, and {found}"), format!("expected {wanted}"))
+            .help("this is as far as the file was understood")
+    }
+
+    /// Whether an expression ends before a word because a line does.
+    fn line_ends(&self, token: &Token) -> bool {
+        token.newline
+            && matches!(
+                (self.open.last(), self.dialect),
+                (None, _)
+                    | (Some(Bracket::Square), Dialect::Matlab | Dialect::Julia)
+                    | (Some(Bracket::Curly), Dialect::Matlab)
+            )
+    }
+
+    /// Whether blanks stand between elements here.
+    fn blanks_divide(&self) -> bool {
+        self.dialect == Dialect::Matlab && self.open.last() == Some(&Bracket::Square)
+    }
+
+    /// The sign of an operator that goes on with the expression, of those that are asked for.
+    fn operator(&self, signs: &[&'static str]) -> Option<&'static str> {
+        let token = self.peek();
+        let TokenKind::Sign(sign) = token.kind else { return None };
+        let sign = signs.iter().copied().find(|own| *own == sign)?;
+        if self.line_ends(token) {
+            return None;
+        }
+        // [a -b] has two elements, [a - b] and [a-b] have one
+        let begins_element = self.blanks_divide() && token.spaced && !self.ahead(1).spaced;
+        (!(begins_element && matches!(sign, "+" | "-" | "~" | "!"))).then_some(sign)
+    }
+
+    /// An expression, or two with `=`, `~` or `=>` between them.
+    pub fn argument(&mut self) -> Parsed {
+        let left = self.expression()?;
+        let Some(sign) = self.operator(&["=", "~", "=>"]) else { return Ok(left) };
+        self.next();
+        let right = self.expression()?;
+        let (begin, end) = (left.span.clone(), right.span.end);
+        Ok(joined(SyntaxKind::Equation(sign, Box::new(left), Box::new(right)), &begin, end))
+    }
+
+    /// An expression.
+    pub fn expression(&mut self) -> Parsed {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(Problem::new(
+                &self.peek().span,
+                format!("more than {DEEPEST} brackets within brackets"),
+                "here",
+            )
+            .help("give the inner part a name of its own"));
+        }
+        let result = self.choice();
+        self.depth -= 1;
+        result
+    }
+
+    fn choice(&mut self) -> Parsed {
+        let first = self.comparison()?;
+        if self.dialect != Dialect::Matlab && self.operator(&["?"]).is_some() {
+            self.next();
+            let then = self.expression()?;
+            self.expect(":")?;
+            let otherwise = self.expression()?;
+            let (begin, end) = (first.span.clone(), otherwise.span.end);
+            let kind = SyntaxKind::Choice(Box::new(first), Box::new(then), Box::new(otherwise));
+            return Ok(joined(kind, &begin, end));
+        }
+        if matches!(self.dialect, Dialect::Python | Dialect::Printed)
+            && self.peek().is_word("if")
+            && !self.line_ends(self.peek())
+        {
+            self.next();
+            let condition = self.comparison()?;
+            if !self.peek().is_word("else") {
+                return Err(self.unexpected("'else'"));
+            }
+            self.next();
+            let otherwise = self.expression()?;
+            let (begin, end) = (first.span.clone(), otherwise.span.end);
+            let kind = SyntaxKind::Choice(Box::new(condition), Box::new(first), Box::new(otherwise));
+            return Ok(joined(kind, &begin, end));
+        }
+        Ok(first)
+    }
+
+    fn comparison(&mut self) -> Parsed {
+        let left = self.sum()?;
+        let Some(sign) = self.operator(&["<", "<=", ">", ">=", "==", "!=", "~="]) else { return Ok(left) };
+        self.next();
+        let right = self.sum()?;
+        if self.operator(&["<", "<=", ">", ">=", "==", "!=", "~=", "&&", "||", "&", "|"]).is_some() {
+            return Err(Problem::new(&self.peek().span, "conditions of several parts are not read", "here")
+                .help("write cases within cases, each with one comparison"));
+        }
+        let sign = if sign == "~=" { "!=" } else { sign };
+        let (begin, end) = (left.span.clone(), right.span.end);
+        Ok(joined(SyntaxKind::Compare(sign, Box::new(left), Box::new(right)), &begin, end))
+    }
+
+    fn sum(&mut self) -> Parsed {
+        let first = self.product()?;
+        let begin = first.span.clone();
+        let mut terms = vec![(false, first)];
+        while let Some(sign) = self.operator(&["+", "-"]) {
+            self.next();
+            terms.push((sign == "-", self.product()?));
+        }
+        self.collected(terms, &begin, SyntaxKind::Sum)
+    }
+
+    fn product(&mut self) -> Parsed {
+        let first = self.signed()?;
+        let begin = first.span.clone();
+        let mut factors = vec![(false, first)];
+        loop {
+            let signs: &[&'static str] = match self.dialect {
+                Dialect::Matlab | Dialect::Julia => &["*", "/", ".*", "./"],
+                Dialect::Python | Dialect::Printed => &["*", "/"],
+            };
+            let Some(sign) = self.operator(signs) else { break };
+            self.next();
+            factors.push((matches!(sign, "/" | "./"), self.signed()?));
+        }
+        self.collected(factors, &begin, SyntaxKind::Product)
+    }
+
+    fn collected(
+        &self,
+        mut list: Vec<(bool, Syntax)>,
+        begin: &Span,
+        kind: fn(Vec<(bool, Syntax)>) -> SyntaxKind,
+    ) -> Parsed {
+        match (list.len(), list.pop()) {
+            (1, Some((_, only))) => Ok(only),
+            (_, Some(last)) => {
+                let end = last.1.span.end;
+                list.push(last);
+                Ok(joined(kind(list), begin, end))
+            }
+            (_, None) => Err(self.unexpected("an expression")),
+        }
+    }
+
+    /// Signs before a factor: they bind weaker than a power and stronger than a product.
+    fn signed(&mut self) -> Parsed {
+        let begin = self.peek().span.clone();
+        let mut negative = false;
+        let mut turned = false;
+        loop {
+            let token = self.peek();
+            match token.kind {
+                TokenKind::Sign("+") => {}
+                TokenKind::Sign("-") => negative = !negative,
+                TokenKind::Sign("!" | "~") => turned = !turned,
+                _ => break,
+            }
+            self.next();
+        }
+        let inner = self.fraction()?;
+        let end = inner.span.end;
+        let inner = if turned { joined(SyntaxKind::Not(Box::new(inner)), &begin, end) } else { inner };
+        Ok(match negative {
+            true => joined(SyntaxKind::Sum(vec![(true, inner)]), &begin, end),
+            false => inner,
+        })
+    }
+
+    /// `1//2` of Julia binds stronger than a product.
+    fn fraction(&mut self) -> Parsed {
+        let first = self.coefficient()?;
+        if self.dialect != Dialect::Julia || self.operator(&["//"]).is_none() {
+            return Ok(first);
+        }
+        let begin = first.span.clone();
+        let mut factors = vec![(false, first)];
+        while self.operator(&["//"]).is_some() {
+            self.next();
+            factors.push((true, self.coefficient()?));
+        }
+        self.collected(factors, &begin, SyntaxKind::Product)
+    }
+
+    /// `2x` of Julia binds stronger than a product, and its power is that of `x`.
+    fn coefficient(&mut self) -> Parsed {
+        let (token, behind) = (self.peek(), self.ahead(1));
+        let is_coefficient = self.dialect == Dialect::Julia
+            && token.kind == TokenKind::Number
+            && !behind.spaced
+            && (behind.kind == TokenKind::Name || behind.is("("));
+        if !is_coefficient {
+            return self.power();
+        }
+        let number = self.primary()?;
+        let factor = self.power()?;
+        let (begin, end) = (number.span.clone(), factor.span.end);
+        Ok(joined(SyntaxKind::Product(vec![(false, number), (false, factor)]), &begin, end))
+    }
+
+    fn power(&mut self) -> Parsed {
+        let signs: &[&'static str] = match self.dialect {
+            Dialect::Python => &["**"],
+            Dialect::Printed => &["**", "^"],
+            Dialect::Matlab | Dialect::Julia => &["^", ".^"],
+        };
+        let mut base = self.postfix()?;
+        let mut powers = 0;
+        while self.operator(signs).is_some() {
+            self.next();
+            powers += 1;
+            if powers > DEEPEST {
+                return Err(
+                    Problem::new(&self.peek().span, "a tower of powers", "here").help("write it shorter")
+                );
+            }
+            // from the left in MATLAB, from the right elsewhere; a sign of the exponent is its own
+            let exponent = match self.dialect {
+                Dialect::Matlab => self.signed_primary()?,
+                _ => {
+                    self.depth += 1;
+                    if self.depth > DEEPEST {
+                        return Err(Problem::new(&self.peek().span, "a tower of powers", "here")
+                            .help("write it shorter"));
+                    }
+                    let exponent = self.exponent()?;
+                    self.depth -= 1;
+                    exponent
+                }
+            };
+            let (begin, end) = (base.span.clone(), exponent.span.end);
+            base = joined(SyntaxKind::Power(Box::new(base), Box::new(exponent)), &begin, end);
+        }
+        if self.dialect == Dialect::Python && self.operator(&["^"]).is_some() {
+            return Err(Problem::new(&self.peek().span, "'^' is no power in Python", "this")
+                .help("write '**' for a power"));
+        }
+        Ok(base)
+    }
+
+    fn exponent(&mut self) -> Parsed {
+        let begin = self.peek().span.clone();
+        let mut negative = false;
+        while let TokenKind::Sign(sign @ ("+" | "-")) = self.peek().kind {
+            negative ^= sign == "-";
+            self.next();
+        }
+        let inner = self.coefficient()?;
+        let end = inner.span.end;
+        Ok(if negative { joined(SyntaxKind::Sum(vec![(true, inner)]), &begin, end) } else { inner })
+    }
+
+    fn signed_primary(&mut self) -> Parsed {
+        let begin = self.peek().span.clone();
+        let mut negative = false;
+        while let TokenKind::Sign(sign @ ("+" | "-")) = self.peek().kind {
+            negative ^= sign == "-";
+            self.next();
+        }
+        let inner = self.postfix()?;
+        let end = inner.span.end;
+        Ok(if negative { joined(SyntaxKind::Sum(vec![(true, inner)]), &begin, end) } else { inner })
+    }
+
+    fn postfix(&mut self) -> Parsed {
+        let mut inner = self.primary()?;
+        for _ in 0..DEEPEST {
+            let token = self.peek();
+            let begin = inner.span.clone();
+            let divided = self.line_ends(token) || self.blanks_divide() && token.spaced;
+            let kind = match token.kind {
+                TokenKind::Sign(_) if divided => return Ok(inner),
+                TokenKind::Sign("(") if !matches!(inner.kind, SyntaxKind::Number(_)) => {
+                    self.next();
+                    SyntaxKind::Call(Box::new(inner), self.list(")", Bracket::Round)?)
+                }
+                TokenKind::Sign("[") if self.dialect != Dialect::Matlab && !token.spaced => {
+                    self.next();
+                    SyntaxKind::Index(Box::new(inner), self.list("]", Bracket::Square)?)
+                }
+                TokenKind::Sign("'" | ".'") if !token.spaced => {
+                    self.next();
+                    SyntaxKind::Prime(Box::new(inner))
+                }
+                TokenKind::Sign(".") if self.ahead(1).kind == TokenKind::Name => {
+                    self.next();
+                    SyntaxKind::Member(Box::new(inner), self.next().text.clone())
+                }
+                _ => return Ok(inner),
+            };
+            let end = self.tokens[self.at - 1].span.end;
+            inner = joined(kind, &begin, end);
+        }
+        Err(Problem::new(&inner.span, "calls of calls of calls", "here")
+            .help("give the inner part a name of its own"))
+    }
+
+    fn primary(&mut self) -> Parsed {
+        let token = self.next();
+        let span = token.span.clone();
+        let kind = match &token.kind {
+            TokenKind::Number => SyntaxKind::Number(self.value(token)?),
+            TokenKind::Name => SyntaxKind::Name(token.text.clone()),
+            TokenKind::Text(text) => SyntaxKind::Text(text.clone()),
+            // `@1` of CasADi, `@parameters` of Julia
+            TokenKind::Sign("@") if !self.peek().spaced => {
+                let name = self.next();
+                SyntaxKind::Name(format!("@{}", name.text))
+            }
+            // `:name` of Julia
+            TokenKind::Sign(":") if self.dialect == Dialect::Julia && self.peek().kind == TokenKind::Name => {
+                SyntaxKind::Text(self.next().text.clone())
+            }
+            TokenKind::Sign("(") => {
+                let mut list = self.list(")", Bracket::Round)?;
+                match (list.len(), self.tokens[self.at.saturating_sub(2)].is(",")) {
+                    (1, false) => {
+                        let inner = list.remove(0);
+                        return Ok(Syntax {
+                            kind: inner.kind,
+                            span: span.start..self.tokens[self.at - 1].span.end,
+                        });
+                    }
+                    _ => SyntaxKind::List(list),
+                }
+            }
+            TokenKind::Sign("[") => match self.dialect {
+                Dialect::Matlab | Dialect::Julia => self.rows()?,
+                Dialect::Python | Dialect::Printed => SyntaxKind::List(self.list("]", Bracket::Square)?),
+            },
+            TokenKind::Sign("{") => self.pairs()?,
+            _ => {
+                self.at -= 1;
+                return Err(self.unexpected("an expression"));
+            }
+        };
+        Ok(joined(kind, &span, self.tokens[self.at - 1].span.end))
+    }
+
+    fn value(&self, token: &Token) -> Result<dashu::rational::RBig, Problem> {
+        let plain: String =
+            token.text.chars().filter(|c| *c != '_').map(|c| if c == 'f' { 'e' } else { c }).collect();
+        parse_decimal(&plain).ok_or_else(|| {
+            Problem::new(&token.span, "a number that is too long", "this")
+                .help("decimals of at most 4096 digits, with an exponent of at most 4096")
+        })
+    }
+}

@@ -1,0 +1,61 @@
+//! What a piece of foreign text is, before anybody asks what its names mean.
+
+use super::super::expression::Span;
+use dashu::rational::RBig;
+
+/// A piece of foreign text.
+#[derive(Clone, Debug)]
+pub(crate) struct Syntax {
+    pub kind: SyntaxKind,
+    pub span: Span,
+}
+
+/// What it is.
+#[derive(Clone, Debug)]
+pub(crate) enum SyntaxKind {
+    Number(RBig),
+    Text(String),
+    Name(String),
+    /// Terms, `true` where one is subtracted.
+    Sum(Vec<(bool, Syntax)>),
+    /// Factors, `true` where one is divided by.
+    Product(Vec<(bool, Syntax)>),
+    Power(Box<Syntax>, Box<Syntax>),
+    /// `<`, `<=`, `>`, `>=`, `==` or `!=` of two.
+    Compare(&'static str, Box<Syntax>, Box<Syntax>),
+    Not(Box<Syntax>),
+    /// A condition, what is so where it holds, and where not.
+    Choice(Box<Syntax>, Box<Syntax>, Box<Syntax>),
+    Call(Box<Syntax>, Vec<Syntax>),
+    Member(Box<Syntax>, String),
+    Index(Box<Syntax>, Vec<Syntax>),
+    /// `[a, b]`, `(a, b)`
+    List(Vec<Syntax>),
+    /// Rows of a matrix of MATLAB or Julia.
+    Rows(Vec<Vec<Syntax>>),
+    /// `{a: b}`
+    Pairs(Vec<(Syntax, Syntax)>),
+    /// `a'`
+    Prime(Box<Syntax>),
+    /// `a = b`, `a ~ b`, `a => b`, by the sign between them.
+    Equation(&'static str, Box<Syntax>, Box<Syntax>),
+}
+
+impl Syntax {
+    /// The name that it is, if it is one.
+    pub fn as_name(&self) -> Option<&str> {
+        match &self.kind {
+            SyntaxKind::Name(name) => Some(name),
+            _ => None,
+        }
+    }
+
+    /// The elements of a list, a vector or the rows of a matrix one after the other; itself where it is none.
+    pub fn elements(&self) -> Vec<&Syntax> {
+        match &self.kind {
+            SyntaxKind::List(list) => list.iter().collect(),
+            SyntaxKind::Rows(rows) => rows.iter().flatten().collect(),
+            _ => vec![self],
+        }
+    }
+}

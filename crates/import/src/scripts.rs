@@ -1,0 +1,383 @@
+//! Model files of StrikePy (Python) and STRIKE-GOLDD (MATLAB): assignments to `x`, `p`, `h`, `f`, `u` and `w`. They are read, and
+//! never run.
+
+use super::expression::{ForeignExpr, ForeignKind, Span};
+use super::model::{ForeignConstant, ForeignModel, ForeignOutput, ForeignRate};
+use super::script::{
+    Dialect, Parser, ScriptValue, ScriptWorkspace, Syntax, SyntaxKind, Token, TokenKind, named_function,
+    tokens,
+};
+use dashu::rational::RBig;
+use palmistry_io::foreign::Budget;
+use palmistry_lang::Problem;
+use std::collections::BTreeSet;
+
+/// The variables by which these programs know a model.
+const VARIABLES: [&str; 8] = ["x", "p", "h", "f", "u", "w", "ics", "known_ics"];
+
+/// Commands that say nothing of the model.
+const IGNORED: [&str; 14] = [
+    "clear",
+    "clc",
+    "close",
+    "clearvars",
+    "format",
+    "warning",
+    "disp",
+    "fprintf",
+    "print",
+    "addpath",
+    "more",
+    "tic",
+    "toc",
+    "pretty",
+];
+
+/// Words that begin what is more than assignments.
+const CONTROL: [&str; 17] = [
+    "for", "while", "if", "switch", "function", "try", "parfor", "def", "class", "with", "return", "lambda",
+    "elif", "else", "classdef", "global", "assume",
+];
+
+/// Reads a model file: the model that it saves, or the one of several that has a name or number.
+pub(super) fn read(
+    text: &str,
+    dialect: Dialect,
+    which: Option<&str>,
+    budget: &Budget,
+) -> Result<ForeignModel, Problem> {
+    let (words, comments) = tokens(text, dialect, budget)?;
+    let mut script = Script {
+        workspace: ScriptWorkspace::new(budget),
+        dialect,
+        saved: None,
+        title: None,
+        which: which.map(str::to_owned),
+        saves: 0,
+        begin: None,
+    };
+    script.workspace.plain.extend(VARIABLES.map(str::to_owned));
+    script.all(&words)?;
+    if let Some(wanted) = script.which.as_ref().filter(|_| script.saves > 0 && script.title.is_none()) {
+        let message = format!("the file saves no model '{wanted}'");
+        return Err(Problem::new(&(0..text.len().min(1)), message, "the file")
+            .help("models are named by what 'save' calls them"));
+    }
+    let mut model = script.model(text)?;
+    model.title = script.title.clone();
+    model.source = super::heading(text, &comments, script.begin.unwrap_or(text.len()));
+    Ok(model)
+}
+
+struct Script<'b> {
+    workspace: ScriptWorkspace<'b>,
+    dialect: Dialect,
+    /// The variables that `save` names, and what the file is called.
+    saved: Option<BTreeSet<String>>,
+    title: Option<String>,
+    /// Which of several models is asked for, and how many were saved so far.
+    which: Option<String>,
+    saves: usize,
+    /// Where the first assignment stands.
+    begin: Option<usize>,
+}
+
+impl Script<'_> {
+    fn all(&mut self, words: &[Token]) -> Result<(), Problem> {
+        let mut parser = Parser::new(words, self.dialect);
+        while !parser.at_end() {
+            if parser.take(";") || parser.take(",") {
+                continue;
+            }
+            let begin = parser.position();
+            self.statement(&mut parser)?;
+            let next = parser.peek();
+            if !(parser.at_end() || next.newline || next.is(";") || next.is(","))
+                || parser.position() == begin
+            {
+                return Err(parser.unexpected("the end of the line"));
+            }
+        }
+        Ok(())
+    }
+
+    fn statement(&mut self, parser: &mut Parser<'_>) -> Result<(), Problem> {
+        let word = parser.peek();
+        if let Some(control) = CONTROL.iter().find(|control| word.is_word(control)) {
+            return Err(Problem::new(
+                &word.span,
+                format!("'{control}' is not read: nothing of a script is run"),
+                "this",
+            )
+            .help("write the model as plain assignments to x, p, h, f, u and w"));
+        }
+        let ignored = IGNORED.iter().any(|name| word.is_word(name));
+        if matches!(word.text.as_str(), "import" | "from") && self.dialect == Dialect::Python
+            || ignored && !parser.ahead(1).is("=")
+        {
+            self.skip_line(parser);
+            return Ok(());
+        }
+        if word.is_word("syms") && self.dialect == Dialect::Matlab {
+            return self.symbols(parser);
+        }
+        if word.is_word("save") && self.dialect == Dialect::Matlab {
+            return self.saving(parser);
+        }
+        if let TokenKind::Text(_) = word.kind {
+            // a text by itself is a remark
+            parser.next();
+            return Ok(());
+        }
+        let left = parser.expression()?;
+        let mut targets = vec![left];
+        while parser.peek().is(",") && self.dialect == Dialect::Python && !parser.peek().newline {
+            parser.next();
+            targets.push(parser.expression()?);
+        }
+        if !parser.take("=") {
+            return match targets.as_slice() {
+                // a call for its own sake changes nothing that is read here
+                [only] if named_function(only).is_some_and(|(name, _)| !VARIABLES.contains(&name)) => Ok(()),
+                [only] if matches!(only.kind, SyntaxKind::Text(_) | SyntaxKind::Name(_)) => Ok(()),
+                _ => Err(parser.unexpected("'='")),
+            };
+        }
+        self.begin.get_or_insert(targets[0].span.start);
+        let right = self.right_side(parser)?;
+        self.assigned(&targets, &right)
+    }
+
+    /// An expression, or several with commas between them in Python.
+    fn right_side(&mut self, parser: &mut Parser<'_>) -> Result<Syntax, Problem> {
+        let first = parser.expression()?;
+        if parser.peek().is("=") {
+            return Err(parser.unexpected("one assignment at a time"));
+        }
+        if self.dialect != Dialect::Python || !parser.peek().is(",") {
+            return Ok(first);
+        }
+        let begin = first.span.start;
+        let mut list = vec![first];
+        while parser.take(",") {
+            list.push(parser.expression()?);
+        }
+        let end = list.last().map_or(begin, |last| last.span.end);
+        Ok(Syntax { kind: SyntaxKind::List(list), span: begin..end })
+    }
+
+    fn skip_line(&self, parser: &mut Parser<'_>) {
+        parser.next();
+        while !parser.at_end() && !parser.peek().newline && !parser.peek().is(";") {
+            parser.next();
+        }
+    }
+
+    /// `syms a b c real`
+    fn symbols(&mut self, parser: &mut Parser<'_>) -> Result<(), Problem> {
+        parser.next();
+        while !parser.at_end() && !parser.peek().newline && !parser.peek().is(";") {
+            let word = parser.next();
+            if word.is(",") || ["real", "positive", "rational", "integer"].contains(&word.text.as_str()) {
+                continue;
+            }
+            if word.kind != TokenKind::Name {
+                return Err(Problem::new(
+                    &word.span,
+                    format!("'{}' is no name of a symbol", word.text),
+                    "this",
+                )
+                .help("functions of time are plain symbols in such files: write their names"));
+            }
+            let value = self.workspace.symbol(&word.text, &word.span)?;
+            self.workspace.bind(&word.text, value);
+        }
+        Ok(())
+    }
+
+    /// `save('name', 'x', 'p', ...)`, `save name x p`
+    fn saving(&mut self, parser: &mut Parser<'_>) -> Result<(), Problem> {
+        let span = parser.next().span.clone();
+        let mut names = Vec::new();
+        while !parser.at_end() && !parser.peek().newline && !parser.peek().is(";") {
+            let word = parser.next();
+            match &word.kind {
+                TokenKind::Text(text) => names.push(text.clone()),
+                TokenKind::Name => names.push(word.text.clone()),
+                _ => {}
+            }
+        }
+        self.saves += 1;
+        let (count, name) = (self.saves.to_string(), names.first().cloned());
+        if self.which.is_none() && self.saves > 1 {
+            let message = format!("the file saves a second model, '{}'", name.unwrap_or_default());
+            return Err(Problem::new(&span, message, "the second one")
+                .help("say which with --model NAME or --model NUMBER; what is assigned behind the first belongs to the second"));
+        }
+        let is_asked = |which: &String| *which == count || Some(which) == name.as_ref();
+        if self.which.as_ref().is_some_and(|which| !is_asked(which)) {
+            return Ok(());
+        }
+        self.title = name;
+        let names: BTreeSet<String> =
+            names.into_iter().skip(1).filter(|name| !name.starts_with('-')).collect();
+        if !names.is_empty() {
+            self.saved.get_or_insert_default().extend(names);
+        }
+        if self.which.is_some() {
+            // what stands below belongs to other models
+            while !parser.at_end() {
+                parser.next();
+            }
+        }
+        Ok(())
+    }
+
+    fn assigned(&mut self, targets: &[Syntax], right: &Syntax) -> Result<(), Problem> {
+        let names = targets
+            .iter()
+            .map(|target| {
+                target.as_name().map(str::to_owned).ok_or_else(|| {
+                    let message = "an element of something is assigned to: that is not read";
+                    Problem::new(&target.span, message, "this").help("assign the whole vector at once")
+                })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        match (self.workspace.value(right), names.as_slice()) {
+            (Ok(value), [name]) => self.workspace.assign(name, value),
+            (Ok(value), names) => {
+                let entries = value.entries().unwrap_or_default();
+                if entries.len() != names.len() {
+                    let message = format!("{} names, and {} values", names.len(), entries.len());
+                    return Err(Problem::new(&right.span, message, "these values"));
+                }
+                for (name, entry) in names.iter().zip(entries) {
+                    self.workspace.assign(name, ScriptValue::One(entry));
+                }
+            }
+            (Err(why), names) => {
+                // told where somebody needs it: many files compute what no model uses
+                for name in names {
+                    let why = Problem {
+                        help: why.help.clone(),
+                        ..Problem::new(&why.span, why.message.clone(), "this")
+                    };
+                    self.workspace.break_name(name, why);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The entries of one of the variables of a model; none where it is not there.
+    fn vector(&self, name: &str) -> Result<Option<Vec<ForeignExpr>>, Problem> {
+        if self.saved.as_ref().is_some_and(|saved| !saved.contains(name)) {
+            return Ok(None);
+        }
+        match self.workspace.get(name) {
+            None => Ok(None),
+            Some(value) => Ok(value?.entries()),
+        }
+    }
+
+    fn required(&self, name: &str, what: &str, text: &str) -> Result<Vec<ForeignExpr>, Problem> {
+        self.vector(name)?.ok_or_else(|| {
+            let message = format!("the file does not say what {name} is: {what}");
+            Problem::new(&(0..text.len().min(1)), message, "the file")
+                .help("model files have x (states), p (parameters), f (rates), h (outputs), u and w (inputs)")
+        })
+    }
+
+    fn symbols_of(&self, name: &str) -> Result<Vec<(String, Span)>, Problem> {
+        let entries = self.vector(name)?.unwrap_or_default();
+        names_only(name, entries)
+    }
+
+    fn model(&self, text: &str) -> Result<ForeignModel, Problem> {
+        let states = names_only("x", self.required("x", "the states", text)?)?;
+        let rates = self.required("f", "the rates of the states", text)?;
+        if states.len() != rates.len() {
+            let message = format!("{} states, and {} rates", states.len(), rates.len());
+            let span = rates.last().map_or(0..0, |rate| rate.span.clone());
+            return Err(Problem::new(&span, message, "the last rate").help("x and f have as many elements"));
+        }
+        let mut model =
+            ForeignModel { definitions: self.workspace.definitions.clone(), ..ForeignModel::default() };
+        let mut seen = BTreeSet::new();
+        let mut new = |name: &str, span: &Span| {
+            let twice = || {
+                Problem::new(span, format!("x, p, u and w have the symbol '{name}' twice"), "this symbol")
+                    .help("two variables of the script may be one symbol: give each a symbol of its own")
+            };
+            if seen.insert(name.to_owned()) { Ok(()) } else { Err(twice()) }
+        };
+        for ((name, span), rate) in states.iter().zip(rates) {
+            new(name, span)?;
+            model.states.push(ForeignRate { name: name.clone(), rate, span: span.clone() });
+        }
+        for (list, target) in [("u", &mut model.known_inputs), ("w", &mut model.unknown_inputs)] {
+            // `syms u` alone is a symbol of that name
+            for (name, span) in self.symbols_of(list)? {
+                new(&name, &span)?;
+                target.push(name);
+            }
+        }
+        for (name, span) in self.symbols_of("p")? {
+            new(&name, &span)?;
+            model.constants.push(ForeignConstant {
+                name,
+                value: None,
+                is_unknown: true,
+                may_be_unknown: true,
+            });
+        }
+        let outputs = self.required("h", "the outputs", text)?;
+        model.outputs = outputs.into_iter().map(|value| ForeignOutput { name: None, value }).collect();
+        let before = model.constants.len();
+        model.order_definitions()?;
+        model.declare_others(false);
+        let others: Vec<&str> =
+            model.constants[before..].iter().map(|constant| constant.name.as_str()).collect();
+        if !others.is_empty() {
+            model
+                .remarks
+                .push(format!("known constants, in neither x nor p nor u nor w: {}", others.join(", ")));
+        }
+        if self.saved.as_ref().is_some_and(|saved| !saved.contains("u")) && self.workspace.get("u").is_some()
+        {
+            model
+                .remarks
+                .push("'u' is not among what the file saves, so it is no input of the model".to_owned());
+        }
+        self.beginnings(&mut model);
+        Ok(model)
+    }
+
+    /// States whose beginning is known: the programs use them only where they are told to, so they stand in a comment.
+    fn beginnings(&self, model: &mut ForeignModel) {
+        let Ok(Some(known)) = self.vector("known_ics") else { return };
+        let values = self.vector("ics").ok().flatten().unwrap_or_default();
+        for (at, (state, flag)) in model.states.iter().zip(known).enumerate() {
+            if flag.as_number().is_some_and(|flag| *flag != RBig::ZERO) {
+                let value = values.get(at).filter(|value| value.as_number().is_some()).cloned();
+                model.beginnings.push((state.name.clone(), value));
+            }
+        }
+        if !model.beginnings.is_empty() {
+            let remark = "beginnings that the file knows stand at its end as comments: the program uses them only where it is told to";
+            model.remarks.push(remark.to_owned());
+        }
+    }
+}
+
+/// Names, and nothing else.
+fn names_only(list: &str, entries: Vec<ForeignExpr>) -> Result<Vec<(String, Span)>, Problem> {
+    entries
+        .into_iter()
+        .map(|entry| match entry.kind {
+            ForeignKind::Name(name) => Ok((name, entry.span)),
+            _ => Err(Problem::new(&entry.span, format!("an element of {list} is no symbol"), "this")
+                .help(format!("{list} has symbols alone"))),
+        })
+        .collect()
+}

@@ -1,0 +1,89 @@
+//! Whether a statement can be understood: its names are known, and its two sides can be equal at all.
+
+use super::error::Problem;
+use super::model::{System, Value};
+use super::problems::Cause;
+use super::syntax::{ClaimSyntax, Statement};
+use palmistry_math::expression::syntax::Relation;
+
+impl System {
+    /// Whether a statement of a claim can be understood: its names are known and its two sides can be equal at all.
+    pub(super) fn check(&mut self, claim: &ClaimSyntax, statement: &Statement) -> Result<(), Problem> {
+        let (left, right) = (&statement.equation.left, &statement.equation.right);
+        let values = Value::compared(self.elaborate(left)?, self.elaborate(right)?);
+        let comparable = match &values {
+            (Value::Matrix(l), Value::Matrix(r)) => (l.rows, l.columns) == (r.rows, r.columns),
+            (Value::Matrix(_), _) | (_, Value::Matrix(_)) => false,
+            (Value::Visible { .. }, _) | (_, Value::Visible { .. }) => statement.is_about_what_is_seen(),
+            (left, right) => left.are_comparable(right),
+        };
+        let of_codistribution = matches!(
+            values,
+            (Value::CodistributionRank | Value::Visible { .. } | Value::Solutions(_), _)
+                | (_, Value::CodistributionRank | Value::Solutions(_))
+        );
+        if of_codistribution
+            && !self.states.is_empty()
+            && !self.outputs.is_empty()
+            && let Some(problem) = self.no_motion()
+        {
+            let span = if self.fields.is_empty() { statement.span.clone() } else { problem.span.clone() };
+            return Err(Problem {
+                span,
+                message: format!("claim {}: {}", claim.id, problem.message),
+                cause: Cause::Motion,
+                ..problem
+            });
+        }
+        if !comparable {
+            let message = format!("{} cannot equal {}", values.0.describe(), values.1.describe());
+            let problem = Problem::new(&statement.span, message, "this claim");
+            return Err(problem.because(Cause::Shape));
+        }
+        let relation = statement.equation.relation;
+        let of_numbers = values.0.as_number().is_some() && values.1.as_number().is_some();
+        let of_solutions = matches!(values, (Value::Solutions(_), _) | (_, Value::Solutions(_)));
+        if relation != Relation::Equal && !of_numbers && !of_solutions {
+            let (left, right) = (values.0.describe(), values.1.describe());
+            let message = format!("'{}' compares numbers, not {left} and {right}", relation.sign());
+            return Err(Problem::new(&statement.equation.span, message, "this relation"));
+        }
+        for further in &statement.further {
+            self.scalar(&further.right)?;
+        }
+        if statement.on_sample && !of_numbers {
+            let message = "'on sample' is said of numbers; a rank is that at almost all states";
+            return Err(Problem::new(&statement.span, message, "this claim"));
+        }
+        let is_rank = |value: &Value| matches!(value, Value::Rank(_) | Value::CodistributionRank);
+        if statement.except.is_some() && !is_rank(&values.0) && !is_rank(&values.1) {
+            let message =
+                "'everywhere' and 'except where' are said of a rank: all else is claimed wherever it exists";
+            return Err(Problem::new(&statement.span, message, "this claim"));
+        }
+        if let Some(unequal) =
+            statement.except.iter().flatten().flatten().find(|e| e.relation != Relation::Equal)
+        {
+            let message = "what is left out is said by equations";
+            return Err(Problem::new(&unequal.span, message, "no equation"));
+        }
+        for condition in statement.conditions.iter().chain(statement.except.iter().flatten().flatten()) {
+            self.scalar(&condition.left)?;
+            self.scalar(&condition.right)?;
+            if let Some(within) = &condition.within {
+                return Err(Problem::new(&within.span, "a condition is met exactly", "without 'within'"));
+            }
+        }
+        if let Some(within) = &statement.equation.within {
+            self.scalar(within)?;
+        }
+        if statement.carried.is_some() {
+            let is_print = statement.equation.right.is_literal();
+            if !is_print || !of_numbers || relation != Relation::Equal {
+                let message = "'carrying ... digits' is said of a number in print, as in e at {x = 1} = 2.718 carrying 10 digits";
+                return Err(Problem::new(&statement.span, message, "this claim"));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,136 @@
+//! What can be wrong with a file, shown at its place.
+
+use super::excerpt::{Excerpt, message};
+use super::problems::Cause;
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+use std::fmt::Display;
+use std::sync::Arc;
+
+/// A file that could not be used: what, where, and what to do.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{message}")]
+pub struct ReadError {
+    /// What is wrong.
+    pub message: String,
+    /// The text, with its name.
+    pub source_code: Arc<NamedSource<String>>,
+    /// The place.
+    pub span: SourceSpan,
+    /// What stands at the place.
+    pub label: String,
+    /// What to do about it.
+    pub help: Option<String>,
+    /// What is shown of the text.
+    excerpt: Box<Excerpt>,
+}
+
+/// What is rendered is the excerpt, and never the text itself.
+impl Diagnostic for ReadError {
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as Box<dyn Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(self.excerpt.as_ref())
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = LabeledSpan::new_with_span(Some(self.label.clone()), self.excerpt.marked());
+        Some(Box::new(std::iter::once(label)))
+    }
+}
+
+impl ReadError {
+    /// The line and the column of the place, in characters, both counted from one.
+    pub fn line_and_column(&self) -> (usize, usize) {
+        line_and_column(self.source_code.inner(), self.span.offset())
+    }
+}
+
+/// The line and the column of a place in a text, in characters, both counted from one.
+pub fn line_and_column(text: &str, at: usize) -> (usize, usize) {
+    // the place is on the boundary of a character, or at the end
+    let before = text.get(..at).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    (line, column)
+}
+
+/// An error without its text: what the elaborator knows.
+#[derive(Debug)]
+pub struct Problem {
+    pub message: String,
+    pub span: std::ops::Range<usize>,
+    pub label: String,
+    pub help: Option<String>,
+    pub cause: Cause,
+}
+
+impl Problem {
+    pub fn new(span: &std::ops::Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Self {
+        Problem {
+            message: message.into(),
+            span: span.clone(),
+            label: label.into(),
+            help: None,
+            cause: Cause::Itself,
+        }
+    }
+
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// Says on what the problem rests.
+    pub(crate) fn because(mut self, cause: Cause) -> Self {
+        self.cause = cause;
+        self
+    }
+
+    /// The error with the text that it points into. The span is kept within the text and on character boundaries.
+    pub fn locate(self, name: &str, text: &str) -> ReadError {
+        self.locate_in(&Arc::new(NamedSource::new(name, text.to_owned())))
+    }
+
+    /// The same with a text that several errors share.
+    pub fn locate_in(self, source: &Arc<NamedSource<String>>) -> ReadError {
+        let text = source.inner();
+        let (mut begin, mut end) =
+            (boundary(text, self.span.start), boundary(text, self.span.end.max(self.span.start)));
+        let mut label = self.label;
+        if begin == text.len() && !text.is_empty() {
+            // there is nothing to mark at the end of the text: mark the last thing before it
+            end = text.trim_end().len();
+            begin = boundary(text, end.saturating_sub(1));
+            label = "the text ends after this".to_owned();
+        }
+        ReadError {
+            message: message(&self.message),
+            excerpt: Box::new(Excerpt::new(source.name(), text, begin..end)),
+            source_code: source.clone(),
+            span: SourceSpan::new(begin.into(), end - begin),
+            label: message(&label),
+            help: self.help.as_deref().map(message),
+        }
+    }
+}
+
+/// The last boundary between characters of a text that is not behind a place.
+pub fn boundary(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+/// The known name nearest to one that is not known, for "perhaps you meant".
+pub fn nearest<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    known
+        .into_iter()
+        .map(|name| (strsim::damerau_levenshtein(wanted, name), name))
+        .filter(|(distance, _)| *distance <= 1 + wanted.chars().count() / 3)
+        .min()
+        .map(|(_, name)| name)
+}

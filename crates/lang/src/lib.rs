@@ -1,0 +1,73 @@
+//! A system, that is its states, parameters, vector fields, outputs and sample box, and how it is read from a
+//! proof file.
+//!
+//! [`System::read`] turns a file into a [`System`], or into a [`ReadError`] that points into the text. The claims of
+//! the file are carried along as syntax; what they mean is decided two floors up.
+//!
+//! This floor knows nothing of ranks, verdicts or palms.
+
+mod comparable;
+mod components;
+mod declare;
+mod determinant;
+mod dimension;
+mod discrete;
+mod domain;
+mod drawn;
+mod elaborate;
+mod enter_field;
+mod error;
+mod examine;
+mod excerpt;
+mod extent;
+mod format;
+mod functions;
+mod given;
+mod grammar;
+mod imports;
+mod lie;
+mod matrices;
+mod model;
+mod outline;
+mod problems;
+mod read;
+mod references;
+mod restates;
+mod signals;
+mod source_text;
+mod standing;
+mod syntax;
+mod unknowns;
+mod views;
+mod visible;
+#[doc(hidden)]
+pub mod vocabulary;
+mod written;
+
+#[doc(hidden)]
+pub use determinant::determinant;
+pub use dimension::{Base, Dimension, ScaledUnit, scaled_unit};
+pub use error::ReadError;
+#[doc(hidden)]
+pub use error::{Problem, boundary, line_and_column, nearest};
+pub use examine::Examination;
+pub use format::format_text;
+pub use given::{GivenError, given_number};
+#[doc(hidden)]
+pub use grammar::parse_statement;
+pub use model::{Assignment, Field, FieldRole, Kind, Matrix, Range, Role, SymbolInfo, System, Time, Value};
+#[doc(hidden)]
+pub use outline::{Declaration, DeclarationKind, Outline};
+#[doc(hidden)]
+pub use problems::{Cause, MOST_PROBLEMS};
+#[doc(hidden)]
+pub use source_text::{load, with_plain_line_ends};
+pub use standing::{Basis, Flaw, Reference};
+pub use syntax::Expectation;
+#[doc(hidden)]
+pub use syntax::{ClaimBody, ClaimSyntax, Statement};
+pub use unknowns::UnknownKind;
+#[doc(hidden)]
+pub use views::{CoordinateRange, LineEnd, LineView, MapView, NamedSet, Point, ReductionTo};
+#[doc(hidden)]
+pub use written::in_one_line;

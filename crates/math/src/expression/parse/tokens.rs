@@ -1,0 +1,284 @@
+//! The smallest parts of a text: blanks, signs, words, names, numbers, and brackets counted; and what was expected where something
+//! else stands.
+
+use crate::expression::syntax::{Expr, ExprKind, Name, Span};
+use crate::number::parse_decimal;
+use std::cell::{Cell, RefCell};
+use winnow::combinator::{alt, opt};
+use winnow::error::{AddContext, ErrMode, ModalResult, ParserError};
+use winnow::prelude::*;
+use winnow::stream::{LocatingSlice, Location, Stateful, Stream};
+use winnow::token::{literal, one_of, take_till, take_while};
+
+/// Text with the place in it, and how deep in brackets we are.
+pub type Text<'a> = Stateful<LocatingSlice<&'a str>, &'a Depth>;
+
+/// What is counted while a text is read.
+#[derive(Debug, Default)]
+pub struct Depth {
+    /// How many brackets are open.
+    pub(super) open: Cell<usize>,
+    /// How many parts of expressions were written out for values of indices.
+    pub(super) written_out: Cell<usize>,
+    /// The indices that were met, where each gets its range.
+    pub indices: RefCell<Vec<Name>>,
+}
+
+/// More brackets within brackets than this are refused: nobody means them.
+pub(super) const DEEPEST: usize = 120;
+
+/// What was expected at a place in the text.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected {what}")]
+pub struct Expected {
+    /// In words.
+    pub what: String,
+    /// The byte at which it was expected.
+    pub at: usize,
+    /// What may help.
+    pub help: Option<String>,
+}
+
+impl<'a> ParserError<Text<'a>> for Expected {
+    type Inner = Self;
+
+    fn from_input(input: &Text<'a>) -> Self {
+        Expected { what: "something else".to_owned(), at: input.current_token_start(), help: None }
+    }
+    fn or(self, other: Self) -> Self {
+        // the branch that came further knows better
+        if self.at > other.at { self } else { other }
+    }
+    fn into_inner(self) -> Result<Self, Self> {
+        Ok(self)
+    }
+}
+
+impl<'a> AddContext<Text<'a>, &'static str> for Expected {
+    fn add_context(
+        mut self,
+        input: &Text<'a>,
+        start: &<Text<'a> as Stream>::Checkpoint,
+        what: &'static str,
+    ) -> Self {
+        // name the whole only where nothing inside it was recognised
+        let mut begin = *input;
+        begin.reset(start);
+        if self.at == begin.current_token_start() || self.what == "something else" {
+            self.what = what.to_owned();
+        }
+        self
+    }
+}
+
+pub type Read<T> = ModalResult<T, Expected>;
+
+/// Stops the reading with a message of our own.
+pub fn stop<T>(at: usize, what: impl Into<String>, help: Option<String>) -> Read<T> {
+    Err(ErrMode::Cut(Expected { what: what.into(), at, help }))
+}
+
+/// Whether a character ends a line, and with it a comment: whatever some editor shows as the end of a line, so that nothing
+/// that is shown below a comment is read as a part of it.
+pub fn ends_a_line(c: char) -> bool {
+    matches!(c, '\n' | '\r' | '\u{b}' | '\u{c}' | '\u{1c}'..='\u{1e}' | '\u{85}' | '\u{2028}' | '\u{2029}')
+}
+
+/// White space and comments, which run from `#` to the end of the line.
+pub fn blank(input: &mut Text<'_>) -> Read<()> {
+    loop {
+        take_while(0.., |c: char| c.is_whitespace() || ends_a_line(c)).void().parse_next(input)?;
+        if opt(literal("#")).parse_next(input)?.is_none() {
+            return Ok(());
+        }
+        take_till(0.., ends_a_line).void().parse_next(input)?;
+    }
+}
+
+/// A sign or bracket, and the blank after it.
+pub fn sign<'a>(text: &'static str) -> impl Parser<Text<'a>, (), ErrMode<Expected>> {
+    (literal(text), blank).void()
+}
+
+/// Words that begin something and so cannot be names.
+pub const RESERVED: [&str; 31] = [
+    "system",
+    "cite",
+    "use",
+    "state",
+    "param",
+    "angle",
+    "let",
+    "drift",
+    "input",
+    "field",
+    "output",
+    "sample",
+    "avoid",
+    "in",
+    "claim",
+    "erratum",
+    "printed",
+    "corrected",
+    "damaged",
+    "convention",
+    "loose",
+    "scan",
+    "scanned",
+    "repaired",
+    "definition",
+    "undecided",
+    "where",
+    "at",
+    "within",
+    "expect",
+    "for",
+];
+
+/// Words with a meaning at some places; elsewhere they are names.
+pub const SPECIAL: [&str; 30] = [
+    "proved",
+    "refuted",
+    "restates",
+    "consequence",
+    "example",
+    "follows",
+    "reads",
+    "meant",
+    "as",
+    "on",
+    "carrying",
+    "everywhere",
+    "except",
+    "or",
+    "digits",
+    "others",
+    "set",
+    "pole",
+    "map",
+    "line",
+    "reduction",
+    "of",
+    "order",
+    "to",
+    "from",
+    "infinity",
+    "known",
+    "unknown",
+    "initial",
+    "experiments",
+];
+
+/// Letters, digits and underscores, beginning with a letter.
+pub fn word<'a>(input: &mut Text<'a>) -> Read<(&'a str, Span)> {
+    (
+        one_of(|c: char| c.is_ascii_alphabetic() || c == '_'),
+        take_while(0.., |c: char| c.is_ascii_alphanumeric() || c == '_'),
+    )
+        .take()
+        .with_span()
+        .parse_next(input)
+}
+
+/// A closing bracket, and the blank after it; where the bracket ends.
+pub(super) fn closing<'a>(text: &'static str) -> impl Parser<Text<'a>, usize, ErrMode<Expected>> {
+    (literal(text).span(), blank).map(|(span, ())| span.end)
+}
+
+/// One of the words of the language, and the blank after it.
+pub fn keyword<'a>(text: &'static str) -> impl Parser<Text<'a>, Span, ErrMode<Expected>> {
+    debug_assert!(RESERVED.contains(&text) || SPECIAL.contains(&text), "'{text}' is in no list of words");
+    move |input: &mut Text<'a>| {
+        let start = input.checkpoint();
+        match word.parse_next(input) {
+            Ok((found, span)) if found == text => {
+                blank(input)?;
+                Ok(span)
+            }
+            Ok((_, span)) => {
+                input.reset(&start);
+                Err(ErrMode::Backtrack(Expected { what: format!("'{text}'"), at: span.start, help: None }))
+            }
+            Err(error) => {
+                input.reset(&start);
+                Err(error)
+            }
+        }
+    }
+}
+
+/// A name that is not reserved, with parts joined by dots (`general.f`), and the blank after it.
+pub fn name(input: &mut Text<'_>) -> Read<Name> {
+    let name = bare_name(input)?;
+    blank(input)?;
+    Ok(name)
+}
+
+/// Right behind a name that has been declared: `'` for a derivative of a signal, `@2` for the second experiment, or both. As it is
+/// written in names: the primes first, and of the first experiment nothing.
+pub(super) fn suffix(input: &mut Text<'_>) -> Read<String> {
+    let before = take_while(0.., '\'').parse_next(input)?;
+    let experiment =
+        opt((literal("@"), take_while(1.., |c: char| c.is_ascii_digit())).take()).parse_next(input)?;
+    // the primes may stand behind the experiment too
+    let behind = match experiment {
+        Some(_) => take_while(0.., '\'').parse_next(input)?,
+        None => "",
+    };
+    let experiment = experiment.filter(|experiment| *experiment != "@1").unwrap_or_default();
+    Ok(format!("{before}{behind}{experiment}"))
+}
+
+/// A name without the blank after it.
+pub(super) fn bare_name(input: &mut Text<'_>) -> Read<Name> {
+    let start = input.checkpoint();
+    let ((first, _), span) = (word, winnow::combinator::repeat::<_, _, (), _, _>(0.., (literal("."), word)))
+        .map(|((text, span), ())| (text, span))
+        .with_span()
+        .parse_next(input)?;
+    if RESERVED.contains(&first) {
+        input.reset(&start);
+        let what = format!("a name; '{first}' is a word of the language");
+        return Err(ErrMode::Backtrack(Expected { what, at: span.start, help: None }));
+    }
+    let mut whole = *input;
+    whole.reset(&start);
+    let text = whole.input.as_ref()[..span.len()].to_owned();
+    Ok(Name { text, span })
+}
+
+/// An unsigned number as it is written in a file.
+pub(super) fn number(input: &mut Text<'_>) -> Read<Expr> {
+    let digits = |c: char| c.is_ascii_digit();
+    let mantissa = alt((
+        (take_while(1.., digits), opt((literal("."), take_while(0.., digits)))).void(),
+        (literal("."), take_while(1.., digits)).void(),
+    ));
+    let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), take_while(1.., digits)).void();
+    let (text, span) = (mantissa, opt(exponent)).take().with_span().parse_next(input)?;
+    let Some(value) = parse_decimal(text) else {
+        // the place is that of the exponent, or of the last digit: at its beginning a number is what is expected
+        let at = text.find(['e', 'E']).map_or(span.end - 1, |exponent| span.start + exponent + 1);
+        return stop(at, "a number of at most 4096 digits, with an exponent of at most 4096", None);
+    };
+    blank(input)?;
+    Ok(Expr { kind: ExprKind::Number(value), span })
+}
+
+/// Something in brackets, counted.
+pub fn within<'a, T>(input: &mut Text<'a>, inner: impl Parser<Text<'a>, T, ErrMode<Expected>>) -> Read<T> {
+    let depth = input.state;
+    if depth.open.get() >= DEEPEST {
+        let at = input.current_token_start();
+        return stop(
+            at,
+            format!("at most {DEEPEST} brackets within brackets"),
+            Some("name the inner part with 'let'".into()),
+        );
+    }
+    depth.open.set(depth.open.get() + 1);
+    let mut inner = inner;
+    let result = inner.parse_next(input);
+    depth.open.set(depth.open.get() - 1);
+    result
+}

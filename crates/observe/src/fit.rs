@@ -1,0 +1,345 @@
+//! Whether a misfit is what the errors of the readings explain.
+
+use super::chi_square::exceeded;
+use super::correlation::Neighbours;
+use super::loss::Loss;
+use nalgebra::{DMatrix, DVector};
+
+/// A run says of a model that is right that it does not fit no more often than this.
+pub const FALSE_ALARMS: f64 = 1e-3;
+
+/// A misfit below this part of the readings is what interpolation between samples may leave: it tells nothing of the model.
+pub(super) const COMPUTED: f64 = 1e-7;
+
+/// More readings than this part of them are no outliers: the model is wrong.
+const MOST_OUTLIERS: f64 = 0.1;
+
+/// What is known of the errors of the readings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Noise {
+    /// Nothing: their size is estimated from what the best state leaves.
+    Unstated,
+    /// Normal errors of this standard deviation, and rounding to multiples of a resolution; both in the outputs' unit.
+    Stated {
+        /// The standard deviation.
+        normal: f64,
+        /// The resolution; zero for none.
+        rounding: f64,
+    },
+}
+
+/// What is known of the errors of the readings of a column: independent normal ones, and rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ReadingErrors {
+    /// The standard deviation, in the column's unit.
+    pub normal: f64,
+    /// Readings are multiples of this; zero for none.
+    pub rounding: f64,
+}
+
+impl ReadingErrors {
+    /// The variance of a reading.
+    pub fn variance(self) -> f64 {
+        self.normal * self.normal + self.rounding * self.rounding / 12.0
+    }
+
+    /// Whether there is none.
+    pub fn are_none(self) -> bool {
+        self.variance() == 0.0
+    }
+}
+
+/// Where the standard deviation comes from by which a misfit is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoiseFrom {
+    /// It was stated.
+    Stated,
+    /// It is the misfit's own: no noise was stated.
+    Misfit,
+    /// Nothing is left but what rounding and interpolation leave, and no noise was stated.
+    Computation,
+}
+
+/// How well the best state explains a window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    /// The sum of the squares of expected minus read, in units of `sigma`.
+    pub chi_square: f64,
+    /// Readings less unknowns.
+    pub degrees: usize,
+    /// How likely a misfit is that is no better, were the model right: of one so large (chi-square), or whose neighbours agree so much, where the noise
+    /// was stated; of one whose neighbours are so alike (von Neumann's ratio) where it was not.
+    pub probability: f64,
+    /// Readings that no normal error explains, and that a robust loss leaves out of the test.
+    pub outliers: usize,
+    /// Readings, these among them.
+    pub readings: usize,
+    /// The part of neighbours in the probability; none where they were not tested by themselves.
+    pub neighbours: Option<f64>,
+    /// The standard deviation of a reading, in its unit.
+    pub sigma: f64,
+    /// Where it comes from.
+    pub from: NoiseFrom,
+    /// Whether the misfit is explained.
+    pub fits: bool,
+}
+
+impl Fit {
+    /// Whether so many readings are beyond what normal errors reach that they are no outliers.
+    pub fn has_outliers(&self) -> bool {
+        self.outliers as f64 > MOST_OUTLIERS * self.readings as f64
+    }
+
+    /// Whether it is the neighbours that agree too much, more than that the residuals are large.
+    pub fn is_by_neighbours(&self) -> bool {
+        self.neighbours.is_some_and(|own| own <= self.probability)
+    }
+}
+
+/// What is compared: differences sample by sample, `outputs` of them each, after `unknowns` were fitted.
+pub(super) struct Misfit<'a> {
+    pub differences: &'a DVector<f64>,
+    /// Their derivatives by what was fitted, where they are known.
+    pub slopes: Option<&'a DMatrix<f64>>,
+    /// How they were weighed.
+    pub loss: Loss,
+    pub outputs: usize,
+    /// So many of the first are no differences of readings: they are what was known before, in the same unit.
+    pub relations: usize,
+    /// What was fitted, readings that were taken as they are included.
+    pub unknowns: usize,
+    /// The root of the mean square of what was read.
+    pub size: f64,
+    /// The probability of a false alarm that this window may have.
+    pub alarm: f64,
+    /// The least standard deviation that is believed where none is stated.
+    pub least: f64,
+    /// What the rounding of the times may add to a reading.
+    pub timing: f64,
+}
+
+impl Misfit<'_> {
+    pub fn degrees(&self) -> usize {
+        self.differences.len().saturating_sub(self.unknowns)
+    }
+
+    /// What is left of a reading that is right: by interpolation, and by the rounding of its time.
+    pub fn computed(&self) -> f64 {
+        COMPUTED * self.size + self.timing
+    }
+
+    fn rms(&self) -> f64 {
+        (self.differences.norm_squared() / self.degrees().max(1) as f64).sqrt()
+    }
+
+    /// The verdict.
+    pub fn fit(&self, noise: Noise) -> Fit {
+        match noise {
+            Noise::Stated { normal, rounding } => self.against(normal, rounding),
+            Noise::Unstated => self.by_itself(),
+        }
+    }
+
+    /// Against stated errors: by the sum of the squares, and by how much neighbours agree.
+    ///
+    /// The best state is no farther from the readings than the true one is, and rounding adds at most half a resolution to each, however these
+    /// roundings hang together: that much is taken off before normal errors have to explain the rest.
+    ///
+    /// A robust loss leaves outliers out, which are told apart by what no normal error reaches, and takes a little less of the errors than least squares do
+    /// (`Loss::taken`); more outliers than [`MOST_OUTLIERS`] are no outliers.
+    fn against(&self, normal: f64, rounding: f64) -> Fit {
+        let sigma = (normal * normal + rounding * rounding / 12.0).sqrt();
+        let coherent = rounding / 2.0 + self.computed();
+        let is_reading = |i: usize| i >= self.relations;
+        let is_out = |i: usize, value: f64| is_reading(i) && self.loss.is_outlier(value, sigma, coherent);
+        let kept: Vec<Option<f64>> = self
+            .differences
+            .iter()
+            .enumerate()
+            .map(|(i, value)| (!is_out(i, *value)).then_some(*value))
+            .collect();
+        let count = kept.iter().flatten().count();
+        let outliers = kept.len() - count;
+        let readings = kept.len().saturating_sub(self.relations);
+        let degrees = count.saturating_sub(self.unknowns);
+        let length = kept.iter().flatten().map(|value| value * value).sum::<f64>().sqrt();
+        // what the computation adds is no error of a reading
+        let rest = length - coherent * (count as f64).sqrt();
+        let taken = self.loss.taken();
+        let own = degrees as f64 + (1.0 - taken) * self.unknowns.min(count) as f64;
+        let large = match rest {
+            rest if rest <= 0.0 => 1.0,
+            rest if normal > 0.0 => exceeded((rest / normal).powi(2), own),
+            _ => 0.0,
+        };
+        let alike = self.slopes.filter(|slopes| normal > 0.0 && slopes.nrows() == kept.len()).map(|slopes| {
+            let (residuals, outputs, relations) = (&kept[..], self.outputs, self.relations);
+            Neighbours { residuals, outputs, relations, slopes, taken, sigma, coherent }.probability()
+        });
+        let probability = alike.map_or(large, |alike| least_of([large, alike]));
+        let chi_square = (length / sigma).powi(2);
+        let from = NoiseFrom::Stated;
+        let fit = Fit {
+            chi_square,
+            degrees,
+            probability,
+            outliers,
+            readings,
+            neighbours: alike,
+            sigma,
+            from,
+            fits: false,
+        };
+        Fit { fits: degrees > 0 && !fit.has_outliers() && probability >= self.alarm, ..fit }
+    }
+
+    /// By what is left itself: independent errors differ from their neighbours by twice their variance in the mean, the remains
+    /// of a wrong model by less. Under independent normal errors the ratio of J. von Neumann (Distribution of the ratio of the
+    /// mean square successive difference to the variance, 1941) has the mean 2 and nearly the variance `4 (n - 2)/(n^2 - 1)`; for as
+    /// few as eight differences the tail of the normal distribution is the larger one on this side.
+    fn by_itself(&self) -> Fit {
+        let (degrees, rms) = (self.degrees(), self.rms());
+        let sigma = rms.max(self.least);
+        let from = if rms > self.least { NoiseFrom::Misfit } else { NoiseFrom::Computation };
+        let chi_square = self.differences.norm_squared() / (sigma * sigma);
+        let computed = rms <= self.computed().max(self.least);
+        let probability = if computed { 1.0 } else { self.independent() };
+        let fits = degrees > 0 && probability >= self.alarm && rms.is_finite();
+        let readings = self.differences.len().saturating_sub(self.relations);
+        Fit { chi_square, degrees, probability, outliers: 0, readings, neighbours: None, sigma, from, fits }
+    }
+
+    /// The probability of neighbours so alike, the least over the outputs times their number.
+    fn independent(&self) -> f64 {
+        let column = |output: usize| -> Vec<f64> {
+            self.differences
+                .iter()
+                .skip(self.relations + output)
+                .step_by(self.outputs.max(1))
+                .copied()
+                .collect()
+        };
+        let tail = |column: Vec<f64>| {
+            let n = column.len() as f64;
+            let square: f64 = column.iter().map(|value| value * value).sum();
+            if n < 8.0 || square <= 0.0 {
+                return 1.0;
+            }
+            let steps: f64 = column.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
+            let below = (2.0 - n / (n - 1.0) * steps / square) / (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();
+            if below <= 0.0 { 1.0 } else { exceeded(below * below, 1.0) / 2.0 }
+        };
+        let least = (0..self.outputs).map(|output| tail(column(output))).fold(1.0, f64::min);
+        (least * self.outputs as f64).min(1.0)
+    }
+}
+
+/// The probability that the least of two independent probabilities is no larger (L. H. C. Tippett, The Methods of Statistics, 1931).
+pub(super) fn least_of(two: [f64; 2]) -> f64 {
+    let least = two[0].min(two[1]);
+    if least.is_nan() { 0.0 } else { least * (2.0 - least) }
+}
+
+/// Whether differences of two outputs in turn are what stated errors explain, after so many unknowns were fitted: `size` is the root of the mean square
+/// of what was read, and the only test of a run may have all of its false alarms.
+pub fn explains(differences: &DVector<f64>, unknowns: usize, size: f64, noise: Noise) -> Fit {
+    let alarm = FALSE_ALARMS;
+    let (slopes, loss) = (None, Loss::Squares);
+    Misfit {
+        differences,
+        slopes,
+        loss,
+        outputs: 2,
+        relations: 0,
+        unknowns,
+        size,
+        alarm,
+        least: 0.0,
+        timing: 0.0,
+    }
+    .fit(noise)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn normal(random: &mut ChaCha8Rng) -> f64 {
+        let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt();
+        radius * (std::f64::consts::TAU * random.random::<f64>()).cos()
+    }
+
+    fn misfit(differences: &DVector<f64>, alarm: f64) -> Misfit<'_> {
+        Misfit {
+            differences,
+            slopes: None,
+            loss: Loss::Squares,
+            outputs: 2,
+            relations: 0,
+            unknowns: 0,
+            size: 1.0,
+            alarm,
+            least: 1e-9,
+            timing: 0.0,
+        }
+    }
+
+    /// Normal errors are called so, whether their size was stated or not: over 20,000 draws no more alarms than are allowed, five
+    /// deviations of their number added.
+    #[test]
+    fn noise_is_called_noise() {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        const DRAWS: usize = 20_000;
+        for alarm in [1e-3, 1e-2] {
+            let most = alarm * DRAWS as f64 + 5.0 * (alarm * DRAWS as f64).sqrt();
+            let mut alarms = [0; 2];
+            for _ in 0..DRAWS {
+                let differences = DVector::from_fn(160, |_, _| 1e-4 * normal(&mut random));
+                for (noise, count) in [Noise::Stated { normal: 1e-4, rounding: 0.0 }, Noise::Unstated]
+                    .into_iter()
+                    .zip(&mut alarms)
+                {
+                    *count += usize::from(!misfit(&differences, alarm).fit(noise).fits);
+                }
+            }
+            assert!(alarms.iter().all(|count| *count as f64 <= most), "{alarms:?} at {alarm}");
+            // and the first is a test and not a nod
+            assert!(alarms[0] as f64 > alarm * DRAWS as f64 / 2.0, "{alarms:?} at {alarm}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_noise_is_not_called_so() {
+        let mut random = ChaCha8Rng::seed_from_u64(8);
+        let wave = DVector::from_fn(160, |i, _| 1e-4 * (0.05 * i as f64).sin() + 1e-5 * normal(&mut random));
+        assert!(!misfit(&wave, 1e-4).fit(Noise::Unstated).fits);
+        assert!(!misfit(&wave, 1e-4).fit(Noise::Stated { normal: 1e-5, rounding: 0.0 }).fits);
+        assert!(misfit(&wave, 1e-4).fit(Noise::Stated { normal: 1e-4, rounding: 0.0 }).fits);
+        let unknown = DVector::from_element(160, f64::NAN);
+        for noise in [Noise::Unstated, Noise::Stated { normal: 1.0, rounding: 1.0 }] {
+            assert!(!misfit(&unknown, 1e-4).fit(noise).fits, "{noise:?}");
+        }
+    }
+
+    /// As many unknowns as readings: any model goes through them, and nothing bears it out.
+    #[test]
+    fn nothing_fits_that_nothing_is_left_to_check() {
+        let differences = DVector::from_element(160, 0.0);
+        for noise in [Noise::Stated { normal: 1e-4, rounding: 0.0 }, Noise::Unstated] {
+            let fits = |unknowns| Misfit { unknowns, ..misfit(&differences, 1e-4) }.fit(noise).fits;
+            assert!(fits(159) && !fits(160) && !fits(161), "{noise:?}");
+        }
+    }
+
+    /// A contact that rests is rounded by the same amount at each sample: that is no error of the model, and more than half a
+    /// resolution is one.
+    #[test]
+    fn roundings_may_hang_together() {
+        let rounding = |rounding: f64| Noise::Stated { normal: 0.0, rounding };
+        let rest = DVector::from_element(160, 0.49e-3);
+        assert!(misfit(&rest, 1e-4).fit(rounding(1e-3)).fits);
+        assert!(!misfit(&rest, 1e-4).fit(rounding(0.9e-3)).fits);
+    }
+}

@@ -1,0 +1,96 @@
+//! States recovered from what is measured.
+//!
+//! [`Signals`] are columns of measurements over time. A [`Model`] takes some states of a system for unknown and everything else
+//! for constants or signals; a [`ModelFlow`] follows it through time with its exact first and second derivatives by the unknowns. A
+//! `Window` compares what the model expects with what was read, `cramer_rao` bounds how well that can tell the
+//! unknowns, and an [`Observer`] works through a [`Task`] and gives a [`Track`]: Newton's method and a region of trust
+//! ([`MovingWindow`]), [`MultipleShooting`], [`Integration`], [`Kalman`], [`Unscented`], [`HighGain`]. Whether what is left is what the errors of the readings explain
+//! is a [`Fit`]; which errors of what is taken for known it would show, and which not, says a [`Suspect`].
+//!
+//! This floor knows systems, signals and numbers; it knows nothing of palms, bodies or scenes.
+
+mod attempt;
+mod blind;
+mod bound;
+mod calibration;
+mod chi_square;
+mod correlation;
+mod errors_in_variables;
+mod filtered;
+mod fit;
+mod flow;
+mod high_gain;
+mod inheritance;
+mod integration;
+mod inversion;
+mod jet;
+mod kalman;
+mod late;
+mod learned;
+mod loss;
+mod model;
+mod moving_window;
+mod multiple_shooting;
+mod newton;
+mod nodes;
+mod objection;
+mod propagated;
+mod quick_step;
+mod record;
+mod response;
+mod restarts;
+mod seam;
+mod sensitivity;
+mod signal;
+mod spread;
+mod starts;
+mod stiff_joints;
+mod suspect;
+mod task;
+mod together;
+mod trace;
+mod track;
+mod trust_region;
+mod unscented;
+mod weights;
+mod whitening;
+mod window;
+
+pub use bound::CramerRaoBound;
+pub(crate) use bound::cramer_rao;
+pub use calibration::CalibrationKind;
+#[doc(hidden)]
+pub use calibration::{Sought, declare, sought};
+#[doc(hidden)]
+pub use chi_square::exceeded_with;
+#[doc(hidden)]
+pub use fit::explains;
+pub use fit::{FALSE_ALARMS, Fit, Noise, NoiseFrom, ReadingErrors};
+pub use flow::Lost;
+#[doc(hidden)]
+pub use flow::{CAREFUL, ModelFlow, Order, Sample, advance};
+pub use high_gain::HighGain;
+pub use integration::Integration;
+pub use kalman::Kalman;
+pub use learned::{Arrival, Learned, Spread, Unseen};
+pub use loss::Loss;
+pub use model::{Model, ModelError};
+#[doc(hidden)]
+pub use model::{ModelQuestion, parameter_values};
+pub use moving_window::{MovingWindow, WhenBlind, WindowSearch};
+pub use multiple_shooting::{MultipleShooting, Shooting};
+pub use newton::Newton;
+pub use objection::{MotionRankFound, Objection, PoleMet};
+pub use record::{
+    ColumnNames, ColumnSource, Fault, FaultKind, FaultRules, OnFault, Record, RecordError, RecordReading,
+};
+#[doc(hidden)]
+pub use record::{RecordRows, RowStream, STREAM, TIME, faults_of};
+pub use response::{Response, ResponseError, ResponseQuestion, response};
+pub use signal::{SignalError, Signals};
+pub use suspect::{Suspect, SuspectKind};
+pub use task::{EstimateQuestion, Observer, Task};
+pub use together::{Innovations, Seam, Tested, Together};
+pub use track::{SampleEstimate, Track, Update, UpdateEnd};
+pub use trust_region::TrustRegion;
+pub use unscented::Unscented;

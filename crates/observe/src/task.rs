@@ -1,0 +1,279 @@
+//! What every observer is given: signals, models of what made them, and what is known beside them.
+
+use super::fit::Noise;
+use super::flow::CAREFUL;
+use super::learned::{Arrival, Learned};
+use super::loss::Loss;
+use super::track::Track;
+use super::{
+    CalibrationKind, Lost, Model, ModelError, ModelFlow, ModelQuestion, Order, ReadingErrors, Signals,
+};
+use palmistry_lang::System;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Signals, models of what made them, and a first guess.
+#[derive(Clone, Debug)]
+pub struct Task<'a> {
+    /// What was measured.
+    pub signals: &'a Signals,
+    /// The model that follows what is sought, first, and then the outputs that are states themselves.
+    pub full: Arc<Model>,
+    /// The model that follows what is sought alone and takes the outputs from the signals.
+    pub reduced: Arc<Model>,
+    /// The first guess of what is sought.
+    pub guess: Vec<f64>,
+    /// The magnitudes of what is sought; by custom those of the first guess.
+    pub sizes: Vec<f64>,
+    /// What an observer may not change in its first window, by place among what is sought.
+    pub clamped: Vec<usize>,
+    /// The standard deviation of the readings of the outputs, in their unit; positive. Where no noise is stated the least that is
+    /// believed of any reading.
+    pub sigma: f64,
+    /// What is known of the readings' errors: by it a misfit is judged.
+    pub noise: Noise,
+    /// What is known of the errors of single columns, by name: of an output in the place of `noise`, of a column that drives the model
+    /// beside it. A column that is not there drives the model without error.
+    pub errors: BTreeMap<String, ReadingErrors>,
+    /// What the rounding of the samples' times may add to a reading, in the outputs' unit.
+    pub timing: f64,
+    /// Whether the readings are taken as they are for the first values of the outputs, because they have no error.
+    pub exact: bool,
+    /// Whether a window begins with what the ones before it have learned.
+    pub inherit: bool,
+    /// What is known of each of what is sought: it lies in this range.
+    pub bounds: Vec<[f64; 2]>,
+    /// How misfits are weighed.
+    pub loss: Loss,
+    /// Whether all samples are one window, however many a window has otherwise: it grows from that many to all.
+    pub whole: bool,
+    /// The probability of a false alarm of each update; where none is given it is such that all of a run have [`super::FALSE_ALARMS`].
+    pub alarm: Option<f64>,
+    /// What was learned from earlier samples of a recording of which these are the next: its last sample is the first here.
+    pub learned: Option<Arc<Learned>>,
+    /// What is known of the state at the first sample of a window from those before it.
+    pub(super) arrival: Option<Arc<Arrival>>,
+    /// Whether a first window whose search comes to nothing is searched again from other states: within the bounds, or else the ranges of the file.
+    pub restarts: bool,
+    /// The tolerance of the integration.
+    pub tolerance: f64,
+    /// Set from outside to stop: what is done by then is given back.
+    pub interrupt: &'a AtomicBool,
+    /// What the models were made from, for who asks what else they could have been.
+    pub source: Arc<(System, EstimateQuestion)>,
+}
+
+/// Which states are to be estimated, and what is known beside the signals.
+#[derive(Clone, Debug, Default)]
+pub struct EstimateQuestion {
+    /// The states that are estimated, and the first guess of each.
+    pub guess: Vec<(String, f64)>,
+    /// Those that are not changed in the first window.
+    pub clamped: Vec<String>,
+    /// Constants that are known.
+    pub known: BTreeMap<String, f64>,
+    /// Input fields and the symbols that drive them.
+    pub inputs: Vec<(String, String)>,
+}
+
+/// The default of [`Task::tolerance`].
+pub const TOLERANCE: f64 = 1e-11;
+
+impl<'a> Task<'a> {
+    /// The task of estimating some states of a system from signals.
+    ///
+    /// # Errors
+    /// [`ModelError`].
+    pub fn new(
+        system: &System,
+        wanted: &EstimateQuestion,
+        signals: &'a Signals,
+        interrupt: &'a AtomicBool,
+    ) -> Result<Task<'a>, ModelError> {
+        let names: Vec<String> = wanted.guess.iter().map(|(name, _)| name.clone()).collect();
+        let is_state = |name: &str| system.states.iter().any(|state| system.symbol_name(*state) == name);
+        let outputs = system.outputs.iter().map(|(name, _)| name).filter(|name| is_state(name));
+        let question = |followed: Vec<String>| ModelQuestion {
+            followed,
+            known: wanted.known.clone(),
+            inputs: wanted.inputs.clone(),
+        };
+        let reduced = Model::new(system, &question(names.clone()), signals)?;
+        // an output is followed where its rate depends on what is sought: the others say nothing
+        let mut followed = names.clone();
+        for name in outputs {
+            if !names.contains(name) && signals.find(name).is_some() && !wanted.known.contains_key(name) {
+                let alone = Model::new(
+                    system,
+                    &question([&names[..], std::slice::from_ref(name)].concat()),
+                    signals,
+                )?;
+                let depends = alone.system.graph.symbols_of([alone.rate_nodes[names.len()]]);
+                if alone.symbols[..names.len()].iter().any(|symbol| depends.contains(symbol)) {
+                    followed.push(name.clone());
+                }
+            }
+        }
+        let full = Model::new(system, &question(followed), signals)?;
+        if full.outputs.is_empty() {
+            return Err(ModelError::Blind);
+        }
+        let no_output = |name: &&String| match CalibrationKind::of(name) {
+            Some((column, CalibrationKind::Delay)) => !full.outputs.iter().any(|output| output == column),
+            _ => false,
+        };
+        if let Some((column, _)) = names.iter().find(no_output).and_then(|name| CalibrationKind::of(name)) {
+            return Err(ModelError::DelayOfInput { column: column.to_owned() });
+        }
+        let guess: Vec<f64> = wanted.guess.iter().map(|(_, value)| *value).collect();
+        let largest = guess.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        let size = |(name, value): &(String, f64)| match CalibrationKind::of(name) {
+            // a delay is held against the time between two samples
+            Some((_, CalibrationKind::Delay)) => signals.between(),
+            // a bias is held against what is read
+            Some((column, CalibrationKind::Bias)) => {
+                let read = signals.find(column).map_or(&[][..], |place| signals.column(place));
+                let most = read.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+                if most > 0.0 { most } else { 1.0 }
+            }
+            _ if *value != 0.0 => value.abs(),
+            _ if largest > 0.0 => largest,
+            _ => 1.0,
+        };
+        Ok(Task {
+            signals,
+            full: Arc::new(full),
+            reduced: Arc::new(reduced),
+            sizes: wanted.guess.iter().map(size).collect(),
+            clamped: (0..names.len()).filter(|i| wanted.clamped.contains(&names[*i])).collect(),
+            guess,
+            sigma: 1e-9,
+            noise: Noise::Unstated,
+            errors: BTreeMap::new(),
+            timing: 0.0,
+            exact: true,
+            inherit: true,
+            bounds: vec![[f64::NEG_INFINITY, f64::INFINITY]; names.len()],
+            loss: Loss::Squares,
+            whole: false,
+            alarm: None,
+            learned: None,
+            arrival: None,
+            restarts: false,
+            tolerance: TOLERANCE,
+            interrupt,
+            source: Arc::new((system.clone(), wanted.clone())),
+        })
+    }
+
+    /// The same task with other readings: the columns are those of the signals that it was made for, in their order.
+    pub fn with_signals<'b>(&self, signals: &'b Signals) -> Task<'b>
+    where
+        'a: 'b,
+    {
+        Task { signals, ..self.clone() }
+    }
+
+    /// The errors of an output of which nothing else is known.
+    pub(super) fn common_errors(&self) -> ReadingErrors {
+        match self.noise {
+            Noise::Stated { normal, rounding } => ReadingErrors { normal, rounding },
+            Noise::Unstated => ReadingErrors { normal: self.sigma, rounding: 0.0 },
+        }
+    }
+
+    /// How many states are estimated.
+    pub fn estimated(&self) -> usize {
+        self.guess.len()
+    }
+
+    /// Whether someone asked to stop.
+    pub fn interrupted(&self) -> bool {
+        self.interrupt.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn full_flow(&self) -> ModelFlow<'_> {
+        ModelFlow { model: &self.full, signals: self.signals, tolerance: self.tolerance, quick: CAREFUL }
+    }
+
+    /// The full state at a sample: what is sought as it is believed, the outputs as they are read there.
+    pub fn full_state(&self, sought: &[f64], row: usize) -> Vec<f64> {
+        let read = |place: usize| self.full.column_of(place).map_or(0.0, |c| self.signals.column(c)[row]);
+        (0..self.full.states.len()).map(|i| if i < sought.len() { sought[i] } else { read(i) }).collect()
+    }
+
+    /// A full state whose sought part lies where it is told to.
+    pub(super) fn within_bounds(&self, mut state: Vec<f64>) -> Vec<f64> {
+        for (value, [low, high]) in state.iter_mut().zip(&self.bounds) {
+            *value = value.max(*low).min(*high);
+        }
+        state
+    }
+
+    /// What of what is sought lies at a bound, by its place, and the bound.
+    pub(super) fn at_bounds(&self, sought: &[f64]) -> Vec<(usize, f64)> {
+        let at = |(place, (value, bounds)): (usize, (&f64, &[f64; 2]))| {
+            bounds.iter().find(|bound| *bound == value).map(|bound| (place, *bound))
+        };
+        sought.iter().zip(&self.bounds).enumerate().filter_map(at).collect()
+    }
+
+    /// The standard deviations that a filter begins with: of what is sought a part of its size, none of what is clamped, and of outputs that
+    /// are states the readings' own.
+    pub(super) fn prior_deviations(&self, part: f64, sigma: f64) -> Vec<f64> {
+        let deviation = |place: usize| match self.sizes.get(place) {
+            Some(_) if self.clamped.contains(&place) => 0.0,
+            Some(size) => part * size,
+            None => sigma,
+        };
+        (0..self.full.states.len()).map(deviation).collect()
+    }
+
+    /// What is believed of the errors of an output: one that is zero has none of its own, but those of the readings in it.
+    pub(super) fn output_errors(&self, output: usize) -> ReadingErrors {
+        if self.full.is_implicit(output) {
+            return ReadingErrors::default();
+        }
+        self.errors.get(&self.full.outputs[output]).copied().unwrap_or_else(|| self.common_errors())
+    }
+
+    /// Why a method that knows no errors but those of readings does nothing here: some outputs are implicit.
+    pub(super) fn refuses_implicit(&self) -> Option<String> {
+        let names = self.full.outputs.iter().enumerate().filter(|(place, _)| self.full.is_implicit(*place));
+        let names: Vec<&str> = names.map(|(_, name)| name.as_str()).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "it compares outputs with readings, and none is read of {}: ask a method by windows",
+                names.join(", ")
+            )
+        })
+    }
+
+    /// What was read of the outputs at a sample; zero of those that are zero.
+    pub(super) fn readings(&self, row: usize) -> Vec<f64> {
+        let read = |column: &Option<usize>| column.map_or(0.0, |column| self.signals.column(column)[row]);
+        self.full.measured.iter().map(read).collect()
+    }
+
+    /// What is sought, from one sample to a later one by the equations alone, with the outputs as they are read.
+    ///
+    /// # Errors
+    /// Where the equations have no value.
+    pub fn integrate(&self, sought: &[f64], rows: std::ops::Range<usize>) -> Result<Vec<Vec<f64>>, Lost> {
+        let flow = ModelFlow {
+            model: &self.reduced,
+            signals: self.signals,
+            tolerance: self.tolerance,
+            quick: CAREFUL,
+        };
+        let samples = flow.follow(sought, &[], &self.signals.times()[rows], Order::Value)?;
+        Ok(samples.into_iter().map(|sample| sample.state).collect())
+    }
+}
+
+/// A way to estimate states from what is measured.
+pub trait Observer: Sync {
+    /// Works through the signals of a task. Whatever goes wrong on the way is part of the answer.
+    fn observe(&self, task: &Task<'_>) -> Track;
+}

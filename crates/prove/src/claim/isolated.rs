@@ -1,0 +1,169 @@
+//! An unexpected panic costs what was being decided, and nothing else: the claim is *undecided*, which no file can expect, and all
+//! others are decided as if nothing had happened.
+//!
+//! What was worked on is given away with the work, so that nothing half done is met afterwards.
+
+use super::verdict::{Outcome, Verdict};
+use palmistry_lang::{Basis, ClaimBody, ClaimSyntax, System, in_one_line, line_and_column};
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
+use std::sync::Once;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Messages are cut to so many characters.
+const LONGEST: usize = 300;
+
+/// How many pieces of work are being done that a panic may end.
+static BEING_DONE: AtomicUsize = AtomicUsize::new(0);
+
+thread_local! {
+    /// The same on this thread.
+    static HERE: Cell<usize> = const { Cell::new(0) };
+    /// Where in this program the last of them has ended.
+    static PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Does work that owns what it works on.
+///
+/// # Errors
+/// That it has panicked, in a sentence: nothing is printed.
+pub fn isolated<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    listen();
+    BEING_DONE.fetch_add(1, Ordering::SeqCst);
+    HERE.set(HERE.get() + 1);
+    let found = catch_unwind(AssertUnwindSafe(work));
+    HERE.set(HERE.get() - 1);
+    BEING_DONE.fetch_sub(1, Ordering::SeqCst);
+    found.map_err(|panic| {
+        let place = PLACE.take().map(|place| format!(" ({place})")).unwrap_or_default();
+        let message = message(panic.as_ref());
+        format!("internal error: {message}{place}; this is a bug in this program: please report it")
+    })
+}
+
+/// From now on panics in such work are not printed; all others are, as before.
+fn listen() {
+    static LISTENS: Once = Once::new();
+    LISTENS.call_once(|| {
+        let before = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            // such work may have given a part of itself to another thread of the pool
+            let of_the_pool =
+                rayon::current_thread_index().is_some() && BEING_DONE.load(Ordering::SeqCst) > 0;
+            match HERE.get() > 0 || of_the_pool {
+                true => PLACE.set(place(panic)),
+                false => before(panic),
+            }
+        }));
+    });
+}
+
+/// The file and the line of this program; of what it is built with no more is told than nothing.
+fn place(panic: &PanicHookInfo<'_>) -> Option<String> {
+    let location = panic.location()?;
+    let is_ours = std::path::Path::new(location.file()).is_relative();
+    is_ours.then(|| format!("{}, line {}", location.file(), location.line()))
+}
+
+/// What was said, in one line.
+fn message(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+    let text = text.unwrap_or("no message");
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(LONGEST).collect()
+}
+
+/// The outcome of a claim whose decision has panicked: never as expected.
+pub(super) fn lost(system: &System, claim: &ClaimSyntax, why: String, seconds: f64) -> Outcome {
+    let statements = claim.body.statements();
+    let statement = statements.last().map(|statement| in_one_line(&system.source, &statement.span));
+    let (fault, expected) = match &claim.body {
+        ClaimBody::Erratum { fault, .. } | ClaimBody::Scan { fault, .. } => (Some(*fault), None),
+        ClaimBody::Claim { expected, .. } => (None, Some(*expected)),
+        _ => (None, None),
+    };
+    Outcome {
+        file: system.name.clone(),
+        place: line_and_column(&system.source, claim.span.start),
+        id: claim.id.clone(),
+        statement: statement.unwrap_or_default(),
+        fault,
+        printed: None,
+        quoted: None,
+        basis: Basis::clone(&claim.basis),
+        follows: claim.follows.as_ref().map(|reference| reference.text()),
+        definitions: Vec::new(),
+        differentiated_along: Vec::new(),
+        pole_of: None,
+        verdict: Verdict::undecided(why),
+        domain: Vec::new(),
+        expected,
+        ok: false,
+        evidence: Vec::new(),
+        remark: claim.remark.clone(),
+        at_files_values: None,
+        printed_at_files_values: None,
+        fields: Vec::new(),
+        beside: Vec::new(),
+        not_looked_at: Vec::new(),
+        seconds,
+    }
+}
+
+/// A claim of this name panics, in tests.
+#[cfg(test)]
+pub(super) const PANICS: &str = "this-one-panics";
+
+#[cfg(test)]
+mod tests {
+    use super::super::{decide, decide_all};
+    use super::*;
+    use std::sync::Mutex;
+    use std::sync::atomic::AtomicBool;
+
+    fn system(second: &str) -> System {
+        format!(
+            "system \"s\" state x known u(t) param a unknown drift f x+ = a*x + u output x
+             claim first: rank = 2
+             claim {second} expect undecided: rank = 1 where u = 0
+             claim third: rank = 2 where u = 0
+             claim fourth: L(f, f, x) = a*(a*x + u) + u"
+        )
+        .parse()
+        .unwrap()
+    }
+
+    /// The others have the verdicts that they have in a file in which nothing panics, whether they come before or behind.
+    #[test]
+    fn a_panic_costs_one_claim() {
+        let told = Mutex::new(Vec::new());
+        let done = |outcome: &Outcome| told.lock().unwrap().push(outcome.id.clone());
+        let outcomes = decide_all(&system(PANICS), 1, &AtomicBool::new(false), &done);
+        assert_eq!(told.into_inner().unwrap().len(), 4);
+        let others = decide_all(&system("second"), 1, &AtomicBool::new(false), &|_| ());
+        for (place, (outcome, other)) in outcomes.iter().zip(&others).enumerate() {
+            if place != 1 {
+                assert_eq!(outcome.verdict, other.verdict, "{}", outcome.id);
+                continue;
+            }
+            // not even a file that expects no verdict expects this
+            assert!(!outcome.ok);
+            assert_eq!((outcome.word(), outcome.statement.as_str()), ("undecided", "rank = 1 where u = 0"));
+            let Verdict::Undecided { why } = &outcome.verdict else { panic!("{outcome:?}") };
+            assert!(why.starts_with("internal error: as a test asks (src/claim/"), "{why}");
+            assert!(why.ends_with("please report it"), "{why}");
+        }
+        let claim = &system(PANICS).claims[1].clone();
+        assert_eq!(decide(&system(PANICS), claim, 1).verdict, outcomes[1].verdict);
+    }
+
+    /// Also where a part of the work was given to other threads; and text of a file is told in one line.
+    #[test]
+    fn panics_of_other_threads_are_told() {
+        use rayon::prelude::*;
+        let why =
+            isolated(|| (0..64).into_par_iter().for_each(|n| assert!(n != 63, "line\nbreak"))).unwrap_err();
+        assert!(why.starts_with("internal error: line break"), "{why}");
+        assert_eq!(isolated(|| 7), Ok(7));
+    }
+}

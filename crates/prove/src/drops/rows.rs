@@ -1,0 +1,302 @@
+//! The rows whose rank is asked for: a matrix of the file, or the differentials of Lie derivatives along longer and longer
+//! words, which are taken as they are needed. These are taken by all coordinates that move, the unknown ones first: whether longer words
+//! add nothing is asked of all columns ([`Growth`]), and the rank of those of the unknown.
+
+use super::algebra::{Algebra, Chart};
+use super::point::{Point, run};
+use palmistry_lang::System;
+use palmistry_math::expression::{Graph, NodeId, Program, Symbol, gradient};
+use palmistry_math::number::PrimeField;
+use palmistry_rank::observability::{Codistribution, Growth, Length, Word, independent_rows};
+use rand::Rng;
+use std::collections::HashMap;
+
+/// Rows of as many entries as the span is taken by.
+pub(super) struct Rows {
+    /// The columns whose rank is asked for; they are the first.
+    pub columns: usize,
+    /// All of them: of words those of what is known at the beginning too.
+    pub width: usize,
+    /// What the columns of words are by, in their order.
+    by: Vec<Symbol>,
+    /// What each row is of, as a paper writes it.
+    pub names: Vec<String>,
+    pub rows: Vec<Vec<NodeId>>,
+    /// The same as the file has them, by its states.
+    written: Vec<Vec<NodeId>>,
+    /// How many fields the word of each has.
+    orders: Vec<usize>,
+    /// By how many nodes each is made of: short ones are taken first.
+    costs: Vec<usize>,
+    /// The longest words and their values; none where the rows are all that there are.
+    last: Vec<(Word, NodeId)>,
+    pub order: usize,
+    grows: bool,
+    /// Whether no longer word has a differential that is not zero.
+    pub complete: bool,
+    programs: HashMap<Chart, (usize, Program)>,
+}
+
+/// Words have at most so many fields more than there are states, and no more of them are taken.
+const MORE_FIELDS: usize = 2;
+const MOST_WORDS: usize = 300;
+
+/// Rows and columns of a minor.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Chosen {
+    pub rows: Vec<usize>,
+    pub columns: Vec<usize>,
+}
+
+impl Rows {
+    /// A matrix of the file, by rows.
+    pub fn of_matrix(graph: &Graph, entries: &[NodeId], columns: usize) -> Rows {
+        let rows: Vec<Vec<NodeId>> = entries.chunks(columns.max(1)).map(<[NodeId]>::to_vec).collect();
+        let costs = rows.iter().map(|row| cost(graph, row)).collect();
+        let names = (1..=rows.len()).map(|n| format!("row {n}")).collect();
+        let orders = vec![0; rows.len()];
+        let (last, programs, written) = (Vec::new(), HashMap::new(), Vec::new());
+        Rows {
+            columns,
+            width: columns,
+            by: Vec::new(),
+            names,
+            rows,
+            written,
+            orders,
+            costs,
+            last,
+            order: 0,
+            grows: false,
+            complete: true,
+            programs,
+        }
+    }
+
+    /// The differentials of the outputs, and what comes of them.
+    pub fn of_words(system: &mut System) -> Rows {
+        let last: Vec<(Word, NodeId)> = (0..system.outputs.len())
+            .map(|output| (Word { fields: Vec::new(), output }, system.outputs[output].1))
+            .collect();
+        let mut by = system.unknowns();
+        let columns = by.len();
+        by.extend(system.closed_coordinates().into_iter().filter(|symbol| system.known.contains(symbol)));
+        let mut rows = Rows {
+            columns,
+            width: by.len(),
+            by,
+            names: Vec::new(),
+            rows: Vec::new(),
+            written: Vec::new(),
+            orders: Vec::new(),
+            costs: Vec::new(),
+            last: Vec::new(),
+            order: 0,
+            grows: true,
+            complete: false,
+            programs: HashMap::new(),
+        };
+        rows.add(system, last);
+        rows.rows = rows.written.clone();
+        rows
+    }
+
+    /// The rows in the coordinates of an algebra, those of words that were added since the last time; all of them where the
+    /// coordinates were changed.
+    pub fn prepare(&mut self, algebra: &mut Algebra<'_>) {
+        self.rows.clear();
+        self.programs.clear();
+        self.catch_up(algebra);
+    }
+
+    fn catch_up(&mut self, algebra: &mut Algebra<'_>) {
+        let coordinates = algebra.coordinates.clone();
+        for row in self.written.get(self.rows.len()..).unwrap_or_default() {
+            self.rows.push(coordinates.row(algebra.system, &self.by, row));
+        }
+    }
+
+    /// The columns whose rank is asked for of some rows, as the file has them, one row after the other.
+    pub fn as_written(&self, rows: impl IntoIterator<Item = usize>) -> Vec<NodeId> {
+        let all = if self.grows { &self.written } else { &self.rows };
+        rows.into_iter().flat_map(|row| all[row][..self.columns].iter().copied()).collect()
+    }
+
+    /// The numbers of columns that have to be looked at, one after the other, before something is said of the rank: all that longer words
+    /// are told by, and then those that it is asked of.
+    pub fn spans(&self) -> Vec<usize> {
+        match self.complete || self.width == self.columns {
+            true => vec![self.columns],
+            false => vec![self.width, self.columns],
+        }
+    }
+
+    /// Whether longer words can be taken.
+    pub fn is_of_words(&self) -> bool {
+        self.grows
+    }
+
+    fn add(&mut self, system: &mut System, words: Vec<(Word, NodeId)>) {
+        for (word, value) in &words {
+            let row = gradient(&mut system.graph, *value, &self.by);
+            if row.iter().all(|entry| system.graph.constant_value(*entry).is_some_and(|c| c.is_zero())) {
+                continue;
+            }
+            self.names.push(word.text(system));
+            self.costs.push(cost(&system.graph, &row));
+            self.orders.push(word.fields.len());
+            self.written.push(row);
+        }
+        self.last = words;
+    }
+
+    /// Takes words of one field more; whether there were any.
+    pub fn extend(&mut self, algebra: &mut Algebra<'_>) -> bool {
+        let longer = self.longer(algebra.system);
+        self.catch_up(algebra);
+        longer
+    }
+
+    fn longer(&mut self, system: &mut System) -> bool {
+        let fields = system.moving_fields();
+        let next = self.rows.len() + self.last.len() * fields.len();
+        if !self.grows || self.order >= self.width + MORE_FIELDS || next > MOST_WORDS {
+            return false;
+        }
+        let mut longer = Vec::new();
+        for field in fields {
+            for (word, value) in &self.last {
+                let derivative = system.lie_derivative(field, *value);
+                if system.graph.constant_value(derivative).is_none() {
+                    let mut fields = vec![field];
+                    fields.extend_from_slice(&word.fields);
+                    longer.push((Word { fields, output: word.output }, derivative));
+                }
+            }
+        }
+        if longer.is_empty() {
+            self.complete = true;
+            return false;
+        }
+        self.order += 1;
+        self.add(system, longer);
+        true
+    }
+
+    /// Rows and columns that are independent at a point, of words that are shorter than the longest, unless these are all; among the
+    /// first so many columns.
+    pub fn shortest(
+        &mut self,
+        algebra: &mut Algebra<'_>,
+        chart: &Chart,
+        (point, columns): (&Point, usize),
+        rng: &mut impl Rng,
+    ) -> Option<Chosen> {
+        let matrix = self.at(algebra, chart, point, rng)?;
+        let counts = |row: &usize| self.complete || self.orders[*row] < self.order;
+        let order: Vec<usize> = (0..matrix.len()).filter(counts).collect();
+        choose(&point.field, &matrix, &order, columns, columns)
+    }
+
+    /// The rank at a point; and how that by all columns has grown with the longest words.
+    pub fn ranks(
+        &mut self,
+        algebra: &mut Algebra<'_>,
+        chart: &Chart,
+        point: &Point,
+        rng: &mut impl Rng,
+    ) -> Option<(usize, Growth)> {
+        let matrix = self.at(algebra, chart, point, rng)?;
+        let order: Vec<usize> = (0..matrix.len()).collect();
+        let shorter: Vec<usize> =
+            order.iter().copied().filter(|row| self.orders[*row] < self.order).collect();
+        let rank = |rows: &[usize], columns: usize| {
+            choose(&point.field, &matrix, rows, columns, columns).map(|chosen| chosen.rows.len())
+        };
+        let growth = Growth {
+            order: self.order,
+            below: rank(&shorter, self.width)?,
+            up_to: rank(&order, self.width)?,
+        };
+        Some((rank(&order, self.columns)?, growth))
+    }
+
+    /// Whether no longer word adds to a rank where no field leaves the set on which its rows have grown so.
+    pub fn have_rested(&self, growth: Growth) -> bool {
+        self.complete || growth.has_ended()
+    }
+
+    /// Rows and columns, at most so many, that are independent at a point: for each way to prefer rows.
+    pub fn independent(
+        &mut self,
+        algebra: &mut Algebra<'_>,
+        chart: &Chart,
+        point: &Point,
+        most: usize,
+        rng: &mut impl Rng,
+    ) -> Option<Vec<Chosen>> {
+        let matrix = self.at(algebra, chart, point, rng)?;
+        let mut cheap: Vec<usize> = (0..matrix.len()).collect();
+        cheap.sort_by_key(|row| self.costs[*row]);
+        let mut found: Vec<Chosen> = Vec::new();
+        for order in [cheap, (0..matrix.len()).collect()] {
+            let chosen = choose(&point.field, &matrix, &order, most, self.columns)?;
+            if !found.contains(&chosen) {
+                found.push(chosen);
+            }
+        }
+        Some(found)
+    }
+
+    fn at(
+        &mut self,
+        algebra: &mut Algebra<'_>,
+        chart: &Chart,
+        point: &Point,
+        rng: &mut impl Rng,
+    ) -> Option<Vec<Vec<u64>>> {
+        if self.programs.get(chart).is_none_or(|(count, _)| *count != self.rows.len()) {
+            let entries: Vec<NodeId> = self.rows.iter().flatten().copied().collect();
+            let entries = algebra.in_chart(chart, &entries);
+            let program = Program::with_unknown_functions(&algebra.system.graph, &entries, |_| false);
+            self.programs.insert(chart.clone(), (self.rows.len(), program));
+        }
+        let values = run(&self.programs.get(chart)?.1, point, rng)?;
+        Some(values.chunks(self.width.max(1)).map(<[u64]>::to_vec).collect())
+    }
+}
+
+/// The rows of words, by name and one after the other, until some of them have a rank at almost all states, and of one field
+/// more.
+pub(crate) fn rows_up_to(system: &mut System, rank: usize) -> (Vec<String>, Vec<NodeId>) {
+    let fields = Codistribution::new(system, &Default::default(), Length::UntilItStops);
+    let order = fields.map_or(0, |words| if words.generic_rank() >= rank { words.order } else { 0 });
+    let mut rows = Rows::of_words(system);
+    while rows.order <= order && rows.longer(system) {}
+    let is_zero = |entry: &NodeId| system.graph.constant_value(*entry).is_some_and(|c| c.is_zero());
+    let counts = |row: &usize| !rows.written[*row][..rows.columns].iter().all(is_zero);
+    let kept: Vec<usize> = (0..rows.written.len()).filter(counts).collect();
+    (kept.iter().map(|row| rows.names[*row].clone()).collect(), rows.as_written(kept))
+}
+
+fn cost(graph: &Graph, row: &[NodeId]) -> usize {
+    graph.reachable(row.iter().copied()).len()
+}
+
+fn choose(
+    field: &PrimeField,
+    matrix: &[Vec<u64>],
+    order: &[usize],
+    most: usize,
+    columns: usize,
+) -> Option<Chosen> {
+    let ordered: Vec<Vec<u64>> = order.iter().map(|row| matrix[*row][..columns].to_vec()).collect();
+    let mut places = independent_rows(field, &ordered).ok()?;
+    places.truncate(most);
+    let mut rows: Vec<usize> = places.into_iter().map(|place| order[place]).collect();
+    rows.sort_unstable();
+    let transposed: Vec<Vec<u64>> =
+        (0..columns).map(|column| rows.iter().map(|row| matrix[*row][column]).collect()).collect();
+    let columns = independent_rows(field, &transposed).ok()?;
+    Some(Chosen { rows, columns })
+}

@@ -1,0 +1,114 @@
+//! Words of Lie derivatives where all of an order are too many: only those that raise the rank are taken, and continued.
+
+use super::codistribution::{Codistribution, Word};
+use super::needed::{CodistributionError, needed};
+use super::saturation::Stop;
+use super::series::lie_derivative_by_series;
+use palmistry_lang::{Assignment, System};
+use palmistry_math::expression::{NodeId, gradient};
+
+/// A word that is continued, with its value and its differential by all coordinates that move.
+#[derive(Clone)]
+struct Link {
+    word: Word,
+    value: NodeId,
+    row: Vec<NodeId>,
+}
+
+/// Expressions of words that are taken by need have no more nodes than this.
+const MOST_NODES: usize = 2_000_000;
+
+impl Codistribution {
+    /// Takes only words that raise the rank by all coordinates that move, and of longer ones only those that continue one of these: over the
+    /// field of functions the differentials of all others lie in the span of theirs, and so do those of what continues them.
+    pub(super) fn take_by_need(
+        &mut self,
+        system: &mut System,
+        conditions: &Assignment,
+        fields: &[usize],
+    ) -> Result<(), CodistributionError> {
+        let begin = system.graph.len();
+        let closed = system.closed_coordinates();
+        let mut chain: Vec<Link> = Vec::new();
+        let outputs = (0..system.outputs.len()).map(|output| Word { fields: Vec::new(), output });
+        let mut candidates: Vec<Word> = outputs.collect();
+        let (mut stop, mut taken) = (Stop::NoGrowth, None);
+        while !candidates.is_empty() {
+            let before = chain.len();
+            for word in candidates.drain(..) {
+                let output = system.outputs[word.output].1;
+                let value = match system.graph.len() - begin > MOST_NODES {
+                    true => None,
+                    false => lie_derivative_by_series(system, &word.fields, output).ok(),
+                };
+                let Some(value) = value else {
+                    stop = Stop::TooMany;
+                    break;
+                };
+                let row = gradient(&mut system.graph, value, &closed);
+                chain.push(Link { word, value, row });
+            }
+            let rows: Vec<Vec<NodeId>> = chain.iter().map(|link| link.row.clone()).collect();
+            let (raising, guessed) = needed(system, &rows, conditions)?;
+            chain = raising.iter().map(|place| chain[*place].clone()).collect();
+            let found = self.of_chain(system, conditions, &chain, guessed)?;
+            let rank = found.needed.len();
+            taken = Some(found);
+            if rank >= self.generic.at_most {
+                stop = if rank == system.unknown_count() { Stop::Full } else { Stop::NoGrowth };
+                break;
+            }
+            if stop == Stop::TooMany {
+                break;
+            }
+            for link in &chain[before.min(chain.len())..] {
+                for field in fields {
+                    let fields = std::iter::once(*field).chain(link.word.fields.iter().copied()).collect();
+                    candidates.push(Word { fields, output: link.word.output });
+                }
+            }
+        }
+        match taken {
+            // what was taken before may name more
+            Some(taken) if stop != Stop::TooMany || taken.needed.len() > self.needed.len() => {
+                *self = Codistribution { stop, ..taken };
+            }
+            _ => self.stop = Stop::TooMany,
+        }
+        Ok(())
+    }
+
+    /// The words of a chain that raise the rank by the unknowns; the chain itself where all that moves is unknown.
+    fn of_chain(
+        &self,
+        system: &mut System,
+        conditions: &Assignment,
+        chain: &[Link],
+        guessed: bool,
+    ) -> Result<Codistribution, CodistributionError> {
+        let (closed, unknowns) = (system.closed_coordinates(), system.unknowns());
+        let is_unknown: Vec<bool> = closed.iter().map(|symbol| unknowns.contains(symbol)).collect();
+        let of_unknowns = |link: &Link| -> Vec<NodeId> {
+            link.row
+                .iter()
+                .zip(&is_unknown)
+                .filter(|(_, unknown)| **unknown)
+                .map(|(entry, _)| *entry)
+                .collect()
+        };
+        let rows: Vec<Vec<NodeId>> = chain.iter().map(of_unknowns).collect();
+        let (kept, guessed) = match closed.len() > unknowns.len() {
+            true => needed(system, &rows, conditions)?,
+            false => ((0..chain.len()).collect(), guessed),
+        };
+        Ok(Codistribution {
+            words: kept.iter().map(|place| chain[*place].word.clone()).collect(),
+            values: kept.iter().map(|place| chain[*place].value).collect(),
+            rows: kept.iter().map(|place| rows[*place].clone()).collect(),
+            order: kept.iter().map(|place| chain[*place].word.fields.len()).max().unwrap_or(0),
+            needed: (0..kept.len()).collect(),
+            guessed,
+            ..self.clone()
+        })
+    }
+}

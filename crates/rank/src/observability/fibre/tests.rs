@@ -1,0 +1,68 @@
+use super::basis::{Basis, Limits, Row};
+use super::monomials::Monomials;
+use super::quotient::{Algebra, NoAlgebra, distinct_roots};
+use palmistry_math::number::PrimeField;
+use std::cell::Cell;
+
+/// The least prime above 2^61.
+const PRIME: u64 = (1 << 61) + 15;
+
+/// Polynomials in so many variables: powers and coefficient of each term.
+type Terms<'a> = &'a [(&'a [(usize, u16)], i64)];
+
+fn algebra(variables: usize, polynomials: &[Terms]) -> Result<Algebra, NoAlgebra> {
+    let field = PrimeField::new(PRIME);
+    let mut monomials = Monomials::new(vec![1; variables]);
+    let mut rows = Vec::new();
+    for polynomial in polynomials {
+        let mut terms: Vec<(u32, u64)> = polynomial
+            .iter()
+            .map(|(powers, coefficient)| (monomials.of(powers), field.integer(&(*coefficient).into())))
+            .collect();
+        terms.sort_by(|a, b| monomials.compare(b.0, a.0));
+        let (monomials, coefficients) = terms.into_iter().unzip();
+        rows.push(Row { monomials, coefficients });
+    }
+    let work = Cell::new(0);
+    let limits = Limits { columns: 10_000, degree: 50, work: &work, is_over: &|| false };
+    Algebra::new(Basis::of(field, monomials, rows, &limits).unwrap(), 200)
+}
+
+fn values(algebra: &mut Algebra, powers: &[(usize, u16)]) -> usize {
+    let field = PrimeField::new(PRIME);
+    distinct_roots(&field, &algebra.minimal_polynomial(&[(powers.to_vec(), field.one())]))
+}
+
+/// The elementary symmetric functions of three numbers leave their six orders: cyclic roots for n = 3.
+#[test]
+fn symmetric_functions_leave_six_points() {
+    let sum: Terms = &[(&[(0, 1)], 1), (&[(1, 1)], 1), (&[(2, 1)], 1), (&[], -6)];
+    let pairs: Terms = &[(&[(0, 1), (1, 1)], 1), (&[(1, 1), (2, 1)], 1), (&[(0, 1), (2, 1)], 1), (&[], -11)];
+    let product: Terms = &[(&[(0, 1), (1, 1), (2, 1)], 1), (&[], -6)];
+    let mut found = algebra(3, &[sum, pairs, product]).unwrap();
+    assert_eq!(found.dimension(), 6);
+    assert_eq!(values(&mut found, &[(0, 1)]), 3);
+    // of 1, 2 and 3 the products of two are 2, 3 and 6
+    assert_eq!(values(&mut found, &[(0, 1), (2, 1)]), 3);
+    assert_eq!(values(&mut found, &[(0, 1), (1, 1), (2, 1)]), 1);
+    // x^2 y has the values 2, 3, 4, 12, 9, 18
+    assert_eq!(values(&mut found, &[(0, 2), (1, 1)]), 6);
+}
+
+/// A double point counts twice as a point and once as a value.
+#[test]
+fn a_double_point_has_one_value() {
+    let square: Terms = &[(&[(0, 2)], 1), (&[(0, 1)], -2), (&[], 1)];
+    let line: Terms = &[(&[(1, 1)], 1), (&[(0, 1)], -1)];
+    let mut found = algebra(2, &[square, line]).unwrap();
+    assert_eq!((found.dimension(), values(&mut found, &[(1, 1)])), (2, 1));
+}
+
+/// A curve has infinitely many points; what contradicts itself has none.
+#[test]
+fn curves_and_contradictions() {
+    let curve: Terms = &[(&[(0, 1), (1, 1)], 1), (&[], -1)];
+    assert_eq!(algebra(2, &[curve]).err(), Some(NoAlgebra::Infinite));
+    let other: Terms = &[(&[(0, 1), (1, 1)], 1), (&[], -2)];
+    assert_eq!(algebra(2, &[curve, other]).map(|found| found.dimension()).ok(), Some(0));
+}

@@ -1,0 +1,250 @@
+//! What is seen at almost all states: the rank of the observability codistribution, and of each unknown whether it is seen,
+//! by power series modulo a prime. No words of Lie derivatives are formed, and nothing is written out: the cost grows with a
+//! power of the number of unknowns.
+//!
+//! From a random state, with random series for the inputs, the outputs' derivatives and their differentials are computed in residues
+//! ([`equations`], [`covectors`]). Their span is that of all words: words are the coefficients of the inputs' derivatives
+//! in it. Once a derivative of an output adds nothing, no further one of it does ([`super::saturation`]). A nonzero minor modulo one prime is a nonzero
+//! minor, so what is found is certainly there; that nothing was missed is as certain as [`bound`] says.
+//!
+//! References: A. Sedoglavic, *A probabilistic algorithm to test local algebraic observability in polynomial time*, J. Symbolic
+//! Computation 33 (2002); Y. Wang and E. D. Sontag, *Orders of input/output differential equations and state-space dimensions*,
+//! SIAM J. Control Optim. 33 (1995), for the span over generic inputs.
+
+mod adjoined;
+mod bound;
+mod covectors;
+mod echelon;
+mod equations;
+mod in_steps;
+mod matrix;
+mod orders;
+mod probe;
+mod steps;
+#[cfg(test)]
+mod tests;
+
+pub(super) use matrix::formal_rank;
+pub use matrix::{GenericRank, generic_rank};
+pub(crate) use orders::Orders;
+pub use probe::{Directions, Probe};
+
+use super::saturation::Ceiling;
+use bound::Rounds;
+use equations::Equations;
+use in_steps::answer_in_steps;
+use palmistry_lang::{Assignment, System, Time};
+use palmistry_math::expression::{NodeId, Symbol};
+use probe::MOST_ROOTS;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// What is known of one unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seen {
+    /// It is a function of what is measured, near almost every state.
+    Yes,
+    /// It can change and nothing that is measured does.
+    No,
+    /// Neither is shown.
+    Undecided,
+}
+
+/// What is seen at almost all states, or on almost all of a set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GenericAnswer {
+    /// How many unknowns there are.
+    pub dimension: usize,
+    /// The rank is no less: a minor was found that does not vanish.
+    pub at_least: usize,
+    /// Nor more, but for an error of probability below `2^log2_error`.
+    pub at_most: usize,
+    /// The same bound where what is known at the beginning counts as unknown.
+    pub(crate) closed_at_most: usize,
+    /// Minus infinity where the rank is full and there is nothing to err about.
+    pub log2_error: f64,
+    /// At how many random points, each modulo a random prime.
+    pub rounds: usize,
+    /// How many derivatives of the outputs were needed.
+    pub order: usize,
+    /// The unknowns in the order of the file, and whether each is seen.
+    pub unknowns: Vec<(Symbol, Seen)>,
+    /// Of each of them whether it is seen wherever the rank is `at_most`, with the same error.
+    pub(crate) seen_at_most: Vec<bool>,
+    /// Why the two bounds differ, or nothing more is known.
+    pub open: Option<String>,
+}
+
+impl GenericAnswer {
+    /// The rank, where it is known.
+    pub fn rank(&self) -> Option<usize> {
+        (self.at_least == self.at_most).then_some(self.at_least)
+    }
+
+    /// Whether the rank is known.
+    pub fn is_final(&self) -> bool {
+        self.rank().is_some()
+    }
+}
+
+/// What is seen at almost all states that satisfy the conditions.
+pub fn generic_answer(system: &System, conditions: &Assignment, ceiling: Ceiling) -> GenericAnswer {
+    generic_answer_of(system, conditions, ceiling, &[]).0
+}
+
+/// The same, and of each of some functions whether it is seen: whether its differential lies in the span of those of what is
+/// measured. That it does not is as certain as the rank; that it does, as what else is said to be seen.
+pub fn generic_answer_of(
+    system: &System,
+    conditions: &Assignment,
+    ceiling: Ceiling,
+    asked: &[NodeId],
+) -> (GenericAnswer, Vec<Seen>) {
+    if system.time == Time::Discrete {
+        return answer_in_steps(system, conditions, ceiling, asked);
+    }
+    let unknown = || vec![Seen::Undecided; asked.len()];
+    let rests = ceiling == Ceiling::Rests;
+    let probe = Probe::asking(system, conditions, asked);
+    let columns = probe.equations.columns.clone();
+    let dimension = columns.len();
+    let mut answer = GenericAnswer {
+        dimension,
+        at_least: 0,
+        at_most: dimension,
+        closed_at_most: probe.equations.closed.len(),
+        log2_error: f64::NEG_INFINITY,
+        rounds: 0,
+        order: 0,
+        unknowns: columns.iter().map(|column| (system.states[*column], Seen::Undecided)).collect(),
+        seen_at_most: vec![false; dimension],
+        open: None,
+    };
+    // any fixed seed: what is true almost everywhere does not depend on the user's
+    let mut rng = ChaCha8Rng::seed_from_u64(0x7365_7269_6573);
+    let bounds = bound::rounds(&probe.equations, probe.equations.closed.len());
+    let rounds = bounds.as_ref().map_or(1, |bounds| bounds.rounds);
+    // of each choice of signs the ranks of all columns, and of all but one
+    let mut best: Vec<(usize, Vec<bool>)> = Vec::new();
+    let (mut closed, all) = (0, probe.equations.closed.len());
+    let known_functions = functions_are_known(&probe.equations);
+    for _ in 0..rounds {
+        let found = match probe.round(&mut rng, rests) {
+            Ok(found) => found,
+            Err(why) => {
+                answer.open = Some(why);
+                return (answer, unknown());
+            }
+        };
+        answer.rounds += 1;
+        best.resize(found.len(), (0, vec![false; dimension + asked.len()]));
+        answer.order = found.iter().map(|here| here.order).fold(answer.order, usize::max);
+        closed = found.iter().map(|here| here.closed).fold(closed, usize::max);
+        // which choice of signs is which is another matter at every point
+        let mut found: Vec<_> = found.iter().map(|here| (here.rank(), here.seen())).collect();
+        found.sort_unstable();
+        for (best, here) in best.iter_mut().zip(found) {
+            if here.0 > best.0 {
+                *best = here;
+            } else if here.0 == best.0 {
+                // seen is what the others do without at no point
+                best.1.iter_mut().zip(here.1).for_each(|(best, here)| *best &= here);
+            }
+        }
+        if best.iter().all(|(rank, _)| *rank == dimension) {
+            break;
+        }
+    }
+    answer.closed_at_most = if bounds.is_ok() { closed } else { all };
+    let seen = conclude(&mut answer, &best, &bounds, known_functions, ceiling);
+    (answer, seen)
+}
+
+/// An answer that says why it says nothing.
+fn nothing_known(system: &System, why: String) -> GenericAnswer {
+    let unknowns: Vec<_> = system.unknowns().into_iter().map(|symbol| (symbol, Seen::Undecided)).collect();
+    GenericAnswer {
+        dimension: unknowns.len(),
+        at_least: 0,
+        at_most: unknowns.len(),
+        closed_at_most: system.closed_coordinates().len(),
+        log2_error: f64::NEG_INFINITY,
+        rounds: 0,
+        order: 0,
+        seen_at_most: vec![false; unknowns.len()],
+        unknowns,
+        open: Some(why),
+    }
+}
+
+/// Whether values of functions are known by their relations, so that a random one shows what the true one does.
+fn functions_are_known(equations: &Equations) -> bool {
+    equations.related && (equations.roots == 0 || equations.roots <= MOST_ROOTS)
+}
+
+/// What follows from the ranks of each choice of signs; of the functions that are asked for, whether each is seen.
+fn conclude(
+    answer: &mut GenericAnswer,
+    best: &[(usize, Vec<bool>)],
+    bounds: &Result<Rounds, String>,
+    known_functions: bool,
+    ceiling: Ceiling,
+) -> Vec<Seen> {
+    let ranks = || best.iter().map(|(rank, _)| *rank);
+    let (least, most) = (ranks().min().unwrap_or(0), ranks().max().unwrap_or(0));
+    if known_functions {
+        answer.at_least = least;
+    } else {
+        answer.open = Some(
+            "functions are met that may satisfy relations; a rank at a true state is a lower bound"
+                .to_owned(),
+        );
+    }
+    match (bounds, ceiling) {
+        (Ok(bounds), Ceiling::Rests) => {
+            answer.at_most = most;
+            if most < answer.dimension {
+                answer.log2_error = bounds.log2_error;
+            }
+        }
+        (Ok(bounds), Ceiling::Around { closed, unknown }) => {
+            // where all that moves is spanned as around, longer derivatives lie in the span
+            let spanned = answer.closed_at_most == closed;
+            answer.at_most = if spanned { most.min(unknown) } else { unknown };
+            if answer.at_most < answer.dimension {
+                answer.log2_error = bounds.log2_error;
+            }
+            if answer.at_least < answer.at_most && answer.open.is_none() {
+                answer.open =
+                    Some("the fields leave the set: derivatives of higher orders may see more".to_owned());
+            }
+        }
+        (Err(why), _) if least < answer.dimension => answer.open = Some(why.clone()),
+        _ => {}
+    }
+    if least < most && answer.open.is_none() {
+        answer.open =
+            Some(format!("the rank is {least} with some signs of the square roots and {most} with others"));
+    }
+    // without its column the rank is less at all random points, and so at every state; the signs that have the highest rank count
+    if bounds.is_ok() && answer.at_most == most {
+        let highest = || best.iter().filter(|(rank, _)| *rank == most);
+        answer.seen_at_most =
+            (0..answer.dimension).map(|place| highest().all(|(_, seen)| seen[place])).collect();
+    }
+    let known = answer.is_final();
+    let told = |place: usize| {
+        let by = || best.iter().map(|(_, seen)| seen[place]);
+        match known {
+            _ if answer.at_least == answer.dimension => Seen::Yes,
+            true if by().all(|seen| seen) => Seen::Yes,
+            true if !by().any(|seen| seen) => Seen::No,
+            _ => Seen::Undecided,
+        }
+    };
+    let all = best.first().map_or(0, |(_, seen)| seen.len());
+    let mut found: Vec<Seen> = (0..all).map(told).collect();
+    let asked = found.split_off(answer.dimension.min(all));
+    answer.unknowns.iter_mut().zip(found).for_each(|((_, seen), found)| *seen = found);
+    asked
+}

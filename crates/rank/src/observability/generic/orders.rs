@@ -1,0 +1,91 @@
+//! How many derivatives of each output tell all that any tell.
+//!
+//! The first derivative `y_i^(h_i)` whose differential lies in the span of those below it is algebraic over these. Differentiated, the
+//! equation that it satisfies is linear in `y_i^(h_i + 1)`, so that this and all further derivatives are *rational* in the
+//! derivatives of all outputs up to their `h`. The field that these generate is therefore that of all derivatives.
+
+use super::echelon::Echelon;
+use super::probe::{ATTEMPTS, Draw, Probe};
+use palmistry_math::number::{PrimeField, Refusal};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+/// The derivatives that tell all.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Orders {
+    /// Of each output the order `h` of the first derivative that adds nothing to those below.
+    pub last: Vec<usize>,
+    /// Of each output the orders of the derivatives that make up the rank of the unknowns' columns.
+    pub raised: Vec<Vec<usize>>,
+    /// Unknowns, by their places, without which the others are functions of the outputs and of these.
+    pub free: Vec<usize>,
+}
+
+impl Probe {
+    /// The orders at a random point.
+    ///
+    /// # Errors
+    /// In words, where the points were poles.
+    pub(crate) fn orders(&self, rng: &mut ChaCha8Rng) -> Result<Orders, String> {
+        let mut refused = String::new();
+        for _ in 0..ATTEMPTS {
+            let field = PrimeField::random(rng);
+            match self.orders_in(field, rng) {
+                Ok(orders) => return Ok(orders),
+                Err(refusal) => refused = refusal.to_string(),
+            }
+        }
+        Err(format!("{ATTEMPTS} random points were poles: {refused}"))
+    }
+
+    fn orders_in(&self, field: PrimeField, rng: &mut ChaCha8Rng) -> Result<Orders, Refusal> {
+        let equations = &self.equations;
+        let start = equations.draw(field, rng)?;
+        let draw = Draw { field, seed: rng.random(), signs: None };
+        let most = equations.closed.len() + 1;
+        let outputs = equations.outputs.max(1);
+        let mut length = (most.div_ceil(outputs) + 2).min(most);
+        loop {
+            let trajectory = equations.trajectory(field, &start, (draw.seed, draw.signs), length)?;
+            let one = field.one();
+            let integers: Vec<u64> =
+                std::iter::successors(Some(0), |k| Some(field.sum(*k, one))).take(length + 1).collect();
+            let mut closed = Echelon::new(field, equations.closed.len());
+            let mut columns = Echelon::new(field, equations.columns.len());
+            let count = equations.outputs;
+            let (mut last, mut raised) = (vec![None; count], vec![Vec::new(); count]);
+            let mut open: Vec<_> = trajectory.covectors.into_iter().enumerate().collect();
+            for k in 0..length {
+                let mut further = Vec::new();
+                for (output, covector) in open {
+                    let value = covector.value();
+                    let part = |places: &[usize]| places.iter().map(|place| value[*place]).collect();
+                    if columns.insert(part(&equations.columns)) {
+                        raised[output].push(k);
+                    }
+                    if closed.insert(part(&equations.closed)) {
+                        further.push((output, covector));
+                    } else {
+                        last[output] = Some(k);
+                    }
+                }
+                open = further;
+                if open.is_empty() {
+                    break;
+                }
+                if k + 1 < length {
+                    for (_, covector) in &mut open {
+                        *covector = covector.next(&field, &trajectory.entries, &integers);
+                    }
+                }
+            }
+            if open.is_empty() || length >= most {
+                let free =
+                    (0..equations.columns.len()).filter(|column| !columns.begins_at(*column)).collect();
+                let last = last.into_iter().map(|order| order.unwrap_or(most)).collect();
+                return Ok(Orders { last, raised, free });
+            }
+            length = (2 * length).min(most);
+        }
+    }
+}

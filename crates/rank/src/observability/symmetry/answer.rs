@@ -1,0 +1,83 @@
+//! What was found of the unseen directions and of the functions that are seen.
+
+use palmistry_lang::Assignment;
+use palmistry_math::expression::{NodeId, Symbol};
+use std::ops::Range;
+
+/// A component of a vector field that is not zero.
+#[derive(Clone, Debug)]
+pub struct FieldComponent {
+    /// The state that it moves.
+    pub state: Symbol,
+    /// The state's name.
+    pub name: String,
+    /// How it moves it.
+    pub rate: NodeId,
+    /// The same in the notation of the language.
+    pub text: String,
+}
+
+/// A vector field along which no output changes, proved.
+#[derive(Clone, Debug)]
+pub struct UnseenField {
+    /// Its components that are not zero, in the order of the states.
+    pub components: Vec<FieldComponent>,
+    /// The proof errs with a probability below `2^log2_error`.
+    pub log2_error: f64,
+}
+
+/// A function of several unknowns whose differential lies in the codistribution, proved.
+#[derive(Clone, Debug)]
+pub struct SeenFunction {
+    /// The function.
+    pub value: NodeId,
+    /// The same in the notation of the language.
+    pub text: String,
+    /// The proof errs with a probability below `2^log2_error`.
+    pub log2_error: f64,
+    /// It is the product of these powers.
+    pub(super) factors: Vec<(NodeId, i32)>,
+}
+
+/// States that no unseen direction couples with others.
+#[derive(Clone, Debug)]
+pub(super) struct UnseenBlock {
+    pub states: Vec<Symbol>,
+    /// How many unseen directions there are among them.
+    pub unseen: usize,
+    /// The functions of these states, among all functions.
+    pub functions: Range<usize>,
+}
+
+/// What is seen and what is not, at almost all states.
+#[derive(Clone, Debug, Default)]
+pub struct UnseenMotions {
+    /// Independent fields, at almost all states.
+    pub fields: Vec<UnseenField>,
+    /// How many further unseen directions there are, of which no field was found.
+    pub fields_missing: usize,
+    /// The states that are seen by themselves, in their order.
+    pub seen: Vec<Symbol>,
+    /// Their names.
+    pub seen_names: Vec<String>,
+    /// Functions of the other states that are seen, independent of one another.
+    pub functions: Vec<SeenFunction>,
+    /// How many further such functions there are.
+    pub functions_missing: usize,
+    /// Whether polynomials of a low degree were left untried, because they have too many coefficients.
+    pub cut_off: bool,
+    /// Whether all this holds for all values of the parameters that the file gives a value to; otherwise at these values.
+    pub for_all_parameters: bool,
+    /// Whether the fields show that the rank is no greater, whatever further Lie derivatives are taken.
+    pub settles_the_rank: bool,
+    /// The values of parameters with which it was found.
+    pub(super) values: Assignment,
+    pub(super) blocks: Vec<UnseenBlock>,
+}
+
+impl UnseenMotions {
+    /// How many directions are not seen at almost all states: the dimension less the rank.
+    pub fn directions(&self) -> usize {
+        self.fields.len() + self.fields_missing
+    }
+}

@@ -1,0 +1,92 @@
+//! What is asked of a rank, and what is held fixed where it is.
+
+use crate::observability::Branch;
+use crate::sweep::certainty::Certainty;
+use dashu::rational::RBig;
+use palmistry_io::UNINTERRUPTED;
+use palmistry_lang::{Assignment, Kind, SymbolInfo, System};
+use palmistry_math::expression::Symbol;
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+
+/// What is asked.
+pub struct RankQuestion<'a> {
+    /// States drawn on each branch of the conditions; none, and no words are taken either.
+    pub samples: u64,
+    /// The seed of the drawn states.
+    pub seed: u64,
+    /// What every rank has to be, at the least.
+    pub wanted: Certainty,
+    /// To how many digits the singular values of the worst conditioned state are wanted, if doubles will not do.
+    pub digits: Option<usize>,
+    /// Words of exactly up to so many fields; otherwise until the rank stops growing.
+    pub order: Option<usize>,
+    /// Symbols held fixed.
+    pub fixed: BTreeMap<Symbol, RBig>,
+    /// Conditions in the language, such as `sin(phi1) = 0`.
+    pub conditions: Vec<String>,
+    /// How many of the states are recorded with their certified rank, for a verdict file.
+    pub recorded: u64,
+    /// Set from outside to stop early.
+    pub interrupt: &'a AtomicBool,
+    /// Called with the number of states done.
+    pub progress: &'a (dyn Fn(u64) + Sync),
+}
+
+impl Default for RankQuestion<'_> {
+    /// A thousand states of the sample box, every rank certified, from words that are taken until the rank stops growing.
+    fn default() -> Self {
+        RankQuestion {
+            samples: 1000,
+            seed: 1,
+            wanted: Certainty::Certified,
+            digits: None,
+            order: None,
+            fixed: BTreeMap::new(),
+            conditions: Vec::new(),
+            recorded: 0,
+            interrupt: &UNINTERRUPTED,
+            progress: &|_| (),
+        }
+    }
+}
+
+/// Symbols that every drawn state has the same value of: parameters with a value and no range, and ranges of no width.
+fn held_by_the_file(system: &System, question: &RankQuestion<'_>) -> Vec<(Symbol, RBig)> {
+    let held = |(symbol, info): (Symbol, &SymbolInfo)| {
+        let value = match &info.range {
+            Some(range) => (range.low == range.high).then(|| range.low.clone()),
+            None => info.default.clone(),
+        }?;
+        let exact = !info.is_angle || value.is_zero();
+        (exact && info.kind != Kind::Imported && !question.fixed.contains_key(&symbol))
+            .then_some((symbol, value))
+    };
+    system.symbols().filter_map(held).collect()
+}
+
+/// The values that every state of a branch has.
+pub(super) fn held_conditions(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    branch: &Branch,
+) -> Assignment {
+    // values that are held fixed are conditions too, but for angles, whose values are no rational half turns
+    let mut conditions = branch.values.clone();
+    for (symbol, value) in &question.fixed {
+        if !system.is_angle(*symbol) || value.is_zero() {
+            conditions.insert(*symbol, system.graph.rational(value.clone()));
+        }
+    }
+    // so are parameters that the file gives one value to
+    for (symbol, value) in held_by_the_file(system, question) {
+        let value = system.graph.rational(value);
+        conditions.entry(symbol).or_insert(value);
+    }
+    for known in conditions.clone().keys() {
+        let value = conditions[known];
+        let value = system.graph.substitute(&[value], &conditions)[0];
+        conditions.insert(*known, value);
+    }
+    conditions
+}

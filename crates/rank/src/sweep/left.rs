@@ -1,0 +1,47 @@
+//! What inequalities among the conditions of a question leave of its branches.
+
+use super::asked::{RankQuestion, held_conditions};
+use super::question::RankError;
+use crate::observability::{Branch, Interior, Unsolved, interior};
+use palmistry_lang::System;
+use palmistry_math::expression::Guard;
+
+/// The branches, those on which inequalities can hold with equality only as the sets on which they do, and without those on which they hold
+/// nowhere.
+///
+/// # Errors
+/// Where nothing is left, or such a set cannot be solved; and where it is not known what is left, if no state is to be drawn.
+pub(super) fn left_by_inequalities(
+    system: &mut System,
+    question: &RankQuestion<'_>,
+    branches: Vec<Branch>,
+) -> Result<Vec<Branch>, RankError> {
+    let (mut open, mut found): (Vec<Branch>, Vec<Branch>) = (branches, Vec::new());
+    open.reverse();
+    while let Some(branch) = open.pop() {
+        if branch.assumed.is_empty() {
+            found.push(branch);
+            continue;
+        }
+        let held = held_conditions(system, question, &branch);
+        let smooth = system.smooth_guards(&system.moving_fields());
+        let guards: Vec<Guard> = branch.guards.iter().chain(&smooth).copied().collect();
+        let guards = system.substitute_guards(&guards, &held);
+        match interior(system, &branch, &guards).map_err(RankError::Condition)? {
+            Interior::Open(_) => found.push(branch),
+            Interior::Empty(_) => {}
+            Interior::Flat(vanishing) => match branch.meeting(system, &vanishing) {
+                Ok(solution) => open.extend(solution.smaller.into_iter().chain(solution.parts)),
+                Err(why) if !why.may_be_met() => {}
+                Err(why) => return Err(why.into()),
+            },
+            // states that are drawn tell
+            Interior::NotKnown(_) if question.samples > 0 => found.push(branch),
+            Interior::NotKnown(words) => {
+                let why = format!("no state was found at which all of these hold: {words}");
+                return Err(RankError::Condition(why));
+            }
+        }
+    }
+    if found.is_empty() { Err(Unsolved::NeverTogether.into()) } else { Ok(found) }
+}

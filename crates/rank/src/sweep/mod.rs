@@ -1,0 +1,65 @@
+//! The rank at many states: how certain it is at each, on the cheapest rung of the ladder of numbers that can tell, and what is
+//! seen of all of them together.
+//!
+//! [`answer_rank`] takes a whole question; [`sweep`] decides every state that a [`Locus`](crate::observability::Locus) draws,
+//! once by singular values (*computed*) and once by exact arithmetic at that very state (*certified*); a [`Stream`] does so
+//! eight states at a time, and leaves to [`RankDecider`] those that it cannot decide.
+//!
+//! This floor knows nothing of claims or palms.
+
+mod accessible;
+mod asked;
+mod cells;
+mod certainty;
+mod counts;
+mod deviation;
+mod digits;
+mod fingerprint;
+mod given_states;
+mod ladder;
+mod left;
+mod part;
+mod part_text;
+mod preparation;
+mod prepared;
+mod prepared_branch;
+mod question;
+mod scales;
+mod series;
+mod solutions;
+mod states;
+mod stream;
+mod table;
+mod unseen;
+
+pub use accessible::{
+    AccessibilityAnswer, AccessibilityBranch, answer_accessibility, answer_accessibility_telling,
+};
+pub use asked::RankQuestion;
+pub use certainty::Certainty;
+#[doc(hidden)]
+pub use deviation::NEARLY_INVISIBLE;
+pub use deviation::{LeastObservable, StandardDeviation, StandardDeviations};
+#[doc(hidden)]
+pub use digits::MOST_DIGITS;
+pub use digits::{Digits, NoDigits};
+#[doc(hidden)]
+pub use fingerprint::Fingerprint;
+pub use given_states::GivenStates;
+#[doc(hidden)]
+pub use ladder::{DecidedRows, ProofWanted, RankDecider, StateDecision, StateReport};
+pub use palmistry_io::parts::PartError;
+pub use part::{MergeError, RankPart, shard_of};
+pub use preparation::{RankPreparation, answer_rank, answer_rank_at_once};
+pub use prepared::sweep;
+pub use question::{BranchAnswer, GenericOnBranch, RankAnswer, RankError, TakenRow};
+#[doc(hidden)]
+pub use scales::{DrawnStates, MeasuredRows, Scales};
+pub use solutions::{GlobalAnswer, answer_solutions, answer_solutions_telling};
+pub use states::{RecordedState, SweepOptions, SweepReport};
+#[doc(hidden)]
+pub use stream::{
+    Elimination, Jacobi, StateVerdict, StatesError, Stream, StreamOptions, StreamReport, Verdicts,
+};
+pub use table::{StateRow, StateTable};
+pub use unseen::UnseenDirection;

@@ -1,0 +1,189 @@
+//! The errata as a text that a code host shows: for each the equation as printed, as it should be, and a state in exact
+//! numbers with both values.
+
+use crate::claims::outcomes::{error_bound, explanations, special_text, with_decimal};
+use crate::claims::words::{meaning, words_markdown};
+use palmistry_io::foreign::{code_block, code_span, markdown};
+use palmistry_lang::{Basis, Flaw};
+use palmistry_prove::claim::{Outcome, Verdict, Witness};
+use palmistry_workbench::paper::{NumberedEquation, Paper};
+use std::fmt::Write;
+
+/// What is the matter with forms in the text, by kinds, and a table of all numbered equations, in Markdown.
+pub fn errata_markdown<'o>(paper: &Paper, outcomes: impl IntoIterator<Item = &'o Outcome>) -> String {
+    let outcomes: Vec<&Outcome> = outcomes.into_iter().collect();
+    let mut out = format!(
+        "# Errata to {}\n\n\
+         Written by `palmistry verify`; every statement below is checked each time it runs. A form of the text that is \
+         called wrong is refuted by a state in exact numbers at which its two sides differ, wherever it can be stated; the \
+         right form is proved.\n\n",
+        reference(paper),
+    );
+    words_markdown(&paper.numbering, &outcomes, &mut out);
+    for fault in Flaw::ALL {
+        let of_kind = outcomes.iter().copied().filter(|outcome| outcome.fault == Some(fault) && outcome.ok);
+        let of_kind = paper.numbering.in_order(of_kind);
+        if of_kind.is_empty() {
+            continue;
+        }
+        let _ = writeln!(out, "# {}\n\n{}.\n", heading(fault), capitalised(meaning(fault.word())));
+        for outcome in of_kind {
+            entry(outcome, fault, &mut out);
+        }
+    }
+    let equations = paper.numbering.equations(outcomes);
+    if !equations.is_empty() {
+        table(&equations, &mut out);
+    }
+    out
+}
+
+/// Authors, title and year in a line.
+fn reference(paper: &Paper) -> String {
+    let year = paper.year.map_or(String::new(), |year| format!(" ({year})"));
+    let title = match paper.title.trim() {
+        "" => String::new(),
+        title => format!("*{}*", markdown(title)),
+    };
+    format!("{}{title}{year}", markdown(&paper.authors_in_words()))
+}
+
+fn heading(fault: Flaw) -> &'static str {
+    match fault {
+        Flaw::Erratum => "Errata",
+        Flaw::PrintOrScan => "Print or scan",
+        Flaw::Scan => "Scanning faults",
+        Flaw::Convention => "Conventions",
+        Flaw::Loose => "Loose wording",
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
+}
+
+/// One form that does not hold as the text has it.
+fn entry(outcome: &Outcome, fault: Flaw, out: &mut String) {
+    let [_, before, between] = fault.keywords();
+    let (before, between) = (capitalised(before), capitalised(between));
+    let _ = writeln!(out, "## {}\n", markdown(&outcome.id));
+    if let Some(quoted) = &outcome.quoted {
+        let _ = writeln!(out, "{before}:\n\n{}", code_block(quoted));
+    }
+    if let Some((printed, _)) = &outcome.printed {
+        let label = if outcome.quoted.is_some() { "As a statement" } else { before.as_str() };
+        let _ = writeln!(out, "{label}:\n\n{}", code_block(printed));
+    }
+    let _ = writeln!(out, "{between}:\n\n{}", code_block(&outcome.statement));
+    definitions(outcome, out);
+    if let Some((_, Verdict::Refuted { witness, .. })) = &outcome.printed {
+        let _ = writeln!(out, "{}\n", in_words(witness));
+    }
+    if let Some(special) = &outcome.printed_at_files_values {
+        let _ = writeln!(out, "Of the form in the text: {}.\n", markdown(&special_text(special)));
+    }
+    if let Verdict::Proved { log2_error, .. } = &outcome.verdict {
+        let form = match fault {
+            Flaw::Erratum => "corrected form",
+            Flaw::PrintOrScan | Flaw::Scan => "repaired form",
+            Flaw::Convention | Flaw::Loose => "form that is meant",
+        };
+        let certainty = match *log2_error {
+            f64::NEG_INFINITY => format!("The {form} is proved."),
+            bound => format!(
+                "The {form} is proved; the probability that the proof errs is below {}.",
+                error_bound(bound)
+            ),
+        };
+        let _ = writeln!(out, "{certainty}\n");
+    }
+    if let Some(special) = &outcome.at_files_values {
+        let _ = writeln!(out, "Of the right form: {}.\n", markdown(&special_text(special)));
+    }
+    if let Some(from) = &outcome.follows {
+        let _ = writeln!(out, "Follows {}.\n", markdown(from));
+    }
+    if let Some(remark) = &outcome.remark {
+        let _ = writeln!(out, "{}\n", markdown(remark));
+    }
+}
+
+/// What the abbreviations of a statement mean.
+fn definitions(outcome: &Outcome, out: &mut String) {
+    let lines = explanations(outcome);
+    if !lines.is_empty() {
+        let _ = writeln!(out, "where\n\n{}", code_block(&lines.join("\n")));
+    }
+}
+
+fn in_words(witness: &Witness) -> String {
+    let state: Vec<String> =
+        witness.state.iter().map(|at| markdown(&format!("{}: {}", at.name, at.exact))).collect();
+    let side = match witness.entry {
+        None => "left side of the form in the text".to_owned(),
+        Some((row, column)) => {
+            format!("entry in row {row}, column {column} of the left side of the form in the text")
+        }
+    };
+    let place =
+        if state.is_empty() { format!("The {side}") } else { format!("At {} the {side}", state.join("; ")) };
+    format!(
+        "{place} is {}, of the right side {}.",
+        code_span(&with_decimal(&witness.left)),
+        code_span(&with_decimal(&witness.right))
+    )
+}
+
+fn table(all: &[NumberedEquation<'_>], out: &mut String) {
+    let _ = writeln!(out, "# All numbered equations\n");
+    let counts: Vec<String> = Outcome::WORDS
+        .into_iter()
+        .chain(["no entry"])
+        .map(|word| (all.iter().filter(|equation| equation.word() == word).count(), word))
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, word)| format!("{count} {word}"))
+        .collect();
+    let _ = writeln!(
+        out,
+        "{} equations: {}.\n\n| equation | verdict | entries |\n|---|---|---|",
+        all.len(),
+        counts.join(", ")
+    );
+    for equation in all {
+        let entries: Vec<String> =
+            equation.entries.iter().map(|outcome| in_the_table(outcome, equation.word())).collect();
+        let reasons: Vec<&str> = equation
+            .entries
+            .iter()
+            .filter_map(|outcome| match &outcome.verdict {
+                Verdict::Undecided { why } => Some(why.as_str()),
+                _ => None,
+            })
+            .collect();
+        let mut last = entries.join(", ");
+        if !reasons.is_empty() {
+            last = format!("{last}: {}", markdown(&reasons.join("; ").replace('|', "/")));
+        }
+        let _ = writeln!(out, "| {} | {} | {last} |", markdown(&equation.number), equation.word());
+    }
+}
+
+/// An entry beside its equation: with its word where that is another one, with what it restates or follows.
+fn in_the_table(outcome: &Outcome, word: &str) -> String {
+    let mut notes = Vec::new();
+    if outcome.word() != word {
+        notes.push(outcome.word().to_owned());
+    }
+    if let Basis::Restates(list) = &outcome.basis
+        && !list.is_empty()
+    {
+        let names: Vec<String> = list.iter().map(|reference| reference.text()).collect();
+        notes.push(format!("of {}", names.join(", ")));
+    }
+    if let Some(from) = &outcome.follows {
+        notes.push(format!("follows {from}"));
+    }
+    let id = markdown(&outcome.id);
+    if notes.is_empty() { id } else { format!("{id} ({})", markdown(&notes.join(" "))) }
+}

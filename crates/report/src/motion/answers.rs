@@ -1,0 +1,392 @@
+//! What observers made of an experiment, as JSON and as text.
+
+use crate::axis::unit_of;
+use crate::motion::closure::{closure_json, closure_text};
+use crate::motion::fit::{finite, fit_in_words, noise_from, suspect_json, suspects_in_words};
+use crate::motion::recognition::{recognition_json, recognition_text};
+use crate::motion::reconstruction::{shape_json, shape_text};
+use crate::motion::studies::{studies_json, studies_text};
+use crate::motion::verdicts::{innovations_json, together_json, verdict_lines};
+use palmistry_bodies::mechanics::moving::Ended;
+use palmistry_observe::{Fault, Update, UpdateEnd};
+use palmistry_scenes::{Answer, Experiment, Guess, Studied, error};
+use serde_json::{Map, Value, json};
+use std::fmt::Write;
+
+/// Of an experiment that was not studied.
+static NOT_STUDIED: Studied = Studied { noise: Vec::new(), basins: Vec::new(), curvature: None };
+
+/// An experiment with all that was found: what the page and the JSON are made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Observed<'a> {
+    /// The scene with its readings.
+    pub experiment: &'a Experiment,
+    /// What the observers made of it.
+    pub answers: &'a [Answer],
+    /// What its studies came to.
+    pub studied: &'a Studied,
+    /// Whether it was stopped before the end.
+    pub interrupted: bool,
+}
+
+impl<'a> Observed<'a> {
+    /// An experiment without studies.
+    pub fn of(experiment: &'a Experiment, answers: &'a [Answer]) -> Self {
+        Observed { experiment, answers, studied: &NOT_STUDIED, interrupted: false }
+    }
+}
+
+pub(super) fn end_name(end: &UpdateEnd) -> String {
+    match end {
+        UpdateEnd::Converged => "converged".to_owned(),
+        UpdateEnd::DoesNotFit => "converged, but does not fit".to_owned(),
+        UpdateEnd::StepsSpent => "all steps spent".to_owned(),
+        UpdateEnd::Stuck => "no step lowers the error".to_owned(),
+        UpdateEnd::Blind { .. } => "cannot see".to_owned(),
+        UpdateEnd::Lost(lost) => format!("lost: {lost}"),
+    }
+}
+
+/// How a simulation ended, in words.
+pub fn ended_in_words(ended: &Ended) -> String {
+    match ended {
+        Ended::Completed => "completed".to_owned(),
+        Ended::ContactLost { palm, time } => {
+            format!("contact with palm {palm} lost at {time:.6} s: its force is zero")
+        }
+        Ended::PalmsParallel { time } => format!("palms parallel at {time:.6} s"),
+        Ended::OutOfPalm { palm, time } => format!("contact ran off palm {palm} at {time:.6} s"),
+        Ended::Failed { time, why } => format!("failed at {time:.6} s: {why}"),
+    }
+}
+
+/// The unit of the readings' errors, with a space before it: metres of contacts, and of other systems that of all outputs where they
+/// have one.
+pub(super) fn noise_unit(observed: &Observed<'_>) -> String {
+    let experiment = observed.experiment;
+    if experiment.is_about_palms() {
+        return " m".to_owned();
+    }
+    let mut units = experiment.system.outputs.iter().map(|(name, _)| unit_of(&experiment.system, name));
+    let first = units.next().flatten();
+    let same = first.filter(|first| units.all(|unit| unit.as_ref() == Some(first)));
+    same.map_or_else(String::new, |unit| format!(" {unit}"))
+}
+
+/// The faults of a file, as lines.
+pub fn fault_lines(faults: &[Fault]) -> Vec<String> {
+    faults.iter().map(ToString::to_string).collect()
+}
+
+/// States with what was recovered, what is true, the error and the bound, by name.
+pub(super) fn states(observed: &Observed<'_>, time: f64, recovered: &[f64], bounds: Option<&[f64]>) -> Value {
+    let truth = observed.experiment.truth_at(time);
+    let mut states = Map::new();
+    for (i, name) in observed.experiment.names().into_iter().enumerate() {
+        let mut state = json!({ "recovered": finite(recovered[i]) });
+        if let Some(truth) = &truth {
+            state["true"] = json!(truth[i]);
+            state["error"] = finite((recovered[i] - truth[i]).abs());
+            state["relative_error"] = finite(error(recovered[i], truth[i]));
+        }
+        if let Some(bound) = bounds.and_then(|bounds| bounds.get(i)) {
+            state["bound"] = finite(*bound);
+        }
+        states.insert(name.to_owned(), state);
+    }
+    Value::Object(states)
+}
+
+pub(super) fn update_json(observed: &Observed<'_>, update: &Update) -> Value {
+    let mut found = json!({
+        "from": update.from,
+        "to": update.to,
+        "standing": end_name(&update.end),
+        "iterations": update.steps,
+        "troubled": update.troubled,
+        "seconds": update.seconds,
+        "condition": finite(update.condition),
+        "cost": finite(update.cost),
+        "misfit": finite(update.misfit),
+        "states": states(observed, update.from, &update.estimate, Some(&update.deviations)),
+    });
+    if let UpdateEnd::Blind { weakest } = &update.end {
+        found["unseen"] = json!(weakest);
+    }
+    if let Some(fit) = &update.fit {
+        found["fit"] = json!({
+            "fits": fit.fits,
+            "chi_square": finite(fit.chi_square),
+            "degrees_of_freedom": fit.degrees,
+            "probability": fit.probability,
+            "noise": finite(fit.sigma),
+            "noise_from": noise_from(fit.from),
+        });
+    }
+    if update.is_heir {
+        found["inherits"] = json!(true);
+    }
+    if update.discounted > 0 {
+        found["discounted"] = json!(update.discounted);
+        found["outliers"] = json!(update.fit.map_or(0, |fit| fit.outliers));
+    }
+    let names = observed.experiment.names();
+    for (place, bound) in &update.at_bounds {
+        found["states"][names[*place]]["at_bound"] = json!(bound);
+    }
+    if let Some(seam) = &update.seam {
+        found["seam"] = json!({
+            "chi_square": finite(seam.chi_square),
+            "degrees_of_freedom": seam.degrees,
+            "probability": seam.probability,
+        });
+    }
+    if !update.suspects.is_empty() {
+        found["suspects"] = update
+            .suspects
+            .iter()
+            .map(|suspect| suspect_json(&observed.experiment.names(), suspect))
+            .collect();
+    }
+    found
+}
+
+/// What is known of the sensors: the contacts' noise and resolution, and the columns that have their own.
+fn sensor_json(experiment: &Experiment) -> Value {
+    let sensor = &experiment.scene.sensor;
+    let mut found = json!({ "noise": sensor.noise, "resolution": sensor.resolution });
+    let columns: Map<String, Value> = experiment
+        .scene
+        .channels
+        .iter()
+        .map(|(name, own)| {
+            let column = json!({
+                "noise": own.noise,
+                "resolution": own.resolution,
+                "bias": own.bias,
+                "gain": own.gain,
+                "delay": own.delay,
+            });
+            (name.clone(), column)
+        })
+        .collect();
+    if !columns.is_empty() {
+        found["columns"] = Value::Object(columns);
+    }
+    found
+}
+
+/// An experiment as JSON: true and recovered states, errors, the bound of Cramér and Rao, iterations and time.
+///
+/// An `error` is `|recovered - true|` in the unit of its state, as a `bound` is, a standard deviation for the readings' own errors or, where they have
+/// none, for errors of 1e-9 (contacts: a nanometre); what is not seen has none. A `relative_error` is absolute where the truth is less than a millionth.
+pub fn observe_json(observed: &Observed<'_>) -> Value {
+    let experiment = observed.experiment;
+    let times = experiment.signals.times();
+    let answers = observed.answers.iter().map(|answer| {
+        let updates = answer.track.updates.iter().map(|update| update_json(observed, update));
+        let end = answer.track.last().map(
+            |last| {
+                let bounds = Some(&last.deviations[..]);
+                json!({ "time": last.time, "states": states(observed, last.time, &last.state, bounds) })
+            },
+        );
+        json!({
+            "method": answer.method.name(),
+            "seconds": answer.seconds,
+            "unseen_samples": answer.track.unseen,
+            "remarks": answer.track.remarks,
+            "together": together_json(answer.track.together()),
+            "innovations": innovations_json(&answer.track),
+            "updates": updates.collect::<Vec<_>>(),
+            "fits_as_well": answer.track.others.iter().map(|other| update_json(observed, other)).collect::<Vec<_>>(),
+            "end": end,
+        })
+    });
+    let guess: Map<String, Value> =
+        experiment.question.guess.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+    let mut found = json!({
+        "scene": experiment.scene.title,
+        "model": experiment.system.title,
+        "seed": experiment.scene.seed,
+        "samples": times.len(),
+        "duration": times.last(),
+        "sensor": sensor_json(experiment),
+        "first_guess": if experiment.scene.observer.guess == Guess::None { Value::Null } else { json!(guess) },
+        "begins_at": guess,
+        "clamped": experiment.question.clamped,
+        "told": experiment.question.known,
+        "faults": fault_lines(&experiment.faults),
+        "observers": answers.collect::<Vec<_>>(),
+        "interrupted": observed.interrupted,
+    });
+    let units = experiment.names().into_iter();
+    let units: Map<String, Value> =
+        units.filter_map(|name| Some((name.to_owned(), json!(state_unit(observed, name)?)))).collect();
+    if !units.is_empty() {
+        found["units"] = Value::Object(units);
+    }
+    if experiment.origin != 0.0 {
+        found["time_origin"] = json!(experiment.origin);
+    }
+    if let Some(simulation) = &experiment.simulation {
+        found["simulation"] = json!({
+            "ended": ended_in_words(simulation.ended()),
+            "energy_drift": simulation.trajectory.energy_drift(),
+            "draws": simulation.draws,
+        });
+    }
+    if let Some(motion) = &experiment.motion {
+        let ended = motion.ended().map_or_else(|| "completed".to_owned(), |lost| format!("ended {lost}"));
+        found["simulation"] = json!({ "ended": ended });
+    }
+    if let Some(recognition) = &experiment.recognition {
+        found["recognition"] = recognition_json(recognition);
+    }
+    if let Some(closure) = &experiment.closure {
+        found["closure"] = closure_json(closure);
+    }
+    if let Some(shape) = shape_json(experiment, observed.answers) {
+        found["shape"] = shape;
+    }
+    studies_json(observed.studied, &experiment.names(), &mut found);
+    found
+}
+
+/// An experiment as text.
+pub fn observe_text(observed: &Observed<'_>) -> String {
+    let experiment = observed.experiment;
+    let names = experiment.names();
+    let mut text = String::new();
+    let samples = experiment.signals.times().len();
+    let _ = writeln!(text, "{}", experiment.scene.title);
+    if let Some(simulation) = &experiment.simulation {
+        let _ = writeln!(
+            text,
+            "{samples} samples; {}; energy kept to {:.1e} J",
+            ended_in_words(simulation.ended()),
+            simulation.trajectory.energy_drift()
+        );
+    } else if let Some(motion) = &experiment.motion {
+        let ended = motion.ended().map_or_else(|| "completed".to_owned(), |lost| format!("ended {lost}"));
+        let _ = writeln!(text, "{samples} samples; {ended}");
+    } else {
+        let _ = writeln!(text, "{samples} samples from a file; faults: {}", experiment.faults.len());
+    }
+    if experiment.origin != 0.0 {
+        let _ = writeln!(text, "times are counted from the first sample, at {} s", experiment.origin);
+    }
+    for line in fault_lines(&experiment.faults) {
+        let _ = writeln!(text, "  {line}");
+    }
+    text.push_str(units_in_words(experiment));
+    for answer in observed.answers {
+        let is_timed = !answer.seconds.is_nan();
+        let time = if is_timed { format!(": {:.3} s", answer.seconds) } else { String::new() };
+        let _ = writeln!(text, "\n{}{time}", answer.method.name());
+        for update in &answer.track.updates {
+            let time = if is_timed { format!(", {:.1} ms", 1e3 * update.seconds) } else { String::new() };
+            // that it does not fit has its own words, with the figures
+            let standing = match &update.end {
+                UpdateEnd::DoesNotFit => end_name(&UpdateEnd::Converged),
+                end => end_name(end),
+            };
+            let (from, steps, fit) = (update.from, update.steps, fit_in_words(update));
+            let _ = writeln!(text, "  from {from:.3} s: {standing} after {steps} steps{fit}{time}");
+            let known = Beside { bounds: &update.deviations, at_bounds: &update.at_bounds };
+            state_lines(&mut text, observed, &names, update.from, &update.estimate, known);
+            for line in suspects_in_words(update) {
+                let _ = writeln!(text, "    {line}");
+            }
+        }
+        if let Some(last) = answer.track.last() {
+            let _ = writeln!(text, "  at the end, {:.3} s:", last.time);
+            let known = Beside { bounds: &last.deviations, at_bounds: &[] };
+            state_lines(&mut text, observed, &names, last.time, &last.state, known);
+        }
+        if answer.track.unseen > 0 {
+            let _ = writeln!(text, "  not seen for {} of {samples} samples", answer.track.unseen);
+        }
+        for other in &answer.track.others {
+            let _ = writeln!(
+                text,
+                "  from {:.3} s another state fits as well{}:",
+                other.from,
+                fit_in_words(other).replacen(" and fits", "", 1)
+            );
+            let known = Beside { bounds: &other.deviations, at_bounds: &other.at_bounds };
+            state_lines(&mut text, observed, &names, other.from, &other.estimate, known);
+        }
+        for line in verdict_lines(&answer.track) {
+            let _ = writeln!(text, "  {line}");
+        }
+        for remark in &answer.track.remarks {
+            let _ = writeln!(text, "  {remark}");
+        }
+    }
+    if let Some(found) = &experiment.recognition {
+        text.push_str(&recognition_text(found));
+    }
+    if let Some(closure) = &experiment.closure {
+        text.push_str(&closure_text(closure));
+    }
+    studies_text(observed.studied, &names, &noise_unit(observed), &mut text);
+    text.push_str(&shape_text(experiment, observed.answers));
+    if observed.interrupted {
+        text.push_str("\ninterrupted; this is what was done until then\n");
+    }
+    text
+}
+
+/// The unit that a state's values are in; of palms, where all is in SI units, none is said.
+fn state_unit(observed: &Observed<'_>, name: &str) -> Option<String> {
+    let experiment = observed.experiment;
+    if experiment.is_about_palms() { None } else { unit_of(&experiment.system, name) }
+}
+
+/// A state that is sought, with its unit.
+pub(super) fn state_name(observed: &Observed<'_>, name: &str) -> String {
+    state_unit(observed, name).map_or_else(|| name.to_owned(), |unit| format!("{name}, {unit}"))
+}
+
+pub(super) fn state_lines(
+    text: &mut String,
+    observed: &Observed<'_>,
+    names: &[&str],
+    time: f64,
+    recovered: &[f64],
+    known: Beside<'_>,
+) {
+    let truth = observed.experiment.truth_at(time);
+    for (i, name) in names.iter().enumerate() {
+        let name = state_name(observed, name);
+        let _ = write!(text, "    {name:<8} {:>15.9}", recovered[i]);
+        if let Some(truth) = &truth {
+            let _ = write!(text, "  true {:>15.9}  error {:.1e}", truth[i], (recovered[i] - truth[i]).abs());
+        }
+        if let Some(bound) = known.bounds.get(i) {
+            let _ = write!(text, "  bound {bound:.1e}");
+        }
+        if let Some((_, bound)) = known.at_bounds.iter().find(|(place, _)| *place == i) {
+            let _ = write!(text, "  held at its bound {bound}");
+        }
+        text.push('\n');
+    }
+}
+
+/// What is known beside recovered states: their standard deviations, which may be none, and those that are held at a bound.
+#[derive(Clone, Copy)]
+pub(super) struct Beside<'a> {
+    pub bounds: &'a [f64],
+    pub at_bounds: &'a [(usize, f64)],
+}
+
+/// In what unit errors and bounds are printed.
+fn units_in_words(experiment: &Experiment) -> &'static str {
+    match experiment.simulated().is_some() {
+        true => {
+            "error: |recovered - true|; bound: a standard deviation; both absolute, in the unit of the state\n"
+        }
+        false => "bound: a standard deviation, absolute, in the unit of the state\n",
+    }
+}

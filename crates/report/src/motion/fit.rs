@@ -1,0 +1,146 @@
+//! Whether what an observer found explains the readings, in words and as JSON; and what would not be noticed.
+
+use palmistry_observe::{Fit, NoiseFrom, Suspect, Update, UpdateEnd};
+use serde_json::{Map, Value, json};
+
+/// An infinite bound has no number in JSON.
+pub(super) fn finite(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { Value::Null }
+}
+
+/// Where the size of the noise comes from, in a word.
+pub(super) fn noise_from(from: NoiseFrom) -> &'static str {
+    match from {
+        NoiseFrom::Stated => "stated",
+        NoiseFrom::Misfit => "misfit",
+        NoiseFrom::Computation => "computation",
+    }
+}
+
+/// A probability with its digits, however small.
+pub(super) fn p_in_words(probability: f64) -> String {
+    match probability {
+        p if p <= 0.0 => "p below 1e-300".to_owned(),
+        p if p < 1e-3 => format!("p = {p:.1e}"),
+        p if p < 0.1 => format!("p = {p:.4}"),
+        p => format!("p = {p:.2}"),
+    }
+}
+
+/// How an update fits, to be put behind how it ended; empty where that was not found out.
+pub(super) fn fit_in_words(update: &Update) -> String {
+    let Some(fit) = &update.fit else { return String::new() };
+    match update.end {
+        UpdateEnd::Blind { .. } | UpdateEnd::Lost(_) | UpdateEnd::StepsSpent => String::new(),
+        _ if fit.fits => format!(" and fits{}", explained(fit)),
+        _ => format!(", but does not fit: {}", unexplained(update, fit)),
+    }
+}
+
+fn explained(fit: &Fit) -> String {
+    match fit.from {
+        NoiseFrom::Stated => format!(" ({})", p_in_words(fit.probability)),
+        NoiseFrom::Misfit => format!(" (noise estimated from the misfit: {:.1e})", fit.sigma),
+        NoiseFrom::Computation => String::new(),
+    }
+}
+
+/// Why a misfit is not explained.
+pub(super) fn unexplained(update: &Update, fit: &Fit) -> String {
+    let (misfit, probability) = (update.misfit, fit.probability);
+    match fit.from {
+        _ if fit.degrees == 0 => "there are no more readings than unknowns".to_owned(),
+        NoiseFrom::Stated if fit.has_outliers() => {
+            format!("{} readings are beyond what normal errors reach, more than a tenth", fit.outliers)
+        }
+        NoiseFrom::Stated if fit.is_by_neighbours() => format!(
+            "a misfit of {misfit:.1e} for a noise of {:.1e}, whose neighbours agree too much for independent errors: {}",
+            fit.sigma,
+            p_in_words(probability)
+        ),
+        NoiseFrom::Stated => {
+            format!(
+                "a misfit of {misfit:.1e} for a noise of {:.1e} has {}",
+                fit.sigma,
+                p_in_words(probability)
+            )
+        }
+        _ => format!(
+            "what is left, {misfit:.1e}, is no noise (neighbours so alike have the probability {probability:.1e})"
+        ),
+    }
+}
+
+/// Whether an error that is noticed is one of which one would speak: below all of it, or within a tenth of a second.
+fn is_told(suspect: &Suspect) -> bool {
+    suspect.noticed.is_some_and(|noticed| noticed < 1.0)
+}
+
+/// What the readings of an update tell of all that is taken for known.
+pub(super) fn suspects_in_words(update: &Update) -> Vec<String> {
+    let mut lines = Vec::new();
+    let (told, hidden): (Vec<&Suspect>, Vec<&Suspect>) =
+        update.suspects.iter().partition(|suspect| is_told(suspect));
+    if !told.is_empty() {
+        let words = |suspect: &&Suspect| {
+            format!("{suspect} {}", suspect.in_words(suspect.noticed.unwrap_or(f64::INFINITY)))
+        };
+        let words: Vec<String> = told.iter().map(words).collect();
+        lines.push(format!("errors that are noticed (99 of 100) begin at: {}", words.join(", ")));
+    }
+    let (large, never): (Vec<&Suspect>, Vec<&Suspect>) =
+        hidden.into_iter().partition(|suspect| suspect.noticed.is_some());
+    for (suspects, words) in [
+        (large, "errors that are noticed from 100 % (1 s) on only"),
+        (never, "errors that cannot be told from what is sought"),
+    ] {
+        let names: Vec<String> = suspects.iter().map(ToString::to_string).collect();
+        if !names.is_empty() {
+            lines.push(format!("{words}: {}", names.join(", ")));
+        }
+    }
+    let mut named: Vec<&str> = Vec::new();
+    for suspect in &told {
+        let name = suspect.to_string();
+        if !suspect.same_as.is_empty() && !named.contains(&name.as_str()) {
+            lines.push(format!("{name} cannot be told from {}", suspect.same_as.join(", ")));
+            named.extend(suspect.same_as.iter().map(String::as_str));
+        }
+    }
+    if update.end == UpdateEnd::DoesNotFit
+        && let Some(fit) = &update.fit
+    {
+        let best = told.iter().max_by(|a, b| a.explains.1.total_cmp(&b.explains.1));
+        if let Some(best) = best {
+            let (error, part) = (best.in_words(best.explains.0), 100.0 * best.explains.1 / fit.chi_square);
+            lines.push(format!(
+                "of these {best} explains most, off by about {error}: to first order {part:.0} % of the misfit's square"
+            ));
+        }
+    }
+    lines
+}
+
+/// A suspect as JSON.
+pub(super) fn suspect_json(names: &[&str], suspect: &Suspect) -> Value {
+    let shifts: Map<String, Value> =
+        names.iter().zip(&suspect.shifts).map(|(name, shift)| ((*name).to_owned(), finite(*shift))).collect();
+    json!({
+        "what": suspect.to_string(),
+        "noticed_from": suspect.noticed.map_or(Value::Null, finite),
+        "same_as": suspect.same_as,
+        "shifts": shifts,
+        "would_explain": { "error": finite(suspect.explains.0), "chi_square": finite(suspect.explains.1) },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::p_in_words;
+
+    #[test]
+    fn a_probability_has_its_digits() {
+        let words = [0.43, 0.0021, 2.1e-7, 0.0].map(p_in_words);
+        assert_eq!(words, ["p = 0.43", "p = 0.0021", "p = 2.1e-7", "p below 1e-300"]);
+    }
+}

@@ -1,0 +1,133 @@
+//! What observers make of a stream: a line of JSON or some lines of text a window, and the end.
+
+use crate::motion::answers::{Beside, Observed, end_name, fault_lines, state_lines, states, update_json};
+use crate::motion::fit::{fit_in_words, suspects_in_words};
+use crate::motion::verdicts::{together_in_words, together_json};
+use palmistry_scenes::{StreamAnswer, StreamEnd, WindowReport};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// A window as an object.
+pub fn stream_json(report: &WindowReport<'_>) -> Value {
+    let observed = Observed::of(report.experiment, &[]);
+    let answer = |answer: &StreamAnswer| {
+        let end = answer.end.as_ref().map(|last| {
+            let bounds = Some(&last.deviations[..]);
+            json!({ "time": last.time, "states": states(&observed, last.time, &last.state, bounds) })
+        });
+        json!({
+            "method": answer.method.name(),
+            "updates": answer.updates.iter().map(|update| update_json(&observed, update)).collect::<Vec<_>>(),
+            "fits_as_well": answer.others.iter().map(|other| update_json(&observed, other)).collect::<Vec<_>>(),
+            "end": end,
+            "unseen_samples": answer.unseen,
+            "remarks": answer.remarks,
+        })
+    };
+    let mut found = json!({
+        "window": report.window,
+        "samples": report.samples,
+        "rows": report.rows,
+        "faults": fault_lines(&report.faults),
+        "observers": report.answers.iter().map(answer).collect::<Vec<_>>(),
+    });
+    if report.experiment.origin != 0.0 {
+        found["time_origin"] = json!(report.experiment.origin);
+    }
+    found
+}
+
+/// The end of a stream as an object.
+pub fn stream_end_json(end: &StreamEnd, interrupted: bool) -> Value {
+    let observer = |tally: &palmistry_scenes::StreamTally| {
+        json!({
+            "method": tally.method.name(),
+            "updates": tally.updates,
+            "fit": tally.fit,
+            "do_not_fit": tally.contradicted,
+            "together": together_json(tally.tested.together()),
+        })
+    };
+    let mut found = json!({
+        "ended": end.cut_off.as_deref().unwrap_or("whole"),
+        "windows": end.windows,
+        "rows": end.rows,
+        "faulty_rows": end.faults,
+        "observers": end.observers.iter().map(observer).collect::<Vec<_>>(),
+        "interrupted": interrupted,
+    });
+    if let Some(fault) = &end.fault {
+        found["ended"] = json!("a faulty row");
+        found["error"] = json!({ "message": fault });
+    }
+    found
+}
+
+/// A window as text.
+pub fn stream_text(report: &WindowReport<'_>, is_timed: bool) -> String {
+    let observed = Observed::of(report.experiment, &[]);
+    let names = report.experiment.names();
+    let mut text = String::new();
+    if report.window == 1 {
+        let _ = writeln!(text, "{}", report.experiment.scene.title);
+        if report.experiment.origin != 0.0 {
+            let origin = report.experiment.origin;
+            let _ = writeln!(text, "times are counted from the first sample, at {origin} s");
+        }
+    }
+    for line in fault_lines(&report.faults) {
+        let _ = writeln!(text, "  {line}");
+    }
+    for answer in &report.answers {
+        let _ = writeln!(text, "{}, window {}", answer.method.name(), report.window);
+        for (update, is_other) in
+            answer.updates.iter().map(|u| (u, false)).chain(answer.others.iter().map(|u| (u, true)))
+        {
+            let time = if is_timed { format!(", {:.1} ms", 1e3 * update.seconds) } else { String::new() };
+            let standing = match is_other {
+                true => "another state fits as well".to_owned(),
+                false => format!(
+                    "{} after {} steps{}{time}",
+                    end_name(&update.end).trim_end_matches(", but does not fit"),
+                    update.steps,
+                    fit_in_words(update)
+                ),
+            };
+            let _ = writeln!(text, "  from {:.6} s: {standing}", update.from);
+            let known = Beside { bounds: &update.deviations, at_bounds: &update.at_bounds };
+            state_lines(&mut text, &observed, &names, update.from, &update.estimate, known);
+            for line in suspects_in_words(update) {
+                let _ = writeln!(text, "    {line}");
+            }
+        }
+        if let Some(last) = &answer.end {
+            let _ = writeln!(text, "  at {:.6} s:", last.time);
+            let known = Beside { bounds: &last.deviations, at_bounds: &[] };
+            state_lines(&mut text, &observed, &names, last.time, &last.state, known);
+        }
+        for remark in &answer.remarks {
+            let _ = writeln!(text, "  {remark}");
+        }
+    }
+    text
+}
+
+/// The end of a stream as text.
+pub fn stream_end_text(end: &StreamEnd) -> String {
+    let mut text = format!("{} windows of {} rows; faulty rows: {}", end.windows, end.rows, end.faults);
+    for tally in end.observers.iter().filter(|tally| tally.updates > 0) {
+        let _ = write!(text, "; {}: {} of {} updates fit", tally.method.name(), tally.fit, tally.updates);
+    }
+    for tally in &end.observers {
+        if let Some(all) = tally.tested.together().filter(|all| !all.fits) {
+            let _ = write!(text, "\n{}: {}", tally.method.name(), together_in_words(&all));
+        }
+    }
+    if let Some(why) = &end.cut_off {
+        let _ = write!(text, "\ncut off: {why}; what was answered until then stands");
+    }
+    if end.fault.is_some() {
+        text.push_str("\nended by a faulty row; what was answered until then stands");
+    }
+    text
+}

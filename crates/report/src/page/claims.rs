@@ -1,0 +1,127 @@
+//! All claims as a list that can be sorted and filtered, the map of numbered equations, and the faults of the text by kinds.
+
+use super::anchors::{Anchors, Placed};
+use super::entry::{Engines, entry};
+use crate::claims::words::{RULE_OF_DAMAGE, counts, errors, meaning};
+use maud::{Markup, html};
+use palmistry_lang::Flaw;
+use palmistry_prove::claim::Outcome;
+use palmistry_workbench::paper::Numbering;
+
+/// How many claims have each word; the numbers add up to all of them.
+pub(super) fn tally(outcomes: &[&Outcome]) -> Markup {
+    let failed = outcomes.iter().filter(|outcome| !outcome.ok).count();
+    html! {
+        p { b { (outcomes.len()) } " claims" @if failed > 0 { ", " b.bad { (failed) " not as expected" } } @else { ", all as expected" } ":" }
+        ul.tally {
+            @for (word, count) in counts(outcomes.iter().copied()) {
+                li data-w=(word) title=(meaning(word)) { b { (count) } " " span.v { (word) } }
+            }
+        }
+    }
+}
+
+/// One cell for each numbered equation: its number, the sign and colour of its verdict, and a way to its first entry.
+pub(super) fn equations(numbering: &Numbering, claims: &[Placed<'_>], anchors: &Anchors) -> Markup {
+    let all = numbering.equations(claims.iter().map(|claim| claim.outcome));
+    let mut words: Vec<&str> = all.iter().map(|equation| equation.word()).collect();
+    words.sort_unstable();
+    words.dedup();
+    let place = |outcome: &Outcome| claims.iter().find(|claim| std::ptr::eq(claim.outcome, outcome));
+    html! {
+        section #equations {
+            h2 { "All numbered equations" }
+            p.legend {
+                @for word in words {
+                    span.cell data-w=(word) { (word) ": " (all.iter().filter(|e| e.word() == word).count()) } " "
+                }
+            }
+            div.cells {
+                @for equation in &all {
+                    @let ids = equation.entries.iter().map(|o| o.id.as_str()).collect::<Vec<_>>().join(", ");
+                    // the entry that gives the equation its word, or the first one
+                    @let first = equation.entries.iter().find(|o| o.word() == equation.word()).or(equation.entries.first());
+                    @match first.and_then(|outcome| place(outcome)) {
+                        Some(claim) => {
+                            a data-w=(equation.word()) href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) title=[(equation.entries.len() > 1).then_some(ids)] {
+                                (equation.number)
+                            }
+                        }
+                        None => { span data-w="no entry" { (equation.number) } }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What does not hold as it stands in the text, by kinds, each with a way to its entry.
+pub(super) fn faults(numbering: &Numbering, claims: &[Placed<'_>], anchors: &Anchors) -> Markup {
+    let outcomes = || claims.iter().map(|claim| claim.outcome);
+    let of_kind =
+        |fault: Flaw| numbering.in_order(outcomes().filter(move |outcome| outcome.fault == Some(fault)));
+    let place = |outcome: &Outcome| claims.iter().find(|claim| std::ptr::eq(claim.outcome, outcome));
+    html! {
+        @if Flaw::ALL.into_iter().any(|fault| !of_kind(fault).is_empty()) {
+            section #errata {
+                h2 { "What does not hold as it stands" }
+                p { "A form of the text that is called wrong is refuted by a state that a pocket calculator can check; the right form is proved." }
+                @for fault in Flaw::ALL {
+                    @let found = of_kind(fault);
+                    @if !found.is_empty() {
+                        @let text = errors(numbering, outcomes(), fault).text(fault.word());
+                        @let (count, following) = text.split_once(": ").unwrap_or((&text, ""));
+                        h3 data-w=(fault.word()) { span.v { (count) } }
+                        p { (meaning(fault.word())) "." @if !following.is_empty() { " Not on their own: " (following) "." } }
+                        p.links {
+                            @for claim in found.into_iter().filter_map(place) {
+                                a href=(format!("#{}", anchors.claim(claim.file, &claim.outcome.id))) { (claim.outcome.id) } " "
+                            }
+                        }
+                    }
+                }
+                details { summary { "the rule by which damage is given to somebody" } p { (RULE_OF_DAMAGE.replace('*', "")) } }
+            }
+        }
+    }
+}
+
+/// The list of all claims, under the names of their files. What filters it is shown by the script alone.
+pub(super) fn all_claims(claims: &[Placed<'_>], anchors: &Anchors, files: &[&str]) -> Markup {
+    let words = counts(claims.iter().map(|claim| claim.outcome));
+    let engines = Engines::new(claims);
+    html! {
+        section #claims {
+            h2 { "All claims" }
+            form #filter hidden {
+                label { "verdict " select #word {
+                    option value="" { "all" }
+                    @for (word, count) in &words { option value=(word) { (word) " (" (count) ")" } }
+                    option value="!" { "not as expected" }
+                } }
+                label { "file " select #file {
+                    option value="" { "all" }
+                    @for (place, name) in files.iter().enumerate() {
+                        @let count = claims.iter().filter(|claim| claim.file == place).count();
+                        @if count > 0 { option value=(place) { (name) " (" (count) ")" } }
+                    }
+                } }
+                label { "containing " input #text type="search" autocomplete="off"; }
+                label { "sorted by " select #sort {
+                    option value="" { "file" } option value="w" { "verdict" } option value="i" { "name" }
+                } }
+                output #shown for="word file text sort" {}
+            }
+            (engines.legend())
+            div #list {
+                @for (place, name) in files.iter().enumerate() {
+                    @let of_file: &[_] = &claims.iter().filter(|claim| claim.file == place).collect::<Vec<_>>();
+                    @if !of_file.is_empty() {
+                        h3 data-f=(place) { a href=(format!("#{}", anchors.file(place))) { (name) } }
+                        @for claim in of_file { (entry(**claim, anchors, &engines)) }
+                    }
+                }
+            }
+        }
+    }
+}

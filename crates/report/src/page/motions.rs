@@ -1,0 +1,72 @@
+//! What is not seen as vector fields, and what is seen as functions, as mathematics.
+
+use crate::formula::{field_mathml, formula_mathml};
+use crate::ranks::motions::{signed_parts, unseen_field_text};
+use maud::{Markup, PreEscaped, html};
+use palmistry_rank::observability::{UnseenField, UnseenMotions};
+use palmistry_workbench::paper::SetRank;
+
+/// Of each set on which something is unseen, the fields and the functions.
+pub(super) fn unseen_motions(ranks: &[SetRank]) -> Markup {
+    let found = ranks.iter().filter_map(|rank| Some((rank, rank.answer().ok()?)));
+    let found: Vec<(&SetRank, &UnseenMotions)> = found
+        .flat_map(|(rank, answer)| {
+            answer.branches.iter().filter_map(move |b| Some((rank, b.motions.as_ref()?)))
+        })
+        .collect();
+    html! {
+        @for (rank, found) in found { (of_a_set(rank.name(), found)) }
+    }
+}
+
+fn of_a_set(name: &str, found: &UnseenMotions) -> Markup {
+    let scope = if found.for_all_parameters { " whatever the parameters" } else { " at the file's values" };
+    html! {
+        p {
+            "Not seen, at almost all states of " (name) (scope) ": "
+            @for (place, field) in found.fields.iter().enumerate() {
+                @if place > 0 { "; " }
+                span.f { (field_formula(field)) }
+            }
+            @if found.fields_missing > 0 {
+                @if !found.fields.is_empty() { "; " }
+                (found.fields_missing) " directions of which no field of low degree was found"
+            }
+            "."
+            @if !found.fields.is_empty() {
+                " Along such a field no output and none of its Lie derivatives changes (proved)."
+            }
+            @if !found.seen.is_empty() {
+                " Seen by themselves: "
+                @for (place, name) in found.seen_names.iter().enumerate() {
+                    @if place > 0 { ", " }
+                    span.f { (expression(name)) }
+                }
+                "."
+            }
+            @if !found.functions.is_empty() {
+                " Seen together: "
+                @for (place, function) in found.functions.iter().enumerate() {
+                    @if place > 0 { ", " }
+                    span.f { (expression(&function.text)) }
+                }
+                "."
+            }
+            @if found.functions_missing > 0 {
+                " " (found.functions_missing) " more functions are seen, which were not found in low degree."
+            }
+        }
+    }
+}
+
+fn field_formula(field: &UnseenField) -> PreEscaped<String> {
+    field_mathml(&signed_parts(field)).map_or_else(|| in_letters(&unseen_field_text(field)), PreEscaped)
+}
+
+fn expression(text: &str) -> PreEscaped<String> {
+    formula_mathml(text).map_or_else(|| in_letters(text), PreEscaped)
+}
+
+fn in_letters(text: &str) -> PreEscaped<String> {
+    html! { code { (text) } }
+}

@@ -1,0 +1,325 @@
+//! What was found of one system beside its claims: ranks on sets, maps, lines, reductions, numbers in print, Lie derivatives.
+
+use super::entry::{explain, formula};
+use super::findings::ranks_in_words;
+use super::motions::unseen_motions;
+use super::unknowns::unknowns;
+use crate::formula::{conditions_mathml, formula_mathml};
+use crate::plot;
+use crate::ranks::{deviation_text, taken_for_granted};
+use maud::{Markup, PreEscaped, html};
+use palmistry_prove::claim::Outcome;
+use palmistry_rank::sweep::RankAnswer;
+use palmistry_workbench::paper::{
+    DerivativesFound, FileFindings, LineFound, MapFound, ReductionFound, SetRank,
+};
+use palmistry_workbench::tradeoff::{ExpandedText, LandscapeRows, Map, PrintedExpression};
+
+/// The unit of a name, where it is known.
+pub(super) type Units<'a> = &'a dyn Fn(&str) -> Option<String>;
+
+/// Whether there is something to show.
+pub(super) fn has_a_section(file: &FileFindings) -> bool {
+    !file.ranks.is_empty()
+        || !file.printed.is_empty()
+        || !file.left_out.is_empty()
+        || !file.reductions.is_empty()
+        || file.derivatives.is_some()
+}
+
+/// Everything of one file.
+pub(super) fn file_section(anchor: &str, file: &FileFindings, units: Units<'_>) -> Markup {
+    html! {
+        section #(anchor) {
+            h2 { (file.system.title) }
+            @for found in &file.reductions { (reduction(found)) }
+            @for left in &file.left_out { p.bad { "Not done: " (left.what) ": " (left.why) } }
+            @for line in granted(file) { p { (line) "." } }
+            @if !file.ranks.is_empty() { (unknowns(&file.ranks)) (ranks(&file.ranks)) (unseen_motions(&file.ranks)) }
+            @for map in &file.maps { (maps(map, units)) }
+            @if !file.lines.is_empty() { (lines(&file.lines, units)) }
+            @for found in &file.printed { (printed(found, &file.outcomes)) }
+            @if let Some(found) = &file.derivatives { (derivatives(found)) }
+        }
+    }
+}
+
+/// What the ranks of a file take for granted; the first of them is that at all states.
+fn granted(file: &FileFindings) -> Vec<String> {
+    let answer = file.ranks.iter().find_map(|rank| rank.found.as_ref().ok());
+    answer.map(taken_for_granted).unwrap_or_default()
+}
+
+fn maps(map: &MapFound, units: Units<'_>) -> Markup {
+    html! {
+        figure {
+            div.grid {
+                @for (kind, drawn) in &map.maps {
+                    @let title = if *kind == LandscapeRows::Own { "the file's own rows" } else { "the full codistribution" };
+                    @let title = map.view.of.as_ref().map_or(title.to_owned(), |of| format!("{title}: {of}"));
+                    @let units = [units(&drawn.x.name), units(&drawn.y.name)];
+                    (PreEscaped(plot::map(drawn, &title, [units[0].as_deref(), units[1].as_deref()])))
+                }
+            }
+            figcaption {
+                b { (map.view.title) ". " }
+                "How well " (map.view.of.as_deref().unwrap_or("the worst state")) " is observable by these rows: its standard "
+                "deviation over its prior one, where each row is measured up to its own range (computed, not certified). Light is "
+                "small, which is well; dark is large; green is infinite, which is not observable or not to be told from it; white "
+                "is a pole. "
+                @if map.view.of.is_none() { (worst_of(map)) }
+                @if let Some(caption) = &map.view.caption { (caption) }
+            }
+        }
+    }
+}
+
+/// Which state is the worst in which part of each map.
+fn worst_of(found: &MapFound) -> String {
+    let of = |map: &Map| {
+        let all: usize = map.shown.iter().map(|(_, count)| count).sum();
+        let part = |(name, count): &(String, usize)| {
+            format!("{name} in {:.0} %", 100.0 * *count as f64 / all as f64)
+        };
+        map.shown.iter().map(part).collect::<Vec<_>>().join(", ")
+    };
+    let parts: Vec<String> =
+        found.maps.iter().map(|(_, map)| of(map)).filter(|text| !text.is_empty()).collect();
+    if parts.is_empty() { String::new() } else { format!("The worst is {} of the cells. ", parts.join("; ")) }
+}
+
+fn lines(lines: &[LineFound], units: Units<'_>) -> Markup {
+    html! {
+        figure {
+            div.grid {
+                @for line in lines {
+                    (PreEscaped(plot::slope(&line.slope, &line.view.title, units(&line.view.moving).as_deref())))
+                }
+            }
+            figcaption {
+                "How well each state is observable along lines"
+                @if lines.iter().all(|line| line.rows == LandscapeRows::Own) { ", by the file's own rows alone" }
+                ": its standard deviation over its prior one, that of the worst in red; dots above the scale where it is infinite. "
+                "Distances are in the coordinate that moves."
+            }
+        }
+    }
+}
+
+/// A name or an expression as mathematics; as it is written where it is none.
+fn in_line(text: &str) -> Markup {
+    formula_mathml(text).map_or_else(|| html! { (text) }, PreEscaped)
+}
+
+/// Conditions as mathematics; as they are written where they are none.
+fn conditions(written: &[String]) -> Markup {
+    html! {
+        @match conditions_mathml(written) {
+            Some(formula) => { span.f { (PreEscaped(formula)) } }
+            None => { code { (written.join(", ")) } }
+        }
+    }
+}
+
+fn reduction(found: &ReductionFound) -> Markup {
+    let proved = found.claims.iter().filter(|outcome| outcome.ok).count();
+    html! {
+        p {
+            "This is " em { (found.of) } " where " (conditions(&found.reduction.written)) ": "
+            b { (proved) } " of " (found.claims.len()) " statements proved (the conditions stay met, what is left out stays as it "
+            "is, fields and differentials are the same). Left out: "
+            @for (place, name) in found.left_out.iter().enumerate() {
+                @if place > 0 { ", " }
+                (in_line(name))
+            }
+            "."
+            @if let Some(remark) = &found.reduction.remark { " " (remark) "." }
+            @match &found.comparison {
+                Ok(c) => {
+                    " " (c.small_states) " states instead of " (c.large_states) "; differentials agree to "
+                    (format!("{:.0e}", c.largest_difference.max(f64::EPSILON))) " relative. One state's matrix takes "
+                    (c.large_operations) " operations with all states, and " (c.small_operations) " with these"
+                    @if !c.large_seconds.is_nan() {
+                        "; with its singular values " b { (format!("{:.1}", c.large_seconds / c.small_seconds)) } " times as long"
+                    }
+                    "."
+                }
+                Err(why) => { " Not counted: " (why) "." }
+            }
+        }
+    }
+}
+
+fn unseen(answer: &RankAnswer, own: bool) -> Vec<String> {
+    let mut found = Vec::new();
+    for branch in &answer.branches {
+        let report = if own { branch.rows.as_ref() } else { Some(&branch.full) };
+        for direction in report.into_iter().flat_map(|report| &report.unseen) {
+            let text = direction.states.join(", ");
+            if !found.contains(&text) {
+                found.push(text);
+            }
+        }
+    }
+    found
+}
+
+/// The words that were needed, branches with the same words together.
+fn distinct_words(answer: &RankAnswer) -> Vec<String> {
+    let mut found: Vec<String> = answer.branches.iter().map(|branch| branch.words.join(", ")).collect();
+    found.dedup();
+    found
+}
+
+/// The rank on each set, a row each.
+fn ranks(ranks: &[SetRank]) -> Markup {
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th { "states" } th { "rank, full codistribution" } th { "not seen" } th { "rank, own rows" } th { "not seen by these" }
+                th { "words needed" } th { "sampled" } th { "certified" } th { "least observable" }
+            } }
+            tbody {
+                @for rank in ranks {
+                    tr {
+                        td { (rank.name()) @if let Some(set) = &rank.set { br; (conditions(&set.written)) } }
+                        @match rank.answer() {
+                            Ok(answer) => {
+                                td { b { (ranks_in_words(answer, false)) } " of " (answer.dimension) }
+                                td { (unseen(answer, false).join("; ")) }
+                                td { b { (ranks_in_words(answer, true)) } }
+                                td { (unseen(answer, true).join("; ")) }
+                                td.w { @for words in distinct_words(answer) { div { (words) } } }
+                                td.n { (answer.branches.iter().map(|b| b.full.samples).sum::<u64>()) }
+                                td.n { (answer.branches.iter().map(|b| b.full.certified).sum::<u64>()) }
+                                td.n { (least_observable(answer)) }
+                            }
+                            Err(why) => { td colspan="8" { (why) } }
+                        }
+                    }
+                }
+            }
+        } }
+    }
+}
+
+/// The state with the largest standard deviation over its prior one.
+fn least_observable(answer: &RankAnswer) -> String {
+    let found = answer.branches.iter().filter_map(|branch| branch.deviations.as_ref());
+    let all: Vec<_> = found.filter_map(|found| Some((found.least.as_ref()?, found))).collect();
+    let least = all.into_iter().max_by(|(a, _), (b, _)| a.deviation.total_cmp(&b.deviation));
+    least
+        .map_or("-".to_owned(), |(least, found)| format!("{}: {}", least.state, deviation_text(found, least)))
+}
+
+fn printed(found: &PrintedExpression, outcomes: &[Outcome]) -> Markup {
+    let digits = found.values.first().map_or(0, |value| value.carried);
+    let studied: Vec<_> = found.values.iter().filter_map(|v| Some((v, v.study.as_ref().ok()?))).collect();
+    let poles: Vec<&Outcome> =
+        outcomes.iter().filter(|outcome| outcome.pole_of.as_deref() == Some(found.text.as_str())).collect();
+    html! {
+        h3 { "Numbers in print: " (in_line(&found.text)) }
+        @if let Some(expanded) = &found.expanded {
+            p {
+                "Multiplied out over its common denominator, as a computer-algebra system's " code { "simplify" }
+                " leaves it, it has " b { (expanded.monomials) } " monomials: "
+                code { (expanded.front) " * (" (expanded.beginning) ") / (" (denominator(expanded)) ")" } "."
+            }
+        }
+        div.scroll { table {
+            thead { tr {
+                th { "point" } th { "printed" } th { "certified to forty digits" } th { "digits that agree" } th { "error of print" }
+                th { "errors of sums in " (digits) " digits" } th { "print is" }
+            } }
+            tbody {
+                @for value in &found.values {
+                    tr {
+                        td.w { (value.point) }
+                        td.n { (value.printed) }
+                        td.n { (value.certified.decimal) }
+                        td.n { (value.digits_that_agree) }
+                        td.n { (format!("{:+.2e}", value.error)) }
+                        @match &value.study {
+                            Ok(study) => {
+                                td.n {
+                                    (format!("{:+.1e}", study.errors.first().copied().unwrap_or(0.0))) " to "
+                                    (format!("{:+.1e}", study.errors.last().copied().unwrap_or(0.0)))
+                                    ", rms " (format!("{:.1e}", study.deviation()))
+                                }
+                                td { @if study.contains(value.error) { "inside" } @else { "outside" } }
+                            }
+                            Err(why) => { td colspan="2" { "not known: " (why) } }
+                        }
+                    }
+                }
+            }
+        } }
+        @if !studied.is_empty() {
+            figure {
+                div.grid {
+                    @for (value, study) in &studied {
+                        (PreEscaped(plot::rounding(study, value.error, &format!("printed {}", value.printed))))
+                    }
+                }
+                figcaption {
+                    "The monomials added up in decimal arithmetic of " (digits) " digits, in "
+                    (studied.first().map_or(0, |(_, study)| study.errors.len()))
+                    " random orders: how far each sum is from the certified value. The red line is the number in print. The "
+                    "largest monomial is "
+                    @for (i, (_, study)) in studied.iter().enumerate() {
+                        @if i > 0 { ", " } (format!("{:.0}", study.cancellation))
+                    }
+                    " times the sum: that is where the digits go."
+                }
+            }
+        }
+        @if !poles.is_empty() {
+            h3 { "Its poles" }
+            div.scroll { table {
+                thead { tr { th { "the factor that vanishes, and the order of the pole" } th { "verdict" } } }
+                tbody {
+                    @for outcome in poles {
+                        tr {
+                            td.w { (formula(&outcome.statement)) }
+                            td.w { (outcome.word()) ": " (explain(&outcome.verdict)) }
+                        }
+                    }
+                }
+            } }
+        }
+    }
+}
+
+fn denominator(found: &ExpandedText) -> String {
+    let factor = |(text, power): &(String, u32)| {
+        let text = if text.contains(' ') { format!("({text})") } else { text.clone() };
+        if *power == 1 { text } else { format!("{text}^{power}") }
+    };
+    found.denominator.iter().map(factor).collect::<Vec<_>>().join(" ")
+}
+
+fn derivatives(found: &DerivativesFound) -> Markup {
+    html! {
+        h3 { "Lie derivatives by two routes" }
+        p {
+            "The derivatives of the shared expression graph against num-dual's nested dual numbers, which share no rule of "
+            "differentiation: " (found.output) " along " (found.field) ", again and again."
+        }
+        div.grid {
+            table {
+                thead { tr { th { "order" } th { "largest relative difference" } th { "states" } } }
+                tbody { @for route in &found.routes {
+                    tr {
+                        td.n { (route.order) }
+                        td.n { (format!("{:.1e}", route.largest_difference)) }
+                        td.n { (route.states) }
+                    }
+                } }
+            }
+            figure {
+                (PreEscaped(plot::growth(&found.growth, "operations of the graph; grey: order^3")))
+                figcaption { "What each further derivative costs; a line of slope three for comparison." }
+            }
+        }
+    }
+}

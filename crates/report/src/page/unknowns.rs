@@ -1,0 +1,43 @@
+//! What is seen at almost all states, on the page: a sentence, and a table of the unknowns.
+
+use crate::ranks::generic::{generic_sentence, unknown_verdict};
+use maud::{Markup, html};
+use palmistry_rank::observability::Seen;
+use palmistry_rank::sweep::BranchAnswer;
+use palmistry_workbench::paper::SetRank;
+
+/// Of the first rank of a file, which is that at all states.
+pub(super) fn unknowns(ranks: &[SetRank]) -> Markup {
+    let answer = ranks.iter().find_map(|rank| rank.answer().ok());
+    html! {
+        @for branch in answer.iter().flat_map(|answer| &answer.branches) { (of_branch(branch)) }
+    }
+}
+
+fn of_branch(branch: &BranchAnswer) -> Markup {
+    let sentence = generic_sentence(&branch.generic);
+    let mut letters = sentence.chars();
+    let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
+    html! {
+        p {
+            (first) (letters.as_str())
+            @if !branch.conditions.is_empty() { ", where " (branch.conditions.join(", ")) }
+            "."
+        }
+        // where everything is seen the sentence says so of each
+        @if branch.generic.rank() != Some(branch.generic.dimension) {
+            table {
+                thead { tr { th { "unknown" } th { "is a" } th { "and is" } } }
+                tbody {
+                    @for ((name, kind), (_, seen)) in branch.unknowns.iter().zip(&branch.generic.unknowns) {
+                        tr {
+                            td { (name) }
+                            td { (kind.name()) }
+                            td.bad[*seen == Seen::No] { (unknown_verdict(*kind, *seen)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! The page of a paper, put together from its parts: one file, with its pictures and nothing from elsewhere.
+
+use super::anchors::{Anchors, placed, stem};
+use super::claims::{all_claims, equations, faults, tally};
+use super::entry::{ENGINES, name};
+use super::extremes::{extremes, extremes_heading};
+use super::regime::{file_section, has_a_section};
+use super::source::sources;
+use crate::axis::unit_of;
+use crate::document::document;
+use crate::motion::answers::Observed;
+use crate::motion::section::observed_section;
+use crate::slow_observed::SlowObserved;
+use crate::slow_section::slow_section;
+use maud::{Markup, html};
+use palmistry_prove::claim::Outcome;
+use palmistry_workbench::paper::Findings;
+
+/// The names of the sections, which nothing else on the page may have.
+const SECTIONS: [&str; 13] = [
+    "equations",
+    "errata",
+    "extremes",
+    "observers",
+    "slow",
+    "claims",
+    "sources",
+    "filter",
+    "list",
+    "word",
+    "file",
+    "text",
+    "sort",
+];
+
+/// The page as HTML.
+pub fn page(found: &Findings) -> String {
+    let names: Vec<String> = (0..found.files.len()).map(|place| format!("file{place}")).collect();
+    let engines: Vec<String> = (0..ENGINES).map(name).collect();
+    let reserved: Vec<&str> = SECTIONS
+        .into_iter()
+        .chain(["shown"])
+        .chain(names.iter().chain(&engines).map(String::as_str))
+        .collect();
+    let (anchors, claims) = (Anchors::new(&found.files, &reserved), placed(&found.files));
+    let numbering = &found.paper.numbering;
+    let experiments: Vec<Observed<'_>> =
+        found.experiments.iter().map(|(experiment, answers)| Observed::of(experiment, answers)).collect();
+    let slow: Vec<SlowObserved<'_>> =
+        found.slow.iter().map(|(experiment, answers)| SlowObserved::of(experiment, answers)).collect();
+    let files: Vec<&str> = found.files.iter().map(|file| stem(&file.system.name)).collect();
+    let systems: Vec<_> = found.files.iter().map(|file| &file.system).collect();
+    let sections = || found.files.iter().zip(&names).filter(|(file, _)| has_a_section(file));
+    let has_faults = claims.iter().any(|claim| claim.outcome.fault.is_some());
+    let content = html! {
+        (header(found, html! {
+            @if numbering.count() > 0 { a href="#equations" { "All equations" } }
+            @if has_faults { a href="#errata" { "What does not hold" } }
+            @for (file, name) in sections() { a href=(format!("#{name}")) { (file.system.title) } }
+            @if let Some(heading) = extremes_heading(found) { a href="#extremes" { (heading) } }
+            @if !experiments.is_empty() { a href="#observers" { "Bodies in motion" } }
+            @if !slow.is_empty() { a href="#slow" { "Bodies at rest" } }
+            a href="#claims" { "All claims" }
+            a href="#sources" { "The proof files" }
+        }))
+        main {
+            @if numbering.count() > 0 { (equations(numbering, &claims, &anchors)) }
+            (faults(numbering, &claims, &anchors))
+            @for (file, name) in sections() { (file_section(name, file, &|name| unit_of(&file.system, name))) }
+            @if let Some(heading) = extremes_heading(found) { (extremes(found, heading)) }
+            @if !experiments.is_empty() { (observed_section(&experiments)) }
+            @if !slow.is_empty() { (slow_section(&slow)) }
+            (all_claims(&claims, &anchors, &files))
+            (sources(&systems, &anchors))
+        }
+    };
+    let title = format!("{}: what holds, and what does not", found.paper.title);
+    document(&title, &content, true)
+}
+
+fn header(found: &Findings, links: Markup) -> Markup {
+    let outcomes: Vec<&Outcome> = found.outcomes().collect();
+    html! {
+        header {
+            h1 { "What holds, and what does not" }
+            p {
+                (found.paper.authors_in_words()) em { (found.paper.title) }
+                @if let Some(year) = found.paper.year { " (" (year) ")" }
+                @if let Some(source) = &found.paper.source { ", " (source) }
+                ", checked from first principles. "
+                "Each verdict says what stands behind it: " b { "proved" } " is exact arithmetic with the "
+                "probability of an error stated, " b { "refuted" } " a state in exact numbers at which the two "
+                "sides differ, " b { "erratum" } " a printed form refuted and its corrected form proved. "
+                b { "Restated" } " is no proof: the two sides are one expression once names are put in."
+            }
+            (tally(&outcomes))
+            p.y {
+                "Seed " (found.seed)
+                @if !found.seconds.is_nan() { ", " (format!("{:.0} s", found.seconds)) " in all" }
+                "."
+            }
+            @if found.interrupted { p.bad { "This run was interrupted; it shows what was done until then." } }
+            nav { (links) }
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Answers about accessibility, as JSON and as text.
+
+use super::answer::{stop_text, sweep_json};
+use super::generic::finite;
+use super::seen::{part_text, place_text};
+use crate::names::{fields_json, fields_text, values_json, values_text};
+use palmistry_rank::observability::RankBounds;
+use palmistry_rank::sweep::{AccessibilityAnswer, AccessibilityBranch, SweepReport, UnseenDirection};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+fn bounds_json(bounds: &RankBounds) -> Value {
+    json!({
+        "rank": bounds.rank(),
+        "at_least": bounds.at_least,
+        "at_most": bounds.at_most,
+        "log2_error": finite(bounds.log2_error),
+        "from_a_state": bounds.from_a_state,
+    })
+}
+
+fn branch_json(branch: &AccessibilityBranch) -> Value {
+    let mut sampled = branch.sampled.as_ref().map_or(Value::Null, sweep_json);
+    if let Some(fields) = sampled.as_object_mut()
+        && let Some(unseen) = fields.remove("unseen")
+    {
+        fields.insert("unmoved".to_owned(), unseen);
+    }
+    json!({
+        "conditions": branch.conditions,
+        "held_at_the_files_values": values_json(&branch.held),
+        "brackets": branch.brackets,
+        "order": branch.order,
+        "stopped_because": stop_text(branch.stop),
+        "accessibility": bounds_json(&branch.whole),
+        "strong_accessibility": bounds_json(&branch.strong),
+        "sampled": sampled,
+    })
+}
+
+/// An answer as one object.
+pub fn accessibility_json(answer: &AccessibilityAnswer) -> Value {
+    json!({
+        "file": answer.file,
+        "fields": fields_json(&answer.fields),
+        "dimension": answer.coordinates.len(),
+        "coordinates": answer.coordinates,
+        "seed": answer.seed,
+        "final": answer.is_final(),
+        "interrupted": answer.interrupted(),
+        "branches": answer.branches.iter().map(branch_json).collect::<Vec<_>>(),
+    })
+}
+
+fn bounds_text(what: &str, bounds: &RankBounds, full: usize, out: &mut String) {
+    let _ = match bounds.rank() {
+        Some(rank) => {
+            let sure = match bounds.log2_error.is_finite() {
+                // the bound itself is rounded up
+                true => format!("no more, but for a probability below 2^{}", bounds.log2_error.ceil()),
+                false => "certain".to_owned(),
+            };
+            let where_to = match bounds.from_a_state {
+                true => "states that the domain connects with the sampled ones",
+                false => "states",
+            };
+            writeln!(out, "{what}: rank {rank} of {full} at almost all {where_to} ({sure})")
+        }
+        None => writeln!(
+            out,
+            "{what}: undecided, a rank of {} to {} of {full} at almost all states",
+            bounds.at_least, bounds.at_most
+        ),
+    };
+}
+
+/// An answer as text.
+pub fn accessibility_text(answer: &AccessibilityAnswer) -> String {
+    let full = answer.coordinates.len();
+    let mut out = format!("{}: {full} coordinates that can be moved\n", answer.title);
+    let _ = writeln!(out, "fields: {}", fields_text(&answer.fields));
+    for branch in &answer.branches {
+        if !branch.conditions.is_empty() {
+            let _ = writeln!(out, "where {}", branch.conditions.join(", "));
+        }
+        if !branch.held.is_empty() {
+            let _ = writeln!(out, "held at the file's values: {}", values_text(&branch.held));
+        }
+        bounds_text("accessibility", &branch.whole, full, &mut out);
+        bounds_text("strong accessibility, without the drift itself", &branch.strong, full, &mut out);
+        let _ = writeln!(out, "brackets that were needed: {}", branch.brackets.join(", "));
+        let _ =
+            writeln!(out, "brackets of up to {} fields were taken: {}", branch.order, stop_text(branch.stop));
+        if let Some(report) = &branch.sampled {
+            sampled_text(branch, report, &mut out);
+        }
+    }
+    out.trim_end().to_owned()
+}
+
+/// `dx - 2 dy`
+fn differential_text(direction: &UnseenDirection) -> String {
+    let mut text = String::new();
+    for (name, part) in direction.states.iter().zip(&direction.vector) {
+        let part = part_text(part);
+        let size = part.trim_start_matches('-');
+        text.push_str(match (text.is_empty(), part.starts_with('-')) {
+            (true, true) => "-",
+            (true, false) => "",
+            (false, true) => " - ",
+            (false, false) => " + ",
+        });
+        let factor = if size == "1" { String::new() } else { format!("{size} ") };
+        let _ = write!(text, "{factor}d{name}");
+    }
+    text
+}
+
+fn sampled_text(branch: &AccessibilityBranch, report: &SweepReport, out: &mut String) {
+    let _ = writeln!(out, "the brackets that were taken, at sampled states");
+    if report.samples == 0 {
+        let _ = writeln!(out, "  no state could be decided");
+    }
+    for (rank, count) in report.rank_histogram.iter().rev() {
+        let more = match branch.whole.rank() {
+            Some(generic) if *rank < generic => "; longer brackets may raise it there",
+            _ => "",
+        };
+        let _ = writeln!(out, "  rank {rank:>2} at {count} states{more}");
+    }
+    let _ = writeln!(out, "  certified at {} of {} states", report.certified, report.samples);
+    for direction in &report.unseen {
+        let _ = writeln!(
+            out,
+            "  no bracket moves, at {} states: a combination of {}; for one, {} = 0",
+            direction.count,
+            direction.states.join(", "),
+            differential_text(direction)
+        );
+        let _ = writeln!(out, "    at {}", place_text(&direction.at));
+    }
+    for (pole, count) in &report.poles {
+        let _ = writeln!(out, "  {count} poles left out: {pole}");
+    }
+    if report.interrupted {
+        let _ = writeln!(out, "  interrupted: these are the states done until then");
+    }
+    let _ = writeln!(out, "  {:.2} s", report.seconds);
+}

@@ -1,0 +1,174 @@
+//! How many values of each unknown give the same outputs, as JSON and as text.
+
+use super::generic::unknown_verdict;
+use crate::claims::outcomes::error_bound;
+use crate::names::{plain_number, values_json, values_text};
+use palmistry_io::foreign::shown;
+use palmistry_lang::UnknownKind;
+use palmistry_rank::observability::{SecondPoint, Solutions, SolutionsOf};
+use palmistry_rank::sweep::GlobalAnswer;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// What stands behind a number of values.
+fn verdict(of_it: &SolutionsOf) -> &'static str {
+    match &of_it.solutions {
+        Solutions::Undecided(_) => "undecided",
+        _ if of_it.is_proved() => "proved",
+        _ => "computed",
+    }
+}
+
+fn unknown_json(of_it: &SolutionsOf) -> Value {
+    let values = match &of_it.solutions {
+        Solutions::Finite(count) => json!(count),
+        Solutions::Infinite => json!("infinity"),
+        Solutions::Undecided(_) => Value::Null,
+    };
+    let why = match &of_it.solutions {
+        Solutions::Undecided(why) => json!(why),
+        _ => Value::Null,
+    };
+    json!({
+        "name": of_it.name,
+        "kind": of_it.kind.map(UnknownKind::name),
+        "local": unknown_verdict(of_it.kind.unwrap_or(UnknownKind::State), of_it.local),
+        "values": values,
+        "verdict": verdict(of_it),
+        "at_least": of_it.at_least.as_ref().map(|(least, _)| least),
+        "symmetry": of_it.at_least.as_ref().map(|(_, map)| map),
+        "at_most": of_it.at_most.map(|(most, _)| most),
+        "error_bound": of_it.at_most.map(|(_, log2_error)| error_bound(log2_error)),
+        "why": why,
+    })
+}
+
+fn second_json(second: &SecondPoint) -> Value {
+    let each = second
+        .values
+        .iter()
+        .map(|(name, one, other)| (name.clone(), json!([plain_number(one), plain_number(other)])));
+    json!({
+        "values": each.collect::<serde_json::Map<_, _>>(),
+        "equal_derivatives": second.order,
+    })
+}
+
+/// An answer as one object.
+pub fn global_json(answer: &GlobalAnswer) -> Value {
+    let found = &answer.solutions;
+    json!({
+        "file": answer.file,
+        "title": answer.title,
+        "conditions": answer.conditions,
+        "held_at_the_files_values": values_json(&answer.held),
+        "known": answer.known,
+        "final": answer.is_final(),
+        "interrupted": answer.interrupted,
+        "points": found.rounds,
+        "derivatives": found.orders,
+        "derivatives_are_open": found.orders_are_open,
+        "size_of_a_fibre": found.points,
+        "products": found.work,
+        "unknowns": found.unknowns.iter().map(unknown_json).collect::<Vec<_>>(),
+        "second_point": found.second.as_ref().map(second_json),
+        "seconds": answer.seconds,
+    })
+}
+
+/// What is said of the number of values.
+fn in_words(of_it: &SolutionsOf, orders_are_open: bool) -> String {
+    let is_constant = of_it.kind == Some(UnknownKind::Parameter);
+    match &of_it.solutions {
+        Solutions::Undecided(why) => match &of_it.at_least {
+            Some((least, map)) => format!("at least {least}: proved, by {map}; how many is undecided: {why}"),
+            None => format!("undecided: {why}"),
+        },
+        Solutions::Infinite => "infinitely many: proved".to_owned(),
+        Solutions::Finite(1) => {
+            let word = if is_constant { "globally identifiable" } else { "globally observable" };
+            match of_it.at_most {
+                Some((1, log2_error)) => {
+                    format!(
+                        "1, {word}: proved, but for an error of probability below {}",
+                        error_bound(log2_error)
+                    )
+                }
+                _ => format!("1, {word}: computed"),
+            }
+        }
+        Solutions::Finite(count) => {
+            let proved = of_it.is_proved();
+            let mut text =
+                format!("{count} over the complex numbers: {}", if proved { "proved" } else { "computed" });
+            match &of_it.at_least {
+                Some((least, map)) if *least < *count => {
+                    let _ = write!(text, "; at least {least} that are real: proved, by {map}");
+                }
+                Some((_, map)) => {
+                    let _ = write!(
+                        text,
+                        "{}, by {map}",
+                        if proved { "" } else { "; no fewer, and real: proved" }
+                    );
+                }
+                None => {}
+            }
+            if orders_are_open && !proved {
+                text.push_str("; further derivatives might tell some of them apart");
+            }
+            text
+        }
+    }
+}
+
+/// An answer as text.
+pub fn global_text(answer: &GlobalAnswer) -> String {
+    let found = &answer.solutions;
+    let mut out = format!("{}: {}\n", shown(&answer.file), answer.title);
+    if !answer.conditions.is_empty() {
+        let _ = writeln!(out, "at the beginning {}", answer.conditions.join(", "));
+    }
+    if !answer.held.is_empty() {
+        let _ = writeln!(out, "with {}", values_text(&answer.held));
+    }
+    if !answer.known.is_empty() {
+        let _ = writeln!(out, "known: {}", answer.known.join(", "));
+    }
+    let _ = writeln!(out, "how many values of each unknown give the same outputs, at almost all states");
+    let width = |of: &dyn Fn(&SolutionsOf) -> usize| found.unknowns.iter().map(of).max().unwrap_or(0);
+    let local = |of_it: &SolutionsOf| unknown_verdict(of_it.kind.unwrap_or(UnknownKind::State), of_it.local);
+    let (names, locals) = (width(&|of_it| of_it.name.chars().count()), width(&|of_it| local(of_it).len()));
+    for of_it in &found.unknowns {
+        let _ = writeln!(
+            out,
+            "  {:<names$}  {:<locals$}  {}",
+            of_it.name,
+            local(of_it),
+            in_words(of_it, found.orders_are_open)
+        );
+    }
+    if let Some(second) = &found.second {
+        let _ = writeln!(
+            out,
+            "a witness: two points at which all derivatives of the outputs up to order {} are equal, in exact numbers",
+            second.order
+        );
+        for (name, one, other) in &second.values {
+            let (one, other) = (plain_number(one), plain_number(other));
+            let text = if one == other { one } else { format!("{one} or {other}") };
+            let _ = writeln!(out, "  {name} = {text}");
+        }
+    }
+    if found.rounds > 0 {
+        let orders: Vec<String> = found.orders.iter().map(ToString::to_string).collect();
+        let _ = writeln!(
+            out,
+            "computed at {} random points modulo random primes of 62 bits, from derivatives of the outputs up to {}, {:.1} s",
+            found.rounds,
+            orders.join(", "),
+            answer.seconds
+        );
+    }
+    out
+}

@@ -1,0 +1,136 @@
+//! What is not seen at a state, and how well everything else is.
+
+use crate::names::plain_number;
+use dashu::rational::RBig;
+use palmistry_math::number::{rational_to_f64, round_to_decimal};
+use palmistry_rank::observability::{NamedCoordinate, StateInWords};
+use palmistry_rank::sweep::{LeastObservable, NEARLY_INVISIBLE, StandardDeviations, UnseenDirection};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// Numbers of more characters than these are shown rounded.
+const LONGEST: usize = 12;
+
+/// A state in words: exactly where its numbers are short, angles in radians.
+pub(super) fn place_text(state: &StateInWords) -> String {
+    let coordinate = |NamedCoordinate { name, exact, value }: &NamedCoordinate| match exact.len() <= LONGEST {
+        true => format!("{name} = {exact}"),
+        // an angle is nought
+        false if *value == 0.0 || has_decimals(*value) => format!("{name} = {value:.6}"),
+        false => format!("{name} = {value:.5e}"),
+    };
+    state.iter().map(coordinate).collect::<Vec<_>>().join(", ")
+}
+
+/// A direction as a vector: `(r1, r2) += t (1, -2), that is d/dr1 - 2 d/dr2`.
+pub(super) fn direction_text(direction: &UnseenDirection) -> String {
+    let parts: Vec<String> = direction.vector.iter().map(part_text).collect();
+    let mut field = String::new();
+    for (name, part) in direction.states.iter().zip(&parts) {
+        let size = part.trim_start_matches('-');
+        let sign = match (field.is_empty(), part.starts_with('-')) {
+            (true, true) => "-",
+            (true, false) => "",
+            (false, true) => " - ",
+            (false, false) => " + ",
+        };
+        let factor = if size == "1" { String::new() } else { format!("{size} ") };
+        let _ = write!(field, "{sign}{factor}d/d{name}");
+    }
+    let (states, parts) = (direction.states.join(", "), parts.join(", "));
+    match direction.states.len() {
+        1 => format!("{states} += t, that is {field}"),
+        _ => format!("({states}) += t ({parts}), that is {field}"),
+    }
+}
+
+pub(super) fn part_text(part: &RBig) -> String {
+    let (exact, near) = (plain_number(part), rational_to_f64(part));
+    match exact.len() <= LONGEST {
+        true => exact,
+        false if has_decimals(near) => format!("{near:.6}"),
+        false => round_to_decimal(part, 6),
+    }
+}
+
+/// Whether six decimals say what a number is: of one that is nearer to zero they would be zeros.
+fn has_decimals(value: f64) -> bool {
+    (1e-4..1e9).contains(&value.abs())
+}
+
+/// Standard deviations as a table.
+pub(super) fn deviations_text(found: &StandardDeviations, out: &mut String) {
+    let _ = writeln!(
+        out,
+        "how well each state is seen, computed at {} states: its standard deviation, in parts of its spread over the box, \
+         where each word that was needed is known up to its own spread",
+        found.states
+    );
+    let width = found.list.iter().map(|row| row.state.chars().count()).max().unwrap_or(0).max(5);
+    let _ = writeln!(out, "  {:<width$}  {:>10}  {:>10}  {:>10}", "state", "spread", "median", "worst");
+    for row in &found.list {
+        // what doubles cannot tell of a state that is seen is not that it is not
+        let infinite = if row.is_seen { "unknown" } else { "not seen" };
+        let deviation = |value: f64| if value.is_finite() { number_text(value) } else { infinite.to_owned() };
+        let remark = match (row.infinite, row.median >= NEARLY_INVISIBLE) {
+            (0, true) => "  nearly invisible".to_owned(),
+            (0, false) => String::new(),
+            (count, _) if count == found.states => String::new(),
+            (count, _) => format!("  {infinite} at {count} of them"),
+        };
+        let line = format!(
+            "  {:<width$}  {:>10}  {:>10}  {:>10}{remark}",
+            row.state,
+            number_text(row.spread),
+            deviation(row.median),
+            deviation(row.worst)
+        );
+        let _ = writeln!(out, "{}", line.trim_end());
+    }
+    if let Some(least) = &found.least {
+        let (state, deviation) = (&least.state, deviation_text(found, least));
+        let _ = writeln!(out, "  least observable: {state}, {deviation}, at {}", place_text(&least.at));
+    }
+}
+
+/// How well the state is observable that is so least.
+pub(crate) fn deviation_text(found: &StandardDeviations, least: &LeastObservable) -> String {
+    let is_seen = found.list.iter().any(|row| row.state == least.state && row.is_seen);
+    match (least.deviation.is_finite(), is_seen) {
+        (true, _) => number_text(least.deviation),
+        (false, true) => "unknown".to_owned(),
+        (false, false) => "not seen".to_owned(),
+    }
+}
+
+fn number_text(value: f64) -> String {
+    match value {
+        value if (0.01..1e4).contains(&value) => format!("{value:.3}"),
+        value => format!("{value:.2e}"),
+    }
+}
+
+/// The same as JSON: `null` where a state is not seen, or where doubles cannot tell how well.
+pub(super) fn deviations_json(found: &StandardDeviations) -> Value {
+    let finite = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
+    json!({
+        "states": found.states,
+        "units_of_noise": found.words.iter().map(|(word, unit)| (word.clone(), json!(unit)))
+            .collect::<serde_json::Map<_, _>>(),
+        "least_observable": found.least.as_ref().map(|least| json!({
+            "state": least.state,
+            "deviation": finite(least.deviation),
+            "at": least.at.iter().map(|at| (at.name.clone(), json!({ "exact": at.exact, "value": at.value })))
+                .collect::<serde_json::Map<_, _>>(),
+        })),
+        "of": found.list.iter().map(|row| json!({
+            "state": row.state,
+            "spread": row.spread,
+            "median": finite(row.median),
+            "worst": finite(row.worst),
+            "not_seen_at": if row.is_seen { 0 } else { row.infinite },
+            "unknown_at": if row.is_seen { row.infinite } else { 0 },
+            "nearly_invisible": row.median.is_finite() && row.median >= NEARLY_INVISIBLE,
+        })).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,72 @@
+//! Experiments, simulated or recorded.
+//!
+//! A [`Scene`] says what is held, how it moves, what the sensors read and which observers are to find out what; it is read
+//! from a TOML file and checked value by value. A [`Simulation`] moves its body, a [`SystemMotion`] any other system by its own equations; an
+//! [`Experiment`] is a scene with its readings, and runs its observers, once ([`Experiment::run`]) or many times over ([`noise_study`],
+//! [`basins`], [`curvature_map`], or stretch by stretch as [`Studies`]); a [`Reconstruction`] is the shape that all of it tells.
+//!
+//! Beside `verification` this is the place that knows both palms and observers.
+
+mod advice;
+mod channels;
+mod columns;
+mod groundwork;
+mod known_motion;
+mod mirrored;
+mod modes;
+mod motion_rank;
+mod not_told;
+mod past_poles;
+mod recognised;
+mod reconstruction;
+mod recovered;
+mod run;
+mod scene;
+mod simulation;
+mod since;
+#[doc(hidden)]
+pub mod slow;
+#[doc(hidden)]
+pub mod solid;
+#[doc(hidden)]
+pub mod space;
+mod stream;
+mod study;
+mod switch;
+mod system_motion;
+mod terrain;
+#[doc(hidden)]
+pub mod unguided;
+
+#[doc(hidden)]
+pub use advice::{Advice, AdviceLimits, AdviceQuestion, ExpectedBounds, TriedMotion, advise};
+pub use known_motion::KnownMotion;
+pub use modes::{ModeEstimate, ModeWindow};
+#[doc(hidden)]
+pub use past_poles::EQUATIONS;
+pub use recognised::{LibraryAnswer, Recognition, RecognitionVerdict};
+#[doc(hidden)]
+pub use reconstruction::{on_palm, shown, turned};
+pub use recovered::{
+    Apart, Contradiction, Reconstruction, TouchInstant, TouchTrack, WholeMotion, WholeSample,
+};
+#[doc(hidden)]
+pub use run::error;
+pub use run::{Answer, Experiment};
+#[doc(hidden)]
+pub use scene::{BasinStudy, CurvatureStudy, NoiseStudy, SceneOutline};
+pub use scene::{
+    Channel, Data, Guess, LibraryBody, Method, ModeSettings, ObserverSettings, Scene, SceneColumn,
+    SceneError, Sensor, Switch,
+};
+#[doc(hidden)]
+pub use simulation::NOMINAL;
+pub use simulation::Simulation;
+pub use stream::{StreamAnswer, StreamEnd, StreamPiece, StreamTally, WindowReport, observe_stream};
+#[doc(hidden)]
+pub use study::{
+    ARRIVED, Basin, CurvatureMap, CurvatureRatio, NoiseLevel, Studied, StudiedMotion, Studies,
+    StudyMergeError, StudyPart, Told, basins, curvature_map, noise_study,
+};
+pub use system_motion::SystemMotion;
+pub use terrain::{Closure, ClosureSetting, ComputedRank};

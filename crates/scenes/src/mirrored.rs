@@ -1,0 +1,78 @@
+//! Other states that explain the measurements as well as an estimate does: its mirror images.
+//!
+//! A robot's heading turned by half a turn with a negative scale moves as the robot does. Whoever begins a search near one of two such states finds it, and learns nothing of the other one.
+//! The images are those of [`palmistry_rank::observability::mirrors`], exact and of the class that is described there; those outside of the stated bounds are no others.
+
+use super::run::Experiment;
+use palmistry_observe::{Track, Update};
+use palmistry_rank::observability::{Image, mirrors};
+use std::collections::HashSet;
+use std::f64::consts::{PI, TAU};
+
+/// No more images are named.
+const MOST: usize = 4;
+
+/// An image that is nearer than so many deviations is no other state.
+const APART: f64 = 6.0;
+
+impl Experiment {
+    /// Adds the mirror images of what was found to what is said of it.
+    pub(super) fn name_mirrors(&self, track: &mut Track) {
+        let Some(update) = track.updates.iter().find(|update| update.is_borne_out()) else { return };
+        let images = self.images(update);
+        track.remarks.extend(images);
+    }
+
+    /// Each image in words.
+    fn images(&self, update: &Update) -> Vec<String> {
+        let names = self.names();
+        let free: HashSet<_> = names.iter().filter_map(|name| self.system.find_symbol(name)).collect();
+        let mut system = self.system.clone();
+        // what ties signals to states is no output that is read: it might tell the images apart
+        if !system.zero_outputs().is_empty() {
+            return Vec::new();
+        }
+        system.outputs.retain(|(name, _)| self.signals.find(name).is_some());
+        let Ok(mirrors) = mirrors(&system, &free) else { return Vec::new() };
+        let in_words = |mirror: &palmistry_rank::observability::Mirror| {
+            let (mut image, mut excluding) = (Vec::new(), Vec::new());
+            let mut is_other = false;
+            for (symbol, turned) in &mirror.of {
+                let name = system.symbol_name(*symbol);
+                let place = names.iter().position(|own| *own == name)?;
+                let value = update.estimate[place];
+                let turned = match turned {
+                    Image::Negative => -value,
+                    Image::HalfTurn => value + PI,
+                    Image::Supplement => PI - value,
+                };
+                let is_angle = system.is_angle(*symbol);
+                let near = if is_angle { turned - ((turned - value) / TAU).round() * TAU } else { turned };
+                is_other |= (near - value).abs() > APART * update.deviations[place];
+                self.is_within(name, near).then_some(())?;
+                image.push(format!("{name} = {near:.6}"));
+                if !is_angle {
+                    excluding.push(format!("{name} {} 0", if value > 0.0 { ">" } else { "<" }));
+                }
+            }
+            let exclude = match excluding.as_slice() {
+                [] => "no sign of a state tells them apart".to_owned(),
+                all => format!("a bound that says {} excludes it", all.join(" or ")),
+            };
+            is_other.then(|| {
+                format!(
+                    "at {:.3} s {} explains the same measurements, by a symmetry of the equations: {exclude}",
+                    update.from,
+                    image.join(", ")
+                )
+            })
+        };
+        mirrors.iter().filter_map(in_words).take(MOST).collect()
+    }
+
+    /// Whether a value is one that the scene allows.
+    fn is_within(&self, name: &str, value: f64) -> bool {
+        let bounds = self.scene.observer.bounds.get(name);
+        bounds.is_none_or(|[low, high]| (*low..=*high).contains(&value))
+    }
+}

@@ -1,0 +1,267 @@
+//! Several systems side by side: of which of them the readings of each window are.
+//!
+//! A body with friction obeys one system while both contacts slide, another while one rolls, and nobody tells when one follows the other. Each
+//! system of the scene, its own and `[[observer.modes]]`, is estimated on each window by itself; of those whose misfit the errors of the readings
+//! explain the one with the least is taken, and where none fits that is said: the window has a change of modes in it, or no model is right. What was
+//! learned in the last window that fits, whatever its mode, is where the next begins.
+
+use super::groundwork::{Groundwork, Steady, sample_range};
+use super::run::Experiment;
+use super::scene::{Guess, SceneError};
+use palmistry_lang::UnknownKind;
+use palmistry_observe::{MotionRankFound, NoiseFrom, Objection, RecordReading, Signals, Update};
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A search begins at so many states, unless an earlier one fits.
+const STARTS: usize = 4;
+
+const BASES: [usize; 9] = [2, 3, 5, 7, 11, 13, 17, 19, 23];
+
+/// The numbers of J. H. Halton (1960) in a base, in [0, 1).
+fn halton(mut number: usize, base: usize) -> f64 {
+    let (mut part, mut sum) = (1.0, 0.0);
+    while number > 0 {
+        part /= base as f64;
+        sum += part * (number % base) as f64;
+        number /= base;
+    }
+    sum
+}
+
+/// What a mode makes of a window.
+#[derive(Clone, Debug)]
+pub struct ModeEstimate {
+    /// The mode.
+    pub name: String,
+    /// What was sought, in the order of the update's estimate.
+    pub sought: Vec<String>,
+    /// The search: none where it was not asked.
+    pub update: Option<Update>,
+    /// What the rank says of its motion through the window, where it decides who may answer: of the motion that was found, where one was that the
+    /// readings bear out, and else of the one that was foretold.
+    pub rank: Option<MotionRankFound>,
+    /// Why it had better not answer, by the rank.
+    pub objection: Option<Objection>,
+}
+
+impl ModeEstimate {
+    /// Whether the readings bear it out.
+    pub fn fits(&self) -> bool {
+        self.update.as_ref().is_some_and(Update::is_borne_out)
+    }
+
+    /// What is compared: of the noise's own size where it is stated, else in the outputs' unit.
+    fn error(&self) -> f64 {
+        let of = |update: &Update| match update.fit {
+            Some(fit) if fit.from == NoiseFrom::Stated => fit.chi_square / fit.degrees.max(1) as f64,
+            _ => update.misfit,
+        };
+        self.update.as_ref().map_or(f64::INFINITY, of)
+    }
+}
+
+/// What the modes make of one window.
+#[derive(Clone, Debug)]
+pub struct ModeWindow {
+    /// The times of its first and its last sample, in s.
+    pub from: f64,
+    /// As above.
+    pub to: f64,
+    /// Each mode, the scene's own first.
+    pub estimates: Vec<ModeEstimate>,
+    /// The one with the least error of those that fit; where the rank decides, the first of those that may answer and fit.
+    pub chosen: Option<usize>,
+    /// What the contacts did, where a body was simulated with friction: more than one where they changed.
+    pub true_modes: Vec<String>,
+}
+
+impl Experiment {
+    /// The scene's modes on the same readings, the scene's own first.
+    ///
+    /// # Errors
+    /// What is wrong with a mode's model, with the place in the scene.
+    pub(super) fn modes(&self) -> Result<Vec<(String, Experiment)>, SceneError> {
+        let mut all = vec![(self.scene.observer.mode.clone(), self.clone())];
+        for mode in &self.scene.observer.modes {
+            let mut scene = self.scene.clone();
+            scene.model.clone_from(&mode.model);
+            let settings = &mut scene.observer;
+            settings.estimate.clone_from(&mode.estimate);
+            settings.known.clone_from(&mode.known);
+            settings.bounds.clone_from(&mode.bounds);
+            settings.inputs.clone_from(&mode.inputs);
+            settings.guess = Guess::Sample;
+            settings.clamp.clear();
+            let ground = Groundwork::of(scene, false)?;
+            let reading =
+                RecordReading { record: self.record.clone(), faults: Vec::new(), left_out: Vec::new() };
+            let mut experiment = Experiment::with_readings(ground, reading, None, Steady::AreConstants)?;
+            experiment.scene.observer.guess = Guess::Values(mode.guess.clone());
+            all.push((mode.name.clone(), experiment));
+        }
+        Ok(all)
+    }
+
+    /// What the modes of the scene make of the readings, window by window; `done` is told of each window.
+    ///
+    /// # Errors
+    /// As [`Experiment::task`], of any mode.
+    pub fn run_modes(&self, interrupt: &AtomicBool, done: &dyn Fn()) -> Result<Vec<ModeWindow>, SceneError> {
+        let modes = self.modes()?;
+        let times = self.signals.times();
+        self.has_windows()?;
+        let window = self.steps_of_windows();
+        let mut learned: BTreeMap<String, f64> = BTreeMap::new();
+        // where each mode that fitted came to at the end of its window
+        let mut reached: Vec<Option<Vec<f64>>> = vec![None; modes.len()];
+        let mut windows = Vec::new();
+        for first in (0..times.len() - window).step_by(window) {
+            let mut estimates = Vec::new();
+            for (place, (name, mode)) in modes.iter().enumerate() {
+                let own = mode.window_of(first, window)?;
+                let sought = own.names().into_iter().map(str::to_owned).collect();
+                let (update, came_to) =
+                    own.search(mode.starts(&learned, reached[place].take()), interrupt)?;
+                reached[place] = came_to;
+                estimates.push(ModeEstimate {
+                    name: name.clone(),
+                    sought,
+                    update,
+                    rank: None,
+                    objection: None,
+                });
+            }
+            let fitting = (0..estimates.len()).filter(|place| estimates[*place].fits());
+            let chosen = fitting.min_by(|a, b| estimates[*a].error().total_cmp(&estimates[*b].error()));
+            for (place, came_to) in reached.iter_mut().enumerate() {
+                // one that fits worse than another is no beginning
+                came_to.take_if(|_| Some(place) != chosen);
+            }
+            if let Some(chosen) = chosen
+                && let Some(state) = &reached[chosen]
+            {
+                for (name, value) in estimates[chosen].sought.iter().zip(state) {
+                    learned.insert(name.clone(), *value);
+                }
+            }
+            let (from, to) = (times[first], times[first + window]);
+            windows.push(ModeWindow { from, to, estimates, chosen, true_modes: self.true_modes(from, to) });
+            done();
+            if interrupt.load(Ordering::Relaxed) {
+                break;
+            }
+        }
+        Ok(windows)
+    }
+
+    /// Whether there is a window at all.
+    ///
+    /// # Errors
+    /// That there is none.
+    pub(super) fn has_windows(&self) -> Result<(), SceneError> {
+        match self.signals.times().len() {
+            samples @ 0..2 => {
+                let message = format!("of {samples} samples there is no window");
+                let help = "a window has two samples or more, and some for each unknown to tell anything";
+                Err(self.scene.error_at("observer.window", message, "such windows", help))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// How many steps from sample to sample a window has.
+    pub(super) fn steps_of_windows(&self) -> usize {
+        self.scene.observer.window.min(self.signals.times().len().saturating_sub(1))
+    }
+
+    /// How many samples at the end are in no window, since a whole one does not fit there.
+    pub fn samples_after_windows(&self) -> usize {
+        self.signals.times().len().saturating_sub(1).checked_rem(self.steps_of_windows()).unwrap_or(0)
+    }
+
+    /// The experiment of one window.
+    pub(super) fn window_of(&self, first: usize, window: usize) -> Result<Experiment, SceneError> {
+        let mut own = self.clone();
+        let rows = first..=first + window;
+        let times = self.signals.times()[rows.clone()].to_vec();
+        let columns = self.signals.names().iter().enumerate();
+        let columns =
+            columns.map(|(place, name)| (name.clone(), self.signals.column(place)[rows.clone()].to_vec()));
+        let signals = Signals::new(times, columns.collect());
+        own.signals = signals
+            .map_err(|error| self.scene.error_at("observer.window", error.to_string(), "such windows", ""))?;
+        own.scene.observer.window = window;
+        Ok(own)
+    }
+
+    /// Where the search of a window begins, one after the other until one fits: with what is known from the last window, and at states of the
+    /// sample box (Halton's), constants as far as they were learned.
+    pub(super) fn starts(&self, learned: &BTreeMap<String, f64>, reached: Option<Vec<f64>>) -> Vec<Vec<f64>> {
+        let settings = &self.scene.observer;
+        let guess = match &settings.guess {
+            Guess::Values(values) => values.clone(),
+            _ => BTreeMap::new(),
+        };
+        let start = |number: usize| -> Vec<f64> {
+            let value = |(place, (name, given)): (usize, &(String, f64))| {
+                let part = if number == 0 { 0.5 } else { halton(number, BASES[place % BASES.len()]) };
+                let drawn = sample_range(&self.system, name).map(|[low, high]| low + part * (high - low));
+                let guessed = guess.get(name).filter(|_| number == 0).copied();
+                // what moves is drawn anew where it did not do as it was
+                let told = learned.get(name).filter(|_| number == 0 || self.is_constant(name)).copied();
+                let value = told.or(guessed).or(drawn).unwrap_or(*given);
+                let [low, high] =
+                    settings.bounds.get(name).copied().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+                value.clamp(low, high)
+            };
+            self.question.guess.iter().enumerate().map(value).collect()
+        };
+        reached.into_iter().chain((0..STARTS).map(start)).collect()
+    }
+
+    fn is_constant(&self, name: &str) -> bool {
+        let kind = self.system.find_symbol(name).and_then(|symbol| self.system.unknown_kind(symbol));
+        kind == Some(UnknownKind::Parameter)
+    }
+
+    /// What one mode makes of a window, and where it came to.
+    pub(super) fn search(
+        &self,
+        starts: Vec<Vec<f64>>,
+        interrupt: &AtomicBool,
+    ) -> Result<(Option<Update>, Option<Vec<f64>>), SceneError> {
+        let mut own = self.clone();
+        own.scene.observer.guess = Guess::Sample;
+        let mut best: Option<Update> = None;
+        for start in starts {
+            for ((_, value), from) in own.question.guess.iter_mut().zip(start) {
+                *value = from;
+            }
+            // these are the starts of a window
+            let mut task = own.task(interrupt)?;
+            task.restarts = false;
+            let track = own.observer(own.scene.observer.methods[0]).observe(&task);
+            let Some(update) = track.updates.first() else { continue };
+            if update.is_borne_out() {
+                return Ok((Some(update.clone()), track.last().map(|last| last.state.clone())));
+            }
+            if best.as_ref().is_none_or(|best| best.misfit.is_nan() || best.misfit > update.misfit) {
+                best = Some(update.clone());
+            }
+            if interrupt.load(Ordering::Relaxed) {
+                break;
+            }
+        }
+        Ok((best, None))
+    }
+
+    /// What the contacts of a body that was simulated with friction did between two times.
+    pub(super) fn true_modes(&self, from: f64, to: f64) -> Vec<String> {
+        let Some(simulation) = &self.simulation else { return Vec::new() };
+        let all = &simulation.modes;
+        let ends = all.iter().skip(1).map(|(time, _)| *time).chain([f64::INFINITY]);
+        let during = all.iter().zip(ends).filter(|((begins, _), ends)| *begins < to && *ends > from);
+        during.map(|((_, pair), _)| pair.to_string()).collect()
+    }
+}

@@ -1,0 +1,203 @@
+//! Whether gains, biases and delays that are sought can be told at all: by the rank, before anything is read.
+
+use palmistry_lang::{Kind, Role, SymbolInfo, System};
+use palmistry_math::expression::{NodeId, Symbol};
+use palmistry_math::number::{rational_from_f64, rational_to_f64};
+use palmistry_observe::{CalibrationKind, EstimateQuestion, Signals, Sought, declare, sought};
+use palmistry_rank::observability::{Ceiling, Seen, generic_answer};
+use std::collections::HashMap;
+
+/// What is sought that no readings tell, whatever drives the inputs, where a gain or a bias is sought: by the rank of the observability
+/// codistribution at almost all states, modulo primes, with gains and biases as states at rest. A rank falls on special sets and
+/// never rises, so that what is not seen at almost all states is seen at none; what this does not name may still be unseen, and the bound
+/// of a window says so. Nothing is named where the rank is not known, or a column drives the model that is no input.
+///
+/// Of a late output `h - d h'` is seen, on the set where the delay `d` is zero: there its differential is that of `h(x(t - d))`. What is not told there is not told
+/// of any delay: a direction `(xi, 1)` that no output shows at almost all states, `L_xi h = h'` of those that are late and zero of all others, commutes with the motion where
+/// the state is seen otherwise, and its flow then moves states and delays together so that nothing changes. Inputs, on which `h'` depends, are states that are read, driven by what
+/// is their rate of change: constant ones would tell no delay, and others may.
+pub(crate) fn not_told(system: &System, wanted: &EstimateQuestion, signals: &Signals) -> Vec<String> {
+    let names: Vec<String> = wanted.guess.iter().map(|(name, _)| name.clone()).collect();
+    if !names.iter().any(|name| CalibrationKind::of(name).is_some()) {
+        return Vec::new();
+    }
+    if !system.zero_outputs().is_empty() {
+        // what outputs tie is not driven at will: the bound of a window says what is not told
+        return Vec::new();
+    }
+    let mut system = system.clone();
+    declare(&mut system, &names);
+    if with_calibrations(&mut system, &names, wanted, signals).is_none() {
+        return Vec::new();
+    }
+    hold_constants(&mut system, &names, wanted, signals);
+    let mut at = HashMap::new();
+    let late = sought(&system, &names).into_iter().filter_map(|own| Some((own.column, own.delay?)));
+    let late: Vec<(Symbol, Symbol)> = late.collect();
+    if !late.is_empty() && delayed(&mut system, &late, wanted).is_none() {
+        return Vec::new();
+    }
+    for (_, delay) in late {
+        at.insert(delay, system.graph.integer(0));
+    }
+    let answer = generic_answer(&system, &at, Ceiling::Rests);
+    let unseen = answer.unknowns.iter().filter(|(_, seen)| *seen == Seen::No);
+    let unseen: Vec<&str> = unseen.map(|(symbol, _)| system.symbol_name(*symbol)).collect();
+    names.into_iter().filter(|name| unseen.contains(&name.as_str())).collect()
+}
+
+/// Gains and biases where sensors and motors have them: in outputs and in what drives the inputs. None where a column has another part.
+fn with_calibrations(
+    system: &mut System,
+    names: &[String],
+    wanted: &EstimateQuestion,
+    signals: &Signals,
+) -> Option<()> {
+    system.outputs.retain(|(name, _)| signals.find(name).is_some());
+    for place in 0..system.fields.len() {
+        let field = &system.fields[place].name;
+        let driver = wanted.inputs.iter().find(|(other, _)| other == field).map(|(_, symbol)| symbol);
+        if driver.is_none() && system.fields[place].role == Role::Input {
+            system.fields[place].role = Role::Other;
+        }
+    }
+    for Sought { column, gain, bias, .. } in sought(system, names) {
+        let name = system.symbol_name(column).to_owned();
+        let [gain, bias] = [gain, bias].map(|symbol| symbol.map(|symbol| system.graph.symbol(symbol)));
+        if let Some(place) = system.outputs.iter().position(|(output, _)| *output == name) {
+            let node = system.outputs[place].1;
+            let scaled = gain.map_or(node, |gain| system.graph.mul(gain, node));
+            system.outputs[place].1 = bias.map_or(scaled, |bias| system.graph.add(scaled, bias));
+            continue;
+        }
+        let driven = wanted.inputs.iter().filter(|(_, symbol)| *symbol == name);
+        let driven: Vec<&String> = driven.map(|(field, _)| field).collect();
+        if driven.is_empty() {
+            return None;
+        }
+        for field in driven {
+            let drift = system.drift()?;
+            let field = system.fields.iter().position(|other| other.name == *field)?;
+            for k in 0..system.fields[field].components.len() {
+                // u g = (r - bias)/gain g
+                let (symbol, moved) = system.fields[field].components[k];
+                let moved = gain.map_or(moved, |gain| system.graph.div(moved, gain));
+                system.fields[field].components[k].1 = moved;
+                let Some(bias) = bias else { continue };
+                let part = system.graph.mul(bias, moved);
+                let part = system.graph.neg(part);
+                let own = system.fields[drift].components.iter().position(|(other, _)| *other == symbol);
+                match own {
+                    Some(own) => {
+                        let before = system.fields[drift].components[own].1;
+                        system.fields[drift].components[own].1 = system.graph.add(before, part);
+                    }
+                    None => system.fields[drift].components.push((symbol, part)),
+                }
+            }
+        }
+    }
+    // what changes with time and is neither a state nor an input is no constant
+    let nodes = system.fields.iter().filter(|field| field.role != Role::Other);
+    let nodes = nodes.flat_map(|field| field.components.iter().map(|(_, node)| *node));
+    let nodes: Vec<NodeId> = nodes.chain(system.outputs.iter().map(|(_, node)| *node)).collect();
+    let varies = |symbol: &Symbol| {
+        let name = system.symbol_name(*symbol);
+        let is_parameter = system.symbol_info(*symbol).is_some_and(|info| info.kind == Kind::Parameter);
+        is_parameter && signals.find(name).is_some() && !wanted.known.contains_key(name)
+    };
+    (!system.graph.symbols_of(nodes).iter().any(varies)).then_some(())
+}
+
+/// Puts in what is known and does not change; an angle keeps its place among the states, at any value.
+fn hold_constants(system: &mut System, names: &[String], wanted: &EstimateQuestion, signals: &Signals) {
+    let mut values = HashMap::new();
+    let symbols: Vec<(Symbol, SymbolInfo)> = system.symbols().map(|(s, info)| (s, info.clone())).collect();
+    for (symbol, info) in symbols {
+        let name = system.symbol_name(symbol).to_owned();
+        if names.contains(&name) {
+            continue;
+        }
+        let default = || info.default.as_ref().map(rational_to_f64).filter(|_| signals.find(&name).is_none());
+        let Some(value) = wanted.known.get(&name).copied().or_else(default).and_then(rational_from_f64)
+        else {
+            continue;
+        };
+        if info.is_angle && !value.is_zero() {
+            if system.states.contains(&symbol) && signals.find(&name).is_none() {
+                system.known.insert(symbol);
+            }
+            continue;
+        }
+        values.insert(symbol, system.graph.rational(value));
+    }
+    system.states.retain(|state| !values.contains_key(state));
+    system.known.retain(|state| !values.contains_key(state));
+    for place in 0..system.fields.len() {
+        system.fields[place].components.retain(|(symbol, _)| !values.contains_key(symbol));
+        let nodes: Vec<NodeId> = system.fields[place].components.iter().map(|(_, node)| *node).collect();
+        let nodes = system.graph.substitute(&nodes, &values);
+        for (component, node) in system.fields[place].components.iter_mut().zip(nodes) {
+            component.1 = node;
+        }
+        system.fields[place].derive_anew(&system.graph);
+    }
+    let nodes: Vec<NodeId> = system.outputs.iter().map(|(_, node)| *node).collect();
+    let nodes = system.graph.substitute(&nodes, &values);
+    for (output, node) in system.outputs.iter_mut().zip(nodes) {
+        output.1 = node;
+    }
+}
+
+/// Makes late outputs `h - d h'`, and of each input that is driven a state that is read. None where there is no drift to move them.
+fn delayed(system: &mut System, late: &[(Symbol, Symbol)], wanted: &EstimateQuestion) -> Option<()> {
+    let drift = system.drift()?;
+    let is_read = |column: &Symbol| {
+        system.outputs.iter().any(|(output, _)| output.as_str() == system.symbol_name(*column))
+    };
+    if !late.iter().all(|(column, _)| is_read(column)) {
+        // no delay is sought of what drives the model: that is said where the model is made
+        return None;
+    }
+    let mut driven: Vec<Symbol> = Vec::new();
+    for (field, name) in &wanted.inputs {
+        let place = system.fields.iter().position(|other| other.name == *field)?;
+        let symbol = system.find_symbol(name)?;
+        let input = system.graph.symbol(symbol);
+        for k in 0..system.fields[place].components.len() {
+            let (state, moved) = system.fields[place].components[k];
+            let moved = system.graph.mul(input, moved);
+            let own = system.fields[drift].components.iter().position(|(other, _)| *other == state);
+            match own {
+                Some(own) => {
+                    let before = system.fields[drift].components[own].1;
+                    system.fields[drift].components[own].1 = system.graph.add(before, moved);
+                }
+                None => system.fields[drift].components.push((state, moved)),
+            }
+        }
+        if driven.contains(&symbol) {
+            // one column drives both: it is one state
+            system.fields[place].role = Role::Other;
+            continue;
+        }
+        driven.push(symbol);
+        system.fields[place].components = vec![(symbol, system.graph.integer(1))];
+        system.fields[place].derive_anew(&system.graph);
+        let info = SymbolInfo { kind: Kind::State, is_angle: false, default: None, range: None };
+        system.symbols.insert(symbol, info);
+        system.states.push(symbol);
+        system.outputs.push((name.clone(), input));
+    }
+    system.fields[drift].derive_anew(&system.graph);
+    for (column, delay) in late {
+        let name = system.symbol_name(*column).to_owned();
+        let output = system.outputs.iter().position(|(other, _)| *other == name)?;
+        let node = system.outputs[output].1;
+        let rate = system.lie_derivative(drift, node);
+        let delay = system.graph.symbol(*delay);
+        let part = system.graph.mul(delay, rate);
+        system.outputs[output].1 = system.graph.sub(node, part);
+    }
+    Some(())
+}

@@ -1,0 +1,196 @@
+//! Windows that the state of the thesis does not pass, answered by the one constraint.
+//!
+//! Where a palm and the body turn at one rate the contacts' rates have a pole in the thesis's state, and a search on a window that holds such a moment is lost a few
+//! thousandths off the truth. What is behind it has none: the body's point at the contact does not enter the palm, `0 = v_i - omega0 d_i - w_i s_i`, with `v_i` the
+//! velocity of the centre of mass along the palm's normal. So, where a scene between flat palms gives no first guess, a window that none of the readings
+//! bear out is asked again by itself, from what its own readings tell without a guess: of the thesis's state, unless the rank floor says that this motion meets
+//! a pole, and then of the constraint's. Which has answered is said.
+
+use super::groundwork::{Groundwork, Steady};
+use super::run::Experiment;
+use super::scene::{Guess, Method};
+use crate::motion_rank::MotionRank;
+use palmistry_bodies::mechanics::Palm;
+use palmistry_lang::System;
+use palmistry_observe::{Objection, RecordReading, SampleEstimate, Track, Update, UpdateEnd};
+use std::ops::Range;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The equations of `proofs/moll2002/constraint/palms.proof`, which proves what they have to do with those of the thesis.
+pub const EQUATIONS: &str = include_str!("palms.proof");
+
+/// What its observer seeks, beside `rho` where that is sought.
+const SOUGHT: [&str; 5] = ["r1", "r2", "omega0", "v1", "v2"];
+
+/// In m/s^2.
+const GRAVITY: f64 = 9.81;
+
+/// An observer of a window by itself.
+struct Alone<'a> {
+    experiment: &'a Experiment,
+    /// The rank of its equations, made at the first window.
+    rank: Option<MotionRank>,
+}
+
+/// What it has found.
+struct Found {
+    update: Update,
+    /// The states sample by sample, and their deviations.
+    moments: Vec<[Vec<f64>; 2]>,
+}
+
+impl Experiment {
+    /// Asks again for the windows of a track that the readings do not bear out.
+    pub(super) fn pass_poles(&self, method: Method, track: &mut Track, interrupt: &AtomicBool) {
+        if !self.may_pass_poles(method) || track.updates.iter().all(Update::is_borne_out) {
+            return;
+        }
+        let Some(other) = self.by_constraint() else { return };
+        let mut own = Alone { experiment: self, rank: None };
+        let mut other = Alone { experiment: &other, rank: None };
+        for place in 0..track.updates.len() {
+            let update = &track.updates[place];
+            let is_last = track.updates.get(place + 1).is_none_or(|next| next.from > update.from);
+            // blind where the readings do not bear it out says nothing of the truth
+            let is_blind =
+                matches!(update.end, UpdateEnd::Blind { .. }) && update.fit.is_none_or(|fit| fit.fits);
+            let is_lost = !update.is_borne_out() && !is_blind;
+            let Some(rows) = self.rows(update).filter(|_| is_last && is_lost) else { continue };
+            if interrupt.load(Ordering::Relaxed) {
+                return;
+            }
+            let pole = match own.answer(&rows, method, interrupt) {
+                Ok(found) => {
+                    self.replace(track, place, &rows, found);
+                    let from = track.updates[place].from;
+                    track.remarks.push(format!(
+                        "from {from:.3} s begun anew, from what this window tells without a guess"
+                    ));
+                    continue;
+                }
+                Err(objection) => objection,
+            };
+            if let Ok(found) = other.answer(&rows, method, interrupt) {
+                self.replace(track, place, &rows, found);
+                let from = track.updates[place].from;
+                let why = match pole {
+                    Some(objection) => format!("this state has {objection}"),
+                    None => "this state was lost".to_owned(),
+                };
+                track.remarks.push(format!(
+                    "from {from:.3} s answered by the one constraint, whose state has no pole there: {why}"
+                ));
+            }
+        }
+    }
+
+    /// Whether the scene is one between flat palms without friction, without a first guess, by windows, and seeks no more than the constraint tells.
+    fn may_pass_poles(&self, method: Method) -> bool {
+        let names = self.names();
+        let settings = &self.scene.observer;
+        let tells = |name: &&str| ["r1", "r2", "omega0", "rho"].contains(name);
+        let smooth = self.scene.simulated.as_ref().is_none_or(|simulated| simulated.palms.friction == 0.0);
+        let flat = self.scene.palm_forms == [Palm::Flat; 2]
+            && ["b1", "b2"].iter().all(|name| self.system.find_symbol(name).is_none());
+        method.search().is_some()
+            && settings.guess == Guess::None
+            && !settings.whole
+            && smooth
+            && flat
+            && names.iter().all(tells)
+            && SOUGHT[..3].iter().all(|name| names.contains(name))
+    }
+
+    /// The same readings with the constraint's system; none where a reading is missing that it needs.
+    fn by_constraint(&self) -> Option<Experiment> {
+        let system = System::parse("palms.proof", EQUATIONS, Path::new("")).ok()?;
+        let mut scene = self.scene.clone();
+        let settings = &mut scene.observer;
+        let gyration = settings.estimate.iter().filter(|name| *name == "rho").cloned();
+        settings.estimate = SOUGHT.iter().map(|name| (*name).to_owned()).chain(gyration).collect();
+        settings.inputs.clear();
+        settings.clamp.clear();
+        settings.known.retain(|name, _| system.find_symbol(name.split('.').next().unwrap_or(name)).is_some());
+        scene.columns.clear();
+        let ground = Groundwork::with_system(scene, system, false).ok()?;
+        let reading = RecordReading { record: self.record.clone(), faults: Vec::new(), left_out: Vec::new() };
+        Experiment::with_readings(ground, reading, None, Steady::AreConstants).ok()
+    }
+
+    /// The rows of an update's window.
+    fn rows(&self, update: &Update) -> Option<Range<usize>> {
+        let row = |time: f64| self.signals.times().iter().position(|other| *other == time);
+        Some(row(update.from)?..row(update.to)? + 1)
+    }
+
+    /// Puts what was found of a window in the place of what was not.
+    fn replace(&self, track: &mut Track, place: usize, rows: &Range<usize>, found: Found) {
+        let before = &track.updates[place];
+        if matches!(before.end, UpdateEnd::Lost(_)) {
+            track.unseen = track.unseen.saturating_sub(rows.len() - 1);
+        }
+        let outputs = before.outputs.clone();
+        track.updates[place] = Update { outputs, ..found.update };
+        // what met at these ends is there no longer
+        if let Some(next) = track.updates.get_mut(place + 1) {
+            next.seam = None;
+        }
+        // the sample that two windows share belongs to the first of them
+        let first = if rows.start == 0 { 0 } else { rows.start + 1 };
+        for (row, [state, deviations]) in rows.clone().zip(found.moments) {
+            if let Some(own) = track.estimates.get_mut(row).filter(|_| row >= first) {
+                *own = SampleEstimate { time: own.time, state, deviations, residual: Vec::new() };
+            }
+        }
+    }
+}
+
+impl Alone<'_> {
+    /// The state of a window that the readings bear out, by what the thesis calls what is sought.
+    ///
+    /// # Errors
+    /// That there is none, and what the rank objects to, if anything.
+    fn answer(
+        &mut self,
+        rows: &Range<usize>,
+        method: Method,
+        interrupt: &AtomicBool,
+    ) -> Result<Found, Option<Objection>> {
+        let own = self.experiment.window_of(rows.start, rows.len() - 1).map_err(|_| None)?;
+        let start = own.told_by_palms(true).ok_or(None)?;
+        let mut task = own.task(interrupt).map_err(|_| None)?;
+        let rank = self.rank.get_or_insert_with(|| MotionRank::new(&task, &start));
+        // how well it is seen says the bound of the window
+        if let Some(objection) = rank.along(&task, &start).objection(f64::INFINITY) {
+            return Err(Some(objection));
+        }
+        let names = own.names();
+        task.guess.clone_from(&start);
+        // the rate at which a body of this size swings: what turns or moves more slowly is no less seen for it
+        let rate = (GRAVITY / start[0].abs().max(f64::MIN_POSITIVE)).sqrt();
+        for ((name, size), value) in names.iter().zip(&mut task.sizes).zip(&start) {
+            let natural = match *name {
+                "omega0" => rate,
+                "v1" | "v2" => rate * start[0].abs(),
+                _ => 0.0,
+            };
+            *size = natural.max(value.abs());
+        }
+        let track = own.observer(method).observe(&task);
+        let sought: Vec<usize> =
+            (0..names.len()).filter(|place| !["v1", "v2"].contains(&names[*place])).collect();
+        let part = |all: &[f64]| sought.iter().map(|place| all[*place]).collect::<Vec<f64>>();
+        let update = track.updates.iter().find(|update| update.is_borne_out()).ok_or(None)?;
+        let estimate = part(&update.estimate);
+        let deviations = part(&update.deviations);
+        let known = |all: &[f64]| if all.is_empty() { Vec::new() } else { part(all) };
+        let moments = track.estimates.iter().map(|at| [part(&at.state), known(&at.deviations)]).collect();
+        let at = |(place, bound): &(usize, f64)| Some((sought.iter().position(|own| own == place)?, *bound));
+        let at_bounds = update.at_bounds.iter().filter_map(at).collect();
+        // the covariance and the seam are those of the other state
+        let (covariance, seam) = (None, None);
+        let update = Update { estimate, deviations, at_bounds, covariance, seam, ..update.clone() };
+        Ok(Found { update, moments })
+    }
+}

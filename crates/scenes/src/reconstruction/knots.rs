@@ -1,0 +1,182 @@
+//! Closed splines through a few points as candidates: bodies whose curvature has kinks, as those of the thesis.
+//!
+//! A series has to follow each kink by many harmonics; a spline has one at each of its points and needs nothing else. Where the points are is first read off the series, by its radii at the normals that were touched; then
+//! points and steps explain the readings by themselves. A point more begins in the middle of a piece, where it changes nothing.
+
+use super::candidate::{Best, Found};
+use super::descent::{Least, Squares, descend, joined, triangle_of};
+use super::record::{Unknowns, WholeRecord};
+use nalgebra::{DMatrix, DVector};
+use palmistry_bodies::shape::{SupportFunction, SupportSpline};
+use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The fewest points, and the most that are tried.
+const FEWEST: usize = 3;
+const MOST: usize = 6;
+
+/// Directions of the first point, in parts of the angle between two.
+const TURNS: usize = 8;
+
+/// So many radii of a series are enough for a beginning, and what they are worth in parts of the size of the body.
+const RADII: usize = 200;
+const WORTH: f64 = 1e-4;
+
+/// So many beginnings go on to the readings; all of them while none of them settles at what the series bears out.
+const KEPT: usize = 2;
+
+/// Another point is not asked for that has made the readings less likely.
+const PATIENCE: usize = 1;
+
+/// The squares of what a spline's radii are off.
+struct Radii<'a> {
+    radii: &'a [[f64; 2]],
+    worth: f64,
+    prior: Vec<f64>,
+}
+
+impl Squares for Radii<'_> {
+    type Point = SupportFunction;
+
+    fn sum(&self, at: &SupportFunction) -> Option<f64> {
+        let off = self.radii.iter().map(|[angle, radius]| (at.support(*angle)[0] - radius) / self.worth);
+        let coefficients = at.coefficients();
+        let drawn = coefficients.iter().zip(&self.prior).map(|(value, weight)| value * weight);
+        let sum: f64 = off.chain(drawn).map(|x| x * x).sum();
+        sum.is_finite().then_some(sum)
+    }
+
+    fn triangle(&self, at: &SupportFunction) -> Option<DMatrix<f64>> {
+        let coefficients = at.coefficients();
+        let p = coefficients.len();
+        let mut rows = DMatrix::zeros(self.radii.len(), p + 1);
+        for (i, [angle, radius]) in self.radii.iter().enumerate() {
+            for (j, basis) in at.basis(*angle).iter().enumerate() {
+                rows[(i, j)] = basis[0] / self.worth;
+            }
+            rows[(i, p)] = (radius - at.support(*angle)[0]) / self.worth;
+        }
+        let lacks: Vec<f64> =
+            coefficients.iter().zip(&self.prior).map(|(value, weight)| -value * weight).collect();
+        Some(joined(&triangle_of(rows), &self.prior, &lacks))
+    }
+
+    fn moved(&self, at: &SupportFunction, step: &DVector<f64>) -> Option<SupportFunction> {
+        let coefficients: Vec<f64> =
+            at.coefficients().iter().zip(step.iter()).map(|(value, step)| value + step).collect();
+        at.with(&coefficients)
+    }
+}
+
+impl WholeRecord {
+    /// The splines that explain the readings, one for each number of points that was tried. `series` is what a series told: where it is enough if it explains the readings, no more points are asked for.
+    pub fn splines(&self, series: &Found, is_enough: bool, interrupt: &AtomicBool) -> Vec<Found> {
+        let radii = self.radii(series);
+        let mut found: Vec<Found> = Vec::new();
+        let (mut begins, mut idle) = (self.triangles(series, &radii), 0);
+        for points in FEWEST..=MOST {
+            let nearest = self.nearest(&radii, begins, interrupt);
+            let Some((end, best)) = self.by_readings(series, nearest, interrupt) else { break };
+            begins = with_a_point_more(&best.x.support, points);
+            // what is still on its way has no band: it is no candidate, and no more than a beginning
+            if !best.is_settled {
+                continue;
+            }
+            let before = found.iter().map(|found| found.evidence).fold(f64::NEG_INFINITY, f64::max);
+            idle = if end.evidence > before { 0 } else { idle + 1 };
+            let explains = |cost: f64| self.is_explained(cost, self.times.len());
+            let is_explained = explains(best.cost) || (is_enough && explains(series.shape.chi_square));
+            found.push(end);
+            if is_explained || idle >= PATIENCE || interrupt.load(Ordering::Relaxed) {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Normals that were touched, and the radii there by a series.
+    fn radii(&self, series: &Found) -> Vec<[f64; 2]> {
+        let all = self.times.iter().zip(&series.motion).flat_map(|(time, at)| {
+            let normals = self.palms_at(*time).normals(at.phi);
+            [0, 1].map(|palm: usize| [normals[palm], at.radii[palm]])
+        });
+        let all: Vec<[f64; 2]> = all.collect();
+        let stride = all.len().div_ceil(RADII).max(1);
+        all.into_iter().step_by(stride).collect()
+    }
+
+    /// Splines through three points that are as far from each other as can be; where a series has run away in a gap they have its mean radius.
+    fn triangles(&self, series: &Found, radii: &[[f64; 2]]) -> Vec<SupportFunction> {
+        let mean = radii.iter().map(|[_, radius]| radius).sum::<f64>() / radii.len().max(1) as f64;
+        let point = |angle: f64| {
+            let [x, y] = series.shape.support.point(angle);
+            if (0.5 * mean..2.0 * mean).contains(&x.hypot(y)) {
+                [x, y]
+            } else {
+                [mean * angle.cos(), mean * angle.sin()]
+            }
+        };
+        let turned = |turn: usize| {
+            let first = TAU * turn as f64 / (TURNS * FEWEST) as f64;
+            let points = (0..FEWEST).flat_map(|i| point(first + TAU * i as f64 / FEWEST as f64));
+            let coefficients: Vec<f64> = points.chain([0.0; FEWEST - 1]).collect();
+            SupportSpline::of_coefficients(&coefficients).map(SupportFunction::Spline)
+        };
+        (0..TURNS).filter_map(turned).collect()
+    }
+
+    /// The splines nearest to radii, from each beginning: those that are not the same, the best first.
+    fn nearest(
+        &self,
+        radii: &[[f64; 2]],
+        begins: Vec<SupportFunction>,
+        interrupt: &AtomicBool,
+    ) -> Vec<SupportFunction> {
+        let Some(first) = begins.first() else { return Vec::new() };
+        let squares = Radii { radii, worth: WORTH * self.size(), prior: self.spline_prior(first) };
+        let ends = begins.into_iter().filter_map(|begin| descend(&squares, begin, interrupt));
+        let mut ends: Vec<Least<SupportFunction>> = ends.collect();
+        ends.sort_by(|a, b| a.sum.total_cmp(&b.sum));
+        ends.dedup_by(|a, b| (a.sum - b.sum).abs() <= 1e-3 * b.sum);
+        ends.into_iter().map(|end| end.at).collect()
+    }
+
+    /// The best spline by the readings themselves, from several beginnings.
+    fn by_readings(
+        &self,
+        series: &Found,
+        begins: Vec<SupportFunction>,
+        interrupt: &AtomicBool,
+    ) -> Option<(Found, Best)> {
+        let mut best: Option<(Found, Best)> = None;
+        for (i, begin) in begins.into_iter().enumerate() {
+            let is_borne_out =
+                |(found, best): &(Found, Best)| best.is_settled && !found.is_refuted_by(series);
+            if i >= KEPT && best.as_ref().is_some_and(is_borne_out) {
+                break;
+            }
+            let end = self.spline(series, begin, interrupt);
+            best = best.into_iter().chain(end).min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        }
+        best
+    }
+
+    /// A spline by the readings themselves.
+    fn spline(
+        &self,
+        series: &Found,
+        support: SupportFunction,
+        interrupt: &AtomicBool,
+    ) -> Option<(Found, Best)> {
+        let prior = self.spline_prior(&support);
+        let start = Unknowns { support, ..series.unknowns.clone() };
+        let best = self.descend(start, &prior, self.times.len(), interrupt)?;
+        Some((self.at_minimum(&best, &prior)?, best))
+    }
+}
+
+/// The same spline with one more point, on each of its pieces.
+fn with_a_point_more(support: &SupportFunction, pieces: usize) -> Vec<SupportFunction> {
+    let SupportFunction::Spline(spline) = support else { return Vec::new() };
+    (0..pieces).filter_map(|piece| spline.with_point_on(piece).map(SupportFunction::Spline)).collect()
+}

@@ -1,0 +1,227 @@
+//! Fourier polynomials of all orders at once: which harmonics there are is not known, and what is not known about them is in the band.
+//!
+//! A truncated series leaves what its harmonics cannot follow, and says nothing about it. So each order is taken with several beliefs on how fast harmonics fall, `part (k/2)^-decay` in parts of the size of the body and
+//! never more than convexity allows; each is weighed by the probability that it gives to the readings, and the shape is the mean of all, with the covariance of the mixture. About one
+//! point, where all is linear, a triangle of the largest order's rows has all others in its corners.
+
+use super::candidate::{Best, Found, gained};
+use super::descent::{inverse, joined, solved};
+use super::record::{Unknowns, WholeRecord};
+use nalgebra::{DMatrix, DVector};
+use palmistry_bodies::shape::{SupportFunction, SupportSeries};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Orders that are weighed, and with how many of them it begins; more are asked where the last one has more than a part of the weight.
+const ORDERS: [usize; 16] = [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24, 32, 40, 48];
+const FIRST: usize = 13;
+const MORE: f64 = 1e-3;
+
+/// Harmonics as parts of the size of the body, and how fast they fall.
+const PARTS: [f64; 5] = [1.0, 0.3, 0.1, 0.03, 0.01];
+const DECAYS: [f64; 5] = [2.0, 3.0, 4.0, 6.0, 9.0];
+
+/// Beliefs that are this much less likely than the likeliest are left out.
+const UNLIKELY: f64 = 1e-6;
+
+/// All is linear about a point so near to the mean that what is left does not change by more than this.
+const NEAR: f64 = 0.05;
+const ROUNDS: usize = 5;
+
+/// What is believed of the harmonics beforehand.
+#[derive(Clone, Copy)]
+struct Belief {
+    order: usize,
+    part: f64,
+    decay: f64,
+}
+
+impl Belief {
+    /// The roots of the weights of the coefficients about zero, of a body of a size in m.
+    fn weights(self, size: f64) -> Vec<f64> {
+        let deviation = |k: usize| match k {
+            0 | 1 => 2.0 * size,
+            k => {
+                let k = k as f64;
+                (2.0 / (k * k - 1.0)).min(self.part * (2.0 / k).powf(self.decay)) * size
+            }
+        };
+        (0..=2 * self.order).map(|i| 1.0 / deviation(i.div_ceil(2))).collect()
+    }
+}
+
+/// What convexity says of the coefficients of a body of a size in m: the roots of their weights.
+pub(super) fn convex_weights(size: f64, order: usize) -> Vec<f64> {
+    Belief { order, part: 1.0, decay: 2.0 }.weights(size)
+}
+
+fn beliefs(orders: &[usize]) -> Vec<Belief> {
+    let of = |order: &usize| {
+        let order = *order;
+        PARTS.into_iter().flat_map(move |part| DECAYS.map(|decay| Belief { order, part, decay }))
+    };
+    orders.iter().flat_map(of).collect()
+}
+
+/// What one belief makes of the readings, about a point.
+struct Told {
+    belief: Belief,
+    evidence: f64,
+    /// Of the free unknowns: steps of the first ones, values of the coefficients.
+    value: DVector<f64>,
+    inverse: DMatrix<f64>,
+}
+
+/// All beliefs together.
+struct Mixture {
+    value: DVector<f64>,
+    covariance: DMatrix<f64>,
+    evidence: f64,
+    likeliest: Belief,
+    /// The part of the weight that the largest orders have.
+    last: f64,
+}
+
+impl WholeRecord {
+    /// The series that the readings tell, from a point near it; none where nothing can be followed, or it was interrupted.
+    pub fn series(&self, start: &Unknowns, interrupt: &AtomicBool) -> Option<Found> {
+        let most = (self.times.len() / 4).max(1);
+        let orders: Vec<usize> = ORDERS.into_iter().filter(|order| *order <= most).collect();
+        let mut asked = FIRST.min(orders.len());
+        let mut x = start.clone();
+        loop {
+            let (found, last) = self.mixed(&x, &orders[..asked], interrupt)?;
+            if asked == orders.len() || last < MORE {
+                return Some(found);
+            }
+            x = found.unknowns;
+            asked = orders.len();
+        }
+    }
+
+    /// The mixture over so many orders, at its own mean.
+    fn mixed(&self, start: &Unknowns, orders: &[usize], interrupt: &AtomicBool) -> Option<(Found, f64)> {
+        let (order, rows) = (*orders.last()?, self.times.len());
+        let first = Belief { order, part: 1.0, decay: 3.0 }.weights(self.size());
+        let mut x = self.descend(expanded(start, order), &first, rows, interrupt)?.x;
+        let mut round = 0;
+        loop {
+            if interrupt.load(Ordering::Relaxed) {
+                return None;
+            }
+            let motion = self.follow(&x, rows, true)?;
+            let rows_there = self.rows(&motion);
+            let triangle = self.about(&x, &rows_there);
+            let mixture = self.weigh(&triangle, orders)?;
+            let mean = self.reached(&x, &mixture.value)?;
+            let there = self.follow(&mean, rows, true)?;
+            let moved: f64 = motion
+                .iter()
+                .zip(&there)
+                .flat_map(|(a, b)| {
+                    [0, 1].map(|i: usize| ((a.contacts[i] - b.contacts[i]) / self.sigma).powi(2))
+                })
+                .sum();
+            round += 1;
+            if moved <= NEAR || round == ROUNDS {
+                // a mean that explains less than the point itself is one of what is not linear
+                let is_worse = self.squares(&there) > self.squares(&motion) + moved.sqrt() + 1.0;
+                let (at, motion) = if is_worse { (x, motion) } else { (mean, there) };
+                let found = self.found(at, (motion, &rows_there), mixture.covariance, mixture.evidence);
+                return Some((found, mixture.last));
+            }
+            // what is linear about one point may not be about another: the likeliest belief goes there by itself
+            let weights = mixture.likeliest.weights(self.size());
+            let mut likeliest = mean;
+            likeliest = expanded(&likeliest, mixture.likeliest.order);
+            let Best { x: next, .. } = self.descend(likeliest, &weights, rows, interrupt)?;
+            x = expanded(&next, order);
+        }
+    }
+
+    /// The triangle for the coefficients themselves instead of steps from a point.
+    fn about(&self, x: &Unknowns, triangle: &DMatrix<f64>) -> DMatrix<f64> {
+        let p = triangle.ncols() - 1;
+        let head = vec![0.0; self.head()];
+        let values = DVector::from_vec([head, x.support.coefficients()].concat());
+        let mut moved = triangle.clone();
+        let side = triangle.column(p) + triangle.columns(0, p) * values;
+        moved.set_column(p, &side);
+        moved
+    }
+
+    /// The unknowns of a mixture about a point.
+    fn reached(&self, x: &Unknowns, value: &DVector<f64>) -> Option<Unknowns> {
+        let head = self.head();
+        let mut step = value.clone();
+        for (i, own) in x.support.coefficients().into_iter().enumerate() {
+            step[head + i] -= own;
+        }
+        self.moved(x, &step)
+    }
+
+    /// What one belief makes of a triangle.
+    fn told(&self, triangle: &DMatrix<f64>, belief: Belief) -> Option<Told> {
+        let (last, head) = (triangle.ncols() - 1, self.head());
+        let p = head + 1 + 2 * belief.order;
+        let weights = belief.weights(self.size());
+        let mut corner = DMatrix::zeros(p + 1, p + 1);
+        corner.view_mut((0, 0), (p, p)).copy_from(&triangle.view((0, 0), (p, p)));
+        for i in 0..p {
+            corner[(i, p)] = triangle[(i, last)];
+        }
+        // what no coefficient of this order changes
+        corner[(p, p)] = triangle.view((p, last), (triangle.nrows() - p, 1)).norm();
+        let all = joined(&corner, &weights, &vec![0.0; weights.len()]);
+        let cost = all[(p, p)].powi(2);
+        let evidence = -0.5 * cost + gained(&all, &weights);
+        let (value, inverse) = (solved(&all)?, inverse(&all)?);
+        evidence.is_finite().then_some(Told { belief, evidence, value, inverse })
+    }
+
+    /// All beliefs, each with its weight.
+    fn weigh(&self, triangle: &DMatrix<f64>, orders: &[usize]) -> Option<Mixture> {
+        let all: Vec<Told> =
+            beliefs(orders).into_iter().filter_map(|belief| self.told(triangle, belief)).collect();
+        let best = all.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
+        let likely: Vec<(f64, &Told)> = all
+            .iter()
+            .map(|told| ((told.evidence - best.evidence).exp(), told))
+            .filter(|(weight, _)| *weight > UNLIKELY)
+            .collect();
+        let total: f64 = likely.iter().map(|(weight, _)| weight).sum();
+        let p = triangle.ncols() - 1;
+        let mut value = DVector::zeros(p);
+        for (weight, told) in &likely {
+            let mut part = value.rows_mut(0, told.value.len());
+            part += &told.value * (weight / total);
+        }
+        let mut covariance = DMatrix::zeros(p, p);
+        for (weight, told) in &likely {
+            let own = told.value.len();
+            let mut part = covariance.view_mut((0, 0), (own, own));
+            part += &told.inverse * told.inverse.transpose() * (weight / total);
+            let mut off = -value.clone();
+            let mut first = off.rows_mut(0, own);
+            first += &told.value;
+            covariance.ger(weight / total, &off, &off, 1.0);
+        }
+        let is_last = |told: &Told| Some(&told.belief.order) == orders.last();
+        let last: f64 = likely.iter().filter(|(_, told)| is_last(told)).map(|(weight, _)| weight).sum();
+        Some(Mixture {
+            value,
+            covariance,
+            // each belief is as likely beforehand
+            evidence: best.evidence + (total / all.len() as f64).ln(),
+            likeliest: best.belief,
+            last: last / total,
+        })
+    }
+}
+
+/// The unknowns with a series of an order: what is beyond it is left out, what is not there is zero.
+pub(super) fn expanded(x: &Unknowns, order: usize) -> Unknowns {
+    let mut coefficients = x.support.coefficients();
+    coefficients.resize(1 + 2 * order, 0.0);
+    let support = SupportFunction::Series(SupportSeries::of_coefficients(&coefficients));
+    Unknowns { support, ..x.clone() }
+}

@@ -1,0 +1,228 @@
+//! The motion from one sample to the next, with its derivatives by the unknowns.
+//!
+//! Kutta's method of the fourth order, once over a span and twice over its halves: where both differ the span is halved, as it has to be where the curvature of the body has a kink. The derivatives obey linear
+//! equations that are the same for all unknowns but for what drives them: these are carried by two solutions and Simpson's rule, for hundreds of unknowns at the cost of a few. They are good to a millionth, which a search
+//! needs and a bound; the motion itself is good to the tolerance.
+
+use super::record::{Followed, INPUTS, Unknowns, WholeRecord, parts};
+
+/// Both ways over a span differ by no more than this, in rad and rad/s.
+const TOLERANCE: f64 = 1e-11;
+
+/// A span is halved this often at most.
+const DEPTH: u32 = 16;
+
+/// Steps at most over a record, and for each of its samples: smooth motion takes one or two from one sample to the next, a kink some sixteen.
+const MOST_STEPS: usize = 20_000;
+const STEPS_A_SAMPLE: usize = 50;
+
+/// Why a motion cannot be followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Unfollowed {
+    /// It has no finite acceleration, or one that jumps.
+    Lost,
+    /// It takes too many steps.
+    Steps,
+}
+
+/// Angle and rate, and their derivatives by the free unknowns; none where they are not wanted.
+#[derive(Clone)]
+struct Moving {
+    at: [f64; 2],
+    slopes: [Vec<f64>; 2],
+}
+
+type Matrix = [[f64; 2]; 2];
+
+impl WholeRecord {
+    /// The motion from the first sample over so many; with its derivatives, if wanted. None where it cannot be followed.
+    pub fn follow(&self, x: &Unknowns, rows: usize, derivatives: bool) -> Option<Vec<Followed>> {
+        self.followed(x, rows, derivatives).ok()
+    }
+
+    /// Whether so much happens between samples that a motion is not followed: as where their times are in another unit.
+    pub fn takes_too_many_steps(&self, x: &Unknowns) -> bool {
+        self.followed(x, self.times.len(), false) == Err(Unfollowed::Steps)
+    }
+
+    fn followed(&self, x: &Unknowns, rows: usize, derivatives: bool) -> Result<Vec<Followed>, Unfollowed> {
+        let p = if derivatives { self.head() + x.support.coefficients().len() } else { 0 };
+        let mut state = Moving { at: [self.phi, x.rate], slopes: [vec![0.0; p], vec![0.0; p]] };
+        if p > 0 && self.rate.is_none() {
+            state.slopes[1][0] = 1.0;
+        }
+        let mut steps = MOST_STEPS.max(STEPS_A_SAMPLE * self.times.len());
+        let mut followed = Vec::with_capacity(rows);
+        for i in 0..rows.min(self.times.len()) {
+            if i > 0 {
+                let span = [self.times[i - 1], self.times[i]];
+                state = self.advanced(x, span, &state, (DEPTH, &mut steps))?;
+            }
+            followed.push(self.sample(i, &state, x));
+        }
+        Ok(followed)
+    }
+
+    fn sample(&self, i: usize, state: &Moving, x: &Unknowns) -> Followed {
+        let ([phi0, omega0], [phi, rate]) = (state.at, &state.slopes);
+        let p = phi.len();
+        if p == 0 {
+            let pose = self.pose(self.times[i], phi0, omega0, x);
+            return Followed { phi: phi0, rate: omega0, contacts: pose.contacts, ..Followed::default() };
+        }
+        let local = self.local(self.times[i], phi0, omega0, x);
+        let contact = |i: usize| self.row(&local, &parts(&local.pose.contacts[i]), x, phi, rate);
+        let radius = |i: usize| {
+            let mut by = [0.0; INPUTS];
+            by[3 * i] = 1.0;
+            self.row(&local, &by, x, phi, rate)
+        };
+        Followed {
+            phi: phi0,
+            rate: omega0,
+            radii: local.touched.support.map(|support| support[0]),
+            centre: local.pose.centre.map(|x| x.re),
+            contacts: local.pose.contacts.map(|x| x.re),
+            contact_rows: [contact(0), contact(1)],
+            radius_rows: [radius(0), radius(1)],
+            phi_row: phi.to_vec(),
+            rate_row: rate.to_vec(),
+        }
+    }
+
+    /// One step of Kutta's method.
+    fn stepped(&self, [from, to]: [f64; 2], at: [f64; 2], x: &Unknowns) -> [f64; 2] {
+        let step = to - from;
+        let rates = |time: f64, at: [f64; 2]| [at[1], self.pose(time, at[0], at[1], x).acceleration];
+        let plus = |by: f64, slope: [f64; 2]| [at[0] + by * slope[0], at[1] + by * slope[1]];
+        let first = rates(from, at);
+        let second = rates(from + step / 2.0, plus(step / 2.0, first));
+        let third = rates(from + step / 2.0, plus(step / 2.0, second));
+        let fourth = rates(to, plus(step, third));
+        [0, 1].map(|i: usize| at[i] + step / 6.0 * (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]))
+    }
+
+    /// The state at the end of a span, which may be halved so often and take so many steps.
+    fn advanced(
+        &self,
+        x: &Unknowns,
+        span: [f64; 2],
+        state: &Moving,
+        (depth, steps): (u32, &mut usize),
+    ) -> Result<Moving, Unfollowed> {
+        *steps = steps.checked_sub(1).ok_or(Unfollowed::Steps)?;
+        let [from, to] = span;
+        let middle = f64::midpoint(from, to);
+        let whole = self.stepped(span, state.at, x);
+        let half = self.stepped([from, middle], state.at, x);
+        let end = self.stepped([middle, to], half, x);
+        let off = [0, 1].map(|i: usize| end[i] - whole[i]);
+        let most = off[0].abs().max(off[1].abs());
+        if !most.is_finite() {
+            return Err(Unfollowed::Lost);
+        }
+        if most > TOLERANCE {
+            let depth = depth.checked_sub(1).ok_or(Unfollowed::Lost)?;
+            let half = self.advanced(x, [from, middle], state, (depth, steps))?;
+            return self.advanced(x, [middle, to], &half, (depth, steps));
+        }
+        let at = [0, 1].map(|i: usize| end[i] + off[i] / 15.0);
+        let slopes = match state.slopes[0].is_empty() {
+            true => state.slopes.clone(),
+            false => self.carried(x, [from, middle, to], [state.at, half, at], &state.slopes),
+        };
+        Ok(Moving { at, slopes })
+    }
+
+    /// The derivatives at the end of a span, by what is linear about the motion at its beginning, middle and end.
+    fn carried(
+        &self,
+        x: &Unknowns,
+        times: [f64; 3],
+        at: [[f64; 2]; 3],
+        slopes: &[Vec<f64>; 2],
+    ) -> [Vec<f64>; 2] {
+        let locals = [0, 1, 2].map(|i: usize| self.linear(times[i], at[i], x));
+        let step = times[2] - times[0];
+        let linear = [0, 1, 2].map(|i: usize| locals[i].0);
+        let [all, second] = [over(step, linear), over(step / 2.0, halves(linear))];
+        let mut carried = slopes.clone();
+        for k in 0..slopes[0].len() {
+            let own = [slopes[0][k], slopes[1][k]];
+            let drives = [0, 1, 2].map(|i: usize| locals[i].1[k]);
+            for (i, carried) in carried.iter_mut().enumerate() {
+                let driven = all[i][1] * drives[0] + 4.0 * second[i][1] * drives[1];
+                let last = if i == 1 { drives[2] } else { 0.0 };
+                carried[k] = all[i][0] * own[0] + all[i][1] * own[1] + step / 6.0 * (driven + last);
+            }
+        }
+        carried
+    }
+}
+
+/// Of three linear laws over a span those of its second half: the one in the middle of it is between.
+fn halves([_, middle, end]: [[f64; 2]; 3]) -> [[f64; 2]; 3] {
+    [middle, [0, 1].map(|i: usize| f64::midpoint(middle[i], end[i])), end]
+}
+
+/// What angle and rate become over a span of `angle'' = by_angle angle + by_rate rate`, the law being told at its beginning, middle and end: Kutta's method.
+fn over(step: f64, laws: [[f64; 2]; 3]) -> Matrix {
+    let from = |start: [f64; 2]| {
+        let rates = |law: [f64; 2], at: [f64; 2]| [at[1], law[0] * at[0] + law[1] * at[1]];
+        let plus = |by: f64, slope: [f64; 2]| [start[0] + by * slope[0], start[1] + by * slope[1]];
+        let first = rates(laws[0], start);
+        let second = rates(laws[1], plus(step / 2.0, first));
+        let third = rates(laws[1], plus(step / 2.0, second));
+        let fourth = rates(laws[2], plus(step, third));
+        [0, 1].map(|i: usize| start[i] + step / 6.0 * (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]))
+    };
+    let [by_angle, by_rate] = [from([1.0, 0.0]), from([0.0, 1.0])];
+    [[by_angle[0], by_rate[0]], [by_angle[1], by_rate[1]]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Experiment, Scene};
+    use palmistry_bodies::shape::{SupportFunction, SupportSeries};
+
+    /// The simulated motion of a body whose harmonics are known, by Newton's laws, and derivatives against differences.
+    #[test]
+    fn motion_and_derivatives_are_those_of_the_body() {
+        let text = include_str!("../../../../proofs/moll2002/scenes/general.toml");
+        let scene = Scene::parse("proofs/moll2002/scenes/general.toml", text).unwrap();
+        let experiment = Experiment::new(scene, None).unwrap();
+        let simulation = experiment.simulation.as_ref().unwrap();
+        let [x, y] = simulation.shape.centre_of_mass();
+        let series = SupportSeries { mean: 1.2, harmonics: vec![[-x, -y], [0.1, 0.0], [0.03, -0.04]] };
+        let record = WholeRecord::of(&experiment, 1e-4).unwrap();
+        let moments = &simulation.trajectory.moments;
+        let gyration = simulation.constants["rho"];
+        let exact = Unknowns { rate: moments[0].omega0, gyration, support: SupportFunction::Series(series) };
+        let motion = record.follow(&exact, record.times.len(), true).unwrap();
+        for (at, moment) in motion.iter().zip(moments) {
+            assert!((at.phi - moment.phi0).abs() < 1e-9 && (at.rate - moment.omega0).abs() < 1e-9);
+            for palm in 0..2 {
+                assert!((at.contacts[palm] - moment.palms[palm].s).abs() < 1e-9);
+            }
+        }
+        let p = motion[0].phi_row.len();
+        assert_eq!(p, record.head() + 7);
+        for place in 0..p {
+            let moved = |by: f64| {
+                let mut step = nalgebra::DVector::zeros(p);
+                step[place] = by;
+                let there = record.moved(&exact, &step).unwrap();
+                record.follow(&there, record.times.len(), false).unwrap()
+            };
+            let (up, down) = (moved(1e-6), moved(-1e-6));
+            for i in (0..motion.len()).step_by(50) {
+                for palm in 0..2 {
+                    let slope = (up[i].contacts[palm] - down[i].contacts[palm]) / 2e-6;
+                    let row = motion[i].contact_rows[palm][place];
+                    assert!((slope - row).abs() < 1e-5 * (1.0 + slope.abs()), "{place} {i}: {slope} {row}");
+                }
+            }
+        }
+    }
+}

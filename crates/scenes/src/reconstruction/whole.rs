@@ -1,0 +1,227 @@
+//! Shape and motion of a body from all readings of a record at once, by least squares.
+//!
+//! The body slides between two flat palms by its one law of motion (`law`), so that all contacts follow from its rate at the first sample and its
+//! support function: a handful of unknowns for hundreds of readings. No torque and no mass is in it, no derivative of a reading, and no window: what
+//! a method by windows forgets from one to the next is kept here. The search begins at a shape and a rate that others found, on the first part of the record, and goes
+//! on to all of it. Then candidates are held against each other, Fourier polynomials of all orders (`series`) and closed splines through a few points (`knots`), each with the probability that it gives to the
+//! readings. What they differ by is in the band.
+
+use super::candidate::{Best, Found};
+use super::record::{Unknowns, WholeRecord};
+use super::series::{convex_weights, expanded};
+use crate::simulation::NOMINAL;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What a whole record told: the likeliest candidate, and the others with their probabilities.
+pub(super) struct Told {
+    pub best: Found,
+    pub others: Vec<(f64, Found)>,
+}
+
+/// Parts of the record that are explained one after the other.
+const PARTS: [f64; 4] = [0.15, 0.3, 0.6, 1.0];
+
+/// Fewer rows than these are no part.
+const FEWEST: usize = 24;
+
+/// A misfit below this part of the mean radius is one of the shape; a larger one is one of a motion that is another.
+const FOUND: f64 = 1e-2;
+
+/// So many of the discs go on.
+const KEPT: usize = 6;
+
+/// The standard deviation of the contacts at first where none is stated, in parts of their mean.
+const UNSTATED: f64 = 1e-4;
+
+/// A candidate that leaves less than this part of what another one leaves is the only one.
+const SMALLER: f64 = 0.5;
+
+/// Of noise fewer neighbours than these count as one.
+const ALIKE: f64 = 1.5;
+
+/// Candidates that are less likely are left out.
+const UNLIKELY: f64 = 1e-4;
+
+impl WholeRecord {
+    /// Shape and motion, from where others began; none where nothing can be followed, or it was interrupted. Where no deviation of a contact is stated it is what the best candidate leaves.
+    pub fn tell(&mut self, starts: &[Unknowns], stated: f64, interrupt: &AtomicBool) -> Option<Told> {
+        let is_stated = stated > 0.0;
+        self.sigma = if is_stated { stated } else { UNSTATED * self.size() };
+        let begin = self.begin(starts, interrupt)?;
+        let series = self.series(&begin.x, interrupt)?;
+        let splines = self.splines(&series, is_stated, interrupt);
+        let candidates = match is_stated {
+            true => [vec![series], splines].concat(),
+            false => self.by_what_is_left(series, splines, interrupt)?,
+        };
+        weighed(candidates).map(|told| self.widened(told, is_stated))
+    }
+
+    /// The candidates of readings whose deviation nobody states, measured by what the best of them leaves.
+    fn by_what_is_left(
+        &mut self,
+        mut series: Found,
+        mut splines: Vec<Found>,
+        interrupt: &AtomicBool,
+    ) -> Option<Vec<Found>> {
+        let least = |splines: &[Found]| splines.iter().map(|at| at.misfit).fold(f64::INFINITY, f64::min);
+        if least(&splines) > NOMINAL {
+            while self.sigma > NOMINAL && self.left(&series) < SMALLER * self.sigma {
+                self.sigma = self.left(&series);
+                series = self.series(&series.unknowns, interrupt)?;
+            }
+            self.sigma = self.left(&series);
+            if self.sigma <= NOMINAL {
+                return Some(vec![series]);
+            }
+            let is_noise = self.alike(&series) < ALIKE;
+            splines.extend(self.splines(&series, is_noise, interrupt));
+        }
+        let least = least(&splines);
+        if least > SMALLER * series.misfit {
+            let again = splines.iter().filter_map(|spline| self.spline_again(spline, interrupt));
+            let again: Vec<Found> = again.collect();
+            return Some([vec![series], again].concat());
+        }
+        // the series leaves what the readings do not have
+        let sigma = std::mem::replace(&mut self.sigma, least.max(NOMINAL));
+        let again = splines.iter().filter(|spline| spline.misfit <= 2.0 * self.sigma);
+        let again: Vec<Found> = again.filter_map(|spline| self.spline_again(spline, interrupt)).collect();
+        if again.is_empty() {
+            self.sigma = sigma;
+            return Some(vec![series]);
+        }
+        Some(again)
+    }
+
+    /// The deviation of a contact that a candidate leaves, in m.
+    fn left(&self, found: &Found) -> f64 {
+        let n = found.shape.samples as f64;
+        (found.misfit * (n / found.shape.degrees as f64).sqrt()).max(NOMINAL)
+    }
+
+    fn spline_again(&self, spline: &Found, interrupt: &AtomicBool) -> Option<Found> {
+        let prior = self.spline_prior(&spline.shape.support);
+        let best = self.descend(spline.unknowns.clone(), &prior, self.times.len(), interrupt)?;
+        self.at_minimum(&best, &prior).filter(|_| best.is_settled)
+    }
+
+    /// A series that explains most, from where others began; where what they found explains nothing, from discs at rates on a grid.
+    fn begin(&self, starts: &[Unknowns], interrupt: &AtomicBool) -> Option<Best> {
+        let rows = self.times.len();
+        let stop = || interrupt.load(Ordering::Relaxed);
+        let mut best: Option<Best> = None;
+        for start in starts {
+            let straight = self.low(start.clone(), rows, interrupt);
+            let mut ends = vec![straight];
+            if !ends[0].as_ref().is_some_and(|end| self.is_explained(end.cost, rows)) {
+                ends.push(self.by_parts(start.clone(), 0, interrupt));
+            }
+            best =
+                best.into_iter().chain(ends.into_iter().flatten()).min_by(|a, b| a.cost.total_cmp(&b.cost));
+            if stop() || best.as_ref().is_some_and(|best| self.is_explained(best.cost, rows)) {
+                break;
+            }
+        }
+        let is_found = |best: &Best| self.misfit(best.cost, rows) < FOUND * best.x.support.mean();
+        if !best.as_ref().is_some_and(is_found) && !stop() {
+            best = best
+                .into_iter()
+                .chain(self.begun_as_discs(interrupt))
+                .min_by(|a, b| a.cost.total_cmp(&b.cost));
+        }
+        best.filter(|_| !stop())
+    }
+
+    /// A series of the order that it has, about which no more is known than that it is convex.
+    fn low(&self, start: Unknowns, rows: usize, interrupt: &AtomicBool) -> Option<Best> {
+        let order = start.support.order();
+        self.descend(expanded(&start, order), &convex_weights(self.size(), order), rows, interrupt)
+    }
+
+    /// The first parts of the record one after the other, from one of [`PARTS`] on.
+    fn by_parts(&self, start: Unknowns, first: usize, interrupt: &AtomicBool) -> Option<Best> {
+        let mut end = None;
+        let mut x = start;
+        for part in &PARTS[first..] {
+            let best = self.low(x, self.part(*part), interrupt)?;
+            x = best.x.clone();
+            end = Some(best);
+        }
+        end
+    }
+
+    fn part(&self, part: f64) -> usize {
+        let rows = self.times.len();
+        ((part * rows as f64) as usize).clamp(rows.min(FEWEST), rows)
+    }
+
+    /// From discs that turn at one rate each: the best few by the first part of the record go on to all of it.
+    fn begun_as_discs(&self, interrupt: &AtomicBool) -> Option<Best> {
+        let rows = self.part(PARTS[0]);
+        let starts = self.discs().into_iter();
+        let mut begun: Vec<Best> = starts.filter_map(|start| self.low(start, rows, interrupt)).collect();
+        begun.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let mut best: Option<Best> = None;
+        for begin in begun.into_iter().take(KEPT) {
+            let end = self.by_parts(begin.x, 1, interrupt);
+            best = best.into_iter().chain(end).min_by(|a, b| a.cost.total_cmp(&b.cost));
+            if best.as_ref().is_some_and(|best| self.is_explained(best.cost, self.times.len())) {
+                break;
+            }
+        }
+        best
+    }
+
+    /// What is left more than noise explains makes all deviations larger; and where neighbours are left alike, no sample tells as much as an independent one.
+    fn widened(&self, mut told: Told, is_stated: bool) -> Told {
+        let best = &told.best;
+        let spread = (best.shape.chi_square / best.shape.degrees as f64).max(1.0);
+        let is_noise = is_stated && self.is_explained(best.shape.chi_square, self.times.len());
+        let is_exact = !is_stated && best.misfit <= NOMINAL;
+        let alike = if is_noise || is_exact { 1.0 } else { self.alike(best) };
+        let factor = spread * alike;
+        for found in std::iter::once(&mut told.best).chain(told.others.iter_mut().map(|(_, found)| found)) {
+            found.covariance *= factor;
+            found.shape.covariance *= factor;
+            found.shape.widened = factor.sqrt();
+        }
+        told.best.shape.others =
+            told.others.iter().map(|(probability, found)| (*probability, found.shape.clone())).collect();
+        told
+    }
+
+    /// How many neighbours count as one: the sum of the autocorrelations of what is left, up to the first that is not positive.
+    fn alike(&self, found: &Found) -> f64 {
+        let mut most: f64 = 1.0;
+        for palm in 0..2 {
+            let left: Vec<f64> = found
+                .motion
+                .iter()
+                .zip(&self.contacts[palm])
+                .map(|(at, read)| at.contacts[palm] - read)
+                .collect();
+            let square: f64 = left.iter().map(|x| x * x).sum();
+            let with = |lag: usize| left.iter().zip(&left[lag..]).map(|(a, b)| a * b).sum::<f64>() / square;
+            let sum: f64 = (1..left.len() / 4).map(with).take_while(|part| *part > 0.0).sum();
+            most = most.max(1.0 + 2.0 * sum);
+        }
+        most
+    }
+}
+
+/// Candidates by their probabilities, the likeliest first. One that the readings refute beside another one is none, however few unknowns it has: it was not found, or is not the body.
+fn weighed(mut candidates: Vec<Found>) -> Option<Told> {
+    let refuted: Vec<bool> =
+        candidates.iter().map(|found| candidates.iter().any(|other| found.is_refuted_by(other))).collect();
+    let mut refuted = refuted.into_iter();
+    candidates.retain(|_| refuted.next() == Some(false));
+    candidates.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    let mut candidates = candidates.into_iter();
+    let best = candidates.next()?;
+    let weights: Vec<(f64, Found)> =
+        candidates.map(|other| ((other.evidence - best.evidence).exp(), other)).collect();
+    let total = 1.0 + weights.iter().map(|(weight, _)| weight).sum::<f64>();
+    let others = weights.into_iter().map(|(weight, other)| (weight / total, other));
+    Some(Told { best, others: others.filter(|(probability, _)| *probability > UNLIKELY).collect() })
+}

@@ -1,0 +1,346 @@
+//! A scene from beginning to end: bodies or a file, what is read of them, and what the observers make of it.
+
+use super::channels;
+use super::groundwork::{Groundwork, Steady, estimate_question, sample_range};
+use super::known_motion::KnownMotion;
+use super::recognised::Recognition;
+use super::recovered::Reconstruction;
+use super::scene::{self, Guess, Scene, SceneError};
+use super::simulation::{NOMINAL, Simulation, TOUCH, deviation};
+use super::since::Since;
+use super::system_motion::SystemMotion;
+use super::terrain::Closure;
+use super::unguided::{PalmReadings, palm_readings};
+use miette::Diagnostic;
+use palmistry_io::UNINTERRUPTED;
+use palmistry_lang::System;
+use palmistry_observe::{
+    EstimateQuestion, Fault, ModelError, MovingWindow, Noise, Observer, Record, RecordError, RecordReading,
+    Signals, Task, Track, WindowSearch,
+};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// A scene with its readings.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    /// What was asked for.
+    pub scene: Scene,
+    /// The system that the observers believe in.
+    pub system: System,
+    /// Absent where the readings come from a file.
+    pub simulation: Option<Simulation>,
+    /// Present where a system was simulated by its own equations.
+    pub motion: Option<SystemMotion>,
+    /// What it adds that wheel 2 rolls where wheel 1 has been, where a robot was simulated.
+    pub closure: Option<Closure>,
+    /// Which body of the library it is, once that was asked: [`Experiment::recognise`].
+    pub recognition: Option<Recognition>,
+    /// The readings.
+    pub record: Record,
+    /// The same as instruments write them, where the scene says that they have other names or units than the model.
+    pub written: Option<Record>,
+    /// The time of the first sample where times are counted from there, because they were counted from another age; else zero. In s.
+    pub origin: f64,
+    /// What was wrong with the rows of a file.
+    pub faults: Vec<Fault>,
+    /// The readings as curves of time.
+    pub signals: Signals,
+    /// What the observers are asked for.
+    pub question: EstimateQuestion,
+}
+
+/// What one observer made of it.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The observer.
+    pub method: scene::Method,
+    /// What it believed, sample by sample.
+    pub track: Track,
+    /// In s; NaN where no times are kept.
+    pub seconds: f64,
+    /// The shape that it tells, where that was asked for: of the answer that is shown.
+    pub reconstruction: Option<Box<Reconstruction>>,
+}
+
+impl Answer {
+    /// Replaces each time on the wall by NaN.
+    pub fn forget_times(&mut self) {
+        self.seconds = f64::NAN;
+        for update in &mut self.track.updates {
+            update.seconds = f64::NAN;
+        }
+    }
+}
+
+impl Experiment {
+    /// Simulates a scene, or takes its readings from a file: `data`, or else the one that the scene names.
+    ///
+    /// # Errors
+    /// What is wrong with the scene, its model or the file, with the place in the scene.
+    pub fn new(scene: Scene, data: Option<&Path>) -> Result<Experiment, SceneError> {
+        let file = data.map(Path::to_owned).or_else(|| scene.data.record.clone());
+        let ground = Groundwork::of(scene, file.is_none())?;
+        let Groundwork { scene, names, .. } = &ground;
+        let (reading, written) = match (ground.simulated(), &file) {
+            (Some(simulated), _) => {
+                let place =
+                    |error: RecordError| scene.error_at("sensor", error.to_string(), "these readings", "");
+                let mut record = simulated.read(&scene.sensor, &scene.channels, scene.seed).map_err(place)?;
+                let mut written = None;
+                if !names.sources.is_empty() {
+                    // what is observed is what would be read of what is written
+                    let own = names.written(&record).map_err(place)?;
+                    record = names.read(&own, record.names()).map_err(place)?;
+                    written = Some(own);
+                }
+                (RecordReading { record, faults: Vec::new(), left_out: Vec::new() }, written)
+            }
+            (None, Some(file)) => {
+                let needed = ground.needed();
+                let needed: Vec<&str> = needed.iter().map(String::as_str).collect();
+                let read = Record::read_named(file, &needed, names, &ground.fault_rules());
+                (read.map_err(|error| unusable(scene, &error))?, None)
+            }
+            (None, None) => {
+                let help = "give [start] with a value for each state, or a body and palms; or name a file under [data], or hand one over with --data";
+                return Err(scene.error_at("title", "there is nothing to observe", "this scene", help));
+            }
+        };
+        Experiment::with_readings(ground, reading, written, Steady::AreConstants)
+    }
+
+    /// The experiment with these readings.
+    ///
+    /// # Errors
+    /// What is wrong with the readings, or with what is asked of them, with the place in the scene.
+    pub(super) fn with_readings(
+        ground: Groundwork,
+        reading: RecordReading,
+        written: Option<Record>,
+        steady: Steady,
+    ) -> Result<Experiment, SceneError> {
+        let Groundwork { scene, system, simulation, begun, described, simulates, known, .. } = ground;
+        let RecordReading { record, faults, .. } = reading;
+        let (record, origin) = match simulates {
+            // simulated times are counted from zero
+            true => (record, 0.0),
+            false => {
+                let since = Since::first(&record);
+                (since.count(&scene, record)?, since.origin)
+            }
+        };
+        let signals = Signals::of_record(&record);
+        let signals =
+            signals.map_err(|error| scene.error_at("data", error.to_string(), "these readings", ""))?;
+        channels::are_columns(&scene, &signals)?;
+        let signals = channels::corrected(signals, &scene.observer.known).map_err(|error| {
+            scene.error_at("observer.known", error.to_string(), "readings without these", "")
+        })?;
+        let question = {
+            // of a recording it is that of what the scene describes
+            let truth = |name: &str| match simulation.as_ref().or(begun.as_ref()) {
+                Some(simulation) => simulation.truth(name)?.first().copied(),
+                None => described.as_ref()?.truth(name)?.first().copied(),
+            };
+            estimate_question(&scene, &system, &truth, known, &signals, steady)?
+        };
+        channels::are_told(&scene, &system, &question, &signals)?;
+        let motion = described.filter(|_| simulates);
+        let closure = match (&scene.robot, &motion) {
+            (Some(robot), Some(motion)) => Closure::of(robot, &motion.response.times),
+            _ => None,
+        };
+        let experiment = Experiment {
+            scene,
+            system,
+            simulation,
+            motion,
+            closure,
+            recognition: None,
+            record,
+            written,
+            origin,
+            faults,
+            signals,
+            question,
+        };
+        // whether the model can be made at all is better known now
+        experiment.task(&UNINTERRUPTED)?;
+        Ok(experiment)
+    }
+
+    /// The observers' task.
+    ///
+    /// # Errors
+    /// Where the system gives no model, with the place in the scene.
+    pub fn task<'a>(&'a self, interrupt: &'a AtomicBool) -> Result<Task<'a>, SceneError> {
+        let task = Task::new(&self.system, &self.question, &self.signals, interrupt);
+        let mut task = task.map_err(|error| {
+            let place = match error {
+                ModelError::NoField { .. } | ModelError::NoSymbol { .. } | ModelError::NotAnInput { .. } => {
+                    "observer.inputs"
+                }
+                ModelError::NoMotion { .. } => "model",
+                ModelError::Pole { .. } | ModelError::NotFinite { .. } => "observer.known",
+                _ => "observer.estimate",
+            };
+            let help =
+                "the model and the columns of the readings have to determine the rate of all that is sought";
+            self.scene.error_at(place, error.to_string(), "asked for here", help)
+        })?;
+        if self.scene.observer.guess == Guess::Sample {
+            let names = self.names();
+            let half = names
+                .iter()
+                .map(|name| sample_range(&self.system, name).map_or(0.0, |[low, high]| (high - low) / 2.0));
+            let sizes: Vec<f64> = half.zip(&task.guess).map(|(half, guess)| half.max(guess.abs())).collect();
+            task.sizes
+                .iter_mut()
+                .zip(sizes)
+                .filter(|(_, own)| *own > 0.0)
+                .for_each(|(size, own)| *size = own);
+        }
+        let sensor = &self.scene.sensor;
+        let sigma = deviation(sensor.noise, sensor.resolution);
+        task.exact = sigma == 0.0;
+        task.sigma = if task.exact { NOMINAL } else { sigma };
+        if !task.exact {
+            task.noise = Noise::Stated { normal: sensor.noise, rounding: sensor.resolution };
+        }
+        channels::tell(&self.scene, &mut task, self.scene.simulated.is_some(), self.simulated().is_some())?;
+        let settings = &self.scene.observer;
+        (task.inherit, task.whole, task.loss) = (settings.inherit, settings.whole, settings.loss);
+        // who gives no guess has other ways to begin anew
+        task.restarts = settings.guess != Guess::None;
+        for (name, bounds) in self.names().into_iter().zip(&mut task.bounds) {
+            *bounds = settings.bounds.get(name).copied().unwrap_or(*bounds);
+        }
+        task.timing = self.origin.abs() * f64::EPSILON * self.fastest(&task);
+        Ok(task)
+    }
+
+    /// The fastest change of an output from one sample to the next, per s.
+    fn fastest(&self, task: &Task<'_>) -> f64 {
+        let times = self.signals.times();
+        let columns = task.full.outputs.iter().filter_map(|name| self.signals.find(name));
+        let steps = columns.flat_map(|place| self.signals.column(place).windows(2).zip(times.windows(2)));
+        steps.map(|(value, time)| ((value[1] - value[0]) / (time[1] - time[0])).abs()).fold(0.0, f64::max)
+    }
+
+    /// The readings of the first window, for who seeks a state without a first guess.
+    ///
+    /// # Errors
+    /// The name of what is missing.
+    #[doc(hidden)]
+    pub fn palm_readings(&self) -> Result<PalmReadings, &'static str> {
+        let rows = (self.scene.observer.window + 1).min(self.signals.times().len());
+        palm_readings(&self.scene, &self.system, &self.question.known, &self.signals, rows)
+    }
+
+    /// The observer of a name, with the scene's settings.
+    pub fn observer(&self, method: scene::Method) -> Box<dyn Observer> {
+        self.scene.observer.observer(method)
+    }
+
+    /// The observer by windows, with the scene's settings.
+    pub fn window(&self, search: WindowSearch) -> MovingWindow {
+        self.scene.observer.window(search)
+    }
+
+    /// What every observer of the scene makes of the readings.
+    ///
+    /// # Errors
+    /// As [`Experiment::task`].
+    pub fn observe(&self) -> Result<Vec<Answer>, SceneError> {
+        self.run(&UNINTERRUPTED, &|_| ())
+    }
+
+    /// What every observer of the scene makes of the readings; `done` is told of each that has finished.
+    ///
+    /// # Errors
+    /// As [`Experiment::task`].
+    pub fn run(
+        &self,
+        interrupt: &AtomicBool,
+        done: &dyn Fn(scene::Method),
+    ) -> Result<Vec<Answer>, SceneError> {
+        let task = self.task(interrupt)?;
+        let mut answers = Vec::new();
+        for &method in &self.scene.observer.methods {
+            let begin = Instant::now();
+            let mut track = self.observer(method).observe(&task);
+            self.pass_poles(method, &mut track, interrupt);
+            self.name_mirrors(&mut track);
+            let seconds = begin.elapsed().as_secs_f64();
+            answers.push(Answer { method, track, seconds, reconstruction: None });
+            done(method);
+            if task.interrupted() {
+                break;
+            }
+        }
+        Ok(answers)
+    }
+
+    /// The readings as instruments write them: what `--record` keeps.
+    pub fn as_written(&self) -> &Record {
+        self.written.as_ref().unwrap_or(&self.record)
+    }
+
+    /// The names of what is sought.
+    pub fn names(&self) -> Vec<&str> {
+        self.question.guess.iter().map(|(name, _)| name.as_str()).collect()
+    }
+
+    /// The true values of what is sought at a time: none where the readings come from a file, or the time is no sample's.
+    pub fn truth_at(&self, time: f64) -> Option<Vec<f64>> {
+        let row = self.signals.times().iter().position(|other| *other == time)?;
+        let truth =
+            |name: &&str| channels::truth(&self.scene, name).or_else(|| self.truth(name)?.get(row).copied());
+        self.simulated()?;
+        self.names().iter().map(truth).collect()
+    }
+
+    /// The true values of a state, sample by sample: none where the readings come from a file.
+    pub fn truth(&self, name: &str) -> Option<Vec<f64>> {
+        self.simulated()?.truth(name)
+    }
+
+    /// What was simulated: none where the readings come from a file.
+    pub fn simulated(&self) -> Option<&dyn KnownMotion> {
+        match (&self.simulation, &self.motion) {
+            (Some(simulation), _) => Some(simulation),
+            (None, motion) => motion.as_ref().map(|motion| motion as &dyn KnownMotion),
+        }
+    }
+
+    /// Whether it is about a body between palms.
+    pub fn is_about_palms(&self) -> bool {
+        let outputs = &self.system.outputs;
+        let touches = TOUCH.iter().all(|name| outputs.iter().any(|(output, _)| output == name));
+        let sought = ["r1", "r2"].iter().all(|name| self.names().contains(name));
+        self.scene.simulated.is_some() || (touches && sought)
+    }
+}
+
+/// The error of an estimate: relative, or absolute where the truth is less than a millionth.
+pub fn error(estimate: f64, truth: f64) -> f64 {
+    let size = if truth.abs() < 1e-6 { 1.0 } else { truth.abs() };
+    ((estimate - truth) / size).abs()
+}
+
+/// What is wrong with a file of readings, with the record's own advice.
+pub(super) fn unusable(scene: &Scene, error: &RecordError) -> SceneError {
+    let advice = error.help().map(|help| help.to_string()).unwrap_or_default();
+    let help = match error {
+        RecordError::Column { column, .. }
+            if !scene.observer.estimate.contains(column)
+                && !scene.columns.values().any(|own| own.from == *column) =>
+        {
+            format!("{advice}; or give '{column}' under `known`, or estimate it")
+        }
+        _ => advice,
+    };
+    scene.error_at("data", error.to_string(), "the readings of this scene", help)
+}

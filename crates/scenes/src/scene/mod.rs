@@ -1,0 +1,148 @@
+//! Scene files: an experiment in TOML, read into plain structures, with errors that point into the text.
+//!
+//! [`keys`] is the file as it is written, [`check`] holds every value to what it may be, [`place`] knows where in the
+//! text each stands. Nothing here simulates or estimates.
+
+mod check;
+mod columns;
+mod keys;
+mod observing;
+pub(crate) mod place;
+mod robot;
+mod simulated;
+
+pub use columns::SceneColumn;
+pub use observing::{
+    BasinStudy, Channel, CurvatureStudy, Data, Guess, Method, ModeSettings, NoiseStudy, ObserverSettings,
+    Sensor, Study, Switch,
+};
+pub use palmistry_lang::ReadError as SceneError;
+pub use robot::SimulatedRobot;
+pub(crate) use simulated::sample_times;
+pub use simulated::{Body, LibraryBody, Palms, SceneOutline, Simulated, SimulatedSystem};
+
+use palmistry_bodies::mechanics::Palm;
+use palmistry_io::foreign::{name_of, shown_path};
+use palmistry_lang::{Problem, System, load};
+use palmistry_observe::{ColumnNames, FaultRules};
+use place::Places;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// An experiment: what is held and how it moves, or where it was recorded; what the sensors read; and the observers
+/// that are to find the state out.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// `title`: what the experiment is, in a line.
+    pub title: String,
+    /// `model`: the proof file of the system that the observers know. The file names it relative to itself; here it is
+    /// relative to where the program runs.
+    pub model: PathBuf,
+    /// `seed`: where random numbers begin; 1 unless given.
+    pub seed: u64,
+    /// `duration`, `samples` or `rate`, `[body]` and `[palms]`: what is simulated. Absent where the data is recorded.
+    pub simulated: Option<Simulated>,
+    /// `duration`, `samples` or `rate`, `[start]` and `[inputs]`: a system that is simulated by its own equations. Absent where a body
+    /// is simulated or the data is recorded.
+    pub system: Option<SimulatedSystem>,
+    /// `duration`, `samples` or `rate`, `[robot]` and `[ground]`: a robot on uneven ground. Absent where anything else is simulated.
+    pub robot: Option<SimulatedRobot>,
+    /// `radii` of `[palms]`, in m: positive of a hollow circular palm, negative of a bulging one, infinite of a flat one, as both
+    /// are unless given.
+    pub palm_forms: [Palm<f64>; 2],
+    /// `[sensor]`: how well the sensors read.
+    pub sensor: Sensor,
+    /// `[sensor.NAME]`: how well single columns are read, by name.
+    pub channels: BTreeMap<String, Channel>,
+    /// `[columns]`: columns of a recording that have other names or units than in the model, by the model's names.
+    pub columns: BTreeMap<String, SceneColumn>,
+    /// `[data]`: recorded data, and what to do with a faulty row.
+    pub data: Data,
+    /// `[observer]`: what is to be found out, and how.
+    pub observer: ObserverSettings,
+    /// `[study]`: what to try many times over.
+    pub study: Study,
+    name: String,
+    text: String,
+}
+
+impl Scene {
+    /// Reads a scene from a file.
+    ///
+    /// # Errors
+    /// What is wrong with the file, and where. The files that it names have to be there.
+    pub fn read(path: &Path) -> Result<Scene, SceneError> {
+        let name = name_of(path);
+        let text = load(path).map_err(|message| Problem::new(&(0..0), message, "").locate(&name, ""))?;
+        let scene = Scene::parse(&name, &text)?;
+        let named = [("model", Some(&scene.model)), ("data.record", scene.data.record.as_ref())];
+        for (place, file) in named.into_iter().filter_map(|(place, file)| Some((place, file?))) {
+            let is_stream = place == "data.record" && file == Path::new(check::STREAM_NAME);
+            if !is_stream && !palmistry_io::file::is_file(file) {
+                let message = format!("there is no file {}", shown_path(file));
+                let help = "a file is looked for from the folder in which the scene lies";
+                return Err(scene.error_at(place, message, "named here", help));
+            }
+        }
+        Ok(scene)
+    }
+
+    /// Reads a scene from a text. Files that it names are taken to lie where they do as seen from `name`, the name
+    /// under which the text is shown; they are not looked for.
+    ///
+    /// # Errors
+    /// What is wrong with the text, and where.
+    pub fn parse(name: &str, text: &str) -> Result<Scene, SceneError> {
+        let places = Places::of(text).map_err(|problem| problem.locate(name, text))?;
+        let keys = keys::read(text, &places).map_err(|problem| problem.locate(name, text))?;
+        check::scene(keys, &places, name, text).map_err(|problem| problem.locate(name, text))
+    }
+
+    /// An error that marks a value of this scene, for those who find it out of place later. The place is named by its
+    /// keys, as in `observer.estimate[2]` or `body.shape`; where it is not there, the nearest table is marked.
+    pub fn error_at(
+        &self,
+        place: &str,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> SceneError {
+        // the text was read before: it has places
+        let span = Places::of(&self.text).map_or(0..0, |places| places.value(place));
+        Problem::new(&span, message, label).help(help).locate(&self.name, &self.text)
+    }
+
+    /// The text that was read.
+    #[doc(hidden)]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The columns of a recording by the names and units of a system.
+    ///
+    /// # Errors
+    /// The model knows no such name, or measures it in a unit of another kind.
+    pub fn column_names(&self, system: &System) -> Result<ColumnNames, SceneError> {
+        columns::names(&self.columns, system, &self.text)
+            .map_err(|problem| problem.locate(&self.name, &self.text))
+    }
+
+    /// The rules by which a record of this scene is held to be faulty: those of `[data]`, with the sensors' jitter and
+    /// resolution.
+    pub fn fault_rules(&self) -> FaultRules {
+        let resolution = self.sensor.resolution;
+        FaultRules {
+            on_fault: self.data.on_fault,
+            spike: self.data.spike,
+            jitter: self.sensor.jitter,
+            resolution: ["s1", "s2"]
+                .map(|column| (column.to_owned(), resolution))
+                .into_iter()
+                .chain(self.channels.iter().filter_map(|(name, own)| Some((name.clone(), own.resolution?))))
+                .collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,187 @@
+//! Where in the text of a scene each key and value stands, and what is wrong there in words.
+
+use palmistry_lang::{Problem, nearest};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The places of a text.
+pub(crate) struct Places<'a> {
+    table: Spanned<DeTable<'a>>,
+    length: usize,
+}
+
+/// A key and its value, where they stand.
+struct Entry<'a, 'b> {
+    key: Range<usize>,
+    value: &'b Spanned<DeValue<'a>>,
+}
+
+impl<'a> Places<'a> {
+    pub fn of(text: &'a str) -> Result<Self, Problem> {
+        let table = DeTable::parse(text).map_err(|error| {
+            let span = error.span().unwrap_or(text.len()..text.len());
+            Problem::new(&span, in_words(error.message()), "here").help("a scene is a TOML file (toml.io)")
+        })?;
+        Ok(Places { table, length: text.len() })
+    }
+
+    /// The span of a value, named by its keys as in `palms.prescribed[1].start`. Of a place that is not there, what
+    /// there is on the way to it.
+    pub fn value(&self, place: &str) -> Range<usize> {
+        self.walk(place).map_or(self.top(), |entry| entry.value.span())
+    }
+
+    /// The span of a value's key.
+    pub fn key(&self, place: &str) -> Range<usize> {
+        self.walk(place).map_or(self.top(), |entry| entry.key)
+    }
+
+    /// The beginning of the text: where a key is marked that is not there.
+    fn top(&self) -> Range<usize> {
+        0..usize::from(self.length > 0)
+    }
+
+    fn walk(&self, place: &str) -> Option<Entry<'a, '_>> {
+        let mut found: Option<Entry> = None;
+        for part in place.split('.') {
+            let mut indices = part.split(['[', ']']).filter(|piece| !piece.is_empty());
+            let key = indices.next()?;
+            let table = match &found {
+                None => Some(self.table.get_ref()),
+                Some(entry) => entry.value.get_ref().as_table(),
+            };
+            let Some((at, mut value)) =
+                table.and_then(|t| t.iter().find(|(k, _)| k.get_ref().as_ref() == key))
+            else {
+                break;
+            };
+            for index in indices {
+                let array = index.parse::<usize>().ok().zip(value.get_ref().as_array());
+                let Some(inner) = array.and_then(|(index, array)| array.get(index)) else { break };
+                value = inner;
+            }
+            found = Some(Entry { key: at.span(), value });
+        }
+        found
+    }
+
+    /// The place of a key of this name within a span.
+    fn key_within(&self, name: &str, span: &Range<usize>) -> Option<Range<usize>> {
+        let mut tables = vec![self.table.get_ref()];
+        let mut values: Vec<&Spanned<DeValue>> = Vec::new();
+        while let Some(table) = tables.pop() {
+            for (key, value) in table.iter() {
+                let at = key.span();
+                if key.get_ref().as_ref() == name && span.start <= at.start && at.end <= span.end {
+                    return Some(at);
+                }
+                values.push(value);
+            }
+            while let Some(value) = values.pop() {
+                match value.get_ref() {
+                    DeValue::Table(table) => tables.push(table),
+                    DeValue::Array(array) => values.extend(array.iter()),
+                    _ => {}
+                }
+            }
+        }
+        None
+    }
+
+    /// What serde and the TOML reader find wrong, at its place, with what to do.
+    pub fn explain(&self, error: &toml::de::Error) -> Problem {
+        let message = error.message();
+        let span = error.span().unwrap_or(self.top());
+        let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+        let suggest = |unknown: &str, known: &[&str]| match nearest(unknown, known.iter().copied()) {
+            Some(name) => format!("perhaps you meant '{name}'"),
+            None => format!("known here: {}", known.join(", ")),
+        };
+        match (quoted.split_first(), message) {
+            (Some((unknown, known)), m) if m.starts_with("unknown field") => {
+                // of a table that is read by hand the span is that of its header
+                let after = || self.key_within(unknown, &(span.start..self.length));
+                let place = self.key_within(unknown, &span).or_else(after).unwrap_or(span);
+                Problem::new(&place, format!("unknown key '{unknown}'"), "not a key of this table")
+                    .help(suggest(unknown, known))
+            }
+            (Some((unknown, known)), m) if m.starts_with("unknown variant") => {
+                Problem::new(&span, format!("'{unknown}' is not known"), "here").help(suggest(unknown, known))
+            }
+            (Some((missing, _)), m) if m.starts_with("missing field") => {
+                let help = EXAMPLES.iter().find(|(key, _)| key == missing).map(|(_, example)| *example);
+                let help = help.map_or(format!("give '{missing}'"), |e| format!("add, for instance: {e}"));
+                // the table of the whole file has no header to mark
+                let (place, label) = match span.is_empty() {
+                    true => (self.top(), "at the top of the file, before the first table"),
+                    false => (span, "in this table"),
+                };
+                Problem::new(&place, format!("the key '{missing}' is missing"), label).help(help)
+            }
+            _ => Problem::new(&span, in_words(message), "this")
+                .help("write a value of the kind that is expected"),
+        }
+    }
+}
+
+/// Keys that a table cannot do without, with examples.
+const EXAMPLES: [(&str, &str); 20] = [
+    ("title", "title = \"Both palms turn at one constant rate\""),
+    ("model", "model = \"general.proof\""),
+    ("observer", "[observer] with methods and estimate"),
+    ("shape", "shape = { kind = \"ellipse\", semi_axes = [1.2, 0.9] }"),
+    ("kind", "kind = \"ellipse\""),
+    ("mean", "mean = 1.0, in m"),
+    ("semi_axes", "semi_axes = [1.2, 0.9], in m"),
+    ("exponent", "exponent = 4"),
+    ("radii", "radii = [1.2, 1.5, 1.3], in m"),
+    ("mass", "mass = 1.0, in kg"),
+    ("inertia", "inertia = [0.5, 0.5], in kg m^2"),
+    ("start", "start = 0.8, in rad"),
+    ("angle", "angle = 0.8, in rad"),
+    ("torque", "torque = 10.0, in N m"),
+    ("amplitude", "amplitude = 0.1"),
+    ("frequency", "frequency = 1.0, in Hz"),
+    ("methods", "methods = [\"newton\"]"),
+    ("estimate", "estimate = [\"r1\", \"r2\", \"omega0\"]"),
+    ("levels", "levels = [1e-5, 1e-4], in m"),
+    ("points", "points = 21"),
+];
+
+/// A message of serde's in words that are not Rust's.
+fn in_words(message: &str) -> String {
+    if message == "wanted string or table" {
+        return "this is no text, expected one in quotation marks".to_owned();
+    }
+    let words = [
+        ("floating point `", "the number `"),
+        ("integer `", "the number `"),
+        ("f64", "a number"),
+        ("usize", "a whole number that is not negative"),
+        ("u64", "a whole number that is not negative"),
+        ("a sequence", "a list"),
+        ("sequence", "a list"),
+        ("a map", "a table"),
+        ("map", "a table"),
+        ("an array of length", "a list of length"),
+        ("a string", "a text"),
+        ("path string", "a text"),
+        ("string \"", "the text \""),
+    ];
+    // only what serde writes, not what it quotes from the file
+    let quote = message.rfind("expected ").filter(|_| message.starts_with("invalid "));
+    match quote {
+        Some(at) => {
+            let swap = |text: &str| {
+                let found = words.iter().find(|(from, _)| text.starts_with(from));
+                found.map_or(text.to_owned(), |(from, to)| format!("{to}{}", &text[from.len()..]))
+            };
+            let (head, tail) = message.split_at(at);
+            let (kind, what) = head.split_once(": ").unwrap_or(("", head));
+            let kind = if kind.is_empty() { "" } else { &format!("{kind}: ") };
+            format!("{kind}{}expected {}", swap(what), swap(&tail["expected ".len()..]))
+        }
+        None => message.to_owned(),
+    }
+}

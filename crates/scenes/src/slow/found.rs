@@ -1,0 +1,36 @@
+//! What all readings at once tell: a shape, its track, and whether they are explained.
+
+use super::outline::Kink;
+use super::quadrature::SlowTrack;
+use palmistry_bodies::shape::ShapeEstimate;
+
+/// So many deviations of chi-square are not chance.
+const CERTAIN: f64 = 5.0;
+
+/// Shape and motion that explain all readings.
+#[derive(Clone, Debug)]
+pub struct SlowShape {
+    /// The support function with its covariance, by the readings' deviation: Cramér and Rao's bound.
+    pub shape: ShapeEstimate,
+    /// The harmonics that were free; those beyond are the kinks'.
+    pub order: usize,
+    /// Kinks of the curvature, where they explain more than harmonics do.
+    pub kinks: Vec<Kink>,
+    /// Radii, orientations, heights at the samples. The orientation is in the frame of the shape.
+    pub track: SlowTrack,
+    /// The root of the mean square of what is left of a contact, in m.
+    pub misfit: f64,
+    /// The deviation of a reading with which it was held against, in m.
+    pub sigma: f64,
+    /// The least of the potential's second derivatives at the samples, in parts of the mean radius.
+    pub stiffness: f64,
+}
+
+impl SlowShape {
+    /// Whether the readings are explained: what is left is what errors of their deviation leave, by chi-square within five deviations of its own; exact ones to a part of the mean radius. A shape
+    /// that is another leaves more, if only a quarter more: a body that is nearly its own mirror image does.
+    pub fn explains(&self, part: f64) -> bool {
+        let most = 1.0 + CERTAIN / (2.0 * self.shape.samples as f64).sqrt();
+        self.misfit <= (most * self.sigma).max(part * self.shape.support.mean())
+    }
+}

@@ -1,0 +1,131 @@
+//! Which orders of harmonics are tried: raised while G. Schwarz's criterion says that they tell something.
+
+use super::found::SlowShape;
+use super::readings::SlowReadings;
+use super::together::{Point, Together};
+use palmistry_bodies::shape::SupportSeries;
+
+/// Orders that are tried, as far as the readings can tell them.
+const LADDER: [usize; 14] = [3, 5, 8, 12, 16, 24, 32, 48, 64, 80, 100, 130, 160, 200];
+
+/// Under noise beyond this part of the mean contact higher orders than this tell nothing.
+const IS_NOISY: f64 = 1e-5;
+const MOST_NOISY: usize = 48;
+
+/// Orders in a row that tell nothing end the ladder.
+const PATIENCE: usize = 2;
+
+/// From an order on, a misfit above this part of the mean contact and so many deviations is that of another motion.
+const HOPELESS: [(usize, f64); 3] = [(16, 3e-2), (32, 1e-2), (64, 3e-3)];
+const HOPELESS_NOISE: f64 = 5.0;
+
+/// Parts of the readings that are explained one after the other, and a misfit with which it is not gone on, in deviations.
+const PARTS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
+const HOPELESS_PART: f64 = 20.0;
+
+/// The orders from one to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Orders {
+    pub least: usize,
+    /// The last order, whether it is one of the usual ones or not; none leaves it to the readings.
+    pub most: Option<usize>,
+    /// Where no more than this part of the mean radius is left no higher order is tried, whatever it would tell.
+    pub enough: f64,
+}
+
+impl Orders {
+    pub const CHOSEN: Orders = Orders { least: 0, most: None, enough: 0.0 };
+
+    fn all(self) -> Vec<usize> {
+        let most = self.most.unwrap_or(usize::MAX);
+        let mut all: Vec<usize> =
+            LADDER.into_iter().filter(|order| (self.least..most).contains(order)).collect();
+        all.extend(self.most);
+        all
+    }
+}
+
+impl Together<'_> {
+    pub fn is_noisy(&self) -> bool {
+        self.readings.sigma > IS_NOISY * self.size
+    }
+
+    /// From a track that someone else found, up the orders. None where no order can begin there.
+    pub fn explain(
+        &self,
+        start: &SupportSeries,
+        near: &[f64],
+        orders: Orders,
+        interrupt: &dyn Fn() -> bool,
+    ) -> Option<SlowShape> {
+        let readings = 2 * near.len();
+        let criterion = |at: &Point| at.cost + at.coefficients.len() as f64 * (readings as f64).ln();
+        let padded = |from: &[f64], order: usize| -> Vec<f64> {
+            let mut all = from.to_vec();
+            all.resize(1 + 2 * order, 0.0);
+            all
+        };
+        let from = start.coefficients();
+        let mut best: Option<Point> = None;
+        let mut patience = PATIENCE;
+        let mut last: Option<Point> = None;
+        for order in orders.all() {
+            if 2 * (1 + 2 * order) > readings || (self.is_noisy() && order > MOST_NOISY) || interrupt() {
+                break;
+            }
+            let begin = match &last {
+                Some(at) => self.point(padded(&at.coefficients, order), &at.phi0),
+                None => self.begin(&padded(&from, order), near),
+            };
+            let Some(begin) = begin else { continue };
+            let end = self.without_lost(self.down(begin, interrupt), interrupt);
+            let misfit = (end.left.rows(0, readings).norm_squared() / readings as f64).sqrt() * self.sigma;
+            if HOPELESS.iter().any(|(from, part)| {
+                order >= *from && misfit > (HOPELESS_NOISE * self.readings.sigma).max(part * self.size)
+            }) {
+                // another start: harmonics do not mend a motion that is another
+                best = best.or(Some(end));
+                break;
+            }
+            let is_enough = misfit <= orders.enough * end.coefficients[0];
+            last = Some(end.clone());
+            if best.as_ref().is_none_or(|best| criterion(&end) < criterion(best)) {
+                best = Some(end);
+                patience = PATIENCE;
+            } else {
+                patience -= 1;
+            }
+            if patience == 0 || is_enough {
+                break;
+            }
+        }
+        best.map(|best| self.shape(&best))
+    }
+
+    /// The same, over longer and longer parts of the readings: what the first ones tell leads the body through the next ones.
+    pub fn explain_by_parts(
+        readings: &SlowReadings,
+        start: &SupportSeries,
+        near: &[f64],
+        orders: Orders,
+        interrupt: &dyn Fn() -> bool,
+    ) -> Option<SlowShape> {
+        let (mut support, mut near) = (start.clone(), near.to_vec());
+        let mut found = None;
+        for part in PARTS {
+            let rows = ((readings.rows() as f64 * part) as usize).min(readings.rows());
+            let first = readings.part(&(0..rows));
+            let explained = Together::of(&first).explain(&support, &near[..rows], orders, interrupt)?;
+            let last = rows.checked_sub(1)?;
+            let turned = explained.track.phi0[last] - near[last];
+            near[..rows].copy_from_slice(&explained.track.phi0);
+            near[rows..].iter_mut().for_each(|phi0| *phi0 += turned);
+            support = SupportSeries::of_coefficients(&explained.shape.support.coefficients());
+            if explained.misfit > HOPELESS_PART * explained.sigma.max(1e-3 * readings.scale()) {
+                return Some(explained).filter(|_| rows == readings.rows());
+            }
+            found = Some(explained);
+        }
+        found
+    }
+}

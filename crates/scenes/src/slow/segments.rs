@@ -1,0 +1,274 @@
+//! Runs in which the body jumps (section 3.7): one shape for all segments, with nothing known.
+//!
+//! The thesis restarts where the rate of the body is large, and then seeks two unknowns a segment. Here a stretch without a jump tells a shape; it grows on both sides as long as
+//! what is left of the readings is what their errors leave. Where it is more, the body lies in another stable pose of the very shape that was found: first the one to which it falls
+//! in the recovered potential, then each other, from each sample on. What remains is no unknown a segment, but a choice among few poses, and all readings are explained at once.
+
+use super::found::SlowShape;
+use super::ladder::Orders;
+use super::outline::Outline;
+use super::readings::SlowReadings;
+use super::start::{EXACT, from_nothing_briefly};
+use super::together::Together;
+use palmistry_bodies::mechanics::resting::stable_poses;
+use palmistry_bodies::shape::SupportSeries;
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+
+/// Parts of all samples among which one without a jump is looked for, and by which part of themselves they move on.
+const WINDOWS: [f64; 2] = [0.5, 0.3];
+const WINDOW_STEP: f64 = 0.34;
+
+/// The fewest samples of a window.
+const FEWEST: usize = 40;
+
+/// A stretch is explained well enough to grow where so little is left, in parts of the mean radius. Of bodies whose harmonics fall slowly each order leaves less than the one before, and all of
+/// them at every step would take most of the time; they are asked at the end, of all readings.
+const ENOUGH: f64 = 0.1 * EXACT;
+
+/// Samples by which a stretch grows at once.
+const BLOCK: usize = 10;
+
+/// So many places of a jump go on from what they leave at once to a search.
+const TRIED: usize = 5;
+
+/// So many samples before a stretch ends are asked, too, where it does not grow: a small jump does not show at once.
+const BACK: usize = 8;
+
+/// Between two samples the palms move in so many steps; a turn by more in one of them may be a jump.
+const STEPS: usize = 24;
+const JUMP: f64 = 0.04;
+
+/// Such a step is halved so often: what remains of the turn is a jump.
+const HALVINGS: usize = 20;
+
+/// A jump that was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoundJump {
+    /// The first sample after it.
+    pub row: usize,
+    /// By how much the body turned, in radians.
+    pub turn: f64,
+    /// Whether descent in the recovered potential leads there from the pose before.
+    pub predicted: bool,
+}
+
+/// A stretch of samples that one shape explains, on its way to all.
+struct Growth<'a> {
+    readings: &'a SlowReadings,
+    rows: Range<usize>,
+    support: SupportSeries,
+    /// Of all samples; those outside of the stretch are not meant.
+    phi0: Vec<f64>,
+    interrupt: &'a dyn Fn() -> bool,
+}
+
+impl Growth<'_> {
+    /// Grows until all is explained, or nothing goes on.
+    fn grow(&mut self) {
+        let last = self.readings.rows();
+        while !(self.interrupt)() {
+            let ahead = self.rows.end < last && self.extend(true);
+            let behind = self.rows.start > 0 && self.extend(false);
+            if !ahead && !behind {
+                break;
+            }
+        }
+    }
+
+    /// The samples by which it would grow, in the order in which they are met.
+    fn block(&self, forwards: bool) -> Vec<usize> {
+        if forwards {
+            (self.rows.end..(self.rows.end + BLOCK).min(self.readings.rows())).collect()
+        } else {
+            (self.rows.start.saturating_sub(BLOCK)..self.rows.start).rev().collect()
+        }
+    }
+
+    fn extend(&mut self, forwards: bool) -> bool {
+        let block = self.block(forwards);
+        let (Some(first), Some(end)) = (block.first(), block.last()) else { return false };
+        let whole = (*first).min(*end).min(self.rows.start)..(*first).max(*end).max(self.rows.end - 1) + 1;
+        let readings = self.readings.part(&whole);
+        let together = Together::of(&readings);
+        let before = if forwards { self.rows.end - 1 } else { self.rows.start };
+        let local = |row: usize| row - whole.start;
+        let outline = Outline::of(&self.support.coefficients(), 0);
+        // the poses to which the palms lead it, from a sample and its pose on
+        let led = |mut near: Vec<f64>, from: usize, pose: f64| -> Option<Vec<f64>> {
+            near[local(from)] = pose;
+            let mut last = pose;
+            let rows: Vec<usize> =
+                if forwards { (from + 1..whole.end).collect() } else { (whole.start..from).rev().collect() };
+            for row in rows {
+                last = together.pose(local(row), last, &outline, PI)?.0;
+                near[local(row)] = last;
+            }
+            Some(near)
+        };
+        let known: Vec<f64> = self.phi0[whole.clone()].to_vec();
+        let mut tried: Vec<Vec<f64>> = Vec::new();
+        if let Some(near) = led(known.clone(), before, self.phi0[before]) {
+            if let Some(found) = self.explained(&together, &near, true) {
+                return self.take(whole, &found);
+            }
+            tried.push(near);
+        }
+        // another pose from some sample on, the most likely ones by what they leave before any search
+        let mut others: Vec<(f64, Vec<f64>)> = Vec::new();
+        let asked: Vec<usize> = if forwards {
+            (before.saturating_sub(BACK).max(self.rows.start + 1)..whole.end).collect()
+        } else {
+            (whole.start..(before + BACK).min(self.rows.end - 1)).rev().collect()
+        };
+        for row in asked {
+            if (self.interrupt)() {
+                return false;
+            }
+            let support = |angle: f64| {
+                let [r, slope, second, _] = self.support.support(angle);
+                [r, slope, second]
+            };
+            let beside = if forwards { row - 1 } else { row + 1 };
+            let Some(continued) = tried.first().map(|near| near[local(beside)]) else { return false };
+            for pose in stable_poses(&support, self.readings.palms[row]) {
+                // by the shorter way round
+                let pose = pose + ((continued - pose) / TAU).round() * TAU;
+                let near = tried.first().cloned().unwrap_or_else(|| known.clone());
+                let Some(near) = led(near, row, pose) else { continue };
+                if tried.iter().any(|other| (other[local(row)] - pose).abs() < JUMP) {
+                    continue;
+                }
+                if let Some(left) = together.left_at(&self.support, &near) {
+                    others.push((left, near));
+                }
+            }
+        }
+        others.sort_by(|a, b| a.0.total_cmp(&b.0));
+        others.truncate(TRIED);
+        for (_, near) in &others {
+            if let Some(found) = self.explained(&together, near, true) {
+                return self.take(whole, &found);
+            }
+        }
+        // more harmonics, where these do not do
+        tried.extend(others.into_iter().take(2).map(|(_, near)| near));
+        for near in &tried {
+            if let Some(found) = self.explained(&together, near, false) {
+                return self.take(whole, &found);
+            }
+        }
+        false
+    }
+
+    /// A shape that explains the samples from poses near these, by the present order alone or by all from it on.
+    fn explained(&self, together: &Together<'_>, near: &[f64], is_quick: bool) -> Option<SlowShape> {
+        let least = self.support.order();
+        let orders = Orders {
+            least: if is_quick { least } else { least + 1 },
+            most: is_quick.then_some(least),
+            enough: ENOUGH,
+        };
+        let found = together.explain(&self.support, near, orders, self.interrupt)?;
+        found.explains(EXACT).then_some(found)
+    }
+
+    fn take(&mut self, rows: Range<usize>, found: &SlowShape) -> bool {
+        self.phi0[rows.clone()].copy_from_slice(&found.track.phi0);
+        self.support = SupportSeries::of_coefficients(&found.shape.support.coefficients());
+        self.rows = rows;
+        true
+    }
+}
+
+/// Shape and motion of a run with jumps, nothing known: from windows without one. None where no window tells a shape; whether all readings are explained says
+/// [`SlowShape::explains`], and a run that is explained only in part is not.
+pub fn from_segments(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
+    let rows = readings.rows();
+    let together = Together::of(readings);
+    let mut best: Option<SlowShape> = None;
+    let in_window = Orders { enough: ENOUGH, ..Orders::CHOSEN };
+    for window in WINDOWS {
+        let width = ((rows as f64 * window) as usize).max(FEWEST).min(rows);
+        let step = ((width as f64 * WINDOW_STEP) as usize).max(1);
+        for start in (0..=rows - width).step_by(step) {
+            if interrupt() {
+                return best;
+            }
+            let stretch = start..start + width;
+            let Some(found) = from_nothing_briefly(&readings.part(&stretch), in_window, interrupt) else {
+                continue;
+            };
+            if !found.explains(EXACT) {
+                continue;
+            }
+            let support = SupportSeries::of_coefficients(&found.shape.support.coefficients());
+            let mut growth = Growth { readings, rows: 0..0, support, phi0: vec![0.0; rows], interrupt };
+            growth.take(stretch, &found);
+            growth.grow();
+            if growth.rows.len() < rows {
+                continue;
+            }
+            let orders = Orders { least: growth.support.order(), ..Orders::CHOSEN };
+            let whole = together.explain(&growth.support, &growth.phi0, orders, interrupt);
+            if let Some(whole) = whole
+                && best.as_ref().is_none_or(|best| whole.misfit < best.misfit)
+            {
+                best = Some(whole);
+            }
+            if best.as_ref().is_some_and(|best| best.explains(EXACT)) {
+                return best;
+            }
+        }
+    }
+    best
+}
+
+/// Whether most of a turn between two positions of the palms happens at once, however short the way is made: a quick motion near a fold does not.
+fn remains(
+    [mut low, mut high]: [f64; 2],
+    [mut from, mut to]: [f64; 2],
+    led: &mut dyn FnMut(f64, f64) -> Option<f64>,
+) -> bool {
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(low, high);
+        let Some(there) = led(middle, from) else { return true };
+        if (there - from).abs() > (to - there).abs() {
+            (high, to) = (middle, there);
+        } else {
+            (low, from) = (middle, there);
+        }
+    }
+    (to - from).abs() > JUMP / 2.0
+}
+
+/// Where the body jumps in a track: between two samples the palms are moved on in small steps, and the recovered shape is led along.
+pub fn found_jumps(readings: &SlowReadings, found: &SlowShape) -> Vec<FoundJump> {
+    let outline = Outline::of(&found.shape.support.coefficients(), 0);
+    let phi0 = &found.track.phi0;
+    let mut all = Vec::new();
+    for row in 1..phi0.len() {
+        let ends = [readings.palms[row - 1], readings.palms[row]];
+        let mut between = readings.part(&(row - 1..row));
+        let mut led = |at: f64, from: f64| {
+            between.palms = vec![[0, 1].map(|i: usize| ends[0][i] + at * (ends[1][i] - ends[0][i]))];
+            Together::of(&between).pose(0, from, &outline, PI).map(|found| found.0)
+        };
+        let (mut pose, mut jumped, mut followed) = (phi0[row - 1], false, true);
+        for step in 1..=STEPS {
+            let [before, at] = [step - 1, step].map(|step| step as f64 / STEPS as f64);
+            match led(at, pose) {
+                Some(next) => {
+                    jumped |= (next - pose).abs() > JUMP && remains([before, at], [pose, next], &mut led);
+                    pose = next;
+                }
+                None => followed = false,
+            }
+        }
+        let predicted = followed && ((pose - phi0[row] + PI).rem_euclid(TAU) - PI).abs() < JUMP;
+        if jumped || !predicted {
+            all.push(FoundJump { row, turn: phi0[row] - phi0[row - 1], predicted });
+        }
+    }
+    all
+}

@@ -1,0 +1,233 @@
+//! The one constant that the readings leave open, found with nothing known.
+//!
+//! Where the numerator of 3.37 vanishes and the body turns, the denominator vanishes too: the centre of mass passes the centre of rotation, whose height is read. Each such moment
+//! is a vote for the height at the first sample; zeros at which the body rests are scattered votes. Where noise drowns the numerator, closure tells: the same direction touched twice has one radius, so that one closed
+//! support function goes through all radii of a track only where the constant is right.
+
+use super::found::SlowShape;
+use super::ladder::Orders;
+use super::quadrature::{Quadrature, SlowTrack};
+use super::readings::SlowReadings;
+use super::together::Together;
+use palmistry_bodies::shape::{SupportSample, SupportSeries, SupportWeights, fit_support};
+
+/// Votes that lie so near, in parts of the mean contact, are for the same constant.
+const SAME_VOTE: f64 = 2e-3;
+
+/// Closure is asked at steps of this part of the mean contact.
+const SCAN: f64 = 0.02;
+
+/// So many starts go on.
+const STARTS: usize = 8;
+
+/// So many of them where only a window is looked at.
+const BRIEF_STARTS: usize = 3;
+
+/// So many of them are gone through by parts.
+const PARTED: usize = 2;
+
+/// The order of the closed function that is asked for closure.
+const ORDER: usize = 8;
+
+/// Exact readings are explained to this part of the mean radius.
+pub(super) const EXACT: f64 = 1e-4;
+
+/// A constant that a zero of 3.37's numerator tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vote {
+    /// The height of the centre of mass at the first sample, in m.
+    pub height: f64,
+    /// How many zeros tell it, to a five-hundredth of the mean contact.
+    pub votes: usize,
+}
+
+/// The constants that zeros of the numerator of 3.37 tell, those with most votes first.
+pub fn votes(readings: &SlowReadings) -> Vec<Vote> {
+    let quadrature = Quadrature::of(readings);
+    let rates = readings.contact_rates(9);
+    let rows = readings.rows();
+    let numerators: Vec<f64> =
+        (0..rows).map(|row| readings.sampled(row).turning([0.0; 2], rates[row])[0]).collect();
+    let constant = |row: usize| readings.sampled(row).rotation_centre()[1] - quadrature.lifted[row];
+    let mut told: Vec<f64> = (1..rows)
+        .filter(|row| (numerators[row - 1] < 0.0) != (numerators[*row] < 0.0))
+        .map(|row| {
+            // the zero between, and the constant there, by the cubic through the samples about it
+            let part = numerators[row - 1] / (numerators[row - 1] - numerators[row]);
+            let first = row.max(2).min(rows.saturating_sub(2).max(2)) - 2;
+            if rows < 4 {
+                return constant(row - 1) + part * (constant(row) - constant(row - 1));
+            }
+            let place = (row - 1) as f64 + part;
+            let nodes = first..first + 4;
+            nodes
+                .clone()
+                .map(|j| {
+                    let others = nodes.clone().filter(|k| *k != j);
+                    let basis: f64 = others.map(|k| (place - k as f64) / (j as f64 - k as f64)).product();
+                    basis * constant(j)
+                })
+                .sum()
+        })
+        .filter(|constant: &f64| constant.is_finite())
+        .collect();
+    told.sort_by(f64::total_cmp);
+    let near = SAME_VOTE * readings.scale();
+    let mut all: Vec<Vote> = Vec::new();
+    for group in told.chunk_by(|a, b| b - a <= near) {
+        all.push(Vote { height: group[group.len() / 2], votes: group.len() });
+    }
+    all.sort_by_key(|one| std::cmp::Reverse(one.votes));
+    all
+}
+
+/// A constant, and how well one closed function goes through the radii that follow from it.
+struct Closed {
+    height: f64,
+    /// The root of the mean square of what is left, in parts of the mean radius.
+    left: f64,
+}
+
+/// The normals that a track touched, with their radii.
+pub(super) fn touched(readings: &SlowReadings, track: &SlowTrack) -> Vec<SupportSample> {
+    let half = std::f64::consts::FRAC_PI_2;
+    let rows = readings.palms.iter().zip(&track.phi0).zip(&track.radii);
+    rows.flat_map(|((palms, phi0), radii)| {
+        let angles = [palms[0] - phi0 - half, palms[0] + palms[1] - phi0 - 3.0 * half];
+        [0, 1].map(|i: usize| SupportSample { angle: angles[i], radius: radii[i], weight: 1.0 })
+    })
+    .collect()
+}
+
+/// The closed function of an order through a track, and what is left, in parts of the mean radius.
+fn closed(readings: &SlowReadings, track: &SlowTrack, order: usize) -> Option<(SupportSeries, f64)> {
+    let shape = fit_support(&touched(readings, track), SupportWeights::Relative, Some(order))?;
+    // tracks of bodies that are none close, too: what is not convex is left as well
+    let dent = (0..180)
+        .map(|i| -shape.support.radius_of_curvature(std::f64::consts::TAU * f64::from(i) / 180.0))
+        .fold(0.0, f64::max);
+    let samples = touched(readings, track);
+    let off = |sample: &SupportSample| (sample.radius - shape.support.support(sample.angle)[0]).powi(2);
+    let left = (samples.iter().map(off).sum::<f64>() / samples.len() as f64).sqrt();
+    let left = (left + 0.02 * dent) / shape.support.mean();
+    left.is_finite().then(|| (SupportSeries::of_coefficients(&shape.support.coefficients()), left))
+}
+
+/// Heights from which to begin, the best first.
+fn starts(readings: &SlowReadings, quadrature: &Quadrature) -> Vec<f64> {
+    let scale = readings.scale();
+    let [low, high] = quadrature.heights();
+    let low = low.max(-4.0 * scale);
+    let high = high.min(low + 4.0 * scale);
+    let at = |height: f64| {
+        let left = closed(readings, &quadrature.track(&readings.times, height), ORDER)?.1;
+        Some(Closed { height, left })
+    };
+    let count = ((high - low) / (SCAN * scale)).ceil().clamp(1.0, 400.0) as usize;
+    let grid: Vec<Option<Closed>> =
+        (1..count).map(|i| at(low + (high - low) * i as f64 / count as f64)).collect();
+    let left = |i: usize| grid.get(i).and_then(Option::as_ref).map_or(f64::INFINITY, |at| at.left);
+    let mut all: Vec<Closed> = (0..grid.len())
+        .filter(|i| left(*i).is_finite() && left(*i) <= left(i + 1) && (*i == 0 || left(*i) <= left(i - 1)))
+        .filter_map(|i| {
+            // golden section between the neighbours
+            let (mut a, mut b) = (left_height(&grid, i, -1)?, left_height(&grid, i, 1)?);
+            let mut best = Closed { height: grid[i].as_ref()?.height, left: left(i) };
+            for _ in 0..8 {
+                let third = (b - a) / 3.0;
+                let (x, y) = (at(a + third)?, at(b - third)?);
+                if x.left < y.left {
+                    b = y.height
+                } else {
+                    a = x.height
+                }
+                best = [best, x, y].into_iter().min_by(|x, y| x.left.total_cmp(&y.left))?;
+            }
+            Some(best)
+        })
+        .collect();
+    if readings.sigma == 0.0 {
+        all.extend(votes(readings).into_iter().take(4).filter_map(|vote| at(vote.height)));
+    }
+    all.sort_by(|a, b| a.left.total_cmp(&b.left));
+    all.iter().map(|at| at.height).take(STARTS).collect()
+}
+
+fn left_height(grid: &[Option<Closed>], i: usize, by: isize) -> Option<f64> {
+    let beside = i.checked_add_signed(by).and_then(|i| grid.get(i)).and_then(Option::as_ref);
+    beside.or(grid[i].as_ref()).map(|at| at.height)
+}
+
+/// Shape and motion from the readings alone, nothing known at the start: several constants by closure, all readings at once from each, and what is left of the readings
+/// as the judge. None where no start can be followed; whether the readings are explained says [`SlowShape::explains`].
+pub fn from_nothing(readings: &SlowReadings, interrupt: &dyn Fn() -> bool) -> Option<SlowShape> {
+    from_nothing_within(readings, Orders::CHOSEN, interrupt)
+}
+
+/// The same with orders that are told.
+pub(super) fn from_nothing_within(
+    readings: &SlowReadings,
+    orders: Orders,
+    interrupt: &dyn Fn() -> bool,
+) -> Option<SlowShape> {
+    let wholly = Effort { starts: STARTS, orders: &[ORDER, 4, 2], parted: PARTED };
+    search(readings, orders, &wholly, interrupt)
+}
+
+/// The same with few starts: for a window of which there are many.
+pub(super) fn from_nothing_briefly(
+    readings: &SlowReadings,
+    orders: Orders,
+    interrupt: &dyn Fn() -> bool,
+) -> Option<SlowShape> {
+    let briefly = Effort { starts: BRIEF_STARTS, orders: &[ORDER, 3], parted: 0 };
+    search(readings, orders, &briefly, interrupt)
+}
+
+/// How much is tried.
+struct Effort {
+    starts: usize,
+    /// Of the closed functions from which is begun.
+    orders: &'static [usize],
+    /// So many starts are gone through by parts.
+    parted: usize,
+}
+
+fn search(
+    readings: &SlowReadings,
+    orders: Orders,
+    effort: &Effort,
+    interrupt: &dyn Fn() -> bool,
+) -> Option<SlowShape> {
+    let quadrature = Quadrature::of(readings);
+    let together = Together::of(readings);
+    let mut best: Option<SlowShape> = None;
+    let better = |best: &mut Option<SlowShape>, found: Option<SlowShape>| {
+        if let Some(found) = found
+            && best.as_ref().is_none_or(|best| found.misfit < best.misfit)
+        {
+            *best = Some(found);
+        }
+        best.as_ref().is_some_and(|best| best.explains(orders.enough.max(EXACT * 1e-2))) || interrupt()
+    };
+    let heights = starts(readings, &quadrature);
+    // the whole from every start; then, where nothing explains it, from its beginning on
+    for (by_parts, count, closed_orders) in
+        [(false, effort.starts, effort.orders), (true, effort.parted, &[ORDER][..])]
+    {
+        for height in heights.iter().take(count) {
+            let track = quadrature.track(&readings.times, *height);
+            for order in closed_orders {
+                let Some((support, _)) = closed(readings, &track, *order) else { continue };
+                let found = match by_parts {
+                    false => together.explain(&support, &track.phi0, orders, interrupt),
+                    true => Together::explain_by_parts(readings, &support, &track.phi0, orders, interrupt),
+                };
+                if better(&mut best, found) {
+                    return best;
+                }
+            }
+        }
+    }
+    best
+}

@@ -1,0 +1,342 @@
+//! Shape and motion from all readings at once: the support function whose equilibria explain the contacts best.
+//!
+//! At palm angles that are known the body lies where `G = A r_1' + B r_2'` vanishes and grows; which of these poses, says the one in which it lay at the last step of
+//! the search. From there the contacts follow, and their derivatives by the coefficients `c` are exact: by the pose's, `d phi0/dc = (A b_1' + B b_2')/(A r_1'' + B r_2'')`
+//! with the basis `b`, and by the coefficients' own. The turn of the body's frame is a choice; the search does not move it. Levenberg and Marquardt's steps by QR; the
+//! inverse of the last normal matrix is Cramér and Rao's bound. Which orders are tried says `ladder`.
+
+use super::found::SlowShape;
+use super::outline::{OF_KINK, Outline};
+use super::quadrature::SlowTrack;
+use super::readings::{Sampled, SlowReadings};
+use nalgebra::{DMatrix, DVector};
+use palmistry_bodies::shape::{ShapeEstimate, SupportSeries, convex_deviation};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Steps for an order.
+const STEPS: usize = 40;
+
+/// A step that lowers the sum of squares by less than this part is the last.
+const SETTLED: f64 = 1e-6;
+
+/// The standard deviation of exact readings, in parts of the mean contact.
+const NOMINAL: f64 = 1e-13;
+
+/// The order to which a shape with kinks is told.
+const EXPANDED: usize = 200;
+
+/// In one step no pose turns by more than this, in radians: it is another pose then.
+const LARGEST_TURN: f64 = 0.5;
+
+/// A point of the search.
+#[derive(Clone)]
+pub(super) struct Point {
+    pub coefficients: Vec<f64>,
+    pub phi0: Vec<f64>,
+    /// What is left of the contacts, in deviations, and of what convexity says of the coefficients.
+    pub left: DVector<f64>,
+    pub cost: f64,
+    stiffness: f64,
+}
+
+#[derive(Clone)]
+pub(super) struct Together<'a> {
+    sampled: Vec<Sampled>,
+    angles: Vec<[f64; 2]>,
+    pub readings: &'a SlowReadings,
+    pub sigma: f64,
+    /// A mean radius by which convexity's bounds are measured.
+    pub size: f64,
+    /// How many kinks of the curvature the coefficients end with.
+    pub kinks: usize,
+    /// Samples that do not count for now.
+    pub passed_over: Vec<bool>,
+}
+
+/// Radius and its derivatives at both contacts.
+pub(super) type Touched = [[f64; 4]; 2];
+
+impl<'a> Together<'a> {
+    pub fn of(readings: &'a SlowReadings) -> Together<'a> {
+        let angle = |p: &[f64; 2]| [p[0] - FRAC_PI_2, p[0] + p[1] - 3.0 * FRAC_PI_2];
+        let scale = readings.scale();
+        Together {
+            sampled: (0..readings.rows()).map(|row| readings.sampled(row)).collect(),
+            angles: readings.palms.iter().map(angle).collect(),
+            readings,
+            sigma: readings.sigma.max(NOMINAL * scale),
+            size: scale,
+            kinks: 0,
+            passed_over: vec![false; readings.rows()],
+        }
+    }
+
+    pub fn outline(&self, coefficients: &[f64]) -> Outline {
+        Outline::of(coefficients, self.kinks)
+    }
+
+    pub fn touched(&self, row: usize, phi0: f64, series: &Outline) -> Touched {
+        self.angles[row].map(|angle| series.support(angle - phi0))
+    }
+
+    /// The stable pose next to a given one, downhill, by Newton's steps while they stay near and halved brackets else.
+    pub fn pose(&self, row: usize, start: f64, series: &Outline, farthest: f64) -> Option<(f64, f64)> {
+        let (a, b) = (self.sampled[row].second[0], self.sampled[row].first[0]);
+        let slope = |phi0: f64| {
+            let [first, second] = self.touched(row, phi0, series);
+            [-(a * first[1] + b * second[1]), a * first[2] + b * second[2]]
+        };
+        let mut here = slope(start);
+        let mut phi0 = start;
+        for _ in 0..6 {
+            if here[1] <= 0.0 {
+                break;
+            }
+            let step = here[0] / here[1];
+            if step.abs() > 0.2 {
+                break;
+            }
+            phi0 -= step;
+            let next = slope(phi0);
+            if step.abs() < 1e-15
+                || (next[0] == 0.0 && next[1] > 0.0)
+                || (step.abs() < 1e-11 && next[1] > 0.0)
+            {
+                return ((phi0 - start).abs() <= farthest && next[1] > 0.0).then_some((phi0, next[1]));
+            }
+            if next[0].abs() > 0.9 * here[0].abs() {
+                break;
+            }
+            here = next;
+        }
+        // downhill in small steps, then by halves
+        let direction = if slope(start)[0] > 0.0 { -1.0 } else { 1.0 };
+        let (mut low, mut high) = (start, start);
+        loop {
+            high += direction * 0.01;
+            if (high - start).abs() > farthest {
+                return None;
+            }
+            if direction * slope(high)[0] >= 0.0 {
+                break;
+            }
+            low = high;
+        }
+        for _ in 0..60 {
+            let middle = f64::midpoint(low, high);
+            if direction * slope(middle)[0] < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let stiffness = slope(high)[1];
+        (stiffness > 0.0).then_some((high, stiffness))
+    }
+
+    pub fn contacts(&self, row: usize, [first, second]: &Touched) -> [f64; 2] {
+        let [sine, cosine] = self.sampled[row].opening;
+        [
+            (first[0] * cosine + second[0]) / sine + first[1],
+            (second[0] * cosine + first[0]) / sine - second[1],
+        ]
+    }
+
+    /// The root of the mean square of what is left of the contacts at a shape, each pose the next one to what is given, in m.
+    pub fn left_at(&self, support: &SupportSeries, near: &[f64]) -> Option<f64> {
+        let rows = 2 * self.sampled.len();
+        let at = self.settled(support.coefficients(), near, LARGEST_TURN)?;
+        Some((at.left.rows(0, rows).norm_squared() / rows as f64).sqrt() * self.sigma)
+    }
+
+    /// A point at coefficients, every pose the next one to what is given.
+    pub fn point(&self, coefficients: Vec<f64>, near: &[f64]) -> Option<Point> {
+        self.settled(coefficients, near, LARGEST_TURN)
+    }
+
+    /// A point to begin at: the poses next to those of a track, however far, or those to which the palms lead the body from the first one, whichever explain more.
+    pub fn begin(&self, coefficients: &[f64], near: &[f64]) -> Option<Point> {
+        let series = self.outline(coefficients);
+        let mut led = Vec::with_capacity(near.len());
+        for row in 0..near.len() {
+            let from = led.last().copied().unwrap_or(near[0]);
+            led.push(self.pose(row, from, &series, PI)?.0);
+        }
+        let both = [near, &led].map(|near| self.settled(coefficients.to_vec(), near, PI));
+        both.into_iter().flatten().min_by(|a, b| a.cost.total_cmp(&b.cost))
+    }
+
+    fn settled(&self, coefficients: Vec<f64>, near: &[f64], farthest: f64) -> Option<Point> {
+        let series = self.outline(&coefficients);
+        let rows = self.sampled.len();
+        let mut left = DVector::zeros(2 * rows + coefficients.len());
+        let mut phi0 = Vec::with_capacity(rows);
+        let mut least = f64::INFINITY;
+        for row in 0..rows {
+            if self.passed_over[row] {
+                phi0.push(near[row]);
+                continue;
+            }
+            let (pose, stiffness) = self.pose(row, near[row], &series, farthest)?;
+            least = least.min(stiffness);
+            phi0.push(pose);
+            let s = self.contacts(row, &self.touched(row, pose, &series));
+            for i in 0..2 {
+                left[2 * row + i] = (self.readings.contacts[row][i] - s[i]) / self.sigma;
+            }
+        }
+        for (place, coefficient) in coefficients.iter().enumerate().take(1 + 2 * series.order()).skip(1) {
+            left[2 * rows + place] = -coefficient / convex_deviation(self.size, place.div_ceil(2));
+        }
+        let cost = left.norm_squared();
+        cost.is_finite().then_some(Point { coefficients, phi0, left, cost, stiffness: least })
+    }
+
+    /// The derivatives of what is left by the coefficients, negative.
+    fn rows(&self, at: &Point) -> DMatrix<f64> {
+        let (rows, p) = (self.sampled.len(), at.coefficients.len());
+        let series = self.outline(&at.coefficients);
+        // column by column in memory: a row of the transpose is written at once
+        let mut transposed = DMatrix::zeros(p, 2 * rows + p);
+        for row in (0..rows).filter(|row| !self.passed_over[*row]) {
+            let sampled = &self.sampled[row];
+            let (a, b) = (sampled.second[0], sampled.first[0]);
+            let [sine, cosine] = sampled.opening;
+            let [first, second] = self.touched(row, at.phi0[row], &series);
+            let bases = self.angles[row].map(|angle| series.basis(angle - at.phi0[row]));
+            let stiffness = a * first[2] + b * second[2];
+            let by_turn = [
+                -(first[1] * cosine + second[1]) / sine - first[2],
+                -(second[1] * cosine + first[1]) / sine + second[2],
+            ];
+            for k in 0..p {
+                let (one, two) = (&bases[0][k], &bases[1][k]);
+                let turn = (a * one[1] + b * two[1]) / stiffness;
+                let own =
+                    [(one[0] * cosine + two[0]) / sine + one[1], (two[0] * cosine + one[0]) / sine - two[1]];
+                for i in 0..2 {
+                    transposed[(k, 2 * row + i)] = (own[i] + by_turn[i] * turn) / self.sigma;
+                }
+            }
+        }
+        for k in 1..=2 * series.order() {
+            transposed[(k, 2 * rows + k)] = 1.0 / convex_deviation(self.size, k.div_ceil(2));
+        }
+        transposed.transpose()
+    }
+
+    /// The direction in which the body's frame alone turns.
+    fn turning(&self, coefficients: &[f64]) -> DVector<f64> {
+        let harmonics = coefficients.len() - OF_KINK * self.kinks;
+        let mut direction = DVector::zeros(coefficients.len());
+        for (k, pair) in coefficients[1..harmonics].chunks_exact(2).enumerate() {
+            let times = (k + 1) as f64;
+            direction[2 * k + 1] = -times * pair[1];
+            direction[2 * k + 2] = times * pair[0];
+        }
+        (0..self.kinks).for_each(|kink| direction[harmonics + OF_KINK * (kink + 1) - 1] = 1.0);
+        let length = direction.norm();
+        if length > 0.0 { direction / length } else { direction }
+    }
+
+    /// The triangle of the rows, and what they say of the right side, with a row that holds the frame.
+    fn triangle(&self, at: &Point) -> (DMatrix<f64>, DVector<f64>) {
+        let rows = self.rows(at);
+        let (m, p) = rows.shape();
+        let mut all = DMatrix::zeros(m + 1, p + 1);
+        all.view_mut((0, 0), (m, p)).copy_from(&rows);
+        all.view_mut((0, p), (m, 1)).copy_from(&at.left);
+        let hold = rows.norm() / (p as f64).sqrt();
+        let turning = self.turning(&at.coefficients);
+        for k in 0..p {
+            all[(m, k)] = hold * turning[k];
+        }
+        let r = all.qr().r();
+        let side = r.view((0, p), (p, 1)).column(0).into_owned();
+        (r.view((0, 0), (p, p)).into_owned(), side)
+    }
+
+    /// Levenberg and Marquardt's way down from a point.
+    pub fn down(&self, at: Point, interrupt: &dyn Fn() -> bool) -> Point {
+        self.down_by(STEPS, at, interrupt)
+    }
+
+    /// The same in so many steps at most.
+    pub fn down_by(&self, steps: usize, mut at: Point, interrupt: &dyn Fn() -> bool) -> Point {
+        let mut damping = 1e-6;
+        for _ in 0..steps {
+            if interrupt() {
+                break;
+            }
+            let (triangle, side) = self.triangle(&at);
+            let p = triangle.ncols();
+            let sizes: Vec<f64> = (0..p).map(|k| triangle.column(k).norm().max(f64::MIN_POSITIVE)).collect();
+            let mut gained = None;
+            for _ in 0..8 {
+                let mut damped = DMatrix::zeros(2 * p, p + 1);
+                damped.view_mut((0, 0), (p, p)).copy_from(&triangle);
+                damped.view_mut((0, p), (p, 1)).copy_from(&side);
+                (0..p).for_each(|k| damped[(p + k, k)] = damping * sizes[k]);
+                let r = damped.qr().r();
+                let step = r
+                    .view((0, 0), (p, p))
+                    .into_owned()
+                    .solve_upper_triangular(&r.view((0, p), (p, 1)).column(0).into_owned());
+                let next = step.and_then(|step| {
+                    let moved = at.coefficients.iter().zip(step.iter()).map(|(c, step)| c + step).collect();
+                    self.point(moved, &at.phi0)
+                });
+                match next {
+                    Some(next) if next.cost < at.cost => {
+                        gained = Some(1.0 - next.cost / at.cost);
+                        at = next;
+                        damping = (damping * 0.1).max(1e-14);
+                        break;
+                    }
+                    _ => damping = (damping * 10.0).max(1e-7),
+                }
+            }
+            if gained.is_none_or(|part| part < SETTLED) {
+                break;
+            }
+        }
+        at
+    }
+
+    pub fn shape(&self, at: &Point) -> SlowShape {
+        let rows = self.sampled.len();
+        let p = at.coefficients.len();
+        let (triangle, _) = self.triangle(at);
+        let inverse = triangle
+            .solve_upper_triangular(&DMatrix::identity(p, p))
+            .unwrap_or_else(|| DMatrix::from_element(p, p, f64::INFINITY));
+        let chi_square = at.left.rows(0, 2 * rows).norm_squared();
+        let degrees = (2 * rows).saturating_sub(p).max(1);
+        let widened = (chi_square / degrees as f64).max(1.0).sqrt();
+        let outline = self.outline(&at.coefficients);
+        let radii: Vec<[f64; 2]> =
+            (0..rows).map(|row| self.touched(row, at.phi0[row], &outline).map(|r| r[0])).collect();
+        // with kinks the shape has the harmonics of their tails as well
+        let expanded = if self.kinks > 0 { EXPANDED } else { outline.order() };
+        let support = outline.expanded(expanded);
+        let inverse = if self.kinks > 0 { outline.by_own(expanded) * inverse } else { inverse };
+        let height = self.sampled.iter().zip(&radii).map(|(sampled, radii)| sampled.height(*radii));
+        SlowShape {
+            track: SlowTrack { height: height.collect(), phi0: at.phi0.clone(), radii },
+            misfit: (chi_square / (2 * rows) as f64).sqrt() * self.sigma,
+            sigma: self.sigma,
+            stiffness: at.stiffness / support.mean,
+            order: outline.order(),
+            kinks: outline.kinks,
+            shape: ShapeEstimate {
+                covariance: &inverse * inverse.transpose() * (widened * widened),
+                support: support.into(),
+                others: Vec::new(),
+                samples: 2 * rows,
+                chi_square,
+                degrees,
+                widened,
+            },
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What arrives in a stream, and what is told of it.
+
+use crate::run::Experiment;
+use crate::scene::Method;
+use palmistry_observe::{Fault, SampleEstimate, Tested, Update};
+
+/// What arrives.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum StreamPiece {
+    /// Some bytes of comma-separated values.
+    Bytes(Vec<u8>),
+    /// Nothing yet.
+    Nothing,
+    /// There is no more.
+    End,
+    /// There is no more, because of this.
+    Broken(String),
+}
+
+/// What one observer made of a window.
+#[derive(Clone, Debug)]
+pub struct StreamAnswer {
+    /// The observer.
+    pub method: Method,
+    /// What it believes at the last sample.
+    pub end: Option<SampleEstimate>,
+    /// The standard deviations of that, where a filter has them.
+    pub deviations: Option<Vec<f64>>,
+    /// Its updates: one, or two where the first contradicts what was learned before.
+    pub updates: Vec<Update>,
+    /// Other states that fit as well.
+    pub others: Vec<Update>,
+    /// What else is to be said.
+    pub remarks: Vec<String>,
+    /// Samples at which it could not see.
+    pub unseen: usize,
+}
+
+/// A window of a stream.
+#[derive(Clone, Debug)]
+pub struct WindowReport<'a> {
+    /// The scene; its readings are those of the first window.
+    pub experiment: &'a Experiment,
+    /// Which window it is, from 1 on.
+    pub window: u64,
+    /// Its samples, the one shared with the window before included.
+    pub samples: usize,
+    /// How many rows had arrived.
+    pub rows: usize,
+    /// What was wrong with rows since the last report.
+    pub faults: Vec<Fault>,
+    /// What each observer made of it.
+    pub answers: Vec<StreamAnswer>,
+}
+
+/// How a stream ended.
+#[derive(Clone, Debug, Default)]
+pub struct StreamEnd {
+    /// Windows that were answered.
+    pub windows: u64,
+    /// Rows that had arrived.
+    pub rows: usize,
+    /// Rows with faults.
+    pub faults: usize,
+    /// Why it ended before the end, in words: an interrupt, a broken pipe, a row that is cut off.
+    pub cut_off: Option<String>,
+    /// A faulty row, where the scene says to stop.
+    pub fault: Option<String>,
+    /// Of each observer: updates, and those that fit; whether one is contradicted.
+    pub observers: Vec<StreamTally>,
+}
+
+/// What came of an observer's updates.
+#[derive(Clone, Debug)]
+pub struct StreamTally {
+    /// The observer.
+    pub method: Method,
+    /// Its updates.
+    pub updates: usize,
+    /// Those that converged and fit.
+    pub fit: usize,
+    /// Those that converged and do not fit.
+    pub contradicted: usize,
+    /// All of them together, and where they meet.
+    pub tested: Tested,
+}
+
+impl StreamTally {
+    /// Whether an update is contradicted, or all of them together are.
+    pub fn is_contradicted(&self) -> bool {
+        self.contradicted > 0 || self.tested.together().is_some_and(|all| !all.fits)
+    }
+}
+
+impl StreamEnd {
+    /// Whether no update is contradicted, and each method by windows has one that fits; of what was cut off before it had any none is asked for.
+    pub fn is_sound(&self) -> bool {
+        let is_whole = self.cut_off.is_none();
+        self.observers
+            .iter()
+            .filter(|tally| tally.method.is_by_windows())
+            .all(|tally| !tally.is_contradicted() && (tally.fit > 0 || (!is_whole && tally.updates == 0)))
+    }
+}

@@ -1,0 +1,225 @@
+//! Whether palms of other forms tell more: the bound at the truth over the curvatures of both palms, in several motions of the body.
+
+use super::super::run::Experiment;
+use super::super::scene::{CurvatureStudy, Guess, Method, Scene, SceneError, Study};
+use super::noise::{at_level, first_window};
+use palmistry_bodies::mechanics::Palm;
+use palmistry_observe::WindowSearch;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The states whose bounds are compared: the support radii at both contacts.
+const COMPARED: [&str; 2] = ["r1", "r2"];
+
+/// Palms of less curvature count as flat ones, in 1/m.
+const FLATTEST: f64 = 1e-6;
+
+/// How the body of a scene begins, and what flat palms would tell of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudiedMotion {
+    /// `phi0` and `omega0` at the start, in rad and rad/s.
+    pub orientation: f64,
+    /// In rad/s.
+    pub rate: f64,
+    /// What flat palms tell.
+    pub flat: Told,
+}
+
+/// What the readings of a window can tell of both support radii.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Told {
+    /// The palms do not hold the body for that long.
+    NotHeld,
+    /// The bound exceeds what the scene calls blind.
+    Blind,
+    /// The larger bound of Cramér and Rao of both, in m.
+    Bound(f64),
+}
+
+impl Told {
+    /// In m, infinite where blind; nothing where the body is not held.
+    pub fn bound(self) -> Option<f64> {
+        match self {
+            Told::NotHeld => None,
+            Told::Blind => Some(f64::INFINITY),
+            Told::Bound(bound) => Some(bound),
+        }
+    }
+}
+
+/// The bounds over those between flat palms, of the motions in which flat palms see.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvatureRatio {
+    /// The middle one (the upper of two), the least and the greatest; infinite where blind.
+    pub median: f64,
+    /// See [`CurvatureRatio::median`].
+    pub least: f64,
+    /// See [`CurvatureRatio::median`].
+    pub greatest: f64,
+    /// Of how many motions: flat palms see, and these hold the body.
+    pub motions: usize,
+}
+
+/// The bound over the curvatures of both palms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvatureMap {
+    /// The standard deviation of the contacts' readings, in m.
+    pub noise: f64,
+    /// The curvatures along each side, in 1/m: above zero of hollow palms.
+    pub curvatures: Vec<f64>,
+    /// The motions.
+    pub motions: Vec<StudiedMotion>,
+    /// For each pair of curvatures, rows by that of palm 2, what each motion tells; none where it was interrupted before.
+    pub told: Vec<Vec<Option<Told>>>,
+}
+
+impl CurvatureMap {
+    /// How much more or less a pair of curvatures tells than flat palms; nothing where there is no motion to compare.
+    pub fn ratio(&self, cell: usize) -> Option<CurvatureRatio> {
+        let told = self.told.get(cell)?;
+        let ratio = |(told, motion): (&Option<Told>, &StudiedMotion)| match motion.flat {
+            Told::Bound(flat) => Some((*told)?.bound()? / flat),
+            _ => None,
+        };
+        let mut ratios: Vec<f64> = told.iter().zip(&self.motions).filter_map(ratio).collect();
+        ratios.sort_by(f64::total_cmp);
+        let (least, greatest) = (*ratios.first()?, *ratios.last()?);
+        Some(CurvatureRatio { median: ratios[ratios.len() / 2], least, greatest, motions: ratios.len() })
+    }
+}
+
+/// The bounds of a study, one after the other: those between flat palms, then all motions of each pair of curvatures.
+pub(super) struct CurvatureTrials<'a> {
+    experiment: &'a Experiment,
+    study: &'a CurvatureStudy,
+    curvatures: Vec<f64>,
+    /// Orientation and rate of each.
+    motions: Vec<[f64; 2]>,
+}
+
+impl<'a> CurvatureTrials<'a> {
+    /// # Errors
+    /// Where no body is held, or its support radii are not sought.
+    pub fn new(
+        experiment: &'a Experiment,
+        study: &'a CurvatureStudy,
+    ) -> Result<CurvatureTrials<'a>, SceneError> {
+        let names = experiment.names();
+        if experiment.scene.simulated.is_none() || !COMPARED.iter().all(|name| names.contains(name)) {
+            let message = "the map compares what palms tell of r1 and r2";
+            let help = "simulate a body between two palms, and let 'estimate' contain both radii";
+            return Err(experiment.scene.error_at("study.curvature", message, "here", help));
+        }
+        let last = study.points.max(2) - 1;
+        let [low, high] = study.range;
+        if let Some(missing) = ["b1", "b2"].iter().find(|name| experiment.system.find_symbol(name).is_none())
+        {
+            let message =
+                format!("the model knows no radius {missing}: it would take all palms for flat ones");
+            let help = "take a model of circular palms, such as that of scenes/circular_palms.toml";
+            return Err(experiment.scene.error_at("model", message, "this model", help));
+        }
+        let at = |i: usize| {
+            let curvature = low + (high - low) * i as f64 / last as f64;
+            // flat is flat, whatever the sum rounds to; arcs of more than 1e6 m are flat to the mechanics
+            if curvature.abs() < FLATTEST.max(1e-12 * (high - low)) { 0.0 } else { curvature }
+        };
+        let with_rates = |orientation: &f64| {
+            let orientation = *orientation;
+            study.rates.iter().map(move |rate| [orientation, *rate])
+        };
+        let motions = study.orientations.iter().flat_map(with_rates).collect();
+        Ok(CurvatureTrials { experiment, study, curvatures: (0..=last).map(at).collect(), motions })
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.motions.len() * (1 + self.curvatures.len().pow(2))
+    }
+
+    /// What one of them tells: of its place alone, whoever asks.
+    pub fn trial(&self, place: usize) -> Told {
+        let (cell, motion) = (place / self.motions.len(), self.motions[place % self.motions.len()]);
+        let curvatures = match cell.checked_sub(1) {
+            None => [0.0; 2],
+            Some(cell) => {
+                let side = self.curvatures.len();
+                [self.curvatures[cell % side], self.curvatures[cell / side % side]]
+            }
+        };
+        let forms = curvatures.map(|curvature| match curvature {
+            0.0 => Palm::Flat,
+            _ => Palm::Circular { radius: 1.0 / curvature },
+        });
+        told(&self.experiment.scene, forms, motion, self.study.noise).unwrap_or(Told::NotHeld)
+    }
+
+    /// What all of them, in their order, come to.
+    pub fn map(&self, told: &[Option<Told>]) -> CurvatureMap {
+        let (flat, cells) = told.split_at(self.motions.len().min(told.len()));
+        let motions = self.motions.iter().zip(flat).map(|([orientation, rate], flat)| StudiedMotion {
+            orientation: *orientation,
+            rate: *rate,
+            flat: flat.unwrap_or(Told::NotHeld),
+        });
+        CurvatureMap {
+            noise: self.study.noise,
+            curvatures: self.curvatures.clone(),
+            motions: motions.collect(),
+            told: cells.chunks(self.motions.len()).map(<[Option<Told>]>::to_vec).collect(),
+        }
+    }
+}
+
+/// What palms of these forms tell in the first window of a scene whose body begins so; nothing where they do not hold it so long.
+fn told(scene: &Scene, forms: [Palm<f64>; 2], [orientation, rate]: [f64; 2], noise: f64) -> Option<Told> {
+    let mut scene = scene.clone();
+    scene.palm_forms = forms;
+    (scene.study, scene.observer.guess) = (Study::default(), Guess::Off(0.0));
+    scene.observer.methods = vec![Method::TrustRegion];
+    let simulated = scene.simulated.as_mut()?;
+    (simulated.body.orientation, simulated.body.rate) = (orientation, rate);
+    // no longer than the window that is asked for
+    let samples = (scene.observer.window.max(2) + 1).min(simulated.samples);
+    simulated.duration *= (samples - 1) as f64 / (simulated.samples - 1).max(1) as f64;
+    simulated.samples = samples;
+    let experiment = Experiment::new(scene, None).ok()?;
+    if experiment.signals.times().len() < samples {
+        return None;
+    }
+    let never = AtomicBool::new(false);
+    let task = experiment.task(&never).ok()?;
+    let task = at_level(&experiment, &task, noise);
+    let observer = experiment.window(WindowSearch::TrustRegion);
+    let truth = experiment.truth_at(*experiment.signals.times().first()?)?;
+    let bounds = observer.bounds(&task, &truth, &first_window(&task, &observer), &task.clamped);
+    let part = bounds.iter().zip(&task.sizes).map(|(bound, size)| bound / size).fold(0.0, f64::max);
+    let names = experiment.names();
+    let compared = names.iter().zip(&bounds).filter(|(name, _)| COMPARED.contains(name));
+    let largest = compared.map(|(_, bound)| *bound).fold(0.0, f64::max);
+    let sees = part <= observer.blind && largest.is_finite();
+    Some(if sees { Told::Bound(largest) } else { Told::Blind })
+}
+
+/// The map of a study. Bounds are found side by side; the result is the same on any number of threads. `done` is called once a bound.
+///
+/// # Errors
+/// Where no body is held, or its support radii are not sought.
+pub fn curvature_map(
+    experiment: &Experiment,
+    study: &CurvatureStudy,
+    interrupt: &AtomicBool,
+    done: &(dyn Fn() + Sync),
+) -> Result<CurvatureMap, SceneError> {
+    let all = CurvatureTrials::new(experiment, study)?;
+    let one = |place: usize| -> Option<Told> {
+        if interrupt.load(Ordering::Relaxed) {
+            return None;
+        }
+        let told = all.trial(place);
+        done();
+        Some(told)
+    };
+    let told: Vec<Option<Told>> = (0..all.count()).into_par_iter().map(one).collect();
+    Ok(all.map(&told))
+}

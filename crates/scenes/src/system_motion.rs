@@ -1,0 +1,140 @@
+//! A system in motion by its own equations, and what is read of it.
+//!
+//! Observers that know the same equations are tried on it: what they recover is held against the state that the motion had. It is no
+//! second witness of the equations, as a body between palms is.
+
+use super::scene::{Channel, Scene, SceneError, Sensor, SimulatedSystem};
+use super::simulation::{BEGINNING, read_with_errors};
+use palmistry_lang::System;
+use palmistry_observe::{Lost, ModelError, Record, RecordError, Response, ResponseError, ResponseQuestion};
+use std::collections::BTreeMap;
+
+/// A system's motion.
+#[derive(Clone, Debug)]
+pub struct SystemMotion {
+    /// States, outputs, inputs, constants.
+    pub response: Response,
+}
+
+impl SystemMotion {
+    /// Moves the system of a scene.
+    ///
+    /// # Errors
+    /// Where the system cannot move so, with the place in the scene.
+    pub fn of(
+        scene: &Scene,
+        system: &System,
+        simulated: &SimulatedSystem,
+    ) -> Result<SystemMotion, SceneError> {
+        SystemMotion::of_samples(scene, system, simulated, usize::MAX)
+    }
+
+    /// The beginning of the same motion: its first sample is the first one of all of it.
+    ///
+    /// # Errors
+    /// As [`SystemMotion::of`].
+    pub(super) fn beginning(
+        scene: &Scene,
+        system: &System,
+        simulated: &SimulatedSystem,
+    ) -> Result<SystemMotion, SceneError> {
+        SystemMotion::of_samples(scene, system, simulated, BEGINNING)
+    }
+
+    fn of_samples(
+        scene: &Scene,
+        system: &System,
+        simulated: &SimulatedSystem,
+        most: usize,
+    ) -> Result<SystemMotion, SceneError> {
+        if !system.zero_outputs().is_empty() {
+            let help = "simulate with these readings as outputs, solved for, and hand over the record as `[data] record` here";
+            let message =
+                "an output that is zero ties readings to states, and nothing here solves it for them";
+            return Err(scene.error_at("model", message.to_owned(), "has such an output", help));
+        }
+        let inputs = &scene.observer.inputs;
+        let question = ResponseQuestion {
+            start: simulated.start.clone(),
+            functions: simulated.inputs.clone(),
+            inputs: inputs.iter().map(|(field, symbol)| (field.clone(), symbol.clone())).collect(),
+        };
+        let mut times = simulated.times(scene.sensor.jitter, scene.seed);
+        times.truncate(most);
+        let response = palmistry_observe::response(system, &question, &times).map_err(|error| {
+            let (place, help) = match &error {
+                ResponseError::NoSymbol { name, .. } if simulated.start.contains_key(name) => {
+                    (format!("start.{name}"), "[start] has a value for each state, and for constants")
+                }
+                ResponseError::NoSymbol { name, .. }
+                | ResponseError::Moves { name }
+                | ResponseError::Function { name, .. } => (
+                    format!("inputs.{name}"),
+                    "[inputs] has a function of the time t for each known signal, or for a parameter that a signal drives",
+                ),
+                ResponseError::Model(
+                    ModelError::NoField { .. } | ModelError::NoSymbol { .. } | ModelError::NotAnInput { .. },
+                ) => ("observer.inputs".to_owned(), "inputs = { field = \"symbol\" } says what drives a field"),
+                ResponseError::Model(ModelError::NotGiven { .. }) => (
+                    "start".to_owned(),
+                    "give constants a value here, and what changes a function of the time t under [inputs]",
+                ),
+                ResponseError::NoStart { .. } | ResponseError::Lost(_) => {
+                    ("start".to_owned(), "each state begins at a value at which the equations exist")
+                }
+                ResponseError::Model(_) | ResponseError::NoOutput => {
+                    ("model".to_owned(), "what is simulated has a drift or inputs, and outputs")
+                }
+            };
+            scene.error_at(&place, error.to_string(), "here", help)
+        })?;
+        Ok(SystemMotion { response })
+    }
+
+    /// Where the motion ended before its last sample, and why.
+    pub fn ended(&self) -> Option<&Lost> {
+        self.response.ended.as_ref()
+    }
+
+    /// The true values of a state or a constant, sample by sample.
+    pub fn truth(&self, name: &str) -> Option<Vec<f64>> {
+        let states = &self.response.states;
+        let constant = || Some(vec![*self.response.constants.get(name)?; self.response.times.len()]);
+        states.iter().find(|(other, _)| other == name).map(|(_, values)| values.clone()).or_else(constant)
+    }
+
+    /// All of the motion, as a table: states, outputs and inputs in the units of the file, times in s.
+    ///
+    /// # Errors
+    /// Where two columns have one name.
+    pub fn table(&self) -> Result<Record, RecordError> {
+        let response = &self.response;
+        let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
+        for (name, values) in response.states.iter().chain(&response.outputs).chain(&response.inputs) {
+            // an output that is a state is one column
+            if !columns.iter().any(|(other, _)| other == name) {
+                columns.push((name.clone(), values.clone()));
+            }
+        }
+        Record::new(response.times.clone(), columns)
+    }
+
+    /// What is read: the outputs with the errors of the sensor, in their own unit, the inputs as they are; columns that have a sensor of
+    /// their own with its errors. The same seed gives the same errors, whatever their size.
+    ///
+    /// # Errors
+    /// Where two columns have one name.
+    pub fn read(
+        &self,
+        sensor: &Sensor,
+        channels: &BTreeMap<String, Channel>,
+        seed: u64,
+    ) -> Result<Record, RecordError> {
+        let response = &self.response;
+        let mut columns: Vec<(String, Vec<f64>)> =
+            response.outputs.iter().chain(&response.inputs).cloned().collect();
+        let is_output = |name: &str| response.outputs.iter().any(|(output, _)| output == name);
+        read_with_errors(&response.times, &mut columns, &is_output, sensor, channels, seed);
+        Record::new(response.times.clone(), columns)
+    }
+}

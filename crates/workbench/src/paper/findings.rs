@@ -1,0 +1,130 @@
+//! Everything that was found of a paper.
+
+use super::folder::Paper;
+use super::left_out::LeftOut;
+use super::reduction::ReductionFound;
+use super::views::{LineFound, MapFound, SetRank};
+use crate::tradeoff::stress::StressStudy;
+use crate::tradeoff::{Growth, PrintedExpression, RouteAgreement, Trade};
+use palmistry_lang::System;
+use palmistry_prove::certificate::RegionAnswer;
+use palmistry_prove::claim::Outcome;
+use palmistry_prove::drops::DropAnswer;
+use palmistry_scenes::slow::{SlowAnswers, SlowExperiment};
+use palmistry_scenes::{Answer, Experiment};
+
+/// Lie derivatives of one output along one field, to high orders.
+pub struct DerivativesFound {
+    /// The field along which is differentiated.
+    pub field: String,
+    /// The output that is.
+    pub output: String,
+    /// Two routes to each, order by order.
+    pub routes: Vec<RouteAgreement>,
+    /// The size of the graph, order by order.
+    pub growth: Vec<Growth>,
+}
+
+/// What was found of one proof file.
+pub struct FileFindings {
+    /// The file as it was read; its name is as seen from the paper's folder.
+    pub system: System,
+    /// The claims, in the order of the file.
+    pub outcomes: Vec<Outcome>,
+    /// The whole box first, then each named set.
+    pub ranks: Vec<SetRank>,
+    /// Where the rank drops, of a file that claims something of a rank at all states.
+    pub drops: Option<DropAnswer>,
+    /// The maps that the file asks for.
+    pub maps: Vec<MapFound>,
+    /// The lines that it asks for.
+    pub lines: Vec<LineFound>,
+    /// Numbers in print, by formula.
+    pub printed: Vec<PrintedExpression>,
+    /// The reductions to other systems.
+    pub reductions: Vec<ReductionFound>,
+    /// How fast Lie derivatives grow, of the file that was chosen.
+    pub derivatives: Option<DerivativesFound>,
+    /// Speed against accuracy, in short.
+    pub trade: Option<Trade>,
+    /// The extremes, in short.
+    pub stress: Option<StressStudy>,
+    /// The certificate on the sample box, after a few thousand sub-boxes.
+    pub certificate: Option<RegionAnswer>,
+    /// What was not looked at, and why.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl FileFindings {
+    /// Nothing found yet.
+    pub fn begun(system: System) -> FileFindings {
+        FileFindings {
+            system,
+            outcomes: Vec::new(),
+            ranks: Vec::new(),
+            drops: None,
+            maps: Vec::new(),
+            lines: Vec::new(),
+            printed: Vec::new(),
+            reductions: Vec::new(),
+            derivatives: None,
+            trade: None,
+            stress: None,
+            certificate: None,
+            left_out: Vec::new(),
+        }
+    }
+
+    /// Whether everything is as the file expects.
+    pub fn ok(&self) -> bool {
+        self.outcomes.iter().all(|outcome| outcome.ok)
+            && self.ranks.iter().all(SetRank::as_expected)
+            && self.reductions.iter().all(ReductionFound::proved)
+            && self.left_out.is_empty()
+    }
+}
+
+/// Everything that was found.
+pub struct Findings {
+    /// The folder.
+    pub paper: Paper,
+    /// In the order of the paper.
+    pub files: Vec<FileFindings>,
+    /// Bodies in motion, and what observers made of them.
+    pub experiments: Vec<(Experiment, Vec<Answer>)>,
+    /// Bodies at rest between slow palms, and what their readings tell.
+    pub slow: Vec<(SlowExperiment, SlowAnswers)>,
+    /// The seed of all that is drawn.
+    pub seed: u64,
+    /// Whether it was stopped before the end.
+    pub interrupted: bool,
+    /// How long it took, in s; NaN where no times are kept.
+    pub seconds: f64,
+}
+
+impl Findings {
+    /// Nothing found yet.
+    pub fn begun(seed: u64) -> Findings {
+        Findings {
+            paper: Paper::default(),
+            files: Vec::new(),
+            experiments: Vec::new(),
+            slow: Vec::new(),
+            seed,
+            interrupted: false,
+            seconds: 0.0,
+        }
+    }
+
+    /// The claims of all files, in order.
+    pub fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
+        self.files.iter().flat_map(|file| &file.outcomes)
+    }
+
+    /// Whether everything is as the files expect.
+    pub fn ok(&self) -> bool {
+        !self.interrupted
+            && self.files.iter().all(FileFindings::ok)
+            && self.slow.iter().all(|(_, answers)| answers.explained)
+    }
+}

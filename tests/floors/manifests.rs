@@ -1,0 +1,77 @@
+//! What each crate may know of the others: its manifest says it, and this says what no manifest may come to say.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// The folders under `crates/`; none in a package, which has the root alone.
+pub fn crates() -> Vec<String> {
+    let Ok(folder) = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("crates")) else {
+        return Vec::new();
+    };
+    let mut names: Vec<String> = folder
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.join("Cargo.toml").is_file())
+        .map(|path| path.file_name().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// A manifest and its `[dependencies]`, those of tests left out: our crates by their folders, others by their names.
+fn dependencies(name: &str) -> (BTreeSet<String>, BTreeSet<String>) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates").join(name).join("Cargo.toml");
+    let manifest: toml::Table = std::fs::read_to_string(path).unwrap().parse().unwrap();
+    let all = manifest["dependencies"].as_table().unwrap().keys();
+    let (ours, others): (Vec<&String>, Vec<&String>) = all.partition(|key| key.starts_with("palmistry-"));
+    let ours = ours.into_iter().map(|key| key["palmistry-".len()..].to_owned());
+    (ours.collect(), others.into_iter().cloned().collect())
+}
+
+/// All crates that a crate is built on.
+fn under(name: &str, known: &BTreeMap<String, BTreeSet<String>>) -> BTreeSet<String> {
+    let (mut found, mut open) = (BTreeSet::new(), vec![name.to_owned()]);
+    while let Some(at) = open.pop() {
+        open.extend(known[&at].iter().filter(|next| found.insert((*next).clone())).cloned());
+    }
+    found
+}
+
+/// The invariants of ARCHITECTURE.md: of each crate, what it must not be built on, however far below.
+const APART: [(&str, &[&str]); 7] = [
+    // what checks a verdict shares nothing with what found it
+    ("checker", &["inequality", "rank", "prove", "observe", "scenes"]),
+    // real bodies are a second witness for the physics: they read no proof file
+    ("bodies", &["lang", "rank", "prove", "observe"]),
+    // numbers and expressions know no file and no system
+    ("math", &["io", "lang"]),
+    // observers know systems and signals, and neither ranks nor palms
+    ("observe", &["rank", "prove", "bodies"]),
+    // theorems take nothing from touch
+    ("prove", &["bodies", "observe", "scenes"]),
+    ("rank", &["bodies", "observe", "scenes", "prove", "checker"]),
+    ("lsp", &["rank", "prove", "observe"]),
+];
+
+#[test]
+fn what_a_crate_must_not_know_it_does_not() {
+    let names = crates();
+    if names.is_empty() {
+        return; // a package has the root alone
+    }
+    let known: BTreeMap<String, BTreeSet<String>> =
+        names.iter().map(|name| (name.clone(), dependencies(name).0)).collect();
+    assert!(under("report", &known).len() > 8 && under("scenes", &known).contains("bodies"), "{known:?}");
+    for (name, forbidden) in APART {
+        let found = under(name, &known);
+        let wrong: Vec<&&str> = forbidden.iter().filter(|one| found.contains(**one)).collect();
+        assert!(wrong.is_empty(), "{name} is built on {wrong:?}");
+    }
+}
+
+/// Nothing under `report` writes JSON, but sealed parts and the verdict files that the checker reads.
+#[test]
+fn only_reports_know_json() {
+    let knowing: Vec<String> =
+        crates().into_iter().filter(|name| dependencies(name).1.contains("serde_json")).collect();
+    assert!(knowing.is_empty() || knowing == ["checker", "io", "lsp", "report"], "{knowing:?}");
+}
