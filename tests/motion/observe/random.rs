@@ -1,10 +1,10 @@
-//! Whatever numbers stand in a scene, the library answers, and soon.
+//! Whatever numbers stand in a scene, the library answers. The cases are the same each time; `PROPTEST_RNG_SEED` draws others.
 
 use crate::observe::{NEVER, REGIMES, text, with};
 use palmistry::experiment::{Experiment, Scene};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
 
 /// A number as someone might write it: near the usual one, of any size, or none.
 fn number(usual: f64) -> impl Strategy<Value = String> {
@@ -60,8 +60,13 @@ static OBSERVED: AtomicUsize = AtomicUsize::new(0);
 
 const CASES: u32 = 100;
 
-/// A case takes less than half a second; the machine may have other work.
-const LONGEST: Duration = Duration::from_secs(10);
+/// The seed that the environment names, otherwise always the same: what lands does not hang on a draw.
+fn seed() -> RngSeed {
+    std::env::var("PROPTEST_RNG_SEED")
+        .ok()
+        .and_then(|text| text.parse().ok())
+        .map_or(RngSeed::Fixed(6), RngSeed::Fixed)
+}
 
 #[test]
 fn no_numbers_make_a_scene_panic() {
@@ -77,7 +82,7 @@ fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: CASES, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: CASES, failure_persistence: None, rng_seed: seed(), ..ProptestConfig::default() })]
 
     fn each_is_answered(
         (shape, palms, regime) in (shape(), palms(), prop::sample::select(REGIMES.to_vec())),
@@ -105,7 +110,6 @@ proptest! {
             ("guess_off = 0.1", format!("guess = {{ r1 = {radius}, r2 = 1.3, omega0 = {turning}{rho} }}")),
         ];
         let scene = changes.iter().fold(whole.clone(), |text, (from, to)| with(&text, from, to));
-        let begin = Instant::now();
         // an error is an answer; a panic is none
         let answers = Scene::parse("scene.toml", &scene)
             .and_then(|scene| Experiment::new(scene, None))
@@ -117,6 +121,5 @@ proptest! {
                 OBSERVED.fetch_add(1, Ordering::Relaxed);
             }
         }
-        prop_assert!(begin.elapsed() < LONGEST, "{:?}\n{scene}", begin.elapsed());
     }
 }
