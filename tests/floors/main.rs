@@ -183,7 +183,7 @@ fn imports_are_seen_in_every_form() {
     if all.len() > 1 {
         // by a name that `observability/mod.rs` passes on, by one that `certificate/mod.rs` does, by one that begins with a module
         assert!(known("rank", &["sweep", "deviation"], &["observability", "state"]));
-        assert!(known("prove", &["claim", "everywhere"], &["certificate", "region_answer"]));
+        assert!(known("prove", &["drops", "on_box"], &["certificate", "region"]));
         assert!(known("math", &["number", "instructions", "portable"], &["number", "sine"]));
     }
 

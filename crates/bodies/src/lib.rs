@@ -3,6 +3,16 @@
 //!
 //! A second witness for the physics: this crate reads no proof file and shares no formula with one.
 
-pub mod mechanics;
-pub mod pose_surface;
+#![warn(missing_docs)]
+
+// each imports from those above it
+
+// the shape of a convex body from what was touched of it
 pub mod shape;
+
+// real bodies between real palms
+#[doc(hidden)]
+pub mod mechanics;
+
+// the surface of stable poses of a body between slow palms
+pub mod pose_surface;

@@ -16,10 +16,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SymbolRange {
+    /// The symbol by its name.
     pub symbol: String,
     /// Whether it is an angle, in radians: for those who read the file; its values are taken as they are.
     pub angle: bool,
+    /// The lower end.
     pub low: Ratio,
+    /// The upper end.
     pub high: Ratio,
 }
 

@@ -17,7 +17,9 @@ const TRIED: u64 = 1 << 26;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClaimedWord {
+    /// The claim is said to hold.
     Proved,
+    /// The claim is said to fail.
     Refuted,
 }
 

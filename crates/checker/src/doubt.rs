@@ -9,13 +9,24 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub enum Missing {
     /// The operation itself, or what it needs, was refused.
     #[error("operation {place}: {refusal}")]
-    Refused { place: usize, refusal: Refusal },
+    Refused {
+        /// The place of the step in the listing.
+        place: usize,
+        /// Why it has no value.
+        refusal: Refusal,
+    },
     /// The state says nothing of the symbol.
     #[error("operation {place} names a symbol that the state does not give")]
-    Symbol { place: usize },
+    Symbol {
+        /// The place of the step in the listing.
+        place: usize,
+    },
     /// There is no such operation, or it does not come before what needs it.
     #[error("operation {place} needs what does not come before it, or the list is too long")]
-    Place { place: usize },
+    Place {
+        /// The place that is meant.
+        place: usize,
+    },
     /// The work that one file may ask for is used up.
     #[error("too much work: it takes more than a check may")]
     Effort,

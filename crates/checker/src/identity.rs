@@ -31,7 +31,9 @@ pub struct StatedIdentity {
     /// Where sides are claimed to be near each other: the tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<usize>,
+    /// Equations that are assumed.
     pub conditions: Vec<Sides>,
+    /// What has to hold besides: domains and inequalities.
     pub requirements: Vec<Requirement>,
     /// What the proof rests on: the engine.
     pub engine: String,

@@ -9,6 +9,8 @@
 //! This floor knows exact numbers ([`palmistry_math::number`]), expressions with their derivatives, and the reader of proof files
 //! ([`palmistry_lang`]); none of the engines.
 
+#![warn(missing_docs)]
+
 mod binding;
 mod bound;
 mod bound_rank;

@@ -22,7 +22,9 @@ const MOST_COLUMNS: usize = 256;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Minor {
+    /// The rows of the minor.
     pub rows: Vec<usize>,
+    /// Its columns.
     pub columns: Vec<usize>,
 }
 
@@ -30,7 +32,9 @@ pub struct Minor {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RankedState {
+    /// The state in exact numbers.
     pub state: ExactState,
+    /// The rank that is claimed there.
     pub rank: usize,
     /// As many rows and columns as the rank, whose determinant is not zero.
     pub minor: Minor,
@@ -42,6 +46,7 @@ pub struct RankedState {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CertifiedRank {
+    /// The matrix as a listing of steps.
     pub listing: Listing,
     /// What the columns stand for: the names of the states.
     pub columns: Vec<String>,
@@ -54,6 +59,7 @@ pub struct CertifiedRank {
     pub conditions: Vec<Sides>,
     /// Where the rows exist.
     pub requirements: Vec<Requirement>,
+    /// The states with their ranks.
     pub states: Vec<RankedState>,
 }
 

@@ -55,7 +55,12 @@ pub enum ExactCoordinate {
     /// A rational number; of an angle, in radians.
     Number(Ratio),
     /// An angle by its sine and cosine: the one between minus pi and pi, pi counted.
-    Angle { sin: Ratio, cos: Ratio },
+    Angle {
+        /// Its sine.
+        sin: Ratio,
+        /// Its cosine.
+        cos: Ratio,
+    },
     /// The value of an operation of the listing, which has to come before all that mention the symbol: `sqrt(2)`, `pi/2`.
     Step(usize),
 }

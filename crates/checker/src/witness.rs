@@ -51,9 +51,12 @@ impl SidesRelation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sides {
+    /// The step of the listing that is the left side.
     pub left: usize,
+    /// How the sides are compared.
     #[serde(default, skip_serializing_if = "SidesRelation::is_equality")]
     pub relation: SidesRelation,
+    /// The step that is the right side.
     pub right: usize,
 }
 
@@ -88,7 +91,9 @@ pub enum RequirementKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Requirement {
+    /// What is required of the step.
     pub kind: RequirementKind,
+    /// A step of the listing.
     pub step: usize,
 }
 
@@ -96,7 +101,9 @@ pub struct Requirement {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PrintedSides {
+    /// The left side as it is printed.
     pub left: String,
+    /// The right side as it is printed.
     pub right: String,
 }
 
@@ -108,6 +115,7 @@ pub struct Refutation {
     pub listing: Listing,
     /// The witness: a value for every symbol of the listing.
     pub state: ExactState,
+    /// The sides, as steps of the listing.
     pub sides: Sides,
     /// Where sides are claimed to be near each other: the tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -116,6 +124,7 @@ pub struct Refutation {
     pub conditions: Vec<Sides>,
     /// Where sides and conditions exist.
     pub requirements: Vec<Requirement>,
+    /// The sides as they were printed.
     pub printed: PrintedSides,
 }
 

@@ -6,6 +6,8 @@
 //!
 //! This floor knows nothing of ranks and verdicts.
 
+#![warn(missing_docs)]
+
 mod cases;
 mod expression;
 mod formulas;

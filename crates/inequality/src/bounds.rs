@@ -26,7 +26,9 @@ pub struct Bound {
 /// Where one symbol lies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SymbolBounds {
+    /// The least value.
     pub low: Option<Bound>,
+    /// The greatest value.
     pub high: Option<Bound>,
 }
 

@@ -6,6 +6,8 @@
 //!
 //! This module knows expressions and their domains, and nothing of claims or systems.
 
+#![warn(missing_docs)]
+
 mod bounds;
 mod boxes;
 mod crossing;
@@ -72,7 +74,12 @@ pub enum Argument {
     Signs,
     /// Interval arithmetic on so many boxes, and whether it is met with equality somewhere: that derivatives vanish there was
     /// found by exact arithmetic at random points, and may be wrong with a probability below 2^-100.
-    Boxes { boxes: usize, touches: bool },
+    Boxes {
+        /// So many boxes.
+        boxes: usize,
+        /// Whether some of them hold a place where the sides touch.
+        touches: bool,
+    },
 }
 
 /// Where a goal is open.

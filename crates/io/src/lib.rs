@@ -3,8 +3,20 @@
 //!
 //! This crate knows nothing of what stands in a file.
 
-pub mod file;
+#![warn(missing_docs)]
+
+// each imports from those above it
+
+// what strangers wrote: how it is shown, how much of it is taken in
+#[doc(hidden)]
 pub mod foreign;
+
+// files: read within bounds, written whole or not at all
+#[doc(hidden)]
+pub mod file;
+
+// parts of a long computation
+#[doc(hidden)]
 pub mod parts;
 
 use std::sync::atomic::AtomicBool;

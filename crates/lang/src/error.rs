@@ -59,14 +59,20 @@ pub fn line_and_column(text: &str, at: usize) -> (usize, usize) {
 /// An error without its text: what the elaborator knows.
 #[derive(Debug)]
 pub struct Problem {
+    /// What is wrong, in a sentence.
     pub message: String,
+    /// Where, in bytes of the text.
     pub span: std::ops::Range<usize>,
+    /// What is said at the place.
     pub label: String,
+    /// What to do about it.
     pub help: Option<String>,
+    /// On what it rests: it says nothing where that is broken itself.
     pub cause: Cause,
 }
 
 impl Problem {
+    /// A problem at a place, with no advice.
     pub fn new(span: &std::ops::Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Self {
         Problem {
             message: message.into(),
@@ -77,6 +83,7 @@ impl Problem {
         }
     }
 
+    /// Adds what to do about it.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self

@@ -5,13 +5,13 @@
 //! each claim would cost as much as the file is long, so that a file of many claims would take time as its square.
 
 use super::model::{Field, System};
-use palmistry_math::expression::{Extent, KnownSoFar, Symbol};
+use palmistry_math::expression::{GraphExtent, KnownSoFar, Symbol};
 use std::collections::HashMap;
 
 /// How much there is in a system.
 #[derive(Clone, Debug)]
 pub struct SystemExtent {
-    graph: Extent,
+    graph: GraphExtent,
     /// What each field of the file knows, in their order.
     fields: Vec<KnownSoFar>,
     /// The same for the imported fields.
@@ -57,7 +57,7 @@ impl System {
     }
 
     /// Whether all nodes and symbols that a system names are those of a graph of this extent.
-    pub(crate) fn is_within(&self, extent: &Extent) -> bool {
+    pub(crate) fn is_within(&self, extent: &GraphExtent) -> bool {
         let holds = |field: &Field| {
             let components =
                 field.components.iter().all(|(symbol, id)| extent.names(*symbol) && extent.holds(*id));

@@ -6,6 +6,8 @@
 //!
 //! This floor knows nothing of ranks, verdicts or palms.
 
+#![warn(missing_docs)]
+
 mod comparable;
 mod components;
 mod declare;

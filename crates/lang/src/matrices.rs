@@ -10,6 +10,7 @@ use palmistry_math::expression::{Need, NodeId};
 const LARGEST_MATRIX: usize = 1 << 16;
 
 impl System {
+    /// The determinant of a square matrix of expressions. An error is a matrix that is not square, or too large to be written out.
     pub fn determinant(&mut self, matrix: &Matrix, span: &Span) -> Result<Value, Problem> {
         if matrix.rows != matrix.columns {
             let message = format!("the determinant of a matrix of {} by {}", matrix.rows, matrix.columns);

@@ -266,9 +266,11 @@ pub struct System {
     pub lines: Vec<LineView>,
     /// The systems that this one is under conditions.
     pub reductions: Vec<ReductionTo>,
+    /// All symbols that the file declares, with what it says of them.
     pub symbols: BTreeMap<Symbol, SymbolInfo>,
     /// What the coordinates were declared as.
     pub(crate) coordinates: Coordinates,
+    /// What `let` defines, by name.
     pub definitions: BTreeMap<String, Value>,
     /// Where each definition exists, imported ones included.
     pub(crate) definition_domains: HashMap<String, Domain>,

@@ -13,19 +13,27 @@ use palmistry_math::expression::syntax::{Name, Span};
 /// What a declaration is one of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeclarationKind {
+    /// The title of the system.
     System,
+    /// Another file that is used.
     Import,
+    /// A state.
     State,
+    /// A parameter.
     Parameter,
     /// A signal, and whether it is known.
     Signal(bool),
+    /// A definition by `let`.
     Definition,
+    /// A vector field, by its role.
     Field(Role),
+    /// An output.
     Output,
     /// A claim or an erratum, by the word that begins it.
     Claim(&'static str),
     /// A set, a pole, a map or a line, by its word.
     View(&'static str),
+    /// A reduction to another file's system.
     Reduction,
 }
 
@@ -57,6 +65,7 @@ impl DeclarationKind {
 /// Something that a file declares.
 #[derive(Clone, Debug)]
 pub struct Declaration {
+    /// What is declared.
     pub kind: DeclarationKind,
     /// Its name, id, title or text.
     pub name: String,

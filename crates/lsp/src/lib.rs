@@ -9,6 +9,8 @@
 //! The channel and its messages are those of `lsp-server`. What stands in them is written down here: the last release of
 //! `lsp-types` is of June 2024, and a dozen messages need no crate of thousands of types.
 
+#![warn(missing_docs)]
+
 mod channel;
 mod hover;
 mod lookup;

@@ -3,5 +3,12 @@
 //!
 //! This crate knows no file and no system.
 
-pub mod expression;
+#![warn(missing_docs)]
+
+// each imports from those above it
+
+// what a value can be
 pub mod number;
+
+// from text to a shared graph of expressions, its derivative, its value
+pub mod expression;

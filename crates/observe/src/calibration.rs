@@ -61,9 +61,13 @@ pub fn declare(system: &mut System, names: &[String]) {
 
 /// Gain, bias and delay that are sought of a column, as symbols.
 pub struct Sought {
+    /// The column.
     pub column: Symbol,
+    /// Its gain, where one is sought.
     pub gain: Option<Symbol>,
+    /// Its bias, where one is sought.
     pub bias: Option<Symbol>,
+    /// Its delay, where one is sought.
     pub delay: Option<Symbol>,
 }
 

@@ -9,6 +9,8 @@
 //!
 //! This floor knows systems, signals and numbers; it knows nothing of palms, bodies or scenes.
 
+#![warn(missing_docs)]
+
 mod attempt;
 mod blind;
 mod bound;

@@ -95,8 +95,11 @@ pub struct Model {
     pub(super) delays: Vec<Option<usize>>,
     /// The system with what is known put in, the rates and the outputs in its graph: for who needs derivatives of them.
     pub system: System,
+    /// The states that are followed.
     pub symbols: Vec<Symbol>,
+    /// Their rates, one for each of `symbols`.
     pub rate_nodes: Vec<NodeId>,
+    /// The outputs.
     pub output_nodes: Vec<NodeId>,
 }
 

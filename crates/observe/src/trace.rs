@@ -182,7 +182,8 @@ fn directions(task: &Task<'_>, window: &Window<'_>, here: &WindowExpansion) -> V
         if task.full.is_implicit(place) || task.full.find(&format!("{name}.gain")).is_some() {
             continue;
         }
-        let own = |i: usize, _| if i % outputs == place { read[i] } else { 0.0 };
+        // a gain multiplies what would be read without errors: those themselves would seem to show any gain
+        let own = |i: usize, _| if i % outputs == place { read[i] + here.left[i] } else { 0.0 };
         add(name, SuspectKind::OutputGain, Some(DVector::from_fn(read.len(), own)));
     }
     // a delay that is sought is under no suspicion

@@ -3,5 +3,12 @@
 //!
 //! This crate knows nothing of claims or palms.
 
+#![warn(missing_docs)]
+
+// each imports from those above it
+
+// Lie derivatives, codistribution, conditions
 pub mod observability;
+
+// the rank at many states
 pub mod sweep;

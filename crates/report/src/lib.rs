@@ -2,6 +2,8 @@
 //!
 //! Nothing is decided here.
 
+#![warn(missing_docs)]
+
 mod advice;
 mod axis;
 mod certificate;

@@ -7,6 +7,8 @@
 //!
 //! Beside `verification` this is the place that knows both palms and observers.
 
+#![warn(missing_docs)]
+
 mod advice;
 mod channels;
 mod columns;

@@ -46,6 +46,7 @@ pub fn numbers(text: &str) -> Result<Vec<f64>, BodyTextError> {
 }
 
 impl PoseBody {
+    /// A body by its outline and where its centre of mass is. An error is an outline that is no convex body.
     pub fn new(form: BodyForm, centre: CentreOfMass) -> Result<PoseBody, FormError> {
         let shape = Shape::new(&form, centre)?.without_corners()?;
         Ok(PoseBody { form, shape })

@@ -7,7 +7,7 @@
 //! graph of the `k`-th Lie derivative has O(k^3) nodes for each node of the function and the field.
 
 use super::bars::slopes_of_factors;
-use super::graph::{Extent, Graph, Node, NodeId, Symbol};
+use super::graph::{Graph, GraphExtent, Node, NodeId, Symbol};
 use crate::number::Function;
 use std::collections::HashMap;
 
@@ -143,7 +143,7 @@ impl Derivation {
     }
 
     /// Whether every node and symbol that it names is one of a graph of this extent.
-    pub fn is_within(&self, extent: &Extent) -> bool {
+    pub fn is_within(&self, extent: &GraphExtent) -> bool {
         let nodes = self.known.iter().flat_map(|(id, value)| [id, value]).chain(self.slopes.values());
         let symbols = self.slopes.keys().chain(self.fresh.keys());
         nodes.into_iter().all(|id| extent.holds(*id)) && symbols.into_iter().all(|one| extent.names(*one))

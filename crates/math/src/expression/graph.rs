@@ -59,13 +59,13 @@ pub struct Graph {
 
 /// How much there is in a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Extent {
+pub struct GraphExtent {
     nodes: usize,
     constants: usize,
     symbols: usize,
 }
 
-impl Extent {
+impl GraphExtent {
     /// Whether a node is one of so many.
     pub fn holds(&self, id: NodeId) -> bool {
         (id.0 as usize) < self.nodes
@@ -168,12 +168,12 @@ impl Graph {
     }
 
     /// How much there is, to come back to.
-    pub fn extent(&self) -> Extent {
-        Extent { nodes: self.nodes.len(), constants: self.constants.len(), symbols: self.symbols.len() }
+    pub fn extent(&self) -> GraphExtent {
+        GraphExtent { nodes: self.nodes.len(), constants: self.constants.len(), symbols: self.symbols.len() }
     }
 
     /// Takes away all that was added since; no node of it may be used any more. The cost is that of what goes.
-    pub fn shrink_to(&mut self, extent: &Extent) {
+    pub fn shrink_to(&mut self, extent: &GraphExtent) {
         self.undefined.truncate(extent.nodes);
         for node in self.nodes.drain(extent.nodes.min(self.nodes.len())..) {
             self.places.remove(&node);

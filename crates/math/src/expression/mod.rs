@@ -50,7 +50,7 @@ pub use domain::{add_guard, substitute_guards};
 pub use expansion::{Expansion, expand};
 pub use gradient::gradient;
 #[doc(hidden)]
-pub use graph::Extent;
+pub use graph::GraphExtent;
 pub use graph::{Graph, Node, NodeId, Symbol};
 pub use input::{Input, SymbolFunction, SymbolInput};
 #[doc(hidden)]

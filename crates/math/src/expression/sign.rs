@@ -9,9 +9,13 @@ use std::collections::HashMap;
 /// What is known of the sign of an expression, wherever it has a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
+    /// Above zero.
     Positive,
+    /// Zero or above.
     NotNegative,
+    /// Below zero.
     Negative,
+    /// Zero or below.
     NotPositive,
 }
 

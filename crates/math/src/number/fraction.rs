@@ -18,7 +18,9 @@ pub type Factors = BTreeMap<u32, u32>;
 /// One product above another; no factor in both.
 #[derive(Clone, Debug, Default)]
 pub struct Fraction {
+    /// What stands above.
     pub top: Factors,
+    /// What stands below.
     pub bottom: Factors,
 }
 

@@ -87,7 +87,9 @@ pub trait Lanes:
 
 /// A piece of work; the method has to be `#[inline(always)]`, all the way down, like that of [`Vectorised`].
 pub trait LaneTask {
+    /// What comes of it.
     type Output;
+    /// Does it.
     fn call(self) -> Self::Output;
 }
 
@@ -99,6 +101,7 @@ fn called<T: LaneTask>(task: T) -> T::Output {
 /// Work that runs over any [`Lanes`]. Implementations have to be `#[inline(always)]`, all the way down, to be compiled
 /// for the vectors of the processor; a closure in between may be compiled without them.
 pub trait Vectorised {
+    /// What comes of it.
     type Output;
     /// `lanes` is a value of the kind to be used.
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;

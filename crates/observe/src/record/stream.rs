@@ -50,6 +50,7 @@ pub struct RowStream {
 }
 
 impl RowStream {
+    /// A stream of rows that has read nothing yet.
     pub fn new(columns: ColumnNames, needed: Vec<String>, rules: FaultRules) -> RowStream {
         RowStream {
             path: Path::new(STREAM).to_owned(),

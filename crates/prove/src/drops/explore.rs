@@ -44,14 +44,14 @@ pub(super) struct ShortCase {
 
 /// A rank that no state of a set exceeds, and a bound on the probability of an error, as a power of two.
 #[derive(Clone, Copy, Debug)]
-pub struct Bound {
+pub struct ShortRank {
     pub rank: usize,
     pub log2_error: f64,
 }
 
 impl ShortCase {
     /// A set on which the rows that were taken have some rank, and what is known of all rows.
-    pub fn new(case: &Case, rank: usize, lower: Result<Bound, String>) -> ShortCase {
+    pub fn new(case: &Case, rank: usize, lower: Result<ShortRank, String>) -> ShortCase {
         let rank = lower.as_ref().map_or(rank, |bound| bound.rank);
         ShortCase { case: case.clone(), rank, lower: lower.map(|bound| bound.log2_error) }
     }

@@ -1,9 +1,9 @@
 //! Where the rank is lower: all minors of a set vanish, and no field leaves it, so that longer words add nothing
-//! ([`palmistry_rank::observability::Growth`]).
+//! ([`palmistry_rank::observability::RankGrowth`]).
 
 use super::algebra::{Algebra, Chart, Reach};
 use super::case::{Case, Step};
-use super::explore::{Bound, Ranked, Search, ShortCase};
+use super::explore::{Ranked, Search, ShortCase, ShortRank};
 use super::point::Point;
 use super::rows::Chosen;
 use palmistry_math::expression::{NodeId, Symbol};
@@ -107,7 +107,7 @@ impl Search<'_> {
     }
 
     /// The same by a larger set, on which fewer of the equations hold: the fields may leave the one and not the other.
-    pub(super) fn lower_around(&mut self, algebra: &mut Algebra<'_>, case: &Case) -> Option<Bound> {
+    pub(super) fn lower_around(&mut self, algebra: &mut Algebra<'_>, case: &Case) -> Option<ShortRank> {
         let mut charts = vec![Chart::new(), case.chart.clone()];
         charts.extend(case.chart.iter().map(|angle| Chart::from([*angle])));
         charts.dedup();
@@ -132,7 +132,7 @@ impl Search<'_> {
     }
 
     /// That the rank is lower on a set whose equations can be solved without taking it apart.
-    fn lower_where_solved(&mut self, algebra: &mut Algebra<'_>, mut case: Case) -> Option<Bound> {
+    fn lower_where_solved(&mut self, algebra: &mut Algebra<'_>, mut case: Case) -> Option<ShortRank> {
         let case = loop {
             match case.step(algebra).ok()? {
                 Step::Empty => return None,
@@ -161,7 +161,7 @@ impl Search<'_> {
         algebra: &mut Algebra<'_>,
         case: &Case,
         point: &Point,
-    ) -> Result<Bound, String> {
+    ) -> Result<ShortRank, String> {
         if !case.relations.is_empty() {
             return Err("it is cut out by an equation that is linear in no symbol".to_owned());
         }
@@ -188,7 +188,7 @@ impl Search<'_> {
         }
         match self.generic_rank_by(algebra, case, self.rows.columns)? {
             (rank, log2_error) if rank < self.rank && rank == seen => {
-                Ok(Bound { rank, log2_error: error.max(log2_error) })
+                Ok(ShortRank { rank, log2_error: error.max(log2_error) })
             }
             _ => Err("the rank is no lower there".to_owned()),
         }

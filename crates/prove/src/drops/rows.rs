@@ -1,13 +1,13 @@
 //! The rows whose rank is asked for: a matrix of the file, or the differentials of Lie derivatives along longer and longer
 //! words, which are taken as they are needed. These are taken by all coordinates that move, the unknown ones first: whether longer words
-//! add nothing is asked of all columns ([`Growth`]), and the rank of those of the unknown.
+//! add nothing is asked of all columns ([`RankGrowth`]), and the rank of those of the unknown.
 
 use super::algebra::{Algebra, Chart};
 use super::point::{Point, run};
 use palmistry_lang::System;
 use palmistry_math::expression::{Graph, NodeId, Program, Symbol, gradient};
 use palmistry_math::number::PrimeField;
-use palmistry_rank::observability::{Codistribution, Growth, Length, Word, independent_rows};
+use palmistry_rank::observability::{Codistribution, Length, RankGrowth, Word, independent_rows};
 use rand::Rng;
 use std::collections::HashMap;
 
@@ -205,7 +205,7 @@ impl Rows {
         chart: &Chart,
         point: &Point,
         rng: &mut impl Rng,
-    ) -> Option<(usize, Growth)> {
+    ) -> Option<(usize, RankGrowth)> {
         let matrix = self.at(algebra, chart, point, rng)?;
         let order: Vec<usize> = (0..matrix.len()).collect();
         let shorter: Vec<usize> =
@@ -213,7 +213,7 @@ impl Rows {
         let rank = |rows: &[usize], columns: usize| {
             choose(&point.field, &matrix, rows, columns, columns).map(|chosen| chosen.rows.len())
         };
-        let growth = Growth {
+        let growth = RankGrowth {
             order: self.order,
             below: rank(&shorter, self.width)?,
             up_to: rank(&order, self.width)?,
@@ -222,7 +222,7 @@ impl Rows {
     }
 
     /// Whether no longer word adds to a rank where no field leaves the set on which its rows have grown so.
-    pub fn have_rested(&self, growth: Growth) -> bool {
+    pub fn have_rested(&self, growth: RankGrowth) -> bool {
         self.complete || growth.has_ended()
     }
 

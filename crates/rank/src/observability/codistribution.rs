@@ -4,7 +4,7 @@
 use super::conditions::all_vanish;
 use super::generic::{GenericAnswer, Seen, generic_answer, generic_answer_of};
 use super::needed::{CodistributionError, needed};
-use super::saturation::{Ceiling, Growth, Saturation, Stop, is_invariant};
+use super::saturation::{Ceiling, RankGrowth, Saturation, Stop, is_invariant};
 use super::series::lie_derivative_by_series;
 use palmistry_lang::{Assignment, System, Time};
 use palmistry_math::expression::{Node, NodeId, gradient};
@@ -228,7 +228,7 @@ impl Codistribution {
                 true => needed(system, &with_all, conditions)?.0.len(),
                 false => result.needed.len(),
             };
-            let growth = Growth { order, below, up_to: closed_rank };
+            let growth = RankGrowth { order, below, up_to: closed_rank };
             let stop = saturation.stop(growth, result.needed.len());
             match length {
                 Length::UntilItStops if stop.is_some() => result.stop = stop.unwrap_or(result.stop),

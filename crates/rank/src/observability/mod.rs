@@ -69,7 +69,7 @@ pub use reduction::Reduction;
 #[doc(hidden)]
 pub use related_rank::related_rank;
 #[doc(hidden)]
-pub use saturation::Growth;
+pub use saturation::RankGrowth;
 pub use saturation::{Ceiling, Stop};
 #[doc(hidden)]
 pub use series::lie_derivative_by_series;

@@ -77,13 +77,16 @@ pub enum Ceiling {
 
 /// Ranks of the differentials by *all coordinates that move*, of the Lie derivatives below an order and of those up to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Growth {
+pub struct RankGrowth {
+    /// The order that was reached.
     pub order: usize,
+    /// The rank with one order less.
     pub below: usize,
+    /// The rank with this order.
     pub up_to: usize,
 }
 
-impl Growth {
+impl RankGrowth {
     /// Whether the last order has added nothing. On a set that no field leaves no further one does, in continuous time.
     pub fn has_ended(self) -> bool {
         self.order > 0 && self.below == self.up_to
@@ -143,7 +146,7 @@ impl Saturation {
     }
 
     /// Why longer Lie derivatives than those up to an order are not needed, if they are not: `unknown` is the rank of the unknowns' columns.
-    pub fn stop(&self, growth: Growth, unknown: usize) -> Option<Stop> {
+    pub fn stop(&self, growth: RankGrowth, unknown: usize) -> Option<Stop> {
         let ceiling = match self.ceiling {
             Ceiling::Rests => self.moving,
             Ceiling::Around { closed, .. } => closed,

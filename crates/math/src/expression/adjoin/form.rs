@@ -6,10 +6,10 @@ use dashu::rational::RBig;
 use std::collections::BTreeMap;
 
 /// A generator, by its place in the table of them.
-pub type Variable = u32;
+pub type Generator = u32;
 
 /// Powers of generators, in the order of these; none of them zero.
-pub(super) type Monomial = Vec<(Variable, i32)>;
+pub(super) type Monomial = Vec<(Generator, i32)>;
 
 /// Sums are no longer, and powers no higher.
 const MOST_TERMS: usize = 120;
@@ -30,7 +30,7 @@ impl Form {
         Form::term(Monomial::new(), value)
     }
 
-    pub fn variable(variable: Variable) -> Form {
+    pub fn variable(variable: Generator) -> Form {
         Form::term(vec![(variable, 1)], RBig::ONE)
     }
 
@@ -60,15 +60,15 @@ impl Form {
     }
 
     /// The generator that it is.
-    pub fn as_variable(&self) -> Option<Variable> {
+    pub fn as_variable(&self) -> Option<Generator> {
         match self.single()? {
             (monomial, factor) if factor.is_one() => as_variable(monomial),
             _ => None,
         }
     }
 
-    pub fn variables(&self) -> Vec<Variable> {
-        let mut all: Vec<Variable> = self.0.keys().flatten().map(|(variable, _)| *variable).collect();
+    pub fn variables(&self) -> Vec<Generator> {
+        let mut all: Vec<Generator> = self.0.keys().flatten().map(|(variable, _)| *variable).collect();
         all.sort_unstable();
         all.dedup();
         all
@@ -119,7 +119,7 @@ impl Form {
 }
 
 /// The generator that a monomial is.
-pub(super) fn as_variable(monomial: &Monomial) -> Option<Variable> {
+pub(super) fn as_variable(monomial: &Monomial) -> Option<Generator> {
     match monomial.as_slice() {
         [(variable, 1)] => Some(*variable),
         _ => None,
@@ -128,7 +128,7 @@ pub(super) fn as_variable(monomial: &Monomial) -> Option<Variable> {
 
 /// A product of monomials.
 pub(super) fn joined(a: &Monomial, b: &Monomial) -> Option<Monomial> {
-    let mut powers: BTreeMap<Variable, i32> = a.iter().copied().collect();
+    let mut powers: BTreeMap<Generator, i32> = a.iter().copied().collect();
     for (variable, power) in b {
         let entry = powers.entry(*variable).or_insert(0);
         *entry = entry.checked_add(*power)?;

@@ -1,6 +1,6 @@
 //! The generators: numbers and values of functions, and what is known of each.
 
-use super::form::{Form, Monomial, Variable};
+use super::form::{Form, Generator, Monomial};
 use super::{Adjunction, Halt};
 use crate::expression::{Node, NodeId, Symbol};
 use crate::number::{Function, Turn};
@@ -36,7 +36,7 @@ pub(super) enum Key {
     /// One over a sum. In forms only.
     Inverse(Form),
     /// The `P >= 0` of which a free generator is plus or minus the `D`-th power.
-    Part(Variable),
+    Part(Generator),
 }
 
 /// Which multiples of a monomial are met in exponents, or in sines: those of a fraction of it.
@@ -52,15 +52,15 @@ pub(super) struct Generators {
     pub keys: Vec<Key>,
     /// How deep each generator is nested: one more than those that it is made of.
     depths: Vec<usize>,
-    places: HashMap<Key, Variable>,
+    places: HashMap<Key, Generator>,
     nodes: Vec<NodeId>,
-    of_symbol: HashMap<Symbol, Variable>,
+    of_symbol: HashMap<Symbol, Generator>,
     /// The circles' symbols.
-    pub circles: HashMap<Symbol, Variable>,
+    pub circles: HashMap<Symbol, Generator>,
     /// The `D` of monomials.
     pub divisors: HashMap<(Measure, Monomial), u32>,
     /// The `D` of free generators that are plus (`true`) or minus a power.
-    pub parts: HashMap<Variable, (u32, bool)>,
+    pub parts: HashMap<Generator, (u32, bool)>,
     pub turn: Turn,
 }
 
@@ -84,12 +84,12 @@ impl Generators {
         }
     }
 
-    pub fn key(&self, variable: Variable) -> &Key {
+    pub fn key(&self, variable: Generator) -> &Key {
         &self.keys[variable as usize]
     }
 
     /// The symbol of a generator, or its sine or cosine, as an expression.
-    pub fn node_at(&self, variable: Variable) -> NodeId {
+    pub fn node_at(&self, variable: Generator) -> NodeId {
         self.nodes[variable as usize]
     }
 
@@ -119,14 +119,14 @@ impl Generators {
     }
 
     /// The generator of a plain symbol of the rewritten expressions.
-    pub fn of_symbol(&self, symbol: Symbol) -> Option<Variable> {
+    pub fn of_symbol(&self, symbol: Symbol) -> Option<Generator> {
         self.of_symbol.get(&symbol).copied()
     }
 }
 
 impl Adjunction<'_> {
     /// The generator that is this, new or known.
-    pub(super) fn variable(&mut self, key: Key) -> Variable {
+    pub(super) fn variable(&mut self, key: Key) -> Generator {
         // the sine and the cosine of an angle come together
         let key = match key {
             Key::Cosine(monomial) => return self.variable(Key::Sine(monomial)) + 1,
@@ -135,7 +135,7 @@ impl Adjunction<'_> {
         if let Some(known) = self.generators.places.get(&key) {
             return *known;
         }
-        let place = self.generators.keys.len() as Variable;
+        let place = self.generators.keys.len() as Generator;
         // no name of a file begins like this
         let symbol = match &key {
             Key::Symbol(symbol) => *symbol,
@@ -162,7 +162,7 @@ impl Adjunction<'_> {
     }
 
     /// A generator as an expression.
-    pub(super) fn node_of(&mut self, variable: Variable) -> NodeId {
+    pub(super) fn node_of(&mut self, variable: Generator) -> NodeId {
         if let Key::Inverse(form) = self.generators.key(variable).clone() {
             let node = self.node_of_form(&form);
             return self.graph.power(node, -1);
@@ -235,7 +235,7 @@ impl Adjunction<'_> {
     }
 
     /// Divides a free generator that is known not to be negative (or not positive) into parts; the pass begins anew.
-    pub(super) fn divide(&mut self, variable: Variable, upward: bool, power: &RBig) -> Halt {
+    pub(super) fn divide(&mut self, variable: Generator, upward: bool, power: &RBig) -> Halt {
         let whole = match self.generators.key(variable) {
             Key::Part(whole) => *whole,
             _ => variable,
@@ -272,7 +272,7 @@ impl Adjunction<'_> {
         self.forms.get(&root).cloned().flatten()
     }
 
-    fn generator_at(&self, id: NodeId) -> Option<Variable> {
+    fn generator_at(&self, id: NodeId) -> Option<Generator> {
         match self.graph.node(id) {
             Node::Symbol(symbol) => self.generators.of_symbol(symbol),
             Node::Apply(function, argument) => {
@@ -377,7 +377,7 @@ impl Adjunction<'_> {
     }
 
     /// A power of a generator as a power of a form times a lower power of the generator.
-    fn written_out(&self, variable: Variable, power: i32) -> Option<(Form, i32, i32)> {
+    fn written_out(&self, variable: Generator, power: i32) -> Option<(Form, i32, i32)> {
         let halves = (power.div_euclid(2), power.rem_euclid(2));
         let generators = &self.generators;
         match generators.key(variable) {

@@ -18,10 +18,10 @@ pub(super) enum Factor {
 }
 
 /// A multiset of factors.
-pub type Factors = Vec<(Factor, u64)>;
+pub type FactorPowers = Vec<(Factor, u64)>;
 
 /// The factors of a term, without its sign.
-pub(super) fn factors(flat: &Flat, term: Term) -> Factors {
+pub(super) fn factors(flat: &Flat, term: Term) -> FactorPowers {
     let mut found = Vec::new();
     let (_, magnitude) = flat.magnitudes[term.coefficient as usize];
     if magnitude != UNIT {
@@ -43,13 +43,13 @@ pub(super) struct Sharing {
     /// The factors of each pair.
     pub pairs: Vec<Pair>,
     /// What each product is in the end: a factor or a pair of pairs. An empty product is not here.
-    pub whole: HashMap<Factors, Factor>,
+    pub whole: HashMap<FactorPowers, Factor>,
 }
 
 impl Sharing {
-    pub fn new(wanted: impl Iterator<Item = Factors>) -> Sharing {
-        let mut places: HashMap<Factors, usize> = HashMap::new();
-        let mut products: Vec<Factors> = Vec::new();
+    pub fn new(wanted: impl Iterator<Item = FactorPowers>) -> Sharing {
+        let mut places: HashMap<FactorPowers, usize> = HashMap::new();
+        let mut products: Vec<FactorPowers> = Vec::new();
         for factors in wanted {
             if !places.contains_key(&factors) {
                 places.insert(factors.clone(), products.len());
@@ -65,7 +65,7 @@ impl Sharing {
 }
 
 /// Puts pairs into the products, as long as two places hold the same one.
-fn share(products: &mut [Factors]) -> Vec<Pair> {
+fn share(products: &mut [FactorPowers]) -> Vec<Pair> {
     let mut counts: HashMap<Pair, (u64, Vec<usize>)> = HashMap::new();
     for (place, product) in products.iter().enumerate() {
         for (pair, count) in pairs_of(product) {
@@ -115,7 +115,7 @@ fn share(products: &mut [Factors]) -> Vec<Pair> {
 }
 
 /// Multiplies out what is left of a product: neighbours first, so that the chain is short.
-fn finish(product: &Factors, pairs: &mut Vec<Pair>) -> Option<Factor> {
+fn finish(product: &FactorPowers, pairs: &mut Vec<Pair>) -> Option<Factor> {
     let mut left: Vec<Factor> =
         product.iter().flat_map(|(factor, count)| (0..*count).map(|_| *factor)).collect();
     while left.len() > 1 {
@@ -132,7 +132,7 @@ fn finish(product: &Factors, pairs: &mut Vec<Pair>) -> Option<Factor> {
 }
 
 /// The pairs that a product holds, and how often.
-fn pairs_of(product: &Factors) -> impl Iterator<Item = (Pair, u64)> + '_ {
+fn pairs_of(product: &FactorPowers) -> impl Iterator<Item = (Pair, u64)> + '_ {
     product.iter().enumerate().flat_map(move |(i, (a, m))| {
         let itself = (*m > 1).then_some(((*a, *a), m / 2));
         let others = product[i + 1..].iter().map(move |(b, n)| ((*a, *b), *m.min(n)));
@@ -141,7 +141,7 @@ fn pairs_of(product: &Factors) -> impl Iterator<Item = (Pair, u64)> + '_ {
 }
 
 /// Puts a new factor in the place of a pair, so many times.
-fn replace(product: &mut Factors, pair: Pair, times: u64, new: Factor) {
+fn replace(product: &mut FactorPowers, pair: Pair, times: u64, new: Factor) {
     for (factor, count) in product.iter_mut() {
         *count -= times * (u64::from(*factor == pair.0) + u64::from(*factor == pair.1));
     }

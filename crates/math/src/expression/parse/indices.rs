@@ -27,10 +27,12 @@ const MOST_DIGITS: usize = 9;
 /// What is declared, moved or given a value: a name, a component, or several of them.
 #[derive(Clone, Debug)]
 pub struct Target {
+    /// The index, as it is written.
     pub name: String,
     place: Option<Place>,
     /// Primes and the number of an experiment behind it.
     suffix: String,
+    /// Where it stands in the text, in bytes.
     pub span: Span,
 }
 

@@ -71,6 +71,7 @@ impl<'a> AddContext<Text<'a>, &'static str> for Expected {
     }
 }
 
+/// What a parser gives: a value, or what was expected instead.
 pub type Read<T> = ModalResult<T, Expected>;
 
 /// Stops the reading with a message of our own.
