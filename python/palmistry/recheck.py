@@ -195,6 +195,17 @@ def further_rows(system, words):
     units = [system.unit(name) for name in system.columns()]
     return [tuple(unit[x] for unit in units) for x in found]
 
+def not_denied(record, states, of, claimed, conditions, sets):
+    """That no state of a verdict's own evidence is one at which the rank is another than what was proved."""
+    for state in states:
+        with suppress(NotImplementedError):
+            given = all_gaps(*conditions, *(x for one in sets for x in one))
+            point = witness(state["state"], *(x for row in of for x in row), *given)
+            is_meant = all(holds(point, x) for x in conditions) and not any(all(holds(point, x) for x in one) for one in sets)
+            rank = exact_rank(of, point) if is_meant else claimed
+            if rank > claimed or rank < claimed and record["asked"]["sense"] != "generic":
+                doubt("at a state of its own evidence the rank is another")
+
 def at_states(system, record, evidence, seed):
     """Ranks at states: of a claim, or of nothing that is claimed."""
     states, is_listed = evidence["states"] or refuse("no states"), record["verdict"] == "found"
@@ -204,9 +215,9 @@ def at_states(system, record, evidence, seed):
     else:
         text = system.claims[record["id"]]
         asked, of, claimed, conditions = system.statement(text)
+        sets = system.left_out(text) if asked == "rank" else []
         if asked != "rank" or record["verdict"] == "proved":
-            return at_random(system, record, evidence, seed)
-        sets = system.left_out(text)
+            return asked == "rank" and of and not_denied(record, states, of, claimed, conditions, sets) or at_random(system, record, evidence, seed)
     if not of and list(evidence["columns"]) != system.columns():
         doubt("columns that are others")
     if of and len(evidence["columns"]) != len(of[0]):

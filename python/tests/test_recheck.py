@@ -122,6 +122,29 @@ class Folder(unittest.TestCase):
 
 
 class Recheck(Folder):
+    def test_a_state_of_its_own_evidence_denies_a_verdict(self):
+        """By hand: the determinant is x*y, so the rank is 2 where it is not zero, 1 at (0, 1/3), and random points see nothing of that."""
+        matrix = "rank([x, y; 2*x, 3*y]) = 2"
+        self.write(f"""system "m"
+state x, y
+drift f  x' = y  y' = x
+output x
+claim 1: {matrix} everywhere
+claim 2: {matrix}
+claim 3: {matrix} except where x = 0
+""", "m.proof")
+        path = os.path.join(self.folder.name, "m.proof")
+        for place, sense, expected in ((1, "everywhere", "not confirmed"), (2, "generic", None), (3, "except", None)):
+            state = {"state": {"x": {"number": "0"}, "y": {"number": "1/3"}}, "rank": 1, "minor": {"rows": [0], "columns": [1]}, "kernel": [["1", "0"]]}
+            evidence = {"rank": {"columns": ["column 1", "column 2"], "words": ["row 1", "row 2"], "requirements": [], "states": [state]}}
+            system = proof_file.System(path)
+            text = system.claims[str(place)]
+            entry = {"file": "m.proof", "digest": system.digest, "id": str(place), "statement": text, "asked": parts(text),
+                     "verdict": "proved", "evidence": evidence}
+            self.assertEqual(entry["asked"]["sense"], sense)
+            word = check(entry, self.folder.name, {}, 1)[0]
+            self.assertEqual(word == "not confirmed", expected == "not confirmed", (sense, word))
+
     def test_identities(self):
         for entry in GOOD[:8]:
             self.assertEqual(self.answer(entry), "consistent", entry["statement"])

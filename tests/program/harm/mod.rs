@@ -99,6 +99,11 @@ fn a_secret_is_not_quoted() {
                 "{said}"
             );
         }
+        // a scene that a paper names, too
+        write(&folder, "paper.toml", format!("title = \"a\"\nscenes = [\"{secret}\"]\n"));
+        let said = refused(&["verify", folder.path().to_str().unwrap()]);
+        assert!(said.contains("no scene that can be read"), "{said}");
+        assert!(!said.contains("hunter") && !said.contains("PASSWORD"), "{said}");
         for json in [["observe", "scene.toml"], ["check", "uses.proof"], ["verify", "."]] {
             let path = folder.path().join(json[1]);
             let said = refused(&[json[0], path.to_str().unwrap(), "--json"]);

@@ -94,6 +94,17 @@ impl<'de> Deserialize<'de> for Equations {
 /// Equations beyond this are refused: the page has a place for each.
 const MOST_EQUATIONS: usize = 100_000;
 
+/// Whether a file is what its author calls a scene, right or wrong: by the end of its name, and by what each kind of scene has. Of anything else that a
+/// paper names nothing is quoted, whatever is wrong in it.
+fn is_a_scene_file(path: &Path) -> bool {
+    let is_named_so = path.extension().is_some_and(|end| end == "toml");
+    let table = load(path).ok().and_then(|text| toml::from_str::<toml::Table>(&text).ok());
+    let is_one = |table: toml::Table| {
+        table.contains_key("motion") || table.get("observer").is_some_and(toml::Value::is_table)
+    };
+    is_named_so && table.is_some_and(is_one)
+}
+
 impl Paper {
     /// Reads a folder, with or without a `paper.toml`, or a single proof file. The proof files are only named here.
     ///
@@ -154,6 +165,15 @@ impl Paper {
             }
             .locate(&name, &text))
         };
+        let scene = |named: &Spanned<String>| -> Result<String, ReadError> {
+            let found = there(named)?;
+            if is_a_scene_file(&folder.join(&found)) {
+                return Ok(found);
+            }
+            let message = format!("{} is no scene that can be read", shown_path(&folder.join(&found)));
+            let help = "a scene is a TOML file; `palmistry observe FILE` says what is wrong in it";
+            Err(Problem::new(&named.span(), message, "named here").help(help).locate(&name, &text))
+        };
         let order: Vec<String> = keys.order.iter().map(there).collect::<Result<_, _>>()?;
         if let Some(again) = (1..order.len()).find(|place| order[..*place].contains(&order[*place])) {
             let message = format!("'{}' is named twice", order[again]);
@@ -174,7 +194,7 @@ impl Paper {
             numbering,
             folder: folder.to_owned(),
             files: order,
-            scenes: keys.scenes.iter().map(there).collect::<Result<_, _>>()?,
+            scenes: keys.scenes.iter().map(scene).collect::<Result<_, _>>()?,
             trade: keys.trade.as_ref().map(there).transpose()?,
             derivatives: keys.derivatives.as_ref().map(there).transpose()?,
         })
