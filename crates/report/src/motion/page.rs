@@ -62,7 +62,7 @@ mod tests {
 
     const SCENE: &str = r#"
 title = "A small scene"
-model = "proofs/moll2002/general.proof"
+model = "../../proofs/moll2002/general.proof"
 duration = 0.3
 samples = 61
 

@@ -114,7 +114,7 @@ mod tests {
                     format!("{head}{drive}{tail}")
                 }
             };
-            let scene = crate::Scene::parse("proofs/moll2002/scenes/general.toml", &text).unwrap();
+            let scene = crate::Scene::parse("../../proofs/moll2002/scenes/general.toml", &text).unwrap();
             let simulation = crate::Simulation::of(&scene, scene.simulated.as_ref().unwrap()).unwrap();
             let (shape, constants): (&Shape, _) = (&simulation.shape, &simulation.constants);
             for moment in simulation.trajectory.moments.iter().step_by(40) {

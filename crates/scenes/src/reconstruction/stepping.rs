@@ -190,7 +190,7 @@ mod tests {
     #[test]
     fn motion_and_derivatives_are_those_of_the_body() {
         let text = include_str!("../../../../proofs/moll2002/scenes/general.toml");
-        let scene = Scene::parse("proofs/moll2002/scenes/general.toml", text).unwrap();
+        let scene = Scene::parse("../../proofs/moll2002/scenes/general.toml", text).unwrap();
         let experiment = Experiment::new(scene, None).unwrap();
         let simulation = experiment.simulation.as_ref().unwrap();
         let [x, y] = simulation.shape.centre_of_mass();

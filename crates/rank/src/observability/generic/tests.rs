@@ -25,7 +25,7 @@ fn found(text: &str) -> (usize, usize, Vec<String>) {
 #[test]
 fn words_and_series_span_the_same() {
     let mut seen = 0;
-    for folder in std::fs::read_dir("proofs").unwrap() {
+    for folder in std::fs::read_dir("../../proofs").unwrap() {
         for file in std::fs::read_dir(folder.unwrap().path()).unwrap() {
             let path = file.unwrap().path();
             if path.extension().is_none_or(|e| e != "proof") {
