@@ -150,7 +150,10 @@ mod tests {
             assert!(!outcome.ok);
             assert_eq!((outcome.word(), outcome.statement.as_str()), ("undecided", "rank = 1 where u = 0"));
             let Verdict::Undecided { why } = &outcome.verdict else { panic!("{outcome:?}") };
-            assert!(why.starts_with("internal error: as a test asks (") && why.contains("src/claim/"), "{why}");
+            assert!(
+                why.starts_with("internal error: as a test asks (") && why.contains("src/claim/"),
+                "{why}"
+            );
             assert!(why.ends_with("please report it"), "{why}");
         }
         let claim = &system(PANICS).claims[1].clone();
