@@ -1,6 +1,6 @@
 //! One attempt in one window: whether something is seen, the search, and what its end is worth.
 
-use super::fit::Misfit;
+use super::fit::{Misfit, NoiseFrom};
 use super::task::Task;
 use super::track::{Update, UpdateEnd};
 use super::window::{Window, WindowExpansion};
@@ -185,7 +185,13 @@ impl MovingWindow {
                 let left = window.weighted(expansion.left.clone());
                 update.discounted = left.iter().filter(|value| loss.is_discounted(**value, sigma)).count();
                 let here = (&expansion.slopes, found);
-                if let Some(blind) = self.see(task, fit.sigma, window, here, sizes, update) {
+                // what is left and is no noise says nothing of how well the readings see
+                let is_noise = fit.fits || fit.from != NoiseFrom::Misfit;
+                let may_be_blind =
+                    is_noise || self.see(task, task.sigma, window, here, sizes, update).is_some();
+                if let Some(blind) = self.see(task, fit.sigma, window, here, sizes, update)
+                    && may_be_blind
+                {
                     update.estimate = window.start[..task.estimated()].to_vec();
                     update.outputs = window.start[task.estimated()..].to_vec();
                     return (blind, None);

@@ -15,6 +15,11 @@ pub(super) struct Filtered<'t, 'a> {
     least: f64,
     chi_square: f64,
     degrees: usize,
+    /// The innovation before, in deviations of its own; none where the filter's need not be white.
+    before: Option<DVector<f64>>,
+    /// The sum of the products of neighbours, and how many there are.
+    products: f64,
+    counted: usize,
     /// What was held at a bound: when first, and at how many samples.
     held: BTreeMap<(usize, bool), (f64, usize)>,
 }
@@ -29,7 +34,8 @@ impl<'t, 'a> Filtered<'t, 'a> {
     /// Before anything is read.
     pub fn begin(task: &'t Task<'a>, least: f64) -> Self {
         let (track, held) = (Track::default(), BTreeMap::new());
-        Filtered { task, track, least, chi_square: 0.0, degrees: 0, held }
+        let (chi_square, products) = (0.0, 0.0);
+        Filtered { task, track, least, chi_square, degrees: 0, before: None, products, counted: 0, held }
     }
 
     /// The variance of each output's reading, as the filter believes it.
@@ -46,6 +52,20 @@ impl<'t, 'a> Filtered<'t, 'a> {
         let Some(root) = Cholesky::new(innovation.covariance.clone()) else { return };
         self.chi_square += innovation.residual.dot(&root.solve(&innovation.residual));
         self.degrees += innovation.residual.len();
+    }
+
+    /// Counts the innovation of a sample, of a filter whose innovations are white where all is right.
+    pub fn compare_white(&mut self, innovation: &Innovation) {
+        self.compare(innovation);
+        let own = Cholesky::new(innovation.covariance.clone())
+            .and_then(|root| root.l().solve_lower_triangular(&innovation.residual));
+        if let (Some(own), Some(before)) = (&own, &self.before)
+            && own.len() == before.len()
+        {
+            self.products += own.dot(before);
+            self.counted += own.len();
+        }
+        self.before = own;
     }
 
     /// What is believed at a sample, with the variances of the state, and the innovation there, which is empty where none was compared.
@@ -92,7 +112,8 @@ impl<'t, 'a> Filtered<'t, 'a> {
         let rounding = outputs.map(|output| self.task.output_errors(output).rounding).fold(0.0, f64::max);
         let sigma = self.reading_variances().min().sqrt();
         let coherent = (rounding / 2.0 + self.task.timing) / sigma;
-        self.track.innovations = Innovations::of(self.chi_square, self.degrees, sigma, coherent);
+        self.track.innovations =
+            Innovations::of([self.chi_square, self.products], [self.degrees, self.counted], sigma, coherent);
         self.track
     }
 }

@@ -74,7 +74,7 @@ impl Observer for Kalman {
             }
             let noise = so_far.reading_variances();
             let innovation = correct(task, &mut state, &mut covariance, &noise, row);
-            innovation.iter().for_each(|own| so_far.compare(own));
+            innovation.iter().for_each(|own| so_far.compare_white(own));
             so_far.hold(times[row], &mut state, &covariance);
             let residual = innovation.map(|own| own.residual.as_slice().to_vec()).unwrap_or_default();
             so_far.believe(times[row], state.as_slice(), &covariance.diagonal(), residual);

@@ -59,7 +59,7 @@ pub(super) fn between(
     let (square, degrees) = length(&apart, &covariance, &scales)?;
     let rest = (square.sqrt() - before.coherent - after.coherent).max(0.0);
     let (chi_square, probability) = (rest * rest, exceeded(rest * rest, degrees as f64));
-    Some(Seam { time, chi_square, degrees, probability })
+    Some(Seam { time, chi_square, degrees, probability, is_increment: is_heir })
 }
 
 /// The square of a difference in units of its covariance, and in how many directions it has any; `scales` are the states' deviations.

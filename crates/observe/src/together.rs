@@ -15,6 +15,32 @@ pub struct Seam {
     pub degrees: usize,
     /// How likely a difference so large is, were the model right.
     pub probability: f64,
+    /// Whether the difference is what an heir's own readings add to what it inherited: such differences are independent of each other.
+    pub is_increment: bool,
+}
+
+impl Seam {
+    /// Of two estimates of the same states at a time with the standard deviations of each, where nothing is known of how their errors hang together: no difference has a
+    /// deviation above the sum of both. The worst state is told, its probability times the number of states (Bonferroni). None where no state has a deviation on both sides.
+    pub fn of_any_correlation(time: f64, before: [&[f64]; 2], after: [&[f64]; 2]) -> Option<Seam> {
+        let [before, before_deviations] = before;
+        let [after, after_deviations] = after;
+        let places = 0..before.len().min(after.len());
+        let told = |place: usize| {
+            let sum = before_deviations.get(place)? + after_deviations.get(place)?;
+            (sum.is_finite() && sum > 0.0).then(|| (after[place] - before[place]).abs() / sum)
+        };
+        let apart: Vec<f64> = places.filter_map(told).collect();
+        let most = apart.iter().copied().reduce(f64::max)?;
+        let chi_square = most * most;
+        let probability = (apart.len() as f64 * exceeded(chi_square, 1.0)).min(1.0);
+        Some(Seam { time, chi_square, degrees: 1, probability, is_increment: false })
+    }
+
+    /// Whether two windows of a right model are seldom so far apart.
+    pub fn is_open(&self) -> bool {
+        self.probability < FALSE_ALARMS
+    }
 }
 
 /// The tests of all windows of a track together.
@@ -27,7 +53,9 @@ pub struct Together {
     pub probability: f64,
     /// The least likely seam, and how likely it is that one of so many is so unlikely (C. E. Bonferroni, 1936).
     pub worst_seam: Option<(Seam, f64)>,
-    /// Whether both are no less likely than [`FALSE_ALARMS`].
+    /// How likely it is that the seams of heirs are so unlikely all in all, by the same test of Fisher's; none of fewer than two.
+    pub seams: Option<f64>,
+    /// Whether all three are no less likely than [`FALSE_ALARMS`].
     pub fits: bool,
 }
 
@@ -38,6 +66,9 @@ pub struct Tested {
     windows: usize,
     seams: usize,
     worst: Option<Seam>,
+    /// Of the seams of heirs, which are independent of each other.
+    increments: usize,
+    sum_of_increments: f64,
 }
 
 impl Tested {
@@ -50,6 +81,10 @@ impl Tested {
     /// Takes in a seam.
     pub fn seam(&mut self, seam: Seam) {
         self.seams += 1;
+        if seam.is_increment {
+            self.increments += 1;
+            self.sum_of_increments -= 2.0 * seam.probability.ln();
+        }
         if self.worst.is_none_or(|worst| seam.probability < worst.probability) {
             self.worst = Some(seam);
         }
@@ -62,8 +97,11 @@ impl Tested {
         }
         let probability = exceeded(self.sum, 2.0 * self.windows as f64);
         let worst_seam = self.worst.map(|seam| (seam, (seam.probability * self.seams as f64).min(1.0)));
-        let fits = probability >= FALSE_ALARMS && worst_seam.is_none_or(|(_, p)| p >= FALSE_ALARMS);
-        Some(Together { windows: self.windows, probability, worst_seam, fits })
+        let seams =
+            (self.increments > 1).then(|| exceeded(self.sum_of_increments, 2.0 * self.increments as f64));
+        let all = [Some(probability), worst_seam.map(|(_, p)| p), seams];
+        let fits = all.into_iter().flatten().all(|p| p >= FALSE_ALARMS);
+        Some(Together { windows: self.windows, probability, worst_seam, seams, fits })
     }
 }
 
@@ -79,17 +117,35 @@ pub struct Innovations {
     pub probability: f64,
     /// The standard deviation of a reading that the filter believes, in its unit.
     pub sigma: f64,
-    /// Whether it is no less likely than [`FALSE_ALARMS`].
+    /// How likely innovations are that hang together so much with those of the sample before, were the model right: then they are white (section 5.4.2 there). None of
+    /// a filter that is not the best linear one, whose innovations need not be white, and of few readings.
+    pub whiteness: Option<f64>,
+    /// Whether both are no less likely than [`FALSE_ALARMS`].
     pub fits: bool,
 }
 
+/// A sum of fewer products is not yet near a normal distribution.
+const LEAST_PRODUCTS: usize = 50;
+
 impl Innovations {
-    /// Of a sum of squares; `coherent` is what rounding may add to each, in standard deviations.
-    pub(super) fn of(chi_square: f64, degrees: usize, sigma: f64, coherent: f64) -> Option<Innovations> {
+    /// Of a sum of squares, and of the sum of so many products of each innovation with the one before, both in deviations; `coherent` is what rounding may add to each
+    /// innovation.
+    pub(super) fn of(
+        [chi_square, products]: [f64; 2],
+        [degrees, counted]: [usize; 2],
+        sigma: f64,
+        coherent: f64,
+    ) -> Option<Innovations> {
         let rest = (chi_square.sqrt() - coherent * (degrees as f64).sqrt()).max(0.0);
         let probability = exceeded(rest * rest, degrees as f64);
-        let fits = probability >= FALSE_ALARMS;
-        (degrees > 0).then_some(Innovations { chi_square, degrees, probability, sigma, fits })
+        let whiteness = (counted >= LEAST_PRODUCTS).then(|| {
+            let n = counted as f64;
+            let rounding = n * coherent * coherent + 2.0 * coherent * n.sqrt();
+            let rest = (products.abs() - rounding).max(0.0);
+            exceeded(rest * rest / n, 1.0)
+        });
+        let fits = probability >= FALSE_ALARMS && whiteness.is_none_or(|p| p >= FALSE_ALARMS);
+        (degrees > 0).then_some(Innovations { chi_square, degrees, probability, sigma, whiteness, fits })
     }
 }
 
@@ -123,11 +179,42 @@ mod tests {
             chi_square,
             degrees: 1,
             probability: exceeded(chi_square, 1.0),
+            is_increment: false,
         };
         assert_eq!(together(&[0.5], &[]), None);
         assert!(together(&[0.5, 0.2], &[seam(1.0)]).unwrap().fits);
         let jump = together(&[0.5, 0.2, 0.9], &[seam(1.0), seam(18.0 * 18.0)]).unwrap();
         assert!(!jump.fits && jump.probability > 0.1 && jump.worst_seam.unwrap().0.chi_square == 324.0);
         assert!(!together(&[0.01, 0.01, 0.01, 0.01], &[]).unwrap().fits);
+    }
+
+    /// Twelve differences of 1.9 deviations are each what chance may bring, and all of them are not.
+    #[test]
+    fn seams_of_heirs_count_together() {
+        let seam = |is_increment| {
+            let chi_square = 1.9_f64 * 1.9;
+            let probability = exceeded(chi_square, 1.0);
+            Seam { time: 1.0, chi_square, degrees: 1, probability, is_increment }
+        };
+        let windows = [0.5; 13];
+        let heirs = together(&windows, &[seam(true); 12]).unwrap();
+        assert!(!heirs.fits && heirs.worst_seam.unwrap().1 > 0.5);
+        // by a table of chi-square: -2 ln 0.0574 = 5.716, twelve of them 68.6 with 24 degrees of freedom
+        assert!((heirs.seams.unwrap() / 3.4e-6).ln().abs() < 0.2, "{:?}", heirs.seams);
+        let others = together(&windows, &[seam(false); 12]).unwrap();
+        assert!(others.fits && others.seams.is_none());
+    }
+
+    /// Correlated as they may be, the difference of two errors has no deviation above the sum of theirs.
+    #[test]
+    fn seams_of_any_correlation_are_as_by_hand() {
+        let of = |after: [f64; 2], deviations: [f64; 2]| {
+            Seam::of_any_correlation(2.0, [&[1.0, 5.0], &[0.1, f64::INFINITY]], [&after, &deviations])
+        };
+        let near = of([1.3, 9.0], [0.05, 0.1]).unwrap();
+        assert!((near.chi_square - 4.0).abs() < 1e-12 && !near.is_open());
+        assert!(of([2.2, 5.0], [0.05, 0.1]).unwrap().is_open());
+        assert_eq!(of([2.2, 5.0], [f64::INFINITY, 0.1]), None);
+        assert_eq!(Seam::of_any_correlation(2.0, [&[1.0], &[]], [&[1.0], &[0.1]]), None);
     }
 }

@@ -130,7 +130,7 @@ impl Observer for Unscented {
             let noise = so_far.reading_variances().map(f64::sqrt);
             if let Some((there, spread, innovation)) = self.correct(task, &state, &root, &noise, row) {
                 (state, root) = (there, spread);
-                so_far.compare(&innovation);
+                so_far.compare_white(&innovation);
                 residual = innovation.residual.as_slice().to_vec();
             }
             so_far.hold(times[row], &mut state, &(&root * root.transpose()));

@@ -12,7 +12,9 @@ use super::scene::{Guess, Method};
 use crate::motion_rank::MotionRank;
 use palmistry_bodies::mechanics::Palm;
 use palmistry_lang::System;
-use palmistry_observe::{Objection, RecordReading, SampleEstimate, Track, Update, UpdateEnd};
+use palmistry_observe::{
+    NoiseFrom, Objection, RecordReading, SampleEstimate, Seam, Track, Update, UpdateEnd,
+};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -49,6 +51,7 @@ impl Experiment {
         let Some(other) = self.by_constraint() else { return };
         let mut own = Alone { experiment: self, rank: None };
         let mut other = Alone { experiment: &other, rank: None };
+        let mut replaced = Vec::new();
         for place in 0..track.updates.len() {
             let update = &track.updates[place];
             let is_last = track.updates.get(place + 1).is_none_or(|next| next.from > update.from);
@@ -58,11 +61,12 @@ impl Experiment {
             let is_lost = !update.is_borne_out() && !is_blind;
             let Some(rows) = self.rows(update).filter(|_| is_last && is_lost) else { continue };
             if interrupt.load(Ordering::Relaxed) {
-                return;
+                break;
             }
             let pole = match own.answer(&rows, method, interrupt) {
                 Ok(found) => {
                     self.replace(track, place, &rows, found);
+                    replaced.push(place);
                     let from = track.updates[place].from;
                     track.remarks.push(format!(
                         "from {from:.3} s begun anew, from what this window tells without a guess"
@@ -73,6 +77,7 @@ impl Experiment {
             };
             if let Ok(found) = other.answer(&rows, method, interrupt) {
                 self.replace(track, place, &rows, found);
+                replaced.push(place);
                 let from = track.updates[place].from;
                 let why = match pole {
                     Some(objection) => format!("this state has {objection}"),
@@ -82,6 +87,33 @@ impl Experiment {
                     "from {from:.3} s answered by the one constraint, whose state has no pole there: {why}"
                 ));
             }
+        }
+        self.meet_again(track, &replaced);
+    }
+
+    /// Tests the seams at both ends of the windows that were replaced. What their errors have in common with those of their neighbours is not known: the
+    /// reading that two windows share, and what a window has inherited of one that is gone.
+    fn meet_again(&self, track: &mut Track, replaced: &[usize]) {
+        let seam = |from: usize, to: usize| {
+            let [before, after] = [&track.updates[from], &track.updates[to]];
+            let is_known = |own: &Update| {
+                own.is_borne_out() && own.fit.is_some_and(|fit| fit.from != NoiseFrom::Computation)
+            };
+            let meet = before.to == after.from && is_known(before) && is_known(after);
+            let row = self.rows(after).filter(|_| meet)?.start;
+            let end = track.estimates.get(row)?;
+            let [end, begin] = [[&end.state[..], &end.deviations], [&after.estimate[..], &after.deviations]];
+            Seam::of_any_correlation(after.from, end, begin)
+        };
+        let last =
+            |place: usize| (0..place).rev().find(|own| track.updates[*own].from < track.updates[place].from);
+        let pairs = replaced.iter().flat_map(|place| [Some(*place), place.checked_add(1)]).flatten();
+        let seams: Vec<(usize, Option<Seam>)> = pairs
+            .filter(|place| *place < track.updates.len())
+            .map(|place| (place, last(place).and_then(|before| seam(before, place))))
+            .collect();
+        for (place, seam) in seams {
+            track.updates[place].seam = seam;
         }
     }
 
@@ -132,10 +164,6 @@ impl Experiment {
         }
         let outputs = before.outputs.clone();
         track.updates[place] = Update { outputs, ..found.update };
-        // what met at these ends is there no longer
-        if let Some(next) = track.updates.get_mut(place + 1) {
-            next.seam = None;
-        }
         // the sample that two windows share belongs to the first of them
         let first = if rows.start == 0 { 0 } else { rows.start + 1 };
         for (row, [state, deviations]) in rows.clone().zip(found.moments) {
@@ -188,7 +216,7 @@ impl Alone<'_> {
         let moments = track.estimates.iter().map(|at| [part(&at.state), known(&at.deviations)]).collect();
         let at = |(place, bound): &(usize, f64)| Some((sought.iter().position(|own| own == place)?, *bound));
         let at_bounds = update.at_bounds.iter().filter_map(at).collect();
-        // the covariance and the seam are those of the other state
+        // the covariance is that of the other state, and the seam is found where all windows are
         let (covariance, seam) = (None, None);
         let update = Update { estimate, deviations, at_bounds, covariance, seam, ..update.clone() };
         Ok(Found { update, moments })

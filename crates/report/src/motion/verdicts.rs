@@ -23,14 +23,22 @@ pub(super) fn together_in_words(all: &Together) -> String {
             p_in_words(probability)
         )
     });
-    format!("the {} windows {does} ({} by Fisher's test){seam}", all.windows, p_in_words(all.probability))
+    let seams = all.seams.filter(|_| !all.fits).map_or_else(String::new, |probability| {
+        format!("; all such differences together have {}", p_in_words(probability))
+    });
+    format!(
+        "the {} windows {does} ({} by Fisher's test){seam}{seams}",
+        all.windows,
+        p_in_words(all.probability)
+    )
 }
 
 /// The test of a filter's innovations.
 pub(super) fn innovations_in_words(own: &Innovations) -> String {
     let does = if own.fits { "pass" } else { "do not pass" };
+    let white = own.whiteness.map_or_else(String::new, |p| format!("; as white noise {}", p_in_words(p)));
     format!(
-        "its innovations {does} the chi-square test: normalised squares of {:.1} for {} readings with noise of {:.1e} ({})",
+        "its innovations {does} the chi-square test: normalised squares of {:.1} for {} readings with noise of {:.1e} ({}){white}",
         own.chi_square,
         own.degrees,
         own.sigma,
@@ -49,7 +57,13 @@ pub(super) fn together_json(together: Option<Together>) -> Value {
             "probability": probability,
         })
     });
-    json!({ "fits": all.fits, "windows": all.windows, "probability": all.probability, "worst_seam": seam })
+    json!({
+        "fits": all.fits,
+        "windows": all.windows,
+        "probability": all.probability,
+        "worst_seam": seam,
+        "probability_of_seams": all.seams,
+    })
 }
 
 /// The test of a filter's innovations as an object; null of other methods.
@@ -61,6 +75,7 @@ pub(super) fn innovations_json(track: &Track) -> Value {
             "degrees_of_freedom": own.degrees,
             "probability": own.probability,
             "noise": own.sigma,
+            "whiteness": own.whiteness,
         })
     })
 }
