@@ -15,10 +15,14 @@
 //! All of it is computed in doubles, and proves nothing.
 
 use crate::observability::{Defined, Locus, LocusError, State};
+use dashu::rational::RBig;
 use nalgebra::DMatrix;
 use palmistry_lang::System;
 use palmistry_math::expression::{NodeId, Program, Symbol, expand_angles};
-use palmistry_math::number::{Floats, rational_to_f64};
+use palmistry_math::number::{
+    Arithmetic, Enclosure, Enclosures, Floats, Refusal, rational_from_f64, rational_to_f64,
+};
+use std::collections::BTreeSet;
 
 /// So many states are looked at.
 const STATES: u64 = 200;
@@ -26,6 +30,9 @@ const STATES: u64 = 200;
 const MOST_ITERATIONS: usize = 10_000;
 /// Singular values below this part of the largest one, of columns of length one, cannot be told from zero in doubles.
 const NOISE: f64 = 1e-12;
+
+/// An enclosure is worth a double that is so many of its half widths away from zero.
+const FIXED: f64 = 1e12;
 
 /// What is measured.
 pub struct MeasuredRows {
@@ -120,6 +127,49 @@ impl Scales {
         found.deviations(hides)
     }
 
+    /// The same from enclosures of the differentials, which have the digits that doubles lack next to a singular set: of each state whose part of the matrix has full rank for
+    /// certain. Nothing of the others: they may be not observable.
+    ///
+    /// # Errors
+    /// Where a number has no image in the enclosures.
+    pub fn enclosed_deviations(
+        &self,
+        on: &Enclosures,
+        matrix: &[Vec<Enclosure>],
+    ) -> Result<Vec<Option<f64>>, Refusal> {
+        let columns = self.priors.len();
+        let number = |value: f64| on.rational(&rational_from_f64(value).ok_or(Refusal::NotFinite)?);
+        let mut rows = Vec::new();
+        for (entries, unit) in matrix.iter().zip(&self.noise) {
+            let unit = number(*unit)?;
+            let scaled = entries
+                .iter()
+                .zip(&self.priors)
+                .map(|(entry, prior)| on.div(&on.mul(entry, &number(*prior)?)?, &unit));
+            rows.push(scaled.collect::<Result<Vec<Enclosure>, Refusal>>()?);
+        }
+        let is_there =
+            |row: &Vec<Enclosure>| row.iter().map(|entry| entry.is_exact() && entry.contains_zero());
+        let pattern = DMatrix::from_row_iterator(
+            rows.len(),
+            columns,
+            rows.iter().flat_map(|row| is_there(row).map(|zero| f64::from(u8::from(!zero)))),
+        );
+        let parts = connected(&pattern);
+        let mut found = vec![None; columns];
+        for part in parts.iter().copied().collect::<BTreeSet<usize>>() {
+            let own: Vec<usize> = (0..columns).filter(|column| parts[*column] == part).collect();
+            let of: Vec<Vec<&Enclosure>> =
+                rows.iter().map(|row| own.iter().map(|column| &row[*column]).collect()).collect();
+            if let Some(variances) = variances(on, &of)? {
+                own.iter()
+                    .zip(variances)
+                    .for_each(|(column, variance)| found[*column] = Some(variance.sqrt()));
+            }
+        }
+        Ok(found)
+    }
+
     /// A matrix in units of the noise and of the priors, with rows of zeros for what is missing, so that all directions come out.
     fn scaled(&self, entries: &DMatrix<f64>) -> DMatrix<f64> {
         let columns = self.priors.len();
@@ -131,6 +181,45 @@ impl Scales {
         }
         scaled
     }
+}
+
+/// The diagonal of `(S^T S)^-1`, where the matrix `S` has full rank for certain and the enclosures fix a double.
+fn variances(on: &Enclosures, rows: &[Vec<&Enclosure>]) -> Result<Option<Vec<f64>>, Refusal> {
+    let size = rows.first().map_or(0, Vec::len);
+    let nothing = on.rational(&RBig::ZERO)?;
+    // beside the matrix stands the identity, which becomes the inverse
+    let mut work = vec![vec![nothing.clone(); 2 * size]; size];
+    for i in 0..size {
+        for j in 0..size {
+            for row in rows {
+                work[i][j] = on.add(&work[i][j], &on.mul(row[i], row[j])?)?;
+            }
+        }
+        work[i][size + i] = on.rational(&RBig::ONE)?;
+    }
+    // of a positive matrix any diagonal entry is a pivot, and the largest loses the fewest digits
+    let mut left: Vec<usize> = (0..size).collect();
+    while !left.is_empty() {
+        let largest = |a: &usize, b: &usize| work[*a][*a].midpoint().total_cmp(&work[*b][*b].midpoint());
+        let Some(pivot) = left.iter().copied().max_by(largest) else { break };
+        left.retain(|other| *other != pivot);
+        let divisor = work[pivot][pivot].clone();
+        if divisor.contains_zero() {
+            return Ok(None);
+        }
+        for j in 0..2 * size {
+            work[pivot][j] = on.div(&work[pivot][j], &divisor)?;
+        }
+        for i in (0..size).filter(|i| *i != pivot) {
+            let factor = work[i][pivot].clone();
+            for j in 0..2 * size {
+                work[i][j] = on.sub(&work[i][j], &on.mul(&factor, &work[pivot][j])?)?;
+            }
+        }
+    }
+    let diagonal: Vec<&Enclosure> = (0..size).map(|i| &work[i][size + i]).collect();
+    let is_fixed = diagonal.iter().all(|own| !own.contains_zero() && own.significance() > FIXED);
+    Ok(is_fixed.then(|| diagonal.iter().map(|own| own.midpoint()).collect()))
 }
 
 /// Singular values and directions of a matrix in units of the noise and of the priors, its columns of length one: a state that hardly shows
@@ -364,5 +453,28 @@ mod tests {
         let hidden = of(1e-7);
         assert!(hidden[0].is_infinite() && hidden[1].is_infinite(), "{hidden:?}");
         assert!((hidden[2] - 0.5).abs() < 1e-12, "{hidden:?}");
+    }
+
+    /// The same rows in enclosures, where they have their digits, and with a `w` that nothing sees.
+    #[test]
+    fn enclosures_tell_next_to_a_singular_set() {
+        let scales = Scales { priors: vec![1.0; 4], noise: vec![1.0; 3], rank: 3 };
+        let on = Enclosures::new(512);
+        for e in [1e-3f64, 1e-7, 1e-20] {
+            let own = rational_from_f64(e).unwrap();
+            let cube = &own + &own * &own * &own;
+            let (nought, one) = (RBig::ZERO, RBig::ONE);
+            let matrix = [[&one, &own, &nought], [&one, &cube, &nought], [&nought, &nought, &RBig::from(2)]];
+            let enclosed: Vec<Vec<Enclosure>> = matrix
+                .iter()
+                .map(|row| row.iter().copied().chain([&nought]).map(|v| on.rational(v).unwrap()).collect())
+                .collect();
+            let found = scales.enclosed_deviations(&on, &enclosed).unwrap();
+            let near = |value: Option<f64>, expected: f64| {
+                (value.unwrap() / expected - 1.0).abs() < 2.0 * e * e + 1e-14
+            };
+            assert!(near(found[1], 2.0f64.sqrt() / e.powi(3)) && near(found[0], 2.0f64.sqrt() / e.powi(2)));
+            assert!(near(found[2], 0.5) && found[3].is_none(), "{found:?}");
+        }
     }
 }

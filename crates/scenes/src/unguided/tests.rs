@@ -8,10 +8,12 @@ mod scenes;
 /// So many scenes of all four regimes that are held by both palms all the time, flat ones or circular ones.
 fn held(count: usize, is_circular: bool) -> Vec<Experiment> {
     let mut draws = scenes::Draws::new(1);
-    let mut held = Vec::new();
+    let (mut held, mut drawn) = (Vec::new(), 0);
     while held.len() < count {
+        drawn += 1;
+        assert!(drawn < 100 * count, "of {drawn} scenes {} are held", held.len());
         let text = scenes::drawn(&mut draws, held.len() % 4, 0.0, is_circular);
-        let scene = Scene::parse("drawn.toml", &text).unwrap_or_else(|error| panic!("{error}: {text}"));
+        let scene = Scene::parse("../../drawn.toml", &text).unwrap_or_else(|error| panic!("{error}: {text}"));
         let Ok(experiment) = Experiment::new(scene, None) else { continue };
         let ended = experiment.simulation.as_ref().unwrap().ended().clone();
         if ended == Ended::Completed {

@@ -4,8 +4,10 @@
 use dashu::rational::RBig;
 use nalgebra::DMatrix;
 use palmistry_lang::{Assignment, CoordinateRange, LineEnd, Point, System};
-use palmistry_math::expression::{NodeId, Program, Symbol};
-use palmistry_math::number::{Floats, Interval, RealNumber, rational_from_f64};
+use palmistry_math::expression::{Input, NodeId, Program, Symbol};
+use palmistry_math::number::{
+    Arithmetic, Enclosure, Enclosures, Floats, Interval, RealNumber, rational_from_f64,
+};
 use palmistry_rank::observability::{
     Branch, Codistribution, Coordinate, Defined, Length, Locus, State, float_inputs, linear_solution,
 };
@@ -111,6 +113,9 @@ pub struct Landscape<'s> {
     scales: Scales,
 }
 
+/// Of enclosures along a line, which comes near to singular sets.
+const BITS: usize = 1024;
+
 /// Of states that are drawn for the scales.
 const SAMPLES: u64 = 1000;
 /// The seed of these where none is given, that of all commands.
@@ -203,17 +208,56 @@ impl<'s> Landscape<'s> {
         Some(self.scales.deviations(&entries, Some(&errors)))
     }
 
+    /// The same where doubles give out, with enclosures: what stays infinite is not observable there, or not told by these either.
+    fn precise_deviations(&self, values: &HashMap<Symbol, f64>) -> Deviations {
+        let mut found = self.deviations(values)?;
+        if found.iter().any(|deviation| deviation.is_infinite())
+            && let Some(enclosed) = self.enclosed_deviations(values)
+        {
+            let hidden = found.iter_mut().zip(enclosed).filter(|(own, _)| own.is_infinite());
+            hidden.for_each(|(own, enclosed)| *own = enclosed.unwrap_or(f64::INFINITY));
+        }
+        Some(found)
+    }
+
+    fn enclosed_deviations(&self, values: &HashMap<Symbol, f64>) -> Option<Vec<Option<f64>>> {
+        let on = Enclosures::new(BITS);
+        let mut inputs = Vec::new();
+        for input in self.program.inputs() {
+            let (symbol, function) = match input {
+                Input::Plain(symbol) => (symbol, None),
+                Input::Sine(symbol) => (symbol, Some(Function::Sin)),
+                Input::Cosine(symbol) => (symbol, Some(Function::Cos)),
+                Input::Opaque(_) => return None,
+            };
+            let value = on.rational(&rational_from_f64(*values.get(symbol)?)?).ok()?;
+            inputs.push(function.map_or(Ok(value.clone()), |function| on.apply(function, &value)).ok()?);
+        }
+        let entries = self.program.load(on).ok()?.run(&inputs, &mut Vec::new()).ok()?;
+        let rows: Vec<Vec<Enclosure>> = entries.chunks(self.names.len().max(1)).map(<[_]>::to_vec).collect();
+        self.scales.enclosed_deviations(&on, &rows).ok()
+    }
+
     /// How well the unknowns are observable at points of one's own: `points` are values of the coordinates by name.
     ///
     /// # Errors
     /// A name that is not known.
     pub fn at(&self, names: &[&str], points: &[&[f64]]) -> Result<Vec<Deviations>, String> {
+        self.at_each(names, points, |values| self.deviations(values))
+    }
+
+    fn at_each(
+        &self,
+        names: &[&str],
+        points: &[&[f64]],
+        deviations: impl Fn(&HashMap<Symbol, f64>) -> Deviations + Sync,
+    ) -> Result<Vec<Deviations>, String> {
         let symbols: Vec<Symbol> =
             names.iter().map(|name| known(self.system, name)).collect::<Result<_, String>>()?;
         let one = |point: &&[f64]| {
             let mut values = self.values.clone();
             values.extend(symbols.iter().copied().zip(point.iter().copied()));
-            self.deviations(&values)
+            deviations(&values)
         };
         Ok(points.par_iter().map(one).collect())
     }
@@ -275,7 +319,8 @@ impl<'s> Landscape<'s> {
         let places: Vec<f64> = distance.iter().map(|d| end.map_or(1.0 / d, |end| end + d)).collect();
         let points: Vec<&[f64]> = places.chunks(1).collect();
         let chosen = |all: Vec<f64>| only.map_or(all.clone(), |place| vec![all[place]]);
-        let values = self.at(&[moving], &points)?.into_iter().map(|found| found.map(chosen)).collect();
+        let found = self.at_each(&[moving], &points, |values| self.precise_deviations(values))?;
+        let values = found.into_iter().map(|found| found.map(chosen)).collect();
         let names = only.map_or(self.names.clone(), |place| vec![self.names[place].clone()]);
         Ok(Slope { distance, names, values, scales: self.scales() })
     }
