@@ -5,6 +5,7 @@ use super::law::{PalmsAt, Pose, pose};
 use num_dual::{Derivative, DualSVec64};
 use palmistry_bodies::shape::{ShapeEstimate, SupportFunction};
 use palmistry_observe::Signals;
+use std::collections::HashMap;
 
 /// Pose and its consequences are differentiated by `[h, h', h'']` at both contacts, the body's rate and its radius of gyration.
 pub(super) const INPUTS: usize = 8;
@@ -17,6 +18,8 @@ pub(super) struct WholeRecord {
     pub contacts: [Vec<f64>; 2],
     /// The palms' angles, rates and accelerations in the world, two columns each, over the same times.
     pub palms: Signals,
+    /// The palms at the times that a step from one sample to the next asks for, by the bits of the time: every motion that is tried asks for the same ones.
+    pub known: HashMap<u64, PalmsAt>,
     /// The acceleration along the Y axis.
     pub gravity: f64,
     /// The radius of gyration where it is known.
@@ -91,6 +94,21 @@ impl WholeRecord {
     }
 
     pub fn palms_at(&self, time: f64) -> PalmsAt {
+        self.known.get(&time.to_bits()).copied().unwrap_or_else(|| self.interpolated(time))
+    }
+
+    /// Fills what is known of the palms: at each sample, in the middle of what follows and of its halves.
+    pub fn know_palms(&mut self) {
+        let asked = self.times.windows(2).flat_map(|pair| {
+            let [from, to] = [pair[0], pair[1]];
+            let middle = f64::midpoint(from, to);
+            let halfway = |from: f64, to: f64| from + (to - from) / 2.0;
+            [from, to, middle, halfway(from, to), halfway(from, middle), halfway(middle, to)]
+        });
+        self.known = asked.map(|time| (time.to_bits(), self.interpolated(time))).collect();
+    }
+
+    fn interpolated(&self, time: f64) -> PalmsAt {
         let mut values = [0.0; 6];
         self.palms.at(&[0, 1, 2, 3, 4, 5], time, &mut values);
         let [a, b, c, d, e, f] = values;

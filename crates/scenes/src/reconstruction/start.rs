@@ -6,6 +6,7 @@ use super::super::unguided::{PalmReadings, palm_readings};
 use super::law::PalmsAt;
 use super::record::{Unknowns, WholeRecord};
 use palmistry_bodies::shape::{SupportSample, SupportSeries, SupportWeights, fit_support};
+use std::collections::HashMap;
 
 /// A record that so many samples make is not thinned out.
 const MOST_SAMPLES: usize = 4000;
@@ -40,10 +41,11 @@ impl WholeRecord {
         let columns = columns.map(|(name, column)| ((*name).to_owned(), column.clone())).collect();
         let palms = palmistry_observe::Signals::new(readings.times.clone(), columns).ok()?;
         let truth = experiment.simulation.as_ref().and_then(|s| s.trajectory.moments.first());
-        let record = WholeRecord {
+        let mut record = WholeRecord {
             times: thin(&readings.times),
             contacts: [thin(&readings.contacts[0]), thin(&readings.contacts[1])],
             palms,
+            known: HashMap::new(),
             gravity: readings.gravity,
             gyration: readings.gyration,
             rate: known_rate(experiment),
@@ -51,6 +53,7 @@ impl WholeRecord {
             stated: sigma > 0.0,
             phi: truth.map_or(0.0, |moment| moment.phi0),
         };
+        record.know_palms();
         (record.times.len() >= FEWEST_SAMPLES).then_some(record)
     }
 

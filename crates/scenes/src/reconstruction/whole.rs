@@ -49,33 +49,38 @@ impl WholeRecord {
         self.sigma = if is_stated { stated } else { UNSTATED * self.size() };
         let begin = self.begin(starts, interrupt)?;
         let series = self.series(&begin.x, interrupt)?;
-        let splines = self.splines(&series, is_stated, interrupt);
         let candidates = match is_stated {
-            true => [vec![series], splines].concat(),
-            false => self.by_what_is_left(series, splines, interrupt)?,
+            true => {
+                let splines = self.splines(&series, is_stated, interrupt);
+                [vec![series], splines].concat()
+            }
+            false => self.by_what_is_left(series, interrupt)?,
         };
         weighed(candidates).map(|told| self.widened(told, is_stated))
     }
 
-    /// The candidates of readings whose deviation nobody states, measured by what the best of them leaves.
-    fn by_what_is_left(
-        &mut self,
-        mut series: Found,
-        mut splines: Vec<Found>,
-        interrupt: &AtomicBool,
-    ) -> Option<Vec<Found>> {
+    /// The candidates of readings whose deviation nobody states, measured by what the best of them leaves. No other body is asked for beside a series that leaves nothing.
+    fn by_what_is_left(&mut self, first: Found, interrupt: &AtomicBool) -> Option<Vec<Found>> {
+        let unstated = self.sigma;
+        let mut series = first.clone();
+        while self.sigma > NOMINAL && self.left(&series) < SMALLER * self.sigma {
+            self.sigma = self.left(&series);
+            series = self.series(&series.unknowns, interrupt)?;
+        }
+        let left = self.left(&series);
+        if left <= NOMINAL {
+            self.sigma = left;
+            return Some(vec![series]);
+        }
+        self.sigma = unstated;
+        let mut splines = self.splines(&first, false, interrupt);
         let least = |splines: &[Found]| splines.iter().map(|at| at.misfit).fold(f64::INFINITY, f64::min);
         if least(&splines) > NOMINAL {
-            while self.sigma > NOMINAL && self.left(&series) < SMALLER * self.sigma {
-                self.sigma = self.left(&series);
-                series = self.series(&series.unknowns, interrupt)?;
-            }
-            self.sigma = self.left(&series);
-            if self.sigma <= NOMINAL {
-                return Some(vec![series]);
-            }
+            self.sigma = left;
             let is_noise = self.alike(&series) < ALIKE;
             splines.extend(self.splines(&series, is_noise, interrupt));
+        } else {
+            series = first;
         }
         let least = least(&splines);
         if least > SMALLER * series.misfit {
