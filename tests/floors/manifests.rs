@@ -68,6 +68,27 @@ fn what_a_crate_must_not_know_it_does_not() {
     }
 }
 
+/// A crate whose examples are not run has none: what is shown as code and is no text would be believed.
+#[test]
+fn examples_in_documentation_are_run() {
+    for name in crates() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates").join(&name);
+        let manifest: toml::Table =
+            std::fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap();
+        let is_run = manifest.get("lib").and_then(|lib| lib.get("doctest")).and_then(toml::Value::as_bool);
+        if is_run != Some(false) {
+            continue;
+        }
+        for (path, text) in super::source::files(&folder.join("src")) {
+            let fences = text.lines().map(str::trim_start).filter_map(|line| {
+                line.strip_prefix("///").or_else(|| line.strip_prefix("//!"))?.trim().strip_prefix("```")
+            });
+            let wrong = fences.step_by(2).find(|language| *language != "text");
+            assert_eq!(wrong, None, "{}: an example that is not run", path.display());
+        }
+    }
+}
+
 /// Nothing under `report` writes JSON, but sealed parts and the verdict files that the checker reads.
 #[test]
 fn only_reports_know_json() {

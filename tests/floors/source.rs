@@ -1,7 +1,7 @@
 //! The files of `src` as modules, and what each of them names of the others.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The names on the way from the root to a module.
 pub type ModulePath = Vec<String>;
@@ -20,6 +20,23 @@ struct File {
     imports: BTreeMap<String, ModulePath>,
     /// All that it names with `::`, and all that it imports.
     named: BTreeSet<ModulePath>,
+}
+
+/// The files of Rust under a folder, with their texts.
+pub fn files(folder: &Path) -> Vec<(PathBuf, String)> {
+    let (mut found, mut open) = (Vec::new(), vec![folder.to_owned()]);
+    while let Some(place) = open.pop() {
+        for entry in std::fs::read_dir(&place).unwrap() {
+            let entry = entry.unwrap().path();
+            if entry.is_dir() {
+                open.push(entry);
+            } else if entry.extension().is_some_and(|extension| extension == "rs") {
+                let text = std::fs::read_to_string(&entry).unwrap();
+                found.push((entry, text));
+            }
+        }
+    }
+    found
 }
 
 impl Crate {

@@ -203,3 +203,43 @@ fn a_mirror_image_is_named_beside_the_estimate() {
     assert!(first(&found).1, "{found}");
     assert_eq!(named(&found), Vec::<String>::new());
 }
+
+/// A pendulum that is struck once, read without a stated noise: the model without the blow explains no window that holds it. What such a window leaves is no noise, and is no reason to call it blind. A filter that
+/// is asked alone fails with it.
+#[test]
+fn a_blow_is_no_blindness() {
+    let folder = folder();
+    write(
+        &folder,
+        "pendulum.proof",
+        "system \"A pendulum\" state phi, om param k unknown angle phi drift f phi' = om om' = -k*sin(phi) output phi \
+         sample phi in [1/10, 2] om in [-2, 2] k in [5, 15]",
+    );
+    let rates = |[phi, om]: [f64; 2], _| [om, -12.0 * phi.sin()];
+    let before = motion(rates, [0.8, 0.0], 0.01, 101);
+    let [phi, om] = before[100];
+    let after = motion(rates, [phi, om + 2.5], 0.01, 101);
+    let path = before.iter().chain(&after[1..]);
+    let rows: Vec<Vec<f64>> = path.enumerate().map(|(i, state)| vec![0.01 * i as f64, state[0]]).collect();
+    write(&folder, "run.csv", table("time,phi", rows.into_iter()));
+    let observed = |method: &str| {
+        let scene = format!(
+            "title = \"A blow\"\nmodel = \"pendulum.proof\"\n[data]\nrecord = \"run.csv\"\n[observer]\nmethods = [\"{method}\"]\n\
+             estimate = [\"om\", \"k\"]\nguess = {{ om = 0.3, k = 10 }}\nwindow = 40\nsteps = 60\n"
+        );
+        let (output, found) = observe(&write(&folder, "scene.toml", scene), &[]);
+        (output.status.code(), found)
+    };
+    let (status, found) = observed("trust-region");
+    let standings: Vec<&str> = found["observers"][0]["updates"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|update| update["standing"].as_str().unwrap())
+        .collect();
+    assert_eq!(status, Some(1), "{standings:?}");
+    assert!(standings[..2].iter().all(|standing| *standing == "converged"), "{standings:?}");
+    let fails = standings.contains(&"converged, but does not fit");
+    assert!(fails && !standings.contains(&"cannot see"), "{standings:?}");
+    assert_eq!(observed("kalman").0, Some(1));
+}

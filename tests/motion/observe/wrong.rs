@@ -271,3 +271,26 @@ fn noise_that_is_not_stated_is_estimated() {
         assert!(!track.is_sound(), "{track:?}");
     }
 }
+
+/// `x' = x` read as `x`: a gain of the output is another initial state, by hand, so that no recording tells it.
+#[test]
+fn a_gain_that_is_another_state_is_not_named() {
+    let folder = crate::common::folder();
+    let model = crate::common::write(
+        &folder,
+        "growth.proof",
+        "system \"Growth\" state x drift f x' = x output x sample x in [1/2, 2]",
+    );
+    for gain in ["", "[sensor.x]\nnoise = 0.01\ngain = 5.0\n"] {
+        let experiment = experiment(&format!(
+            "title = \"Growth\"\nmodel = \"{}\"\nduration = 5\nsamples = 101\n[start]\nx = 1.0\n[sensor]\nnoise = 0.01\n{gain}\
+             [observer]\nmethods = [\"trust-region\"]\nestimate = [\"x\"]\nguess = {{ x = 0.7 }}\nwindow = 100\nsteps = 40\n",
+            model.display()
+        ));
+        let track = &experiment.run(&NEVER, &|_| ()).unwrap()[0].track;
+        let named =
+            |suspect: &Suspect| suspect.to_string().starts_with("the gain") && suspect.noticed.is_some();
+        let named: Vec<&Suspect> = one(track).suspects.iter().filter(|own| named(own)).collect();
+        assert!(named.is_empty(), "{gain}: {named:?}");
+    }
+}
