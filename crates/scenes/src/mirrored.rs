@@ -49,8 +49,11 @@ impl Experiment {
                 let is_angle = system.is_angle(*symbol);
                 let near = if is_angle { turned - ((turned - value) / TAU).round() * TAU } else { turned };
                 is_other |= (near - value).abs() > APART * update.deviations[place];
-                self.is_within(name, near).then_some(())?;
-                image.push(format!("{name} = {near:.6}"));
+                // an angle is named between minus and plus a half turn, unless its bounds are elsewhere
+                let first = (turned + PI).rem_euclid(TAU) - PI;
+                let ways = if is_angle { vec![first, first - TAU, first + TAU] } else { vec![turned] };
+                let named = ways.into_iter().find(|way| self.is_within(name, *way))?;
+                image.push(format!("{name} = {named:.6}"));
                 if !is_angle {
                     excluding.push(format!("{name} {} 0", if value > 0.0 { ">" } else { "<" }));
                 }

@@ -148,13 +148,10 @@ impl Scales {
                 .map(|(entry, prior)| on.div(&on.mul(entry, &number(*prior)?)?, &unit));
             rows.push(scaled.collect::<Result<Vec<Enclosure>, Refusal>>()?);
         }
-        let is_there =
-            |row: &Vec<Enclosure>| row.iter().map(|entry| entry.is_exact() && entry.contains_zero());
-        let pattern = DMatrix::from_row_iterator(
-            rows.len(),
-            columns,
-            rows.iter().flat_map(|row| is_there(row).map(|zero| f64::from(u8::from(!zero)))),
-        );
+        let pattern = DMatrix::from_fn(rows.len(), columns, |row, column| {
+            let entry = &rows[row][column];
+            f64::from(u8::from(!(entry.is_exact() && entry.contains_zero())))
+        });
         let parts = connected(&pattern);
         let mut found = vec![None; columns];
         for part in parts.iter().copied().collect::<BTreeSet<usize>>() {
