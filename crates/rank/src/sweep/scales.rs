@@ -204,13 +204,14 @@ fn variances(on: &Enclosures, rows: &[Vec<&Enclosure>]) -> Result<Option<Vec<f64
         if divisor.contains_zero() {
             return Ok(None);
         }
-        for j in 0..2 * size {
-            work[pivot][j] = on.div(&work[pivot][j], &divisor)?;
+        for entry in &mut work[pivot] {
+            *entry = on.div(entry, &divisor)?;
         }
-        for i in (0..size).filter(|i| *i != pivot) {
-            let factor = work[i][pivot].clone();
-            for j in 0..2 * size {
-                work[i][j] = on.sub(&work[i][j], &on.mul(&factor, &work[pivot][j])?)?;
+        let own = work[pivot].clone();
+        for row in work.iter_mut().enumerate().filter(|(i, _)| *i != pivot).map(|(_, row)| row) {
+            let factor = row[pivot].clone();
+            for (entry, own) in row.iter_mut().zip(&own) {
+                *entry = on.sub(entry, &on.mul(&factor, own)?)?;
             }
         }
     }
