@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use palmistry_lang::{Assignment, CoordinateRange, LineEnd, Point, System};
 use palmistry_math::expression::{Input, NodeId, Program, Symbol};
 use palmistry_math::number::{
-    Arithmetic, Enclosure, Enclosures, Floats, Interval, RealNumber, rational_from_f64,
+    Arithmetic, Enclosure, Enclosures, Floats, Function, Interval, RealNumber, rational_from_f64,
 };
 use palmistry_rank::observability::{
     Branch, Codistribution, Coordinate, Defined, Length, Locus, State, float_inputs, linear_solution,
