@@ -3,7 +3,7 @@
 use super::super::recovered::{Contradiction, WholeMotion};
 use super::super::run::Answer;
 use palmistry_bodies::shape::Measured;
-use palmistry_observe::Update;
+use palmistry_observe::{Seam, Update};
 
 /// So many deviations are not chance.
 const CERTAIN: f64 = 5.0;
@@ -11,33 +11,55 @@ const CERTAIN: f64 = 5.0;
 /// What interpolation between samples leaves of a value.
 const COMPUTED: f64 = 1e-7;
 
-/// The windows that the readings bear out, without those that are too far from a neighbour: which of the two is wrong is not known.
-fn windows_at_one(updates: &[Update]) -> impl Iterator<Item = &Update> {
-    let is_open =
-        |place: usize| updates.get(place).and_then(|own| own.seam).is_some_and(|seam| seam.is_open());
-    let is_at_one =
-        move |place: usize| updates[place].is_borne_out() && !is_open(place) && !is_open(place + 1);
-    (0..updates.len()).filter(move |place| is_at_one(*place)).map(|place| &updates[place])
+/// Whether each window meets its neighbours: one that is too far from either does not, nor one that meets none where others meet. Which of two is wrong is not known.
+fn are_at_one(updates: &[Update]) -> Vec<bool> {
+    let meets = |place: usize| updates.get(place).and_then(|own| own.seam).map(|seam| !seam.is_open());
+    let any = (0..updates.len()).any(|place| meets(place) == Some(true));
+    let is_at_one = |place: usize| {
+        let both = [meets(place), meets(place + 1)];
+        !both.contains(&Some(false)) && (!any || both.contains(&Some(true)))
+    };
+    (0..updates.len()).map(is_at_one).collect()
 }
 
-/// What windows that fit and meet their neighbours contradict most of a motion; none where they bear it out. Both come from the same readings, so that the variance of their difference is no larger than the sum of theirs.
+/// What of a window is farthest from a motion, in deviations of their difference. Both come from the same readings, so that the variance of their difference is no
+/// larger than the sum of theirs.
+fn farthest(names: &[&str], update: &Update, whole: &WholeMotion) -> Option<(f64, Contradiction)> {
+    let row = whole.samples.binary_search_by(|sample| sample.time.total_cmp(&update.from));
+    let sample = whole.samples.get(row.ok()?)?;
+    let told = [("r1", sample.radii[0]), ("r2", sample.radii[1]), ("omega0", sample.omega0)];
+    let off = told.into_iter().filter_map(|(name, of_all)| {
+        let place = names.iter().position(|other| *other == name)?;
+        let by_window = Measured { value: update.estimate[place], deviation: update.deviations[place] };
+        let computed = COMPUTED * by_window.value.abs();
+        let deviation = by_window.deviation.hypot(of_all.deviation).hypot(computed);
+        let off = (by_window.value - of_all.value).abs() / deviation;
+        let name = name.to_owned();
+        (off > CERTAIN).then_some((off, Contradiction { time: update.from, name, by_window, of_all }))
+    });
+    off.max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// What windows that fit and meet their neighbours contradict most of a motion; none where they bear it out.
 pub(super) fn contradiction(names: &[&str], answer: &Answer, whole: &WholeMotion) -> Option<Contradiction> {
-    let mut worst: Option<(f64, Contradiction)> = None;
-    for update in windows_at_one(&answer.track.updates) {
-        let row = whole.samples.binary_search_by(|sample| sample.time.total_cmp(&update.from));
-        let Some(sample) = row.ok().and_then(|row| whole.samples.get(row)) else { continue };
-        let told = [("r1", sample.radii[0]), ("r2", sample.radii[1]), ("omega0", sample.omega0)];
-        for (name, of_all) in told {
-            let Some(place) = names.iter().position(|other| *other == name) else { continue };
-            let by_window = Measured { value: update.estimate[place], deviation: update.deviations[place] };
-            let computed = COMPUTED * by_window.value.abs();
-            let deviation = by_window.deviation.hypot(of_all.deviation).hypot(computed);
-            let off = (by_window.value - of_all.value).abs() / deviation;
-            if off > CERTAIN && worst.as_ref().is_none_or(|(most, _)| off > *most) {
-                let found = Contradiction { time: update.from, name: name.to_owned(), by_window, of_all };
-                worst = Some((off, found));
-            }
-        }
-    }
-    worst.map(|(_, found)| found)
+    let updates = &answer.track.updates;
+    let windows = updates.iter().zip(are_at_one(updates));
+    let at_one = windows.filter(|(update, at_one)| *at_one && update.is_borne_out());
+    let off = at_one.filter_map(|(update, _)| farthest(names, update, whole));
+    off.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
+}
+
+/// Windows that fit and are not where the motion is that all readings tell: each met a false minimum. They are held against it as against a neighbour.
+pub(super) fn strays(names: &[&str], answer: &Answer, whole: &WholeMotion) -> Vec<(usize, Seam, String)> {
+    let windows = answer.track.updates.iter().enumerate().filter(|(_, update)| update.is_borne_out());
+    let stray = windows.filter_map(|(place, update)| {
+        let (off, found) = farthest(names, update, whole)?;
+        let own = Seam::of_any_correlation(update.from, [&[0.0], &[0.0]], [&[off], &[1.0]])?;
+        let why = format!(
+            "from {:.3} s {} is {off:.0} deviations from what all readings tell: this window met a false minimum",
+            update.from, found.name
+        );
+        Some((place, own, why))
+    });
+    stray.collect()
 }

@@ -76,7 +76,14 @@ impl Experiment {
             let place = shown(&answers)
                 .and_then(|shown| answers.iter().position(|answer| std::ptr::eq(answer, shown)));
             if let Some(place) = place {
-                answers[place].reconstruction = Some(Box::new(found));
+                let answer = &mut answers[place];
+                let strays =
+                    found.whole.as_ref().map(|whole| agreement::strays(&self.names(), answer, whole));
+                for (place, seam, why) in strays.into_iter().flatten() {
+                    answer.track.updates[place].seam = Some(seam);
+                    answer.track.remarks.push(why);
+                }
+                answer.reconstruction = Some(Box::new(found));
             }
         }
         Ok(answers)
